@@ -1,0 +1,56 @@
+"""Neutral ground: the problem statement and the answer sheet.
+
+This room states; it never computes mechanics.  Both solvers read the same
+:class:`~scene.statement.Scene` and hand back the same
+:class:`~scene.answer.Answer`, and share nothing else.
+"""
+
+from scene.answer import Answer, Certificate, Ending, Event, Shape, StationAnswer
+from scene.mistakes import Mistake, SceneError
+from scene.reading import read
+from scene.statement import (
+    Arc,
+    Beam,
+    BeamContact,
+    BeamEnd,
+    Body,
+    Claim,
+    FreeEnd,
+    Line,
+    Load,
+    Material,
+    PaperContact,
+    PinnedEnd,
+    Probe,
+    Scene,
+    Stage,
+    WeldedEnd,
+)
+
+__all__ = [
+    "Answer",
+    "Arc",
+    "Beam",
+    "BeamContact",
+    "BeamEnd",
+    "Body",
+    "Certificate",
+    "Claim",
+    "Ending",
+    "Event",
+    "FreeEnd",
+    "Line",
+    "Load",
+    "Material",
+    "Mistake",
+    "PaperContact",
+    "PinnedEnd",
+    "Probe",
+    "Scene",
+    "SceneError",
+    "Shape",
+    "Stage",
+    "StationAnswer",
+    "WeldedEnd",
+    "read",
+]

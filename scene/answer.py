@@ -1,0 +1,145 @@
+"""The answer sheet that every solver hands back, at the scene's own stations.
+
+Values are NumPy arrays in SI units, made read-only.  What each quantity means:
+
+=================  ======  ====================================================================
+quantity           shape   meaning
+=================  ======  ====================================================================
+displacement       (2,)    of a body's point, m
+rotation           (1,)    of a body, counter-clockwise, rad, counted through full turns
+force              (1,)    magnitude of a contact's resultant, N; 0 where it is open
+centre             (1,)    arc length on the contact's first beam of the resultant, m; empty if open
+closing_load       (1,)    value of the stepped load at which a contact first closes; empty if open
+bending_stress     (P,)    signed: E·t/2 times the change of curvature along the beam, Pa,
+                           at P equal arc-length steps from the beam's start to its end;
+                           a positive change turns the tangent counter-clockwise
+reaction           (2,)    force of the ground on what is joined at a point, N
+reaction_moment    (1,)    moment of the ground there, about that point, N·m
+potential_energy   (1,)    strain energy less the work of the dead loads from the initial state, J
+=================  ======  ====================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Ending(Enum):
+    """How a solve ended; the value is a sentence for people."""
+
+    COMPLETED = "every station was reached and certified"
+    STEP_TOO_SMALL = "the load step was cut below its smallest size without finding a certified equilibrium"
+    NOT_A_MINIMUM = "an equilibrium was found that is not a minimum of the potential energy"
+    LEFT_BOUNDARY = "a touching joint left the range of the fitted boundary"
+    BEAMS_CROSSED = "the beams of a contact pass through each other where nothing holds them apart"
+    TURNED_TOO_FAR = "an element turned by more than the discretisation can carry"
+    NOT_CERTIFIED = "an equilibrium was found whose certificate does not hold"
+
+
+@dataclass(frozen=True, slots=True)
+class Certificate:
+    """What makes one station's answer believable; every number is relative to a stated scale.
+
+    Attributes:
+        residual: largest unbalanced generalised force over the largest one that balances.
+        residual_floor: the same in units of round-off at this discretisation: below it nothing can be asked.
+        violation: largest violation of a joint or loop closure, as a fraction of the longest beam.
+        penetration: largest depth by which beams of a contact overlap, as a fraction of the mean thickness;
+            for lines, of the longest beam.
+        complementarity: largest product of gap and contact force over their scales.
+        force_balance: norm of ΣF, supports and contacts included, over the largest force in it.
+        moment_balance: the same for ΣM.
+        smallest_curvature: smallest curvature of the potential energy on the feasible directions,
+            over the bending stiffness scale; positive for a minimum.
+        iterations: of the equilibrium solve that ended at this station, all load steps counted.
+        failures: a sentence for each thing that does not hold; empty if the certificate holds.
+    """
+
+    residual: float
+    residual_floor: float
+    violation: float
+    penetration: float
+    complementarity: float
+    force_balance: float
+    moment_balance: float
+    smallest_curvature: float
+    iterations: int
+    failures: tuple[str, ...] = ()
+
+    @property
+    def holds(self) -> bool:
+        """Whether nothing failed."""
+        return not self.failures
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """A beam's deformed neutral line: arc length ``s`` and positions ``x``, ``y`` (n,), metres."""
+
+    s: Array
+    x: Array
+    y: Array
+
+
+@dataclass(frozen=True, slots=True)
+class StationAnswer:
+    """What was asked at one station: ``values`` by probe name, the shapes, and the certificate.
+
+    ``value`` is the stepped load's; ``touching`` holds, per closed contact, the places (k, 2) in metres
+    where the beams touch.
+    """
+
+    stage: str
+    value: float
+    values: Mapping[str, Array]
+    shapes: Mapping[str, Shape]
+    touching: Mapping[str, Array]
+    certificate: Certificate
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """A contact that closed: between two stations, at ``value`` of the load that ``stage`` steps."""
+
+    stage: str
+    contact: str
+    kind: str
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """A solver's whole answer to a scene.
+
+    ``stations`` are those reached with a certificate that holds, in order; ``sentence`` says more about the
+    ending; ``settings`` are the solver's numerical choices as plain values.
+    """
+
+    solver: str
+    scene: str
+    settings: Mapping[str, object]
+    ending: Ending
+    sentence: str
+    stations: tuple[StationAnswer, ...]
+    events: tuple[Event, ...] = ()
+    seconds: float = 0.0
+    notes: tuple[str, ...] = field(default=())
+
+    @property
+    def completed(self) -> bool:
+        """Whether every station was reached and certified."""
+        return self.ending is Ending.COMPLETED
+
+
+def frozen_array(values: object) -> Array:
+    """A read-only float copy of ``values``, at least one-dimensional."""
+    array = np.array(values, dtype=float, ndmin=1)
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,34 @@
+"""A wrong question, said so that its author can mend it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Mistake:
+    """One thing that is wrong with a problem statement.
+
+    Attributes:
+        key: the key path in the file, such as ``beams.beam1.thickness``; empty for the file as a whole.
+        found: what stands there.
+        allowed: what may stand there.
+        file: the file it was read from; empty for a scene built in Python.
+    """
+
+    key: str
+    found: str
+    allowed: str
+    file: str = ""
+
+    def __str__(self) -> str:
+        where = ": ".join(part for part in (self.file, self.key) if part) or "scene"
+        return f"{where}: found {self.found}; allowed: {self.allowed}"
+
+
+class SceneError(ValueError):
+    """The question was wrong: every mistake that was found, none twice."""
+
+    def __init__(self, mistakes: list[Mistake] | tuple[Mistake, ...]) -> None:
+        self.mistakes = tuple(dict.fromkeys(mistakes))
+        super().__init__("\n".join(str(mistake) for mistake in self.mistakes))

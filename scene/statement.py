@@ -1,0 +1,247 @@
+"""The problem statement: frozen records in SI units, angles in radians.
+
+Every record refuses unknown keys, NaN and infinity.  Bounds stand only on
+dimensionless numbers and on signs that have no meaning (a thickness is
+positive).  What ties records together (a beam's end meets a body's point, a
+load acts on something that can move) is checked in :mod:`scene.checks`.
+
+Kinds are tagged unions: a further curve, joint, load or contact is a further
+record with a ``kind`` (or ``joint``) of its own, and nothing here changes.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal, TypeVar
+
+from frozendict import frozendict
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
+
+T = TypeVar("T")
+
+
+def _freeze(value: dict[str, T]) -> dict[str, T]:
+    return frozendict(value)
+
+
+Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_][A-Za-z0-9_-]*$", max_length=64)]
+Named = Annotated[dict[Name, T], AfterValidator(_freeze)]
+Point = tuple[float, float]
+Positive = Annotated[float, Field(gt=0.0)]
+Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
+
+
+class Record(BaseModel):
+    """What all records share: immutable, strict, nothing unknown, no number that is not finite."""
+
+    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
+
+
+class Material(Record):
+    """A linear elastic, isotropic material: ``youngs_modulus`` in Pa, ``poisson_ratio`` a number."""
+
+    youngs_modulus: Positive
+    poisson_ratio: Annotated[float, Field(gt=-1.0, le=0.5)]
+
+
+class Line(Record):
+    """A straight neutral line from ``start`` to ``end``, metres."""
+
+    kind: Literal["line"]
+    start: Point
+    end: Point
+
+
+class Arc(Record):
+    """A circular neutral line about ``center`` from ``start`` round to ``end``, metres.
+
+    Both ends lie on the circle; ``direction`` says which way round, so that an arc is less than a full turn.
+    """
+
+    kind: Literal["arc"]
+    center: Point
+    start: Point
+    end: Point
+    direction: Literal["counterclockwise", "clockwise"]
+
+
+Curve = Annotated[Line | Arc, Field(discriminator="kind")]
+
+
+class WeldedEnd(Record):
+    """The beam's end is fixed to a body's ``point``: it moves and turns with the body."""
+
+    joint: Literal["weld"]
+    point: Name
+
+
+class PinnedEnd(Record):
+    """The beam's end stays at a body's ``point`` and turns freely about it."""
+
+    joint: Literal["pin"]
+    point: Name
+
+
+class FreeEnd(Record):
+    """The beam's end is held by nothing."""
+
+    joint: Literal["free"]
+
+
+BeamEnd = Annotated[WeldedEnd | PinnedEnd | FreeEnd, Field(discriminator="joint")]
+
+
+class Beam(Record):
+    """A slender beam of rectangular section, free of stress in the shape of its ``curve``.
+
+    ``thickness`` lies in the plane of motion, ``width`` across it, both in metres.
+    """
+
+    curve: Curve
+    thickness: Positive
+    width: Positive
+    material: Name
+    start: BeamEnd
+    end: BeamEnd
+
+
+class Body(Record):
+    """A rigid body with named points (metres, initial position).
+
+    ``motion``: ``fixed`` is the ground; ``free`` has two translations and a rotation.
+    """
+
+    motion: Literal["fixed", "free"]
+    points: Annotated[Named[Point], Field(min_length=1)]
+
+
+class Moment(Record):
+    """A moment on a ``body``, counter-clockwise positive, N·m."""
+
+    kind: Literal["moment"]
+    body: Name
+
+
+class Force(Record):
+    """A dead force at a body's ``point``, N: it keeps its ``direction`` (made a unit vector) while the body turns."""
+
+    kind: Literal["force"]
+    point: Name
+    direction: Point
+
+
+Load = Annotated[Moment | Force, Field(discriminator="kind")]
+
+
+class Related(Record):
+    """The joints of one beam that may touch: those whose initial ``x`` (or ``y``) lies in the range, metres."""
+
+    x: Point | None = None
+    y: Point | None = None
+
+
+class PaperContact(Record):
+    """What the paper's contact must be told: whose offset is the boundary, along which axis, which joints.
+
+    ``boundary`` names the beam that carries g_s; ``axis`` is the axis of the gap: ``y`` for g_s(x) − y,
+    ``x`` for g_s(y) − x.  Without an entry in ``related`` all joints of a beam are related.
+    """
+
+    boundary: Name
+    axis: Literal["x", "y"] = "y"
+    related: Named[Related] = Field(default_factory=frozendict)
+
+
+class BeamContact(Record):
+    """Two beams that may touch, without friction; ``thick`` beams touch by their edges, others as lines."""
+
+    kind: Literal["beam-beam"]
+    between: tuple[Name, Name]
+    thick: bool = True
+    paper: PaperContact | None = None
+
+
+Contact = BeamContact
+
+
+class Stage(Record):
+    """A part of the loading: the values of one load, in the order in which they are reached.
+
+    Loads that no stage has stepped yet are zero; a load keeps its last value in later stages.
+    """
+
+    name: Name
+    steps: Name
+    stations: Annotated[tuple[float, ...], Field(min_length=1)]
+
+
+Quantity = Literal[
+    "displacement",
+    "rotation",
+    "force",
+    "centre",
+    "closing_load",
+    "bending_stress",
+    "reaction",
+    "reaction_moment",
+    "potential_energy",
+]
+
+
+class Probe(Record):
+    """A number (or a few) that is wanted at every station, named ``of.quantity``.
+
+    ``of`` is the name of a body's point, a body, a beam, a contact, or ``scene`` itself;
+    ``points`` the number of equal arc-length steps plus one at which a beam's stress is wanted.
+    """
+
+    of: Name
+    quantity: Quantity
+    points: Annotated[int, Field(ge=3, le=10_001)] = 81
+
+    @property
+    def name(self) -> str:
+        """The probe's name as tables and JSON show it."""
+        return f"{self.of}.{self.quantity}"
+
+
+class Claim(Record):
+    """What a publication says of one probe: its relative difference stays below ``bound``."""
+
+    probe: str
+    station: float
+    bound: Positive
+    text: str = ""
+
+
+class Scene(Record):
+    """One problem statement: what is there, what happens to it, and what is asked.
+
+    Names of points, bodies, beams, contacts and loads are unique across the scene.
+    ``verdict_limit`` is the largest total uncertainty (a fraction of a probe's scale)
+    with which the scene still wants to hear AGREE.
+    """
+
+    name: Name
+    title: str = ""
+    source: str = ""
+    materials: Named[Material]
+    beams: Annotated[Named[Beam], Field(min_length=1)]
+    bodies: Named[Body]
+    loads: Annotated[Named[Load], Field(min_length=1)]
+    contacts: Named[Contact] = Field(default_factory=frozendict)
+    stages: Annotated[tuple[Stage, ...], Field(min_length=1)]
+    probes: Annotated[tuple[Probe, ...], Field(min_length=1)]
+    claims: tuple[Claim, ...] = ()
+    verdict_limit: Fraction = 0.015
+    file: str = ""
+
+    def body_of(self, point: str) -> str:
+        """Name of the body that owns ``point``.
+
+        Raises:
+            KeyError: no body has a point of that name.
+        """
+        for name, body in self.bodies.items():
+            if point in body.points:
+                return name
+        raise KeyError(point)
