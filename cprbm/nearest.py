@@ -283,3 +283,11 @@ def _side(pair: Pair, state: State, at: Positions) -> float:
     if not np.isfinite(size.min()):
         size = np.abs(D)
     return 1.0 if D[int(np.argmin(size))] >= 0.0 else -1.0
+
+
+def deepest(pair: Pair, state: State, at: Positions) -> float:
+    """Largest overlap of the two beams anywhere along A, units of length; zero where they are apart."""
+    s = _grid(pair.a)
+    places = closest_places(pair, state, at)
+    D, _, foot = distance_along(pair, state, at, np.concatenate((s, places.s, places.held_s)))
+    return float(np.max(np.where(foot, pair.offset - D, 0.0), initial=0.0))

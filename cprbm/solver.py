@@ -1,0 +1,158 @@
+"""From a scene to an answer: marching through the stations, load steps that cut and grow."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from cprbm.certifying import certify
+from cprbm.contact import no_rows
+from cprbm.equilibrium import Equilibrium, Point, equilibrium, point_at
+from cprbm.kinematics import rest_state
+from cprbm.mechanism import Mechanism, mechanism_of
+from cprbm.probing import probed, shapes, touching
+from cprbm.settings import Settings
+from scene import Answer, Certificate, Ending, Event, Scene, StationAnswer
+
+GROWTH = 2.0
+EVENT_TOLERANCE = 1e-12
+
+
+def answer(scene: Scene, settings: Settings | None = None) -> Answer:
+    """Solve a scene by the chained pseudo-rigid-body model.
+
+    Args:
+        scene: the problem statement.
+        settings: numerical choices; by default 40 links per beam and contact where beams are closest.
+
+    Returns:
+        Certified answers at the scene's stations, or those reached before the solver's Ending says why it stopped.
+
+    Raises:
+        SceneError: the settings do not fit the scene.
+    """
+    began = time.perf_counter()
+    settings = settings or Settings()
+    mechanism = mechanism_of(scene, settings)
+    march = _March(scene, settings, mechanism)
+    ending, sentence = march.run()
+    return Answer(
+        solver="cprbm",
+        scene=scene.name,
+        settings=settings.plain(),
+        ending=ending,
+        sentence=sentence,
+        stations=tuple(march.reached),
+        events=tuple(march.events),
+        seconds=time.perf_counter() - began,
+    )
+
+
+class _March:
+    """The state while marching: where we are, under which loads, and what was reached."""
+
+    def __init__(self, scene: Scene, settings: Settings, mechanism: Mechanism) -> None:
+        self.scene, self.settings, self.mechanism = scene, settings, mechanism
+        self.values: dict[str, float] = {}
+        problem = mechanism.problem
+        state = rest_state(problem.model)
+        closed = np.zeros(problem.closure.rows)
+        self.point = point_at(problem, {}, state, closed, np.zeros(0), no_rows())
+        self.reached: list[StationAnswer] = []
+        self.events: list[Event] = []
+        self.closed_at: dict[str, float] = {}
+        self.asked_events = {p.of for p in scene.probes if p.quantity == "closing_load"}
+
+    def run(self) -> tuple[Ending, str]:
+        """March through every stage; the Ending and its sentence."""
+        for stage in self.scene.stages:
+            for target in stage.stations:
+                begin = self.values.get(stage.steps, 0.0)
+                before = self.point
+                ending, sentence, certificate = self._advance(stage.steps, begin, target)
+                if certificate is None:
+                    last = f"the last good value of {stage.steps} is {self.values.get(stage.steps, 0.0):.6g}"
+                    return ending, f"{ending.value}: {sentence}; {last}"
+                self._note_events(stage.name, stage.steps, before, begin, target)
+                self.reached.append(
+                    StationAnswer(
+                        stage=stage.name,
+                        value=target,
+                        values=probed(self.scene, self.mechanism, self.point, self.closed_at),
+                        shapes=shapes(self.mechanism, self.point),
+                        touching=touching(self.mechanism, self.point),
+                        certificate=certificate,
+                    )
+                )
+        return Ending.COMPLETED, Ending.COMPLETED.value
+
+    def _advance(self, load: str, begin: float, target: float) -> tuple[Ending, str, Certificate | None]:
+        """Go from one load value to the next, directly or in steps; the certificate at the target."""
+        done, step, iterations = 0.0, 1.0, 0
+        while True:
+            step = min(step, 1.0 - done)
+            fraction = 1.0 if done + step >= 1.0 else done + step
+            value = target if fraction == 1.0 else begin + fraction * (target - begin)
+            found = self._try(self.point, {**self.values, load: value})
+            iterations += found.iterations
+            certificate, ending = certify(self.mechanism, self.settings, found)
+            turned = float(np.max(np.abs(found.point.state.theta - self.point.state.theta)))
+            if ending is Ending.COMPLETED and turned > self.settings.largest_turn:
+                ending, sentence = Ending.STEP_TOO_SMALL, f"a link turned by {turned:.2f} rad in one load step"
+            elif certificate.failures:
+                sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
+            if ending is Ending.COMPLETED:
+                self.point, done = found.point, fraction
+                self.values[load] = value
+                if fraction == 1.0:
+                    return ending, "", replace(certificate, iterations=iterations)
+                step *= GROWTH
+                continue
+            step *= 0.5
+            if step < self.settings.smallest_step:
+                if not found.converged:
+                    ending = Ending.STEP_TOO_SMALL
+                return ending, sentence, None
+
+    def _try(self, start: Point, values: dict[str, float]) -> Equilibrium:
+        return equilibrium(
+            self.mechanism.problem, values, start, self.settings.tolerance, self.settings.iterations
+        )
+
+    def _note_events(self, stage: str, load: str, before: Point, begin: float, target: float) -> None:
+        """Find where contacts closed on the way to this station, if the scene asks."""
+        for name in self.asked_events:
+            if name in self.closed_at or not _presses(self.point, name) or _presses(before, name):
+                continue
+            value = self._closing(name, load, before, begin, target)
+            if value is not None:
+                self.closed_at[name] = value
+                self.events.append(Event(stage, name, "closes", value))
+
+    def _closing(self, name: str, load: str, before: Point, begin: float, target: float) -> float | None:
+        """The load at which the gap of an open contact becomes zero, the contact itself left out."""
+        problem = self.mechanism.without(name)
+        others = {key: value for key, value in self.values.items() if key != load}
+        start = point_at(problem, {**others, load: begin}, before.state, before.mu, np.zeros(0), no_rows())
+
+        def overlap(value: float) -> float:
+            found = equilibrium(
+                problem, {**others, load: value}, start, self.settings.tolerance, self.settings.iterations
+            )
+            if not found.converged:
+                return float("nan")
+            return max(self.mechanism.overlap(name, found.point.state, found.point.at), -1.0)
+
+        low, high = overlap(begin), overlap(target)
+        if not (low <= 0.0 <= high):
+            return None
+        return float(brentq(overlap, begin, target, xtol=EVENT_TOLERANCE * abs(target - begin), rtol=8.9e-16))
+
+
+def _presses(point: Point, contact: str) -> bool:
+    return any(
+        lam > 0.0 for lam, name in zip(point.lam, point.rows.contact, strict=True) if name == contact
+    )
