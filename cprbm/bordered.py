@@ -20,6 +20,9 @@ from scipy.linalg import eigvalsh_tridiagonal, lapack
 
 from scene.answer import Array
 
+REFINEMENTS = 3
+REFINED = 1e-14  # of the right-hand side
+
 
 @dataclass(frozen=True, slots=True)
 class Tridiagonal:
@@ -41,6 +44,13 @@ class Tridiagonal:
             dl, d, du, du2, pivots = self.factors
             solution, _ = lapack.dgttrs(dl, d, du, du2, pivots, right)
         return np.asarray(solution)
+
+    def times(self, x: Array) -> Array:
+        """Q applied to columns (n, k)."""
+        product = self.diagonal[:, None] * x
+        product[:-1] += self.off[:, None] * x[1:]
+        product[1:] += self.off[:, None] * x[:-1]
+        return np.asarray(product)
 
     def negative(self) -> int:
         """ν(Q), by Sturm sequences where Q is not positive definite."""
@@ -71,10 +81,11 @@ def factorised(diagonal: Array, off: Array) -> Tridiagonal:
 
 @dataclass(frozen=True, slots=True)
 class Bordered:
-    """A factorised tridiagonal matrix with a border: Q, B (n, m), Q⁻¹B and S (m, m)."""
+    """A factorised tridiagonal matrix with a border: Q, B (n, m), C (m, m), Q⁻¹B and S (m, m)."""
 
     tridiagonal: Tridiagonal
     border: Array
+    corner: Array
     solved: Array
     schur: Array
 
@@ -91,12 +102,26 @@ class Bordered:
         Raises:
             np.linalg.LinAlgError: the system is singular.
         """
-        columns = f.reshape(len(f), -1)
-        first = self.tridiagonal.solve(columns)
-        lower = g.reshape(len(keep), columns.shape[1]) - self.border[:, keep].T @ first
-        b = np.linalg.solve(self.schur[np.ix_(keep, keep)], lower) if len(keep) else lower
-        a = first - self.solved[:, keep] @ b
+        upper = f.reshape(len(f), -1)
+        lower = g.reshape(len(keep), upper.shape[1])
+        a, b = self._once(upper, lower, keep)
+        # Q alone can be close to singular where the whole system is not: refine until that is mended
+        size = np.max(np.abs(upper), initial=0.0) + np.max(np.abs(lower), initial=0.0)
+        for _ in range(REFINEMENTS):
+            left_upper = upper - self.tridiagonal.times(a) - self.border[:, keep] @ b
+            left_lower = lower - self.border[:, keep].T @ a - self.corner[np.ix_(keep, keep)] @ b
+            left = np.max(np.abs(left_upper), initial=0.0) + np.max(np.abs(left_lower), initial=0.0)
+            if not left > REFINED * size:
+                break
+            da, db = self._once(left_upper, left_lower, keep)
+            a, b = a + da, b + db
         return a.reshape(f.shape), b.reshape(g.shape)
+
+    def _once(self, upper: Array, lower: Array, keep: Array) -> tuple[Array, Array]:
+        first = self.tridiagonal.solve(upper)
+        lower = lower - self.border[:, keep].T @ first
+        b = np.linalg.solve(self.schur[np.ix_(keep, keep)], lower) if len(keep) else lower
+        return first - self.solved[:, keep] @ b, b
 
     def negative(self, keep: Array) -> int:
         """ν of the system with only the border's columns ``keep``."""
@@ -113,4 +138,4 @@ def bordered(diagonal: Array, off: Array, border: Array, corner: Array) -> Borde
     tridiagonal = factorised(diagonal, off)
     solved = tridiagonal.solve(border)
     schur = corner - border.T @ solved
-    return Bordered(tridiagonal, border, solved, 0.5 * (schur + schur.T))
+    return Bordered(tridiagonal, border, corner, solved, 0.5 * (schur + schur.T))

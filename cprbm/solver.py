@@ -18,7 +18,8 @@ from cprbm.settings import Settings
 from scene import Answer, Certificate, Ending, Event, Scene, StationAnswer
 
 GROWTH = 2.0
-EVENT_TOLERANCE = 1e-12
+EVENT_TOLERANCE = 1e-10  # of the load step in which a contact closed
+CLOSER = 8
 
 
 def answer(scene: Scene, settings: Settings | None = None) -> Answer:
@@ -71,12 +72,10 @@ class _March:
         for stage in self.scene.stages:
             for target in stage.stations:
                 begin = self.values.get(stage.steps, 0.0)
-                before = self.point
-                ending, sentence, certificate = self._advance(stage.steps, begin, target)
+                ending, sentence, certificate = self._advance(stage.name, stage.steps, begin, target)
                 if certificate is None:
                     last = f"the last good value of {stage.steps} is {self.values.get(stage.steps, 0.0):.6g}"
                     return ending, f"{ending.value}: {sentence}; {last}"
-                self._note_events(stage.name, stage.steps, before, begin, target)
                 self.reached.append(
                     StationAnswer(
                         stage=stage.name,
@@ -89,7 +88,9 @@ class _March:
                 )
         return Ending.COMPLETED, Ending.COMPLETED.value
 
-    def _advance(self, load: str, begin: float, target: float) -> tuple[Ending, str, Certificate | None]:
+    def _advance(
+        self, stage: str, load: str, begin: float, target: float
+    ) -> tuple[Ending, str, Certificate | None]:
         """Go from one load value to the next, directly or in steps; the certificate at the target."""
         done, step, iterations = 0.0, 1.0, 0
         while True:
@@ -105,6 +106,7 @@ class _March:
             elif certificate.failures:
                 sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
             if ending is Ending.COMPLETED:
+                self._note_events(stage, load, found.point, value)
                 self.point, done = found.point, fraction
                 self.values[load] = value
                 if fraction == 1.0:
@@ -122,32 +124,39 @@ class _March:
             self.mechanism.problem, values, start, self.settings.tolerance, self.settings.iterations
         )
 
-    def _note_events(self, stage: str, load: str, before: Point, begin: float, target: float) -> None:
-        """Find where contacts closed on the way to this station, if the scene asks."""
+    def _note_events(self, stage: str, load: str, after: Point, value: float) -> None:
+        """Find where contacts closed in the load step that led to ``after``, if the scene asks."""
         for name in self.asked_events:
-            if name in self.closed_at or not _presses(self.point, name) or _presses(before, name):
+            if name in self.closed_at or not _presses(after, name) or _presses(self.point, name):
                 continue
-            value = self._closing(name, load, before, begin, target)
-            if value is not None:
-                self.closed_at[name] = value
-                self.events.append(Event(stage, name, "closes", value))
+            closing = self._closing(name, load, value)
+            if closing is not None:
+                self.closed_at[name] = closing
+                self.events.append(Event(stage, name, "closes", closing))
 
-    def _closing(self, name: str, load: str, before: Point, begin: float, target: float) -> float | None:
+    def _closing(self, name: str, load: str, target: float) -> float | None:
         """The load at which the gap of an open contact becomes zero, the contact itself left out."""
         problem = self.mechanism.without(name)
-        others = {key: value for key, value in self.values.items() if key != load}
-        start = point_at(problem, {**others, load: begin}, before.state, before.mu, np.zeros(0), no_rows())
+        begin = self.values.get(load, 0.0)
+        near = point_at(problem, self.values, self.point.state, self.point.mu, np.zeros(0), no_rows())
 
         def overlap(value: float) -> float:
-            found = equilibrium(
-                problem, {**others, load: value}, start, self.settings.tolerance, self.settings.iterations
-            )
+            nonlocal near
+            values = {**self.values, load: value}
+            found = equilibrium(problem, values, near, self.settings.tolerance, self.settings.iterations)
             if not found.converged:
                 return float("nan")
+            near = found.point
             return max(self.mechanism.overlap(name, found.point.state, found.point.at), -1.0)
 
+        # without the contact the far end may be out of reach: come closer until it is not
         low, high = overlap(begin), overlap(target)
-        if not (low <= 0.0 <= high):
+        for _ in range(CLOSER):
+            if not np.isnan(high):
+                break
+            target = 0.5 * (begin + target)
+            high = overlap(target)
+        if not low <= 0.0 <= high:
             return None
         return float(brentq(overlap, begin, target, xtol=EVENT_TOLERANCE * abs(target - begin), rtol=8.9e-16))
 
