@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigvalsh_tridiagonal, lapack
 
-from scene.answer import Array
+from scene.answer import Array, Ints
 
 REFINEMENTS = 3
 REFINED = 1e-14  # of the right-hand side
@@ -58,9 +58,7 @@ class Tridiagonal:
             return 0
         lowest = -2.0 * (np.max(np.abs(self.diagonal)) + 2.0 * np.max(np.abs(self.off), initial=0.0))
         return len(
-            eigvalsh_tridiagonal(
-                self.diagonal, self.off, select="v", select_range=(lowest, 0.0), check_finite=False
-            )
+            eigvalsh_tridiagonal(self.diagonal, self.off, select="v", select_range=(lowest, 0.0), check_finite=False)
         )
 
 
@@ -89,7 +87,7 @@ class Bordered:
     solved: Array
     schur: Array
 
-    def solve(self, f: Array, g: Array, keep: Array) -> tuple[Array, Array]:
+    def solve(self, f: Array, g: Array, keep: Ints) -> tuple[Array, Array]:
         """Solution with only the border's columns ``keep`` (indices) in the system.
 
         Args:
@@ -117,13 +115,15 @@ class Bordered:
             a, b = a + da, b + db
         return a.reshape(f.shape), b.reshape(g.shape)
 
-    def _once(self, upper: Array, lower: Array, keep: Array) -> tuple[Array, Array]:
+    def _once(self, upper: Array, lower: Array, keep: Ints) -> tuple[Array, Array]:
         first = self.tridiagonal.solve(upper)
         lower = lower - self.border[:, keep].T @ first
-        b = np.linalg.solve(self.schur[np.ix_(keep, keep)], lower) if len(keep) else lower
+        b: Array = (
+            np.asarray(np.linalg.solve(self.schur[np.ix_(keep, keep)], lower), dtype=float) if len(keep) else lower
+        )
         return first - self.solved[:, keep] @ b, b
 
-    def negative(self, keep: Array) -> int:
+    def negative(self, keep: Ints) -> int:
         """ν of the system with only the border's columns ``keep``."""
         schur = self.schur[np.ix_(keep, keep)]
         return self.tridiagonal.negative() + (int(np.sum(np.linalg.eigvalsh(schur) < 0.0)) if len(keep) else 0)

@@ -24,9 +24,9 @@ from numpy.polynomial import chebyshev
 
 from cprbm.contact import Rows
 from cprbm.kinematics import Positions, State
-from cprbm.model import Chain, Ints, Model
+from cprbm.model import Chain, Model
 from scene import BeamContact, Mistake, Scene, SceneError
-from scene.answer import Array
+from scene.answer import Array, Ints
 
 FEWEST_POINTS = 3
 
@@ -83,9 +83,7 @@ class FittedBoundary:
         # dq over A and B, and with it the slopes of c over (a, o, A, B)
         q_A = -inverse @ (at_points[1].T * rest + V.T * P1)
         q_B = inverse @ V.T
-        slopes = self.sense * np.hstack(
-            (np.diag(g1), -np.eye(m), at_joints[0] @ q_A, at_joints[0] @ q_B)
-        )
+        slopes = self.sense * np.hstack((np.diag(g1), -np.eye(m), at_joints[0] @ q_A, at_joints[0] @ q_B))
         # (A, B) over (x, y, τ) of the boundary's joints; τ halves onto two links
         nA, nB = (nx, ny) if self.along_x else (ny, nx)
         tA, tB = (-ny, nx) if self.along_x else (nx, -ny)
@@ -149,15 +147,16 @@ class FittedBoundary:
         else:
             A = at.y[self.points] + self.side * self.offset * np.cos(tau)
             a = at.y[self.joints]
-        return np.maximum(a - A.max(), A.min() - a)
+        return np.asarray(np.maximum(a - A.max(), A.min() - a))
 
 
 def _basis(at: Array, centre: float, width: float, degree: int) -> tuple[Array, Array, Array]:
     """Chebyshev polynomials up to ``degree`` and their two derivatives at some places, (k, degree+1) each."""
     scaled = (at - centre) / width
-    values = chebyshev.chebvander(scaled, degree)
+    values: Array = chebyshev.chebvander(scaled, degree)
     identity = np.eye(degree + 1)
-    first, second = np.zeros_like(values), np.zeros_like(values)
+    first: Array = np.zeros(values.shape)
+    second: Array = np.zeros(values.shape)
     if degree >= 1:
         first = chebyshev.chebvander(scaled, degree - 1) @ chebyshev.chebder(identity, 1) / width
     if degree >= 2:

@@ -61,8 +61,16 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
         )
     force_balance, moment_balance = balances(problem, point)
     balance_asked = max(BALANCE, 100.0 * measure.floor)
-    ask(force_balance <= balance_asked, Ending.NOT_CERTIFIED, f"ΣF is {force_balance:.1e} of the largest force")
-    ask(moment_balance <= balance_asked, Ending.NOT_CERTIFIED, f"ΣM is {moment_balance:.1e} of the largest moment")
+    ask(
+        force_balance <= balance_asked,
+        Ending.NOT_CERTIFIED,
+        f"ΣF is {force_balance:.1e} of the largest force",
+    )
+    ask(
+        moment_balance <= balance_asked,
+        Ending.NOT_CERTIFIED,
+        f"ΣM is {moment_balance:.1e} of the largest moment",
+    )
     curvature = smallest_curvature(problem, point) if found.converged else float("nan")
     ask(
         not found.converged or curvature > 0.0,

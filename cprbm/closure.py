@@ -3,7 +3,7 @@
 ==========  =======================================================================
 Z_x, Z_y    beam's last joint less the point of the body it is joined to
 Z_w         angle of the first or last link, less its stress-free one, less φ
-μ           multipliers: force and moment of the beam on the body... with sign −1 on the beam
+μ           multipliers: force and moment of the beam on what its end is joined to
 ==========  =======================================================================
 
 The first joint of a beam sits at its point by construction.  A first link that
@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.kinematics import Positions, State, arm, place, position_rows
-from cprbm.model import Ints, Model
-from scene.answer import Array
+from cprbm.model import Model
+from scene.answer import Array, Ints
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ def closure_of(model: Model) -> Closure:
     ends, welds, fixed = [], [], []
     for c, chain in enumerate(model.chains):
         start, end = chain.start, chain.end
-        if start is not None and start.welded:
+        if start.welded:
             if start.body < 0:
                 fixed.append(chain.first_link)
             else:

@@ -16,12 +16,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from scene.answer import Array
+from scene.answer import Array, Flags
 
 PATIENCE = 4
 
 
-def pressing(G: Array, b: Array, first: Array) -> tuple[Array, Array]:
+def pressing(G: Array, b: Array, first: Flags) -> tuple[Array, Flags]:
     """Solve for λ (m,) and the set that presses (m,) of bool, starting from the guess ``first``.
 
     Raises:
@@ -52,5 +52,5 @@ def pressing(G: Array, b: Array, first: Array) -> tuple[Array, Array]:
             patience -= 1
         else:
             wrong[: np.flatnonzero(wrong)[-1]] = False
-        active ^= wrong
+        active = active ^ wrong
     raise np.linalg.LinAlgError("no complementary solution")

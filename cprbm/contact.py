@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.kinematics import Positions, State
-from cprbm.model import Ints
-from scene.answer import Array
+from scene.answer import Array, Ints
 
 
 @dataclass(frozen=True, slots=True)

@@ -44,7 +44,10 @@ def dead_loads(scene: Scene, model: Model) -> dict[str, DeadLoad]:
             body = model.free_bodies.index(owner)
             size = np.hypot(*load.direction) * model.unit_force
             x, y = scene.bodies[owner].points[load.point]
-            r = (x / model.unit_length - model.references[body, 0], y / model.unit_length - model.references[body, 1])
+            r = (
+                x / model.unit_length - model.references[body, 0],
+                y / model.unit_length - model.references[body, 1],
+            )
             loads[name] = DeadLoad(body, 0.0, (load.direction[0] / size, load.direction[1] / size), r)
     return loads
 

@@ -15,6 +15,7 @@ directions where it is not, first by the stiffness of the contacts that press, t
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,11 +34,13 @@ from cprbm.energy import (
     strain_hessian,
 )
 from cprbm.kinematics import Positions, State, position_rows, positions, pulled_back
-from cprbm.model import Ints, Model
-from scene.answer import Array
+from cprbm.model import Model
+from scene.answer import Array, Flags, Ints
 
 LONGEST_TURN = 0.5  # of any link in one iteration, rad
 CONTACT_STIFFNESS = 1e4  # of pressing contacts while the energy alone is not convex, S/ℓ²
+DENSE = 120  # unknowns up to which all curvatures are computed at once
+NOTHING = 1e-12  # S: moments below it are no load at all
 EPS = float(np.finfo(float).eps)
 
 
@@ -158,7 +161,7 @@ def measure(problem: Problem, point: Point) -> Measure:
     free[problem.closure.fixed] = False
     terms = np.abs(point.gradient) + np.abs(point.A_E.T) @ np.abs(point.mu) + np.abs(point.A_I.T) @ point.lam
     moments = np.abs(spring_moments(model, point.state))
-    scale = max(float(np.max(terms, initial=0.0)), float(np.max(moments, initial=0.0)))
+    scale = max(float(np.max(terms, initial=0.0)), float(np.max(moments, initial=0.0)), NOTHING)
     residual = point.gradient + point.A_E.T @ point.mu + point.A_I.T @ point.lam
     largest = float(np.max(np.abs(residual[free]), initial=0.0))
     # an angle is known to eps·|θ|, a spring's moment to the stiffness times that
@@ -166,11 +169,11 @@ def measure(problem: Problem, point: Point) -> Measure:
     floor = 4.0 * EPS * float(np.max(model.couplings)) * turned + 4.0 * EPS * np.sqrt(model.n_links) * scale
     lengths = float(np.max(model.lengths)) * np.sqrt(model.n_links)
     return Measure(
-        residual=largest / scale if largest > floor else min(largest / scale if scale else 0.0, EPS),
-        floor=floor / scale if scale else EPS,
+        residual=largest / scale,
+        floor=float(floor / scale),
         violation=float(np.max(np.abs(point.Z), initial=0.0)) / max(1.0, lengths),
         overlap=float(np.max(point.rows.values, initial=0.0)),
-        complementarity=float(np.max(np.abs(point.lam * point.rows.values), initial=0.0)) / max(scale, EPS),
+        complementarity=float(np.max(np.abs(point.lam * point.rows.values), initial=0.0)) / scale,
     )
 
 
@@ -196,7 +199,7 @@ class System:
         return change, b
 
 
-def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System:
+def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System:
     """Assemble and factorise; ``stiff`` (m,) of bool marks contacts whose stiffness is added.
 
     Raises:
@@ -226,9 +229,7 @@ def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System
         known.append(-rows.values[stiff])
     low_rank = np.concatenate(columns, axis=1) if columns else np.zeros((n + n_bodies, 0))
     sigma = np.concatenate(curvatures) if curvatures else np.zeros(0)
-    anchors = np.array(
-        [c.first_link for c in model.chains if c.first_link not in closure.fixed], dtype=np.intp
-    )
+    anchors = np.array([c.first_link for c in model.chains if c.first_link not in closure.fixed], dtype=np.intp)
 
     m_E, m_I, r, k = closure.rows, rows.size, len(sigma), len(anchors)
     first = n_bodies + k
@@ -255,7 +256,9 @@ def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System
         base=np.arange(first + r + m_E),
         contacts=np.arange(first + r + m_E, size),
         equalities=np.arange(first + r, first + r + m_E),
-        right=np.concatenate((np.zeros(first), *known, -point.Z)) if known else np.concatenate((np.zeros(first), -point.Z)),
+        right=np.concatenate((np.zeros(first), *known, -point.Z))
+        if known
+        else np.concatenate((np.zeros(first), -point.Z)),
         anchors=anchors,
         expected=m_E + int(np.sum(sigma > 0.0)),
         n_links=n,
@@ -380,15 +383,14 @@ def smallest_curvature(problem: Problem, point: Point) -> float:
     return 1.0 / value if value != 0.0 else float("inf")
 
 
-def _extreme(inverse: object, n: int, *, lowest: bool) -> float:
+def _extreme(inverse: Callable[[Array], Array], n: int, *, lowest: bool) -> float:
     """The lowest or highest eigenvalue of a symmetric operator on R^n."""
-    apply = inverse  # type: ignore[assignment]
-    if n <= 120:
-        full = apply(np.eye(n))  # type: ignore[operator]
+    if n <= DENSE:
+        full = inverse(np.eye(n))
         values = np.linalg.eigvalsh(0.5 * (full + full.T))
         return float(values[0] if lowest else values[-1])
     from scipy.sparse.linalg import LinearOperator, eigsh
 
-    operator = LinearOperator((n, n), matvec=lambda x: apply(x).ravel(), dtype=float)  # type: ignore[operator]
+    operator = LinearOperator((n, n), matvec=lambda x: inverse(x).ravel(), dtype=float)
     start = np.cos(np.arange(n) * 0.7) + 1.5
     return float(eigsh(operator, k=1, which="SA" if lowest else "LA", v0=start, tol=1e-6, return_eigenvectors=False)[0])

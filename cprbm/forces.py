@@ -9,6 +9,7 @@ R, M        force and moment of the ground on what is joined at a point
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -19,10 +20,10 @@ from scene.answer import Array
 
 @dataclass(frozen=True, slots=True)
 class Support:
-    """What the ground does at one beam's end: ``place`` (2,), ``force`` (2,), ``moment`` about the place."""
+    """What the ground does at one beam's end ``at``: ``place`` (2,), ``force`` (2,), ``moment`` about the place."""
 
     beam: str
-    at_start: bool
+    at: Literal["start", "end"]
     place: Array
     force: Array
     moment: float
@@ -60,12 +61,12 @@ def supports(problem: Problem, point: Point) -> tuple[Support, ...]:
     held = point.gradient + point.A_E.T @ point.mu + point.A_I.T @ point.lam
     found = []
     for chain in model.chains:
-        if chain.start is not None and chain.start.body < 0:
+        if chain.start.body < 0:
             j = chain.joints
             force = np.array([np.sum(fx[j] - contact.fx[j]), np.sum(fy[j] - contact.fy[j])])
             place = np.array([point.at.x[chain.first_joint], point.at.y[chain.first_joint]])
             moment = float(held[chain.first_link]) if chain.start.welded else 0.0
-            found.append(Support(chain.name, True, place, force, moment))
+            found.append(Support(chain.name, "start", place, force, moment))
         if chain.end is not None and chain.end.body < 0:
             last = chain.first_joint + chain.n + 1
             moment = 0.0
@@ -73,7 +74,7 @@ def supports(problem: Problem, point: Point) -> tuple[Support, ...]:
                 row = 2 * len(closure.ends) + closure.welds.index((chain.first_link + chain.n, -1))
                 moment = -float(point.mu[row])
             force = -np.array([fx[last], fy[last]])
-            found.append(Support(chain.name, False, np.array([point.at.x[last], point.at.y[last]]), force, moment))
+            found.append(Support(chain.name, "end", np.array([point.at.x[last], point.at.y[last]]), force, moment))
     return tuple(found)
 
 

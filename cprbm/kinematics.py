@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm.model import Attachment, Chain, Ints, Model
-from scene.answer import Array
+from cprbm.model import Attachment, Model
+from scene.answer import Array, Ints
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,6 @@ def positions(model: Model, state: State) -> Positions:
     dy = model.lengths * np.sin(state.theta)
     x, y = np.empty(model.n_joints), np.empty(model.n_joints)
     for chain in model.chains:
-        assert chain.start is not None  # a free start is welded to a body of its own
         x0, y0 = place(model, chain.start, state.bodies)
         first = chain.first_joint
         x[first], y[first] = x0, y0
@@ -106,7 +105,7 @@ def pulled_back(model: Model, state: State, at: Positions, fx: Array, fy: Array)
     second_bodies = np.zeros(len(model.free_bodies))
     for c, chain in enumerate(model.chains):
         start = chain.start
-        if start is not None and start.body >= 0:
+        if start.body >= 0:
             rx, ry = arm(start, state.bodies)
             over_bodies[start.body] += (tx[c], ty[c], rx * ty[c] - ry * tx[c])
             second_bodies[start.body] -= rx * tx[c] + ry * ty[c]
@@ -126,14 +125,9 @@ def position_rows(model: Model, state: State, at: Positions, joints: Ints) -> tu
         rows_x[mine, chain.links] = np.where(before, -at.dy[chain.links], 0.0)
         rows_y[mine, chain.links] = np.where(before, at.dx[chain.links], 0.0)
         start = chain.start
-        if start is not None and start.body >= 0:
+        if start.body >= 0:
             rx, ry = arm(start, state.bodies)
             b = n + 3 * start.body
             rows_x[mine, b], rows_x[mine, b + 2] = 1.0, -ry
             rows_y[mine, b + 1], rows_y[mine, b + 2] = 1.0, rx
     return rows_x, rows_y
-
-
-def chain_of_joint(model: Model, joint: int) -> Chain:
-    """The beam a joint of the shared numbering belongs to."""
-    return next(c for c in model.chains if c.first_joint <= joint < c.first_joint + c.n + 2)

@@ -20,14 +20,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cprbm.curves import NeutralLine, neutral_line
 from cprbm.settings import Settings
-from scene import FreeEnd, Scene, WeldedEnd
+from scene import BeamEnd, FreeEnd, Scene, WeldedEnd
 from scene.answer import Array
-
-Ints = NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +56,7 @@ class Chain:
         stiffness: E·I/h of the springs, units of S.
         thickness: units of length.
         stress_unit: E·t/2 in Pa; times a spring's change of angle over h in units of length⁻¹ per metre.
-        start, end: what the ends are joined to; None for a free end.
+        start, end: what the ends are joined to; no end is None for a free one, a free start a body of its own.
     """
 
     name: str
@@ -74,7 +71,7 @@ class Chain:
     stiffness: float
     thickness: float
     stress_unit: float
-    start: Attachment | None
+    start: Attachment
     end: Attachment | None
 
     @property
@@ -149,17 +146,17 @@ def build(scene: Scene, settings: Settings) -> Model:
         for name, beam in scene.beams.items()
     }
     unit_moment = max(rigidities.values()) / unit_length
-    free_bodies = tuple(name for name, body in scene.bodies.items() if body.motion == "free")
-    references = np.array(
-        [next(iter(scene.bodies[name].points.values())) for name in free_bodies], dtype=float
-    ).reshape(-1, 2)
+    places = {name: next(iter(body.points.values())) for name, body in scene.bodies.items() if body.motion == "free"}
+    # a chain begins somewhere: a start that nothing holds is welded to a body that nothing else holds
+    places |= {_loose(name): beam.curve.start for name, beam in scene.beams.items() if isinstance(beam.start, FreeEnd)}
+    free_bodies = tuple(places)
+    references = np.array(list(places.values()), dtype=float).reshape(-1, 2)
 
-    def attachment(end: object) -> Attachment | None:
+    def attachment(end: BeamEnd) -> Attachment | None:
         if isinstance(end, FreeEnd):
             return None
-        point = end.point  # type: ignore[attr-defined]
-        owner = scene.body_of(point)
-        x, y = scene.bodies[owner].points[point]
+        owner = scene.body_of(end.point)
+        x, y = scene.bodies[owner].points[end.point]
         body = free_bodies.index(owner) if owner in free_bodies else -1
         if body >= 0:
             x, y = x - references[body, 0], y - references[body, 1]
@@ -187,11 +184,8 @@ def build(scene: Scene, settings: Settings) -> Model:
                 rest=middle,
                 stiffness=rigidities[name] / h / unit_moment,
                 thickness=beam.thickness / unit_length,
-                stress_unit=0.5
-                * scene.materials[beam.material].youngs_modulus
-                * beam.thickness
-                / unit_length,
-                start=attachment(beam.start),
+                stress_unit=0.5 * scene.materials[beam.material].youngs_modulus * beam.thickness / unit_length,
+                start=attachment(beam.start) or Attachment(free_bodies.index(_loose(name)), (0.0, 0.0), welded=True),
                 end=attachment(beam.end),
             )
         )
@@ -212,3 +206,8 @@ def build(scene: Scene, settings: Settings) -> Model:
         lengths=np.concatenate([chain.lengths for chain in chains]),
         rest=rest,
     )
+
+
+def _loose(beam: str) -> str:
+    """Name of the body of a beam's free start; no name in a scene holds a dot."""
+    return f"{beam}.start"

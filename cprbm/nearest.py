@@ -31,9 +31,9 @@ from scipy.spatial import cKDTree
 from cprbm import smooth
 from cprbm.contact import Rows, together
 from cprbm.kinematics import Positions, State, positions, rest_state
-from cprbm.model import Chain, Ints, Model
+from cprbm.model import Chain, Model
 from scene import Scene
-from scene.answer import Array
+from scene.answer import Array, Flags, Ints
 
 FOOT_ITERATIONS = 6
 CLOSEST_ITERATIONS = 12
@@ -175,13 +175,13 @@ class Places:
     across_sigma: Array
 
 
-def distance_along(pair: Pair, state: State, at: Positions, s: Array) -> tuple[Array, Array, Array]:
+def distance_along(pair: Pair, state: State, at: Positions, s: Array) -> tuple[Array, Array, Flags]:
     """Signed distance D of A from B at arc lengths ``s``: D, σ (k,), and whether a foot exists (k,)."""
     A = smooth.points_at(pair.a, pair.unit_length, state, at, s)
     return _feet(pair, state, at, A)
 
 
-def _feet(pair: Pair, state: State, at: Positions, A: smooth.Points) -> tuple[Array, Array, Array]:
+def _feet(pair: Pair, state: State, at: Positions, A: smooth.Points) -> tuple[Array, Array, Flags]:
     grid = _grid(pair.b)
     G = smooth.points_at(pair.b, pair.unit_length, state, at, grid)
     _, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(np.stack((A.x, A.y), axis=1))
@@ -216,7 +216,7 @@ def closest_places(pair: Pair, state: State, at: Positions) -> Places:
     D, sigma, foot = distance_along(pair, state, at, s)
     reach = pair.offset + REACH
     padded = np.concatenate(([np.inf], np.where(foot, D, np.inf), [np.inf]))
-    lowest = foot & (D <= padded[:-2]) & (D < padded[2:]) & (D < reach)
+    lowest = foot & (padded[:-2] >= D) & (padded[2:] > D) & (reach > D)
     inner = lowest.copy()
     inner[[0, -1]] = False
     held_s, held_sigma = s[lowest & ~inner], sigma[lowest & ~inner]
@@ -230,13 +230,11 @@ def closest_places(pair: Pair, state: State, at: Positions) -> Places:
     ends = np.array([0.0, pair.b.s[-1]])
     E, foot_s, has_foot = distance_along(turned, state, at, ends)
     inside = (foot_s > 0.0) & (foot_s < pair.a.s[-1])
-    facing = has_foot & inside & (E < reach)
+    facing = has_foot & inside & (reach > E)
     return Places(free_s, free_sigma, held_s, held_sigma, ends[facing], foot_s[facing])
 
 
-def _refined(
-    pair: Pair, state: State, at: Positions, s: Array, sigma: Array
-) -> tuple[Array, Array, Array]:
+def _refined(pair: Pair, state: State, at: Positions, s: Array, sigma: Array) -> tuple[Array, Array, Flags]:
     """Newton on (i) and (ii) from a sampled minimum; the last array says where it ended in a minimum nearby."""
     s0, reach = s, pair.a.h
     for _ in range(CLOSEST_ITERATIONS):

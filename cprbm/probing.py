@@ -18,8 +18,7 @@ from scene.statement import PinnedEnd, WeldedEnd
 def probed(scene: Scene, mechanism: Mechanism, point: Point, closed_at: dict[str, float]) -> dict[str, Array]:
     """Every probe's value at a state; ``closed_at`` holds the load at which contacts closed."""
     return {
-        probe.name: frozen_array(_value(scene, mechanism, point, probe, closed_at)).ravel()
-        for probe in scene.probes
+        probe.name: frozen_array(_value(scene, mechanism, point, probe, closed_at)).ravel() for probe in scene.probes
     }
 
 
@@ -32,7 +31,11 @@ def _value(
         case "displacement":
             return _displacement(scene, problem, point, probe.of)
         case "rotation":
-            return float(point.state.bodies[model.free_bodies.index(probe.of), 2]) if probe.of in model.free_bodies else 0.0
+            return (
+                float(point.state.bodies[model.free_bodies.index(probe.of), 2])
+                if probe.of in model.free_bodies
+                else 0.0
+            )
         case "force":
             first = model.chain(scene.contacts[probe.of].between[0]).joints
             forces = contact_forces(problem, point, probe.of)
@@ -71,7 +74,7 @@ def _reaction(scene: Scene, problem: Problem, point: Point, name: str) -> tuple[
     force, moment = np.zeros(2), 0.0
     for support in supports(problem, point):
         beam = scene.beams[support.beam]
-        end = beam.start if support.at_start else beam.end
+        end = beam.start if support.at == "start" else beam.end
         if isinstance(end, WeldedEnd | PinnedEnd) and end.point == name:
             force = force + support.force
             moment += support.moment

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from typing import Annotated, Literal, cast
 
 from frozendict import frozendict
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
@@ -14,7 +14,7 @@ FEWEST_LINKS = 2
 
 
 def _frozen(links: dict[str, int]) -> dict[str, int]:
-    return frozendict(links)
+    return cast("dict[str, int]", frozendict(links))
 
 
 class Settings(BaseModel):
@@ -60,14 +60,10 @@ class Settings(BaseModel):
             SceneError: a beam has no number, a number has no beam, or one is too small.
         """
         mistakes = []
-        named: Mapping[str, int] = (
-            dict.fromkeys(scene.beams, self.links) if isinstance(self.links, int) else self.links
-        )
+        named: Mapping[str, int] = dict.fromkeys(scene.beams, self.links) if isinstance(self.links, int) else self.links
         for beam in named:
             if beam not in scene.beams:
-                mistakes.append(
-                    Mistake(f"settings.links.{beam}", "no such beam", " or ".join(scene.beams), scene.file)
-                )
+                mistakes.append(Mistake(f"settings.links.{beam}", "no such beam", " or ".join(scene.beams), scene.file))
         for beam in scene.beams:
             if beam not in named:
                 mistakes.append(Mistake(f"settings.links.{beam}", "nothing", "a number of links", scene.file))

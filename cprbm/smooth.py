@@ -27,8 +27,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.kinematics import Positions, State
-from cprbm.model import Chain, Ints
-from scene.answer import Array
+from cprbm.model import Chain
+from scene.answer import Array, Ints
 
 LOCALS = 5  # x_i, y_i, θ_{i−1}, θ_i, θ_{i+1}
 

@@ -88,9 +88,7 @@ class _March:
                 )
         return Ending.COMPLETED, Ending.COMPLETED.value
 
-    def _advance(
-        self, stage: str, load: str, begin: float, target: float
-    ) -> tuple[Ending, str, Certificate | None]:
+    def _advance(self, stage: str, load: str, begin: float, target: float) -> tuple[Ending, str, Certificate | None]:
         """Go from one load value to the next, directly or in steps; the certificate at the target."""
         done, step, iterations = 0.0, 1.0, 0
         while True:
@@ -102,7 +100,10 @@ class _March:
             certificate, ending = certify(self.mechanism, self.settings, found)
             turned = float(np.max(np.abs(found.point.state.theta - self.point.state.theta)))
             if ending is Ending.COMPLETED and turned > self.settings.largest_turn:
-                ending, sentence = Ending.STEP_TOO_SMALL, f"a link turned by {turned:.2f} rad in one load step"
+                ending, sentence = (
+                    Ending.STEP_TOO_SMALL,
+                    f"a link turned by {turned:.2f} rad in one load step",
+                )
             elif certificate.failures:
                 sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
             if ending is Ending.COMPLETED:
@@ -120,9 +121,7 @@ class _March:
                 return ending, sentence, None
 
     def _try(self, start: Point, values: dict[str, float]) -> Equilibrium:
-        return equilibrium(
-            self.mechanism.problem, values, start, self.settings.tolerance, self.settings.iterations
-        )
+        return equilibrium(self.mechanism.problem, values, start, self.settings.tolerance, self.settings.iterations)
 
     def _note_events(self, stage: str, load: str, after: Point, value: float) -> None:
         """Find where contacts closed in the load step that led to ``after``, if the scene asks."""
@@ -162,6 +161,4 @@ class _March:
 
 
 def _presses(point: Point, contact: str) -> bool:
-    return any(
-        lam > 0.0 for lam, name in zip(point.lam, point.rows.contact, strict=True) if name == contact
-    )
+    return any(lam > 0.0 for lam, name in zip(point.lam, point.rows.contact, strict=True) if name == contact)

@@ -11,7 +11,7 @@ record with a ``kind`` (or ``joint``) of its own, and nothing here changes.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Literal, TypeVar, cast
 
 from frozendict import frozendict
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
@@ -20,7 +20,7 @@ T = TypeVar("T")
 
 
 def _freeze(value: dict[str, T]) -> dict[str, T]:
-    return frozendict(value)
+    return cast("dict[str, T]", frozendict(value))
 
 
 Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_][A-Za-z0-9_-]*$", max_length=64)]
@@ -33,7 +33,7 @@ Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
 class Record(BaseModel):
     """What all records share: immutable, strict, nothing unknown, no number that is not finite."""
 
-    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False, validate_default=True)
 
 
 class Material(Record):
@@ -148,7 +148,7 @@ class PaperContact(Record):
 
     boundary: Name
     axis: Literal["x", "y"] = "y"
-    related: Named[Related] = Field(default_factory=frozendict)
+    related: Named[Related] = Field(default_factory=dict)
 
 
 class BeamContact(Record):
@@ -228,7 +228,7 @@ class Scene(Record):
     beams: Annotated[Named[Beam], Field(min_length=1)]
     bodies: Named[Body]
     loads: Annotated[Named[Load], Field(min_length=1)]
-    contacts: Named[Contact] = Field(default_factory=frozendict)
+    contacts: Named[Contact] = Field(default_factory=dict)
     stages: Annotated[tuple[Stage, ...], Field(min_length=1)]
     probes: Annotated[tuple[Probe, ...], Field(min_length=1)]
     claims: tuple[Claim, ...] = ()
