@@ -153,14 +153,14 @@ class FittedBoundary:
 def _basis(at: Array, centre: float, width: float, degree: int) -> tuple[Array, Array, Array]:
     """Chebyshev polynomials up to ``degree`` and their two derivatives at some places, (k, degree+1) each."""
     scaled = (at - centre) / width
-    values: Array = chebyshev.chebvander(scaled, degree)
+    values = np.asarray(chebyshev.chebvander(scaled, degree), dtype=float)
     identity = np.eye(degree + 1)
-    first: Array = np.zeros(values.shape)
-    second: Array = np.zeros(values.shape)
+    first = np.zeros(values.shape)
+    second = np.zeros(values.shape)
     if degree >= 1:
-        first = chebyshev.chebvander(scaled, degree - 1) @ chebyshev.chebder(identity, 1) / width
+        first = np.asarray(chebyshev.chebvander(scaled, degree - 1) @ chebyshev.chebder(identity, 1) / width)
     if degree >= 2:
-        second = chebyshev.chebvander(scaled, degree - 2) @ chebyshev.chebder(identity, 2) / width**2
+        second = np.asarray(chebyshev.chebvander(scaled, degree - 2) @ chebyshev.chebder(identity, 2) / width**2)
     return values, first, second
 
 

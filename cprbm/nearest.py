@@ -23,7 +23,7 @@ with dψ_B/dz_l = ψ_B,l + ψ_B'·dσ/dz_l, and nothing divides by D.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -35,11 +35,15 @@ from cprbm.model import Chain, Model
 from scene import Scene
 from scene.answer import Array, Flags, Ints
 
-FOOT_ITERATIONS = 6
+FOOT_ITERATIONS = 8
+FOOT_TOLERANCE = 1e-13  # of t·r, units of length
 CLOSEST_ITERATIONS = 12
 LEAST_CURVATURE = 1e-3  # of D along A, 1/ℓ, below which its minimum has no place of its own
 REACH = 0.1  # gaps wider than this part of the longest beam are no constraints yet
 PARALLEL = 1e-3  # a foot whose perpendicular misses by more (sine) is an end, not a foot
+
+
+Lines = tuple[smooth.SmoothLine, smooth.SmoothLine]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,33 +67,32 @@ class Pair:
     offset: float
     unit_length: float
 
+    def lines(self, state: State, at: Positions) -> Lines:
+        """The smooth lines of A and B in a state."""
+        return (
+            smooth.smooth_line(self.a, self.unit_length, state, at),
+            smooth.smooth_line(self.b, self.unit_length, state, at),
+        )
+
+    def exchanged(self) -> Pair:
+        """The same contact with the parts of A and B exchanged."""
+        return Pair(self.name, self.b, self.a, self.across, self.side, self.offset, self.unit_length)
+
     def rows(self, state: State, at: Positions) -> Rows:
         """The constraints at a state, with exact derivatives."""
-        found = closest_places(self, state, at)
-        parts = [self._rows_at(state, at, found.s, found.sigma, free=True)] if found.s.size else []
+        lines = self.lines(state, at)
+        found = closest_places(self, lines)
+        parts = [self._rows_at(lines, found.s, found.sigma, free=True)] if found.s.size else []
         if found.held_s.size:
-            parts.append(self._rows_at(state, at, found.held_s, found.held_sigma, free=False))
+            parts.append(self._rows_at(lines, found.held_s, found.held_sigma, free=False))
         if found.across_s.size:
-            turned = Pair(self.name, self.b, self.a, self.across, self.side, self.offset, self.unit_length)
-            rows = turned._rows_at(state, at, found.across_s, found.across_sigma, free=False)
-            parts.append(
-                Rows(
-                    rows.values,
-                    rows.joints,
-                    rows.angles,
-                    rows.slopes,
-                    rows.curvature,
-                    rows.keys,
-                    found.across_sigma,
-                    rows.contact,
-                )
-            )
+            rows = self.exchanged()._rows_at(lines[::-1], found.across_s, found.across_sigma, free=False)
+            parts.append(replace(rows, arc=found.across_sigma))
         return together(parts)
 
-    def _rows_at(self, state: State, at: Positions, s: Array, sigma: Array, *, free: bool) -> Rows:
+    def _rows_at(self, lines: Lines, s: Array, sigma: Array, *, free: bool) -> Rows:
         """Rows at feet (s, σ); ``free`` where s moves with the minimum, else it is held."""
-        A = smooth.points_at(self.a, self.unit_length, state, at, s)
-        B = smooth.points_at(self.b, self.unit_length, state, at, sigma)
+        A, B = lines[0].at(s), lines[1].at(sigma)
         m, k = len(s), smooth.LOCALS
         tangent = np.stack((np.cos(B.psi), np.sin(B.psi)), axis=1)
         normal = np.stack((-tangent[:, 1], tangent[:, 0]), axis=1)
@@ -175,74 +178,77 @@ class Places:
     across_sigma: Array
 
 
-def distance_along(pair: Pair, state: State, at: Positions, s: Array) -> tuple[Array, Array, Flags]:
+def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Flags]:
     """Signed distance D of A from B at arc lengths ``s``: D, σ (k,), and whether a foot exists (k,)."""
-    A = smooth.points_at(pair.a, pair.unit_length, state, at, s)
-    return _feet(pair, state, at, A)
-
-
-def _feet(pair: Pair, state: State, at: Positions, A: smooth.Points) -> tuple[Array, Array, Flags]:
-    grid = _grid(pair.b)
-    G = smooth.points_at(pair.b, pair.unit_length, state, at, grid)
+    A = lines[0].at(s)
+    grid = smooth.halves(pair.b)
+    G = lines[1].at(grid)
     _, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(np.stack((A.x, A.y), axis=1))
-    sigma = grid[nearest]
-    B = smooth.chosen(G, nearest)
+    return _feet(pair, lines[1], A, grid[nearest])
+
+
+def _feet(pair: Pair, line: smooth.SmoothLine, A: smooth.Points, sigma: Array) -> tuple[Array, Array, Flags]:
+    """D, σ and whether there is a foot, by Newton's method on (i) from the guess ``sigma``."""
     for _ in range(FOOT_ITERATIONS):
+        B = line.at(sigma)
         rx, ry = A.x - B.x, A.y - B.y
-        along = np.cos(B.psi) * rx + np.sin(B.psi) * ry
-        across = np.cos(B.psi) * ry - np.sin(B.psi) * rx
-        slope = np.maximum(B.speed * (1.0 - B.bend * across), 0.2 * B.speed)
-        step = np.clip(along / slope, -pair.b.h, pair.b.h)
-        sigma = np.clip(sigma + step, 0.0, pair.b.s[-1])
-        B = smooth.points_at(pair.b, pair.unit_length, state, at, sigma)
-        if np.max(np.abs(step)) < 1e-14:
+        cos, sin = np.cos(B.psi), np.sin(B.psi)
+        along, across = cos * rx + sin * ry, cos * ry - sin * rx
+        step = along / (B.speed * np.maximum(1.0 - B.bend * across, 0.2))
+        sigma = np.minimum(np.maximum(sigma + np.minimum(np.maximum(step, -pair.b.h), pair.b.h), 0.0), pair.b.s[-1])
+        if np.max(np.abs(along)) < FOOT_TOLERANCE:
             break
+    B = line.at(sigma)
     rx, ry = A.x - B.x, A.y - B.y
-    along = np.cos(B.psi) * rx + np.sin(B.psi) * ry
-    across = np.cos(B.psi) * ry - np.sin(B.psi) * rx
-    foot = np.abs(along) <= PARALLEL * np.maximum(np.hypot(rx, ry), pair.b.h)
+    cos, sin = np.cos(B.psi), np.sin(B.psi)
+    along, across = cos * rx + sin * ry, cos * ry - sin * rx
+    foot = np.abs(along) <= PARALLEL * np.maximum(np.abs(across), pair.b.h)
     return pair.side * across, sigma, foot
 
 
-def _grid(chain: Chain) -> Array:
-    """Joints and the places half-way between them: where a minimum is looked for first."""
-    return np.sort(np.concatenate((chain.s, 0.5 * (chain.s[1:] + chain.s[:-1]))))
-
-
-def closest_places(pair: Pair, state: State, at: Positions) -> Places:
+def closest_places(pair: Pair, lines: Lines) -> Places:
     """All local minima of D along A within reach, and the ends of B that face A."""
     none = np.zeros(0)
-    s = _grid(pair.a)
-    D, sigma, foot = distance_along(pair, state, at, s)
     reach = pair.offset + REACH
-    padded = np.concatenate(([np.inf], np.where(foot, D, np.inf), [np.inf]))
-    lowest = foot & (padded[:-2] >= D) & (padded[2:] > D) & (reach > D)
+    s, grid = smooth.halves(pair.a), smooth.halves(pair.b)
+    A, G = lines[0].at(s), lines[1].at(grid)
+    # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
+    limit = reach + pair.a.h + pair.b.h
+    rough, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(
+        np.stack((A.x, A.y), axis=1), distance_upper_bound=limit
+    )
+    close = np.flatnonzero(np.isfinite(rough))
+    if not close.size:
+        return Places(none, none, none, none, none, none)
+    D, sigma = np.full(len(s), np.inf), np.zeros(len(s))
+    distance, sigma[close], foot = _feet(pair, lines[1], lines[0].at(s[close]), grid[nearest[close]])
+    D[close] = np.where(foot, distance, np.inf)
+    padded = np.concatenate(([np.inf], D, [np.inf]))
+    lowest = (padded[:-2] >= D) & (padded[2:] > D) & (reach > D)
     inner = lowest.copy()
     inner[[0, -1]] = False
     held_s, held_sigma = s[lowest & ~inner], sigma[lowest & ~inner]
     free_s, free_sigma = none, none
     if np.any(inner):
-        free_s, free_sigma, minimum = _refined(pair, state, at, s[inner], sigma[inner])
+        free_s, free_sigma, minimum = _refined(pair, lines, s[inner], sigma[inner])
         held_s = np.concatenate((held_s, s[inner][~minimum]))
         held_sigma = np.concatenate((held_sigma, sigma[inner][~minimum]))
         free_s, free_sigma = free_s[minimum], free_sigma[minimum]
-    turned = Pair(pair.name, pair.b, pair.a, pair.across, pair.side, pair.offset, pair.unit_length)
     ends = np.array([0.0, pair.b.s[-1]])
-    E, foot_s, has_foot = distance_along(turned, state, at, ends)
+    E, foot_s, has_foot = distance_along(pair.exchanged(), lines[::-1], ends)
     inside = (foot_s > 0.0) & (foot_s < pair.a.s[-1])
     facing = has_foot & inside & (reach > E)
     return Places(free_s, free_sigma, held_s, held_sigma, ends[facing], foot_s[facing])
 
 
-def _refined(pair: Pair, state: State, at: Positions, s: Array, sigma: Array) -> tuple[Array, Array, Flags]:
+def _refined(pair: Pair, lines: Lines, s: Array, sigma: Array) -> tuple[Array, Array, Flags]:
     """Newton on (i) and (ii) from a sampled minimum; the last array says where it ended in a minimum nearby."""
     s0, reach = s, pair.a.h
     for _ in range(CLOSEST_ITERATIONS):
-        A = smooth.points_at(pair.a, pair.unit_length, state, at, s)
-        B = smooth.points_at(pair.b, pair.unit_length, state, at, sigma)
+        A, B = lines[0].at(s), lines[1].at(sigma)
         rx, ry = A.x - B.x, A.y - B.y
-        along = np.cos(B.psi) * rx + np.sin(B.psi) * ry
-        across = np.cos(B.psi) * ry - np.sin(B.psi) * rx
+        cos, sin = np.cos(B.psi), np.sin(B.psi)
+        along, across = cos * rx + sin * ry, cos * ry - sin * rx
         facing = np.cos(A.psi - B.psi)
         crossing = np.sin(A.psi - B.psi) * facing  # zero where the tangents are parallel, either way
         of_foot = -B.speed + across * B.bend
@@ -254,8 +260,8 @@ def _refined(pair: Pair, state: State, at: Positions, s: Array, sigma: Array) ->
         safe = np.where(np.abs(determinant) > LEAST_CURVATURE, determinant, np.inf)
         ds = -(J22 * crossing - J12 * along) / safe
         dsigma = -(J11 * along - J21 * crossing) / safe
-        s = np.clip(s + np.clip(ds, -reach, reach), 0.0, pair.a.s[-1])
-        sigma = np.clip(sigma + np.clip(dsigma, -reach, reach), 0.0, pair.b.s[-1])
+        s = np.minimum(np.maximum(s + np.clip(ds, -reach, reach), 0.0), pair.a.s[-1])
+        sigma = np.minimum(np.maximum(sigma + np.clip(dsigma, -reach, reach), 0.0), pair.b.s[-1])
         if np.all(np.abs(ds) + np.abs(dsigma) < 1e-13):
             break
     settled = (np.abs(ds) < 1e-9) & (np.abs(determinant) > LEAST_CURVATURE)
@@ -269,14 +275,14 @@ def pair_of(scene: Scene, model: Model, name: str) -> Pair:
     state = rest_state(model)
     at = positions(model, state)
     half = 0.5 * (a.thickness + b.thickness) if contact.thick else 0.0
-    side = _side(Pair(name, a, b, 1.0, 1.0, half, model.unit_length), state, at)
-    across = _side(Pair(name, b, a, 1.0, 1.0, half, model.unit_length), state, at)
-    return Pair(name, a, b, side, across, half, model.unit_length)
+    pair = Pair(name, a, b, 1.0, 1.0, half, model.unit_length)
+    lines = pair.lines(state, at)
+    return replace(pair, side=_side(pair, lines), across=_side(pair.exchanged(), lines[::-1]))
 
 
-def _side(pair: Pair, state: State, at: Positions) -> float:
+def _side(pair: Pair, lines: Lines) -> float:
     """+1 where A lies on the left of B at their closest places, else −1."""
-    D, _, foot = distance_along(pair, state, at, _grid(pair.a))
+    D, _, foot = distance_along(pair, lines, smooth.halves(pair.a))
     size = np.where(foot, np.abs(D), np.inf)
     if not np.isfinite(size.min()):
         size = np.abs(D)
@@ -285,7 +291,7 @@ def _side(pair: Pair, state: State, at: Positions) -> float:
 
 def deepest(pair: Pair, state: State, at: Positions) -> float:
     """Largest overlap of the two beams anywhere along A, units of length; zero where they are apart."""
-    s = _grid(pair.a)
-    places = closest_places(pair, state, at)
-    D, _, foot = distance_along(pair, state, at, np.concatenate((s, places.s, places.held_s)))
+    lines = pair.lines(state, at)
+    places = closest_places(pair, lines)
+    D, _, foot = distance_along(pair, lines, np.concatenate((smooth.halves(pair.a), places.s, places.held_s)))
     return float(np.max(np.where(foot, pair.offset - D, 0.0), initial=0.0))

@@ -100,8 +100,8 @@ def shapes(mechanism: Mechanism, point: Point) -> dict[str, Shape]:
     model = mechanism.problem.model
     found = {}
     for chain in model.chains:
-        s = np.sort(np.concatenate((chain.s, 0.5 * (chain.s[1:] + chain.s[:-1]))))
-        line = smooth.points_at(chain, model.unit_length, point.state, point.at, s)
+        s = smooth.halves(chain)
+        line = smooth.smooth_line(chain, model.unit_length, point.state, point.at).at(s)
         found[chain.name] = Shape(
             frozen_array(s * model.unit_length),
             frozen_array(line.x * model.unit_length),
@@ -123,9 +123,9 @@ def touching(mechanism: Mechanism, point: Point) -> dict[str, Array]:
         if not pressing:
             continue
         s = np.array(pressing)
-        _, sigma, _ = nearest.distance_along(pair, point.state, point.at, s)
-        A = smooth.points_at(pair.a, model.unit_length, point.state, point.at, s)
-        B = smooth.points_at(pair.b, model.unit_length, point.state, point.at, sigma)
+        lines = pair.lines(point.state, point.at)
+        _, sigma, _ = nearest.distance_along(pair, lines, s)
+        A, B = lines[0].at(s), lines[1].at(sigma)
         share = pair.a.thickness / (pair.a.thickness + pair.b.thickness)
         xy = np.stack((A.x + share * (B.x - A.x), A.y + share * (B.y - A.y)), axis=1)
         found[name] = frozen_array(xy * model.unit_length)

@@ -41,9 +41,10 @@ class Points:
         s: arc length; link: the link each lies on, in the beam's own numbering.
         x, y: position; psi: tangent angle.
         speed: |dC/ds|; bend: dψ/ds.
-        e, n: direction and normal of the link, (k, 2).
-        a, w, a1, w1, a2, w2: coordinates in the link's frame and their derivatives over s.
-        b, b1: ∂w over δ_i and δ_{i+1} and its derivative over s, (k, 2).
+        cos, sin: of the link's angle: e = (cos, sin), n = (−sin, cos).
+        a, w, a1, w1: coordinates in the link's frame and their derivatives over s.
+        left, right: ½ − |ξ| of the springs before and after, zero outside their elements.
+        h: element length.
     """
 
     s: Array
@@ -53,69 +54,126 @@ class Points:
     psi: Array
     speed: Array
     bend: Array
-    e: Array
-    n: Array
+    cos: Array
+    sin: Array
     a: Array
     w: Array
     a1: Array
     w1: Array
-    a2: Array
-    w2: Array
-    b: Array
-    b1: Array
+    left: Array
+    right: Array
+    h: float
+
+    @property
+    def e(self) -> Array:
+        """Direction of the link, (k, 2)."""
+        return np.stack((self.cos, self.sin), axis=1)
+
+    @property
+    def n(self) -> Array:
+        """Left normal of the link, (k, 2)."""
+        return np.stack((-self.sin, self.cos), axis=1)
+
+    @property
+    def b(self) -> Array:
+        """∂w over δ_i and δ_{i+1}, (k, 2)."""
+        return 0.5 * self.h * np.stack((self.left**2, self.right**2), axis=1)
+
+    @property
+    def b1(self) -> Array:
+        """∂w' over δ_i and δ_{i+1}, (k, 2)."""
+        return np.stack((-self.left, self.right), axis=1)
 
 
-def points_at(chain: Chain, unit_length: float, state: State, at: Positions, s: Array) -> Points:
-    """The smooth line of ``chain`` at arc lengths ``s`` (k,), units of length."""
-    s = np.clip(s, 0.0, chain.s[-1])
-    # joints stand at 0, h/2, 3h/2, ...: link i begins at (i − ½)h
-    link = np.clip(np.floor(s / chain.h + 0.5).astype(np.intp), 0, chain.n)
-    start, stop = chain.s[link], chain.s[link + 1]
+@dataclass(frozen=True, slots=True)
+class SmoothLine:
+    """One beam's smooth line in one state.
+
+    Attributes:
+        chain: the beam.
+        curvature: stress-free, over units of length.
+        theta, cos, sin: angles of the links (N+1,).
+        turns: δ at the joints 0..N+1, zero at the ends, which carry no spring.
+        x, y: joints (N+2,).
+    """
+
+    chain: Chain
+    curvature: float
+    theta: Array
+    cos: Array
+    sin: Array
+    turns: Array
+    x: Array
+    y: Array
+
+    def at(self, s: Array) -> Points:
+        """Points at arc lengths ``s`` (k,), units of length; beyond the ends the end itself."""
+        chain, h = self.chain, self.chain.h
+        s = np.minimum(np.maximum(s, 0.0), chain.s[-1])
+        # joints stand at 0, h/2, 3h/2, ...: link i begins at (i − ½)h
+        link = np.minimum((s / h + 0.5).astype(np.intp), chain.n)
+        start, stop = chain.s[link], chain.s[link + 1]
+        t = s - start
+        cos, sin = self.cos[link], self.sin[link]
+        nothing = np.zeros(len(s))
+        a, w, a1, w1, a2, w2 = t, nothing, nothing + 1.0, nothing, nothing, nothing
+        if self.curvature != 0.0:
+            first = chain.line.theta0 + self.curvature * start - chain.rest[link]
+            half = 0.5 * self.curvature * t
+            chord = t * np.sinc(half / np.pi)
+            a, w = chord * np.cos(first + half), chord * np.sin(first + half)
+            a1, w1 = np.cos(first + 2.0 * half), np.sin(first + 2.0 * half)
+            a2, w2 = -self.curvature * w1, self.curvature * a1
+        left = np.maximum(0.5 - t / h, 0.0) * (link > 0)
+        right = np.maximum(0.5 - (stop - s) / h, 0.0) * (link < chain.n)
+        before, after = self.turns[link], self.turns[link + 1]
+        w = w + 0.5 * h * (left * left * before + right * right * after)
+        w1 = w1 - left * before + right * after
+        w2 = w2 + ((left > 0.0) * before + (right > 0.0) * after) / h
+        squared = a1 * a1 + w1 * w1
+        return Points(
+            s=s,
+            link=link,
+            x=self.x[link] + a * cos - w * sin,
+            y=self.y[link] + a * sin + w * cos,
+            psi=self.theta[link] + np.arctan2(w1, a1),
+            speed=np.sqrt(squared),
+            bend=(a1 * w2 - w1 * a2) / squared,
+            cos=cos,
+            sin=sin,
+            a=a,
+            w=w,
+            a1=a1,
+            w1=w1,
+            left=left,
+            right=right,
+            h=h,
+        )
+
+
+def smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -> SmoothLine:
+    """The smooth line of ``chain`` in a state."""
     theta = state.theta[chain.links]
-    turn = np.diff(theta) - np.diff(chain.rest)
-    padded = np.concatenate(([0.0], turn, [0.0]))  # δ at joints 0..N+1; the ends carry no spring
-    curvature, rest_angle = chain.line.curvature * unit_length, chain.rest[link]
-    t = s - start
-    first = chain.line.theta0 + curvature * start - rest_angle
-    half = 0.5 * curvature * t
-    chord = t * np.sinc(half / np.pi)
-    a, w0 = chord * np.cos(first + half), chord * np.sin(first + half)
-    slope = first + curvature * t
-    a1, w1 = np.cos(slope), np.sin(slope)
-    a2, w2 = -curvature * w1, curvature * a1
-    from_left = np.maximum(0.5 - t / chain.h, 0.0) * (link > 0)
-    from_right = np.maximum(0.5 - (stop - s) / chain.h, 0.0) * (link < chain.n)
-    b = np.stack((0.5 * chain.h * from_left**2, 0.5 * chain.h * from_right**2), axis=1)
-    b1 = np.stack((-from_left, from_right), axis=1)
-    b2 = np.stack((from_left > 0.0, from_right > 0.0), axis=1) / chain.h
-    turns = np.stack((padded[link], padded[link + 1]), axis=1)
-    w = w0 + np.sum(b * turns, axis=1)
-    w1 = w1 + np.sum(b1 * turns, axis=1)
-    w2 = w2 + np.sum(b2 * turns, axis=1)
-    angle = theta[link]
-    e = np.stack((np.cos(angle), np.sin(angle)), axis=1)
-    n = np.stack((-e[:, 1], e[:, 0]), axis=1)
-    joint = chain.first_joint + link
-    squared = a1 * a1 + w1 * w1
-    return Points(
-        s=s,
-        link=link,
-        x=at.x[joint] + a * e[:, 0] + w * n[:, 0],
-        y=at.y[joint] + a * e[:, 1] + w * n[:, 1],
-        psi=angle + np.arctan2(w1, a1),
-        speed=np.sqrt(squared),
-        bend=(a1 * w2 - w1 * a2) / squared,
-        e=e,
-        n=n,
-        a=a,
-        w=w,
-        a1=a1,
-        w1=w1,
-        a2=a2,
-        w2=w2,
-        b=b,
-        b1=b1,
+    turns = np.zeros(chain.n + 2)
+    turns[1:-1] = np.diff(theta) - np.diff(chain.rest)
+    return SmoothLine(
+        chain=chain,
+        curvature=chain.line.curvature * unit_length,
+        theta=theta,
+        cos=np.cos(theta),
+        sin=np.sin(theta),
+        turns=turns,
+        x=at.x[chain.joints],
+        y=at.y[chain.joints],
     )
+
+
+def halves(chain: Chain) -> Array:
+    """Arc lengths of the joints and of the places half-way between them, (2N+3,)."""
+    s = np.empty(2 * chain.n + 3)
+    s[::2] = chain.s
+    s[1::2] = 0.5 * (chain.s[1:] + chain.s[:-1])
+    return s
 
 
 def _over_angles(b: Array) -> Array:
@@ -157,8 +215,3 @@ def tangent_slopes(points: Points) -> Array:
     slopes[:, :, 2:] = points.n[:, :, None] * _over_angles(points.b1)[:, None, :]
     slopes[:, :, 3] += points.a1[:, None] * points.n - points.w1[:, None] * points.e
     return slopes
-
-
-def chosen(points: Points, which: Array) -> Points:
-    """Some of the points."""
-    return Points(*(getattr(points, name)[which] for name in Points.__slots__))

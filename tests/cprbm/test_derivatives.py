@@ -112,7 +112,7 @@ def test_smooth_lines_are_true_at_rest_and_have_consistent_derivatives():
     chain = model.chains[1]
     state = rest_state(model)
     s = np.linspace(0.0, chain.s[-1], 57)
-    line = smooth.points_at(chain, model.unit_length, state, positions(model, state), s)
+    line = smooth.smooth_line(chain, model.unit_length, state, positions(model, state)).at(s)
     x, y = chain.line.position(s * model.unit_length)
     assert line.x * model.unit_length == pytest.approx(x, abs=1e-16 + 1e-14 * abs(x).max())
     assert line.y * model.unit_length == pytest.approx(y, abs=1e-16 + 1e-14 * abs(y).max())
@@ -120,9 +120,9 @@ def test_smooth_lines_are_true_at_rest_and_have_consistent_derivatives():
     state = State(state.theta + 0.1 * random.standard_normal(model.n_links), state.bodies)
     at = positions(model, state)
     s = np.array([0.013, 0.21, 0.5217, 0.77, 0.993]) * chain.s[-1]
-    here = smooth.points_at(chain, model.unit_length, state, at, s)
-    ahead = smooth.points_at(chain, model.unit_length, state, at, s + STEP)
-    behind = smooth.points_at(chain, model.unit_length, state, at, s - STEP)
+    here = smooth.smooth_line(chain, model.unit_length, state, at).at(s)
+    ahead = smooth.smooth_line(chain, model.unit_length, state, at).at(s + STEP)
+    behind = smooth.smooth_line(chain, model.unit_length, state, at).at(s - STEP)
     velocity = np.stack((ahead.x - behind.x, ahead.y - behind.y)) / (2 * STEP)
     assert velocity == pytest.approx(here.speed * np.stack((np.cos(here.psi), np.sin(here.psi))), abs=1e-8)
     assert (ahead.psi - behind.psi) / (2 * STEP) == pytest.approx(here.bend, rel=1e-6)
@@ -135,8 +135,8 @@ def test_smooth_lines_have_one_tangent_at_every_joint_to_third_order():
         state = State(model.rest + 0.8 * np.cos(np.linspace(0.0, 3.0, model.n_links)), np.zeros((1, 3)))
         at = positions(model, state)
         inner = chain.s[1:-1]
-        left = smooth.points_at(chain, model.unit_length, state, at, inner - 1e-12)
-        right = smooth.points_at(chain, model.unit_length, state, at, inner + 1e-12)
+        left = smooth.smooth_line(chain, model.unit_length, state, at).at(inner - 1e-12)
+        right = smooth.smooth_line(chain, model.unit_length, state, at).at(inner + 1e-12)
         return np.max(np.abs(left.psi - right.psi))
 
     assert np.log2(kink(20) / kink(40)) > 2.8
