@@ -21,7 +21,7 @@ Mechanism and Machine Theory 145 (2020) 103700, section 3.2.
 
 Each beam, away from the contact:
 
-    x' = cos θ,  y' = sin θ,  θ' = κ0 + m/EI,  m' = Fx sin θ − Fy cos θ,  F' = 0,  u' = m²/(2 EI)           (1)
+    x' = cos θ,  y' = sin θ,  θ' = κ0 + m/EI,  m' = Fx sin θ − Fy cos θ,  F' = 0,  u' = m²/(2 EI)          (1)
 
 At the contact the edges touch without friction, so the force acts along the common normal and through both
 neutral lines: m does not jump, F does,
@@ -59,9 +59,10 @@ Array = NDArray[np.float64]
 _RTOL, _ATOL = 1e-13, 1e-14
 _STEP = 1e-40  # of the complex step: far below round-off, no subtraction takes place
 _FREE, _TOUCH = 6, 9  # numbers of unknowns
+_LARGEST = 4.0  # of |M| R/(EI)
 
 
-class NoSinglePointContact(ValueError):
+class SinglePointContactError(ValueError):
     """The hinge is not in equilibrium with no contact or one point of contact under this moment."""
 
 
@@ -130,7 +131,7 @@ class HingeSolution:
         return self._state(beam, s)[3] / self.hinge.radius
 
     def bending_stress(self, beam: int, s: Array) -> Array:
-        """E t/2 times the change of curvature (n,), Pa; positive where the tangent turns counter-clockwise."""
+        """E t/2 times the change of curvature (n,), Pa; positive turns the tangent counter-clockwise."""
         return 0.5 * self.hinge.youngs_modulus * self.hinge.thickness * self.curvature_change(beam, s)
 
     def shape(self, beam: int, s: Array) -> Array:
@@ -141,35 +142,39 @@ class HingeSolution:
     def _state(self, beam: int, s: Array) -> Array:
         if beam not in (1, 2):
             raise ValueError(f"beam 1 or 2, not {beam}")
-        return _states(self.hinge, self._unknowns, np.asarray(s, dtype=float) / self.hinge.radius)[:, beam - 1]
+        places = np.asarray(s, dtype=float) / self.hinge.radius
+        return _states(self.hinge, self._unknowns, places)[:, beam - 1]
 
 
 def solve(hinge: Hinge, moment: float) -> HingeSolution:
     """Equilibrium under ``moment`` (N·m), on the branch that starts at rest.
 
     Raises:
-        NoSinglePointContact: the branch is lost, or there the beams would pull on each other, or overlap
+        ValueError: |M| R/(EI) is more than 4, beyond which this branch has not been examined.
+        SinglePointContactError: the branch is lost, or there the beams would pull on each other, or overlap
             away from the point of contact.
     """
     moment_unit = hinge.bending_stiffness / hinge.radius
     target = moment / moment_unit
+    if not abs(target) <= _LARGEST:
+        raise ValueError(f"M must lie within ±{_LARGEST * moment_unit} N·m, not {moment}")
     touch = _first_touch(hinge, float(np.sign(target)) if target else 1.0)
     if touch is None or abs(target) <= abs(touch[0]):
         unknowns = _follow(hinge, np.zeros(_FREE), 0.0, target)
     else:
         unknowns = _follow(hinge, touch[1], touch[0], target)
-    return _checked(_solution(hinge, unknowns, target))
+    return checked(_solution(hinge, unknowns, target))
 
 
 def closing_moment(hinge: Hinge, sign: float = 1.0) -> float:
     """The moment (N·m) of the given ``sign`` at which the edges first touch.
 
     Raises:
-        NoSinglePointContact: they do not touch before BD has turned by half a turn.
+        SinglePointContactError: they do not touch before BD has turned by half a turn.
     """
     touch = _first_touch(hinge, float(np.sign(sign)))
     if touch is None:
-        raise NoSinglePointContact("the beams do not touch under a moment of this sign")
+        raise SinglePointContactError("the beams do not touch under a moment of this sign")
     return touch[0] * hinge.bending_stiffness / hinge.radius
 
 
@@ -198,7 +203,7 @@ def _integrate(state: Any, force: Any, kappa0: Array, length: Any, at: Array | N
 
     run = solve_ivp(slope, (0.0, 1.0), state.ravel(), "DOP853", t_eval=at, rtol=_RTOL, atol=_ATOL)
     if not run.success:
-        raise NoSinglePointContact(f"the integration failed: {run.message}")
+        raise SinglePointContactError(f"the integration failed: {run.message}")
     return run.y[:, -1].reshape(shape) if at is None else run.y.reshape(*shape, -1)
 
 
@@ -214,7 +219,7 @@ def _initial(hinge: Hinge, unknowns: Any) -> tuple[Any, Any, Array]:
 
 
 def _to_contact_and_end(hinge: Hinge, unknowns: Any) -> tuple[Any, Any, Any]:
-    """States (5, 2, K) at the contact and at the end, and the forces (2, 2, K) at the end, of nine unknowns."""
+    """States (5, 2, K) at the contact and at the end, and the forces (2, 2, K) at the end."""
     state, force, kappa0 = _initial(hinge, unknowns)
     P, arc = unknowns[6], unknowns[7:9]
     contact = _integrate(state, force, kappa0, arc)
@@ -281,7 +286,7 @@ def _newton(equations: Callable[[Any], Any], guess: Array) -> Array | None:
 
 
 def _follow(hinge: Hinge, unknowns: Array, moment: float, target: float) -> Array:
-    """The equilibrium at ``target``, continued from ``unknowns`` at ``moment``; steps are halved on failure."""
+    """The equilibrium at ``target``, continued from ``unknowns`` at ``moment``; a failed step is halved."""
     step = float(np.clip(target - moment, -0.25, 0.25))
     before: tuple[Array, float] | None = None
     while moment != target:
@@ -293,9 +298,9 @@ def _follow(hinge: Hinge, unknowns: Array, moment: float, target: float) -> Arra
         found = _newton(lambda u, goal=goal: _residual(hinge, u, goal), guess)
         if found is None or np.abs(found - guess).max() > 1.0:
             step *= 0.5
-            if abs(step) < 1e-4:
+            if abs(step) < 1e-3:
                 lost = moment * hinge.bending_stiffness / hinge.radius
-                raise NoSinglePointContact(f"the branch is lost at M = {lost} N·m")
+                raise SinglePointContactError(f"the branch is lost at M = {lost} N·m")
             continue
         before, unknowns, moment = (unknowns, moment), found, goal
         step *= 1.5
@@ -309,7 +314,7 @@ def _first_touch(hinge: Hinge, sign: float) -> tuple[float, Array] | None:
     unknowns, moment, step = np.zeros(_FREE), 0.0, 0.1 * sign
     while True:
         unknowns, moment = _follow(hinge, unknowns, moment, moment + step), moment + step
-        gap, arc = _closest(hinge, unknowns)
+        gap, arc = closest(hinge, unknowns)
         if gap <= 0.0:
             break
         if abs(_end_rotation(hinge, unknowns)) > np.pi:
@@ -323,7 +328,7 @@ def _first_touch(hinge: Hinge, sign: float) -> tuple[float, Array] | None:
 
     found = _newton(equations, np.array([*unknowns, moment, *arc]))
     if found is None or not 0.0 < found[6] * sign <= abs(moment):
-        raise NoSinglePointContact("the first touch was not found")
+        raise SinglePointContactError("the first touch was not found")
     touch = found.copy()
     touch[6] = 0.0
     return float(found[6]), touch
@@ -361,7 +366,7 @@ def _sampled(state: Any, force: Any, kappa0: Array, s: Array) -> Array:
     return np.asarray(_integrate(state, force, kappa0, length, at=places)[:, :, 0, :][:, :, back])
 
 
-def _closest(hinge: Hinge, unknowns: Array) -> tuple[float, Array]:
+def closest(hinge: Hinge, unknowns: Array) -> tuple[float, Array]:
     """Least distance of the neutral lines less t, over R, and the arc lengths (2,) there."""
     s = np.linspace(0.0, np.pi, 801)
     states = _states(hinge, unknowns, s)
@@ -398,7 +403,7 @@ def _solution(hinge: Hinge, unknowns: Array, moment: float) -> HingeSolution:
     end = _states(hinge, unknowns, np.array([np.pi]))[:, :, 0]
     height = hinge.yc / R
     phi = float(end[2, 0] - 0.5 * np.pi)
-    gap, _ = _closest(hinge, unknowns)
+    gap, _ = closest(hinge, unknowns)
     arcs, point, P = None, None, 0.0
     if len(unknowns) == _TOUCH:
         contact, _, _ = _to_contact_and_end(hinge, unknowns[:, None])
@@ -425,10 +430,15 @@ def _solution(hinge: Hinge, unknowns: Array, moment: float) -> HingeSolution:
     )
 
 
-def _checked(solution: HingeSolution) -> HingeSolution:
+def checked(solution: HingeSolution) -> HingeSolution:
+    """The solution itself, if the beams push on each other and overlap nowhere.
+
+    Raises:
+        SinglePointContactError: they do not.
+    """
     if solution.contact_force < 0.0:
-        raise NoSinglePointContact(f"the beams would pull on each other with {-solution.contact_force} N")
+        raise SinglePointContactError(f"the beams would pull on each other with {-solution.contact_force} N")
     if solution.smallest_gap < -1e-9 * solution.hinge.radius:
         overlap = -solution.smallest_gap
-        raise NoSinglePointContact(f"the beams overlap by {overlap} m away from the point of contact")
+        raise SinglePointContactError(f"the beams overlap by {overlap} m away from the point of contact")
     return solution

@@ -38,7 +38,7 @@ def cantilever_deflection(P: float, L: float, EI: float) -> float:
     return P * L**3 / (3.0 * EI)
 
 
-def timoshenko_cantilever_deflection(P: float, L: float, EI: float, GA: float, ks: float = 5.0 / 6.0) -> float:
+def timoshenko_cantilever_deflection(P: float, L: float, EI: float, GA: float, ks: float) -> float:
     """Small tip deflection of a cantilever with shear, P L³ / (3 EI) + P L / (ks GA)."""
     return P * L**3 / (3.0 * EI) + P * L / (ks * GA)
 

@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 from scipy.integrate import quad_vec
 
-from tests.references.hinge import PAPER, Hinge, NoSinglePointContact, closing_moment, solve
+from tests.references.hinge import (
+    PAPER,
+    Hinge,
+    SinglePointContactError,
+    checked,
+    closest,
+    closing_moment,
+    solve,
+)
 
 LENGTH = PAPER.length
 
@@ -86,9 +94,8 @@ def test_the_other_sign_is_the_mirror_image_with_the_beams_exchanged(full):
     assert other.rotation == pytest.approx(-full.rotation, rel=1e-11)
     assert other.contact_force == pytest.approx(full.contact_force, rel=1e-11)
     s = np.linspace(0, LENGTH, 7)
-    np.testing.assert_allclose(
-        other.bending_stress(1, s), -full.bending_stress(2, s), atol=1e-9 * np.abs(full.bending_stress(2, s)).max()
-    )
+    stress = full.bending_stress(2, s)
+    np.testing.assert_allclose(other.bending_stress(1, s), -stress, atol=1e-9 * np.abs(stress).max())
 
 
 def test_only_the_turning_of_one_link_against_the_other_matters(full):
@@ -134,7 +141,8 @@ def test_first_touch_divides_open_from_closed():
     below, at, above = (solve(PAPER, touch * factor) for factor in (0.999, 1.0, 1.001))
     assert below.contact_force == 0.0
     assert below.contact_arc_lengths is None
-    assert 0.0 < below.smallest_gap < 1e-6
+    # the gap is even in M (mirror image), so it closes like 1 − (M/Mc)² to leading order
+    assert below.smallest_gap == pytest.approx(0.0005 * (1 - 0.999**2), rel=0.02)
     assert at.smallest_gap == pytest.approx(0.0, abs=1e-12)
     assert above.contact_force > 0.0
     assert above.smallest_gap == pytest.approx(0.0, abs=1e-12)
@@ -160,6 +168,24 @@ def test_another_hinge_scales_as_it_must():
     assert large.contact_force == pytest.approx(4 * small.contact_force, rel=1e-10)
 
 
-def test_a_moment_that_no_single_point_of_contact_carries_is_refused():
-    with pytest.raises(NoSinglePointContact):
-        solve(PAPER, 50.0)
+@pytest.mark.parametrize("moment", [50.0, -2.0, float("nan")])
+def test_a_moment_beyond_the_range_is_refused(moment):
+    with pytest.raises(ValueError, match="within"):
+        solve(PAPER, moment)
+
+
+@pytest.mark.parametrize(
+    ("broken", "words"),
+    [({"contact_force": -1.0}, "pull on each other"), ({"smallest_gap": -1e-6}, "overlap by")],
+)
+def test_what_is_no_single_point_of_contact_is_refused(full, broken, words):
+    with pytest.raises(SinglePointContactError, match=words):
+        checked(dataclasses.replace(full, **broken))
+
+
+def test_beams_that_overlap_away_from_the_point_are_seen(full):
+    """The gap of the unloaded shape, under a thickness larger than the distance of the beams."""
+    fat = dataclasses.replace(PAPER, thickness=0.003)
+    gap, arcs = closest(fat, np.zeros(6))
+    assert gap * fat.radius == pytest.approx(-0.0005, rel=1e-9)
+    assert arcs == pytest.approx([np.pi / 2, np.pi / 2], abs=1e-9)
