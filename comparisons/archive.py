@@ -1,0 +1,94 @@
+"""Answers as files: everything that a solver handed back, so that no report needs a second solve."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from frozendict import frozendict
+
+from comparisons.documents import Plain, plain
+from scene import Answer, Certificate, Ending, Event, Shape, StationAnswer
+from scene.answer import Array, frozen_array
+
+
+def packed(answer: Answer) -> Plain:
+    """An answer as plain data; a number that is not finite becomes null."""
+    return {
+        "solver": answer.solver,
+        "scene": answer.scene,
+        "settings": plain(dict(answer.settings)),
+        "ending": answer.ending.name,
+        "sentence": answer.sentence,
+        "seconds": answer.seconds,
+        "notes": list(answer.notes),
+        "events": [
+            {"stage": event.stage, "contact": event.contact, "kind": event.kind, "value": event.value}
+            for event in answer.events
+        ],
+        "stations": [_packed_station(station) for station in answer.stations],
+    }
+
+
+def unpacked(data: Plain) -> Answer:
+    """The answer that :func:`packed` made plain.
+
+    Raises:
+        KeyError: something is missing in ``data``.
+    """
+    return Answer(
+        solver=data["solver"],
+        scene=data["scene"],
+        settings=frozendict(data["settings"]),
+        ending=Ending[data["ending"]],
+        sentence=data["sentence"],
+        stations=tuple(_unpacked_station(station) for station in data["stations"]),
+        events=tuple(Event(**event) for event in data["events"]),
+        seconds=data["seconds"],
+        notes=tuple(data["notes"]),
+    )
+
+
+def _packed_station(station: StationAnswer) -> Plain:
+    certificate = station.certificate
+    return {
+        "stage": station.stage,
+        "value": station.value,
+        "values": {name: plain(values) for name, values in station.values.items()},
+        "shapes": {
+            name: {"s": plain(shape.s), "x": plain(shape.x), "y": plain(shape.y)}
+            for name, shape in station.shapes.items()
+        },
+        "touching": {name: plain(places) for name, places in station.touching.items()},
+        "certificate": {name: plain(getattr(certificate, name)) for name in Certificate.__dataclass_fields__},
+    }
+
+
+def _unpacked_station(data: Plain) -> StationAnswer:
+    certificate = {
+        name: math.nan if value is None else tuple(value) if isinstance(value, list) else value
+        for name, value in data["certificate"].items()
+    }
+    return StationAnswer(
+        stage=data["stage"],
+        value=data["value"],
+        values=frozendict({name: _array(values) for name, values in data["values"].items()}),
+        shapes=frozendict(
+            {
+                name: Shape(_array(shape["s"]), _array(shape["x"]), _array(shape["y"]))
+                for name, shape in data["shapes"].items()
+            }
+        ),
+        touching=frozendict(
+            {
+                name: frozen_array(np.reshape(_array(places), (-1, 2)))
+                for name, places in data["touching"].items()
+            }
+        ),
+        certificate=Certificate(**certificate),
+    )
+
+
+def _array(values: list[Any]) -> Array:  # touching places are lists of pairs
+    return frozen_array([math.nan if value is None else value for value in values])

@@ -1,0 +1,64 @@
+"""The numerical choices of a run, in words that belong to neither solver."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from scene import Mistake, Scene, SceneError
+
+Kinematics = Literal["bending", "stretch", "shear"]
+KINEMATICS: tuple[Kinematics, ...] = ("bending", "stretch", "shear")
+"""The beam theories of the finite elements, each with one freedom more than the one before."""
+
+Count = int | Mapping[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Choices:
+    """How finely and by which variant a scene is to be solved.
+
+    Attributes:
+        links: the CPRBM's links per beam: one number, or one for each beam by name.
+        formulation: of the CPRBM's contact.
+        elements: finite elements per beam, given in the same way.
+        kinematics: the finite elements' beam theory.
+        penetration: the overlap that the finite elements may leave, as a fraction of the thickness.
+    """
+
+    links: Count = 40
+    formulation: Literal["auto", "paper"] = "auto"
+    elements: Count = 80
+    kinematics: Kinematics = "shear"
+    penetration: float = 1e-4
+
+    def finer(self) -> Choices:
+        """The same with twice the links and twice the elements."""
+        return replace(self, links=_twice(self.links), elements=_twice(self.elements))
+
+    def within(self, kinematics: Kinematics) -> Choices:
+        """The same with another beam theory of the finite elements."""
+        return replace(self, kinematics=kinematics)
+
+
+def check(choices: Choices, scene: Scene) -> None:
+    """See that the choices fit the scene.
+
+    Raises:
+        SceneError: a count that names beams leaves one out or names one that is not there.
+    """
+    mistakes: list[Mistake] = []
+    for key, count in (("links", choices.links), ("elements", choices.elements)):
+        if isinstance(count, int):
+            continue
+        if set(count) != set(scene.beams):
+            found = ", ".join(f"{beam}={number}" for beam, number in count.items())
+            allowed = f"one number, or one for each of the beams {', '.join(scene.beams)}"
+            mistakes.append(Mistake(key, found, allowed))
+    if mistakes:
+        raise SceneError(mistakes)
+
+
+def _twice(count: Count) -> Count:
+    return 2 * count if isinstance(count, int) else {beam: 2 * number for beam, number in count.items()}

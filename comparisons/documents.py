@@ -1,0 +1,179 @@
+"""The documented JSON: plain data with stable keys, SI units, and null where there is no value."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+
+from comparisons.measures import Row, arc_lengths, unit_of
+from comparisons.verdict import Comparison
+from scene import Answer, Certificate, Claim, Probe, Scene
+from scene.answer import Array
+
+Plain = dict[str, Any]
+
+
+def text(data: Plain) -> str:
+    """``data`` as JSON with a line end.
+
+    Raises:
+        ValueError: a number in it is not finite.
+    """
+    return json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def comparison(compared: Comparison) -> Plain:
+    """One case of ``compare``."""
+    return {
+        "case": compared.scene.name,
+        "verdict": compared.verdict.word.value,
+        "sentence": compared.verdict.sentence,
+        "solvers": {"cprbm": solver(compared.runs.cprbm[0]), "fea": solver(compared.runs.reference)},
+        "rows": [
+            {**_row(compared.scene, row), "verdict": None if word is None else word.value}
+            for row, word in zip(compared.rows, compared.verdict.words, strict=True)
+        ],
+    }
+
+
+def solution(scene: Scene, answer: Answer) -> Plain:
+    """One case of ``solve``: the same shape with one solver's column and no verdict."""
+    stages = {stage.name: stage for stage in scene.stages}
+    return {
+        "case": scene.name,
+        "solvers": {answer.solver: solver(answer)},
+        "rows": [
+            {
+                "probe": probe.name,
+                "stage": station.stage,
+                "station": station.value,
+                "unit": unit_of(scene, probe, stages[station.stage]),
+                answer.solver: values(probe, station.values[probe.name]),
+                **_places(scene, probe),
+            }
+            for station in answer.stations
+            for probe in scene.probes
+        ],
+    }
+
+
+def solver(answer: Answer) -> Plain:
+    """How a solver fared; the certificate is the worst over its stations."""
+    return {
+        "ending": answer.ending.name,
+        "sentence": answer.sentence,
+        "seconds": answer.seconds,
+        "settings": plain(dict(answer.settings)),
+        "certificate": worst(tuple(station.certificate for station in answer.stations)),
+        "stations": len(answer.stations),
+        "events": [
+            {"stage": event.stage, "contact": event.contact, "kind": event.kind, "value": event.value}
+            for event in answer.events
+        ],
+        "notes": list(answer.notes),
+    }
+
+
+def worst(certificates: tuple[Certificate, ...]) -> Plain | None:
+    """Of every number of the certificates the one that is least reassuring; None if there is no certificate."""
+    if not certificates:
+        return None
+    largest = (
+        "residual",
+        "residual_floor",
+        "violation",
+        "penetration",
+        "complementarity",
+        "force_balance",
+        "moment_balance",
+    )
+    return {
+        "holds": all(certificate.holds for certificate in certificates),
+        **{key: plain(max(getattr(certificate, key) for certificate in certificates)) for key in largest},
+        "smallest_curvature": plain(min(certificate.smallest_curvature for certificate in certificates)),
+        "iterations": sum(certificate.iterations for certificate in certificates),
+        "failures": [failure for certificate in certificates for failure in certificate.failures],
+    }
+
+
+def values(probe: Probe, found: Array) -> Any:  # noqa: ANN401 - a number, a list or nothing
+    """A probe's values: a number, a list where it has several, None where there is none."""
+    if found.size == 0:
+        return None
+    if found.size == 1 and probe.quantity != "bending_stress":
+        return plain(float(found[0]))
+    return [plain(float(value)) for value in found]
+
+
+def plain(value: object) -> Any:  # noqa: ANN401 - whatever JSON holds
+    """``value`` in JSON's own types; a number that is not finite becomes None."""
+    match value:
+        case dict():
+            return {str(key): plain(item) for key, item in value.items()}
+        case list() | tuple():
+            return [plain(item) for item in value]
+        case np.ndarray():
+            return plain(value.tolist())
+        case bool() | int() | str() | None:
+            return value
+        case float():
+            return float(value) if math.isfinite(value) else None
+        case _:
+            return str(value)
+
+
+def claim_of(scene: Scene, row: Row) -> Claim | None:
+    """What the scene's source claims of a row."""
+    for claim in scene.claims:
+        if claim.probe == row.probe.name and math.isclose(claim.station, row.station, rel_tol=1e-12):
+            return claim
+    return None
+
+
+def claim_met(claim: Claim | None, row: Row) -> bool | None:
+    """Whether our difference stays below the claimed bound; None where either is missing."""
+    fraction = row.fraction(row.difference)
+    return None if claim is None or fraction is None else fraction <= claim.bound
+
+
+def _row(scene: Scene, row: Row) -> Plain:
+    claim = claim_of(scene, row)
+    bounds = row.bounds
+    steps = row.steps
+    return {
+        "probe": row.probe.name,
+        "stage": row.stage,
+        "station": row.station,
+        "unit": row.unit,
+        "cprbm": values(row.probe, row.cprbm),
+        "fea": values(row.probe, row.fea),
+        "difference": row.fraction(row.difference),
+        "uncertainty": {
+            "cprbm": None if bounds is None else row.fraction(bounds.cprbm),
+            "fea": None if bounds is None else row.fraction(bounds.fea),
+            "theory": None if bounds is None else row.fraction(bounds.theory),
+            "fea_bending": None if bounds is None else row.fraction(bounds.bending),
+            "round_off": None if bounds is None else row.fraction(bounds.round_off),
+        },
+        "claim": None if claim is None else claim.bound,
+        "claim_met": claim_met(claim, row),
+        "difference_same_theory": row.fraction(row.same_theory),
+        "steps": None
+        if steps is None
+        else {
+            "own": row.fraction(steps.own),
+            "stretch": row.fraction(steps.stretch),
+            "shear": row.fraction(steps.shear),
+        },
+        "difference_largest": None if row.largest is None else row.fraction(row.largest),
+        "scale": row.scale,
+        "denominator": row.denominator,
+        **_places(scene, row.probe),
+    }
+
+
+def _places(scene: Scene, probe: Probe) -> Plain:
+    return {"arc_length": arc_lengths(scene, probe).tolist()} if probe.quantity == "bending_stress" else {}

@@ -1,0 +1,187 @@
+"""The figures of a comparison; the only module that knows matplotlib, which it imports when it draws.
+
+The same answers give the same bytes: no dates, and identifiers from a fixed salt.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from comparisons.formats import scaled_unit
+from comparisons.geometry import length, points
+from comparisons.measures import Row
+from comparisons.pairing import Runs
+from comparisons.scales import norm
+from comparisons.sheets import last_rows
+from comparisons.verdict import Comparison
+from scene import Scene, StationAnswer
+from scene.statement import FreeEnd
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_BLUE, _RED, _GREY = "#1f5fa8", "#c8321e", "#8a8a8a"
+_STYLE = {
+    "svg.hashsalt": "cprbm",
+    "svg.fonttype": "path",
+    "font.family": "DejaVu Sans",
+    "font.size": 10.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+    "savefig.dpi": 150.0,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A drawn figure: what it shows, and its bytes in two formats."""
+
+    name: str
+    caption: str
+    svg: bytes
+    png: bytes
+
+
+def of_comparison(compared: Comparison) -> tuple[Picture, ...]:
+    """All figures of a comparison; none where a run gave no whole answer."""
+    import matplotlib as mpl
+
+    if not compared.rows:
+        return ()
+    pictures = []
+    with mpl.rc_context(_STYLE):
+        pictures.append(_shapes(compared.scene, compared.runs))
+        stresses = [row for row in last_rows(compared) if row.probe.quantity == "bending_stress"]
+        if stresses:
+            pictures.append(_stresses(stresses))
+        for quantity, what in (("rotation", "Rotation"), ("force", "Contact force")):
+            rows = [row for row in compared.rows if row.probe.quantity == quantity]
+            if len(rows) > 1:
+                pictures.append(_against_load(compared.scene, rows, quantity, what))
+    return tuple(pictures)
+
+
+def _shapes(scene: Scene, runs: Runs) -> Picture:
+    """The mechanism before and after, in the manner of the paper's Fig. 8."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.4, 6.0), layout="constrained")
+    axes = figure.add_subplot()
+    cprbm, fea = runs.cprbm[0].stations[-1], runs.reference.stations[-1]
+    ends: dict[str, list[tuple[float, float]]] = {}
+    for place, beam in enumerate(scene.beams.values()):
+        x, y = 1e3 * points(beam.curve, np.linspace(0.0, length(beam.curve), 200)).T
+        axes.plot(x, y, "--", color=_GREY, linewidth=1.0, label="undeformed" if place == 0 else None)
+        for end, point in ((beam.start, 0), (beam.end, -1)):
+            if not isinstance(end, FreeEnd):
+                ends.setdefault(scene.body_of(end.point), []).append((x[point], y[point]))
+    _links(axes, ends, "--", _GREY)
+    _links(axes, _ends(scene, fea), "-", "black")
+    for place, beam_name in enumerate(scene.beams):
+        shape = fea.shapes[beam_name]
+        label = f"FEA ({runs.kinematics})" if place == 0 else None
+        axes.plot(1e3 * shape.x, 1e3 * shape.y, "-", color=_RED, linewidth=2.2, label=label)
+        shape = cprbm.shapes[beam_name]
+        label = "CPRBM" if place == 0 else None
+        axes.plot(1e3 * shape.x, 1e3 * shape.y, ".", color=_BLUE, markersize=3.5, label=label)
+    for name, station, marker, colour in (("FEA", fea, "x", _RED), ("CPRBM", cprbm, "o", _BLUE)):
+        for place, spots in enumerate(station.touching.values()):
+            label = f"contact, {name}" if place == 0 else None
+            x, y = 1e3 * spots.T
+            axes.plot(
+                x, y, marker, color=colour, markersize=9, markerfacecolor="none", linestyle="", label=label
+            )
+    for body in scene.bodies.values():
+        for name, (x, y) in body.points.items():
+            axes.annotate(name, (1e3 * x, 1e3 * y), textcoords="offset points", xytext=(-4, 7), ha="right")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel("x, mm")
+    axes.set_ylabel("y, mm")
+    axes.margins(0.08)
+    figure.legend(loc="outside lower center", ncols=3)
+    return _picture(
+        figure,
+        "shapes",
+        f"Neutral lines before and at {cprbm.stage} {cprbm.value:g}, with the places of contact.",
+    )
+
+
+def _ends(scene: Scene, station: StationAnswer) -> dict[str, list[tuple[float, float]]]:
+    """By body, the deformed ends of the beams that are joined to it, mm."""
+    ends: dict[str, list[tuple[float, float]]] = {}
+    for name, beam in scene.beams.items():
+        shape = station.shapes[name]
+        for end, point in ((beam.start, 0), (beam.end, -1)):
+            if not isinstance(end, FreeEnd):
+                place = (1e3 * float(shape.x[point]), 1e3 * float(shape.y[point]))
+                ends.setdefault(scene.body_of(end.point), []).append(place)
+    return ends
+
+
+def _links(axes: Axes, ends: dict[str, list[tuple[float, float]]], style: str, colour: str) -> None:
+    for places in ends.values():
+        x, y = np.array(places).T
+        axes.plot(x, y, style, color=colour, linewidth=1.2, marker="s", markersize=4)
+
+
+def _stresses(rows: list[Row]) -> Picture:
+    """Bending stress along each beam, in the manner of the paper's Fig. 10."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(7.2, 2.8 * len(rows)), layout="constrained")
+    factor, unit = scaled_unit("Pa", max(norm("bending_stress", row.fea) for row in rows))
+    for place, row in enumerate(rows):
+        axes = figure.add_subplot(len(rows), 1, place + 1)
+        if row.arc_length is None:
+            continue
+        axes.axhline(0.0, color=_GREY, linewidth=0.6)
+        axes.plot(1e3 * row.arc_length, row.fea / factor, "-", color=_RED, linewidth=1.8, label="FEA")
+        axes.plot(1e3 * row.arc_length, row.cprbm / factor, ".", color=_BLUE, markersize=5, label="CPRBM")
+        axes.set_title(row.probe.of, loc="left")
+        axes.set_ylabel(f"bending stress, {unit}")
+        axes.legend(loc="best")
+        axes.set_xlabel("initial arc length, mm")
+    return _picture(
+        figure,
+        "stress",
+        f"Bending stress along the beams at {rows[0].stage} {rows[0].station:g}; where it is "
+        "positive the load turns the tangent counter-clockwise along the beam.",
+    )
+
+
+def _against_load(scene: Scene, rows: list[Row], quantity: str, what: str) -> Picture:
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6.4, 3.6), layout="constrained")
+    axes = figure.add_subplot()
+    factor, unit = scaled_unit(rows[0].unit, max(row.scale for row in rows))
+    for name in dict.fromkeys(row.probe.name for row in rows):
+        for stage in scene.stages:
+            mine = [row for row in rows if row.probe.name == name and row.stage == stage.name]
+            load = [row.station for row in mine]
+            axes.plot(load, [row.fea[0] / factor for row in mine], "-", color=_RED, label=f"{name}, FEA")
+            axes.plot(
+                load,
+                [row.cprbm[0] / factor for row in mine],
+                "o",
+                color=_BLUE,
+                markersize=4,
+                label=f"{name}, CPRBM",
+            )
+    axes.set_xlabel(f"{scene.stages[-1].steps}, SI")
+    axes.set_ylabel(f"{what.lower()}, {unit}")
+    axes.legend(loc="best")
+    return _picture(figure, quantity, f"{what} against the load.")
+
+
+def _picture(figure: Figure, name: str, caption: str) -> Picture:
+    svg, png = io.BytesIO(), io.BytesIO()
+    figure.savefig(svg, format="svg", metadata={"Date": None})
+    figure.savefig(png, format="png", metadata={"Software": None})
+    return Picture(name, caption, svg.getvalue(), png.getvalue())

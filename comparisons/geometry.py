@@ -1,0 +1,78 @@
+"""What the harness itself must know of a neutral line: its length, its points and its curvature.
+
+The solvers derive their own; nothing here is handed to them.
+
+======  ===================================================
+symbol  meaning
+======  ===================================================
+s       arc length from the beam's start, m
+R       radius of an arc, m
+φ       angle that an arc turns through, counter-clockwise
+======  ===================================================
+"""
+
+from __future__ import annotations
+
+import math
+from typing import assert_never
+
+import numpy as np
+
+from scene import Arc, Line
+from scene.answer import Array, Shape
+
+
+def length(curve: Line | Arc) -> float:
+    """Arc length of a curve, m."""
+    match curve:
+        case Line():
+            return math.dist(curve.start, curve.end)
+        case Arc():
+            return radius(curve) * abs(_turn(curve))
+        case _:
+            assert_never(curve)
+
+
+def radius(curve: Line | Arc) -> float:
+    """Radius of curvature of a curve, m; infinite for a line."""
+    match curve:
+        case Line():
+            return math.inf
+        case Arc():
+            return math.dist(curve.start, curve.center)
+        case _:
+            assert_never(curve)
+
+
+def points(curve: Line | Arc, s: Array) -> Array:
+    """Points (n, 2) of a curve at the arc lengths ``s`` (n,), m."""
+    match curve:
+        case Line():
+            along = np.asarray(s)[:, None] / length(curve)
+            return np.asarray((1 - along) * np.array(curve.start) + along * np.array(curve.end))
+        case Arc():
+            centre = np.array(curve.center)
+            first = math.atan2(curve.start[1] - centre[1], curve.start[0] - centre[0])
+            angle = first + math.copysign(1.0, _turn(curve)) * np.asarray(s) / radius(curve)
+            return np.asarray(centre + radius(curve) * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+        case _:
+            assert_never(curve)
+
+
+def nearest(shape: Shape, place: Array) -> float:
+    """Arc length, m, of the point on a deformed neutral line (taken as a polyline) that is nearest to ``place``."""
+    start = np.stack([shape.x[:-1], shape.y[:-1]], axis=1)
+    step = np.stack([np.diff(shape.x), np.diff(shape.y)], axis=1)
+    square = np.maximum(np.sum(step**2, axis=1), np.finfo(float).tiny)
+    share = np.clip(np.sum((place - start) * step, axis=1) / square, 0.0, 1.0)
+    distance = np.hypot(*(start + share[:, None] * step - place).T)
+    best = int(np.argmin(distance))
+    return float(shape.s[best] + share[best] * (shape.s[best + 1] - shape.s[best]))
+
+
+def _turn(arc: Arc) -> float:
+    """The angle φ, rad, in (−2π, 2π), that an arc turns through about its centre."""
+    first = math.atan2(arc.start[1] - arc.center[1], arc.start[0] - arc.center[0])
+    last = math.atan2(arc.end[1] - arc.center[1], arc.end[0] - arc.center[0])
+    turn = (last - first) % (2 * math.pi)
+    return turn if arc.direction == "counterclockwise" else turn - 2 * math.pi

@@ -1,0 +1,242 @@
+"""Two answers beside each other: for every probe, stage and station the differences and what bounds them.
+
+==========  ===========================================================================================
+symbol      meaning
+==========  ===========================================================================================
+v_c, V_c    the CPRBM's value at N and at 2N links
+v_f, V_f    the finite elements' value at n and at 2n elements, in the chosen theory
+v_b, V_b    the same in the theory ``bending``, the CPRBM's own
+v_s         at n in the theory ``stretch``
+p           order of convergence that the error estimate assumes, 2
+S           safety factor of the error estimate, 1.25
+d           v_c − v_f, the difference
+u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (or n)
+r           round-off allowance
+==========  ===========================================================================================
+
+The error of v is C/N^p and that of V a quarter of it (p = 2), so v − V is three quarters of v's error: hence
+the factor 4/3 (Richardson; Roache, *Verification and Validation in Computational Science*, whose safety factor
+for a known order is 1.25).  Where finite elements converge faster, p = 2 only makes u larger.
+
+The theory term is |v_b − v_f|, computed and never typed in.  The difference is the sum of three steps,
+
+    v_c − v_f = (v_c − v_b) + (v_b − v_s) + (v_s − v_f),
+
+and the share of each in it is its component along d.
+
+Round-off: a certificate states the relative residual that is left and the floor below which none can be asked.
+Numbers that differ by no more than the larger of the two, times the scale of the probe's family, differ by
+nothing that the solvers have settled.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from comparisons.geometry import length
+from comparisons.pairing import Runs
+from comparisons.scales import denominator, family_scale, norm, probe_scale
+from comparisons.spots import clear_of_spots
+from scene import Answer, Probe, Scene, Stage, StationAnswer
+from scene.answer import Array
+from scene.statement import Moment, Quantity
+
+ORDER = 2
+SAFETY = 1.25
+RICHARDSON = 2**ORDER / (2**ORDER - 1)
+
+UNITS: Mapping[Quantity, str] = {
+    "displacement": "m",
+    "rotation": "rad",
+    "force": "N",
+    "centre": "m",
+    "bending_stress": "Pa",
+    "reaction": "N",
+    "reaction_moment": "N·m",
+    "potential_energy": "J",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """What may lie between the two values of a row; all in the probe's unit, none negative.
+
+    Attributes:
+        cprbm: the CPRBM's own uncertainty.
+        fea: the finite elements' own, in the chosen theory.
+        bending: the finite elements' own, in the theory ``bending``.
+        theory: between the theory ``bending`` and the chosen one.
+        round_off: what the certificates leave unsettled.
+    """
+
+    cprbm: float
+    fea: float
+    bending: float
+    theory: float
+    round_off: float
+
+    @property
+    def total(self) -> float:
+        """What may lie between the two solvers."""
+        return self.cprbm + self.fea + self.theory + self.round_off
+
+    @property
+    def same_theory(self) -> float:
+        """What may lie between the two solvers within the theory ``bending``."""
+        return self.cprbm + self.bending + self.round_off
+
+
+@dataclass(frozen=True, slots=True)
+class Steps:
+    """The difference as a sum of steps, each its component along the difference, in the probe's unit."""
+
+    own: float
+    stretch: float
+    shear: float
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One probe at one station.
+
+    ``cprbm`` and ``fea`` are the values, (k,) in ``unit``.  ``bounds`` is absent where a value is (an open
+    contact has no centre), and then nothing is measured.  ``scale`` is the probe's in this stage,
+    ``denominator`` what the shown fractions are divided by.  For a stress, ``arc_length`` (k,) says where, m;
+    ``largest`` is the difference of the largest magnitudes, and the places next to the beam's held ends and to
+    the contacts take no part in ``difference``.
+    """
+
+    probe: Probe
+    stage: str
+    station: float
+    unit: str
+    cprbm: Array
+    fea: Array
+    scale: float
+    denominator: float
+    difference: float = math.nan
+    same_theory: float = math.nan
+    bounds: Bounds | None = None
+    steps: Steps | None = None
+    arc_length: Array | None = None
+    largest: float | None = None
+
+    def fraction(self, value: float) -> float | None:
+        """``value`` as a fraction of the denominator; None where that says nothing."""
+        if not math.isfinite(value):
+            return None
+        if self.denominator > 0.0:
+            return value / self.denominator
+        return 0.0 if value == 0.0 else None
+
+
+def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
+    """All rows of a comparison, in the order of stages, stations and probes.
+
+    Every answer must be complete, as :func:`comparisons.soundness.complaints` finds.
+
+    Raises:
+        KeyError: an answer lacks a station or a probe.
+    """
+    return tuple(
+        _row(scene, runs, probe, stage, value)
+        for stage in scene.stages
+        for value in stage.stations
+        for probe in scene.probes
+    )
+
+
+def station_of(answer: Answer, stage: str, value: float) -> StationAnswer:
+    """An answer's station of a stage at a value of its load.
+
+    Raises:
+        KeyError: the answer has none.
+    """
+    for station in answer.stations:
+        if station.stage == stage and math.isclose(station.value, value, rel_tol=1e-12, abs_tol=0.0):
+            return station
+    raise KeyError(f"{answer.solver} has no station {stage} {value:g}")
+
+
+def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float) -> Row:
+    compared = (runs.cprbm[0], runs.reference)
+    scale = probe_scale(scene, probe, stage, compared)
+    stations = {name: station_of(answer, stage.name, value) for name, answer in runs.everything()}
+    values = {name: station.values[probe.name] for name, station in stations.items()}
+    chosen = f"fea {runs.kinematics}"
+    v_c, v_f, v_b = values["cprbm"], values[chosen], values["fea bending"]
+    is_stress = probe.quantity == "bending_stress"
+    row = Row(
+        probe=probe,
+        stage=stage.name,
+        station=value,
+        unit=unit_of(scene, probe, stage),
+        cprbm=v_c,
+        fea=v_f,
+        scale=scale,
+        denominator=denominator(probe, v_f, scale),
+        arc_length=arc_lengths(scene, probe) if is_stress else None,
+        largest=abs(norm(probe.quantity, v_c) - norm(probe.quantity, v_f)) if is_stress else None,
+    )
+    if v_f.size == 0 or any(other.shape != v_f.shape for other in values.values()):
+        return row
+    counts = np.ones(v_f.shape, dtype=bool)
+    if row.arc_length is not None:
+        counts = clear_of_spots(scene, probe.of, row.arc_length, tuple(stations.values()))
+        if not counts.any():
+            return row
+
+    def size(difference: Array) -> float:
+        return norm(probe.quantity, difference[counts])
+
+    floor = max(max(s.certificate.residual, s.certificate.residual_floor) for s in stations.values())
+    family = family_scale(scene, probe.quantity, stage, compared, contact=probe.of)
+    bounds = Bounds(
+        cprbm=SAFETY * RICHARDSON * size(v_c - values["cprbm finer"]),
+        fea=SAFETY * RICHARDSON * size(v_f - values[f"{chosen} finer"]),
+        bending=SAFETY * RICHARDSON * size(v_b - values["fea bending finer"]),
+        theory=size(v_b - v_f),
+        round_off=floor * family,
+    )
+    ladder = [v_c, *(values[f"fea {kinematics}"] for kinematics in runs.fea)]
+    return replace(
+        row,
+        difference=size(v_c - v_f),
+        same_theory=size(v_c - v_b),
+        bounds=bounds,
+        steps=_steps(probe.quantity, [step[counts] for step in ladder]),
+    )
+
+
+def unit_of(scene: Scene, probe: Probe, stage: Stage) -> str:
+    """The SI unit of a probe's values in a stage."""
+    if probe.quantity == "closing_load":
+        return "N·m" if isinstance(scene.loads[stage.steps], Moment) else "N"
+    return UNITS[probe.quantity]
+
+
+def arc_lengths(scene: Scene, probe: Probe) -> Array:
+    """Arc lengths (k,), m, of the places at which a beam's stress is asked."""
+    return np.linspace(0.0, length(scene.beams[probe.of].curve), probe.points)
+
+
+def _steps(quantity: Quantity, ladder: list[Array]) -> Steps | None:
+    """Each step of the ladder CPRBM → bending → stretch → shear, along the whole way; None if that is zero."""
+    d = ladder[0] - ladder[-1]
+    if not d.any():
+        return None
+    if (
+        quantity == "bending_stress"
+    ):  # the norm is the largest magnitude: the share is taken where that stands
+        along = np.zeros_like(d)
+        worst = int(np.argmax(np.abs(d)))
+        along[worst] = np.sign(d[worst])
+    else:
+        along = d / np.linalg.norm(d)
+    steps = [float(np.dot(a - b, along)) for a, b in zip(ladder[:-1], ladder[1:], strict=True)]
+    own, stretch, shear = steps + [0.0] * (3 - len(steps))
+    return Steps(own, stretch, shear)

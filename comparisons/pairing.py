@@ -1,0 +1,173 @@
+"""One scene to both solvers: the only module that knows them, and it imports each where it is used.
+
+What is run for a comparison: the CPRBM at N and 2N links; the finite elements at n and 2n in the theory that
+was chosen and in ``bending``, the CPRBM's own; and at n in the theory between the two, if there is one, so that
+the step from one theory to the next can be split.
+"""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import dataclass
+from multiprocessing import get_context
+
+from frozendict import frozendict
+from pydantic import ValidationError
+
+from comparisons.choices import KINEMATICS, Choices, Kinematics, check
+from scene import Answer, Mistake, Scene, SceneError
+
+Solver = Callable[[Scene, Choices], Answer]
+
+
+def cprbm_answer(scene: Scene, choices: Choices) -> Answer:
+    """The chained pseudo-rigid-body model's answer.
+
+    Raises:
+        SceneError: the scene or the choices are no question that this solver can be asked.
+    """
+    import cprbm
+
+    with _named("links"):
+        settings = cprbm.Settings(links=_plain(choices.links), formulation=choices.formulation)
+    return cprbm.answer(scene, settings)
+
+
+def fea_answer(scene: Scene, choices: Choices) -> Answer:
+    """The finite elements' answer.
+
+    Raises:
+        SceneError: the scene or the choices are no question that this solver can be asked.
+    """
+    import fea_reference
+
+    with _named("elements"):
+        settings = fea_reference.Settings(
+            elements=_plain(choices.elements),
+            kinematics=choices.kinematics,
+            penetration=choices.penetration,
+        )
+    return fea_reference.answer(scene, settings)
+
+
+@dataclass(frozen=True, slots=True)
+class Solvers:
+    """The two functions that are compared; others can be planted in their place."""
+
+    cprbm: Solver = cprbm_answer
+    fea: Solver = fea_answer
+
+
+@dataclass(frozen=True, slots=True)
+class Runs:
+    """All answers to one scene that a comparison rests on.
+
+    Attributes:
+        kinematics: the beam theory that was chosen for the reference.
+        cprbm: at N and 2N links.
+        fea: by theory, from ``bending`` up to the chosen one: at n and, for these two, at 2n elements.
+    """
+
+    kinematics: Kinematics
+    cprbm: tuple[Answer, Answer]
+    fea: Mapping[Kinematics, tuple[Answer, ...]]
+
+    @property
+    def reference(self) -> Answer:
+        """The finite elements' answer in the chosen theory at n elements."""
+        return self.fea[self.kinematics][0]
+
+    def everything(self) -> Iterator[tuple[str, Answer]]:
+        """Every answer with a name that says what it is."""
+        for level, answer in zip(("", " finer"), self.cprbm, strict=True):
+            yield f"cprbm{level}", answer
+        for kinematics, answers in self.fea.items():
+            for level, answer in zip(("", " finer"), answers, strict=False):  # the split needs no finer run
+                yield f"fea {kinematics}{level}", answer
+
+
+def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1) -> Runs:
+    """Run both solvers on a scene.
+
+    Args:
+        scene: the question.
+        choices: how finely, and by which variants.
+        solvers: who answers.
+        workers: processes to share the runs; with one everything stays in this process.
+
+    Raises:
+        SceneError: a solver refuses the question.
+    """
+    check(choices, scene)
+    jobs = [(solvers.cprbm, choices), (solvers.cprbm, choices.finer())]
+    places: list[tuple[Kinematics, int]] = []
+    for kinematics in KINEMATICS[: KINEMATICS.index(choices.kinematics) + 1]:
+        variant = choices.within(kinematics)
+        levels = (variant, variant.finer()) if kinematics in ("bending", choices.kinematics) else (variant,)
+        for level, settings in enumerate(levels):
+            places.append((kinematics, level))
+            jobs.append((solvers.fea, settings))
+    answers = _in_order(scene, jobs, min(workers, len(jobs)))
+    fea: dict[Kinematics, tuple[Answer, ...]] = {}
+    for (kinematics, _), answer in zip(places, answers[2:], strict=True):
+        fea[kinematics] = (*fea.get(kinematics, ()), answer)
+    return Runs(choices.kinematics, (answers[0], answers[1]), frozendict(fea))
+
+
+def _in_order(scene: Scene, jobs: list[tuple[Solver, Choices]], workers: int) -> list[Answer]:
+    if workers <= 1:
+        return [solver(scene, choices) for solver, choices in jobs]
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_quiet_worker)
+    try:
+        # The finest runs take longest, and they stand last: handed out first, they leave no worker idle.
+        futures: dict[Future[Answer | tuple[Mistake, ...]], int] = {
+            pool.submit(_job, solver, scene, choices): place
+            for place, (solver, choices) in reversed(list(enumerate(jobs)))
+        }
+        answers: dict[int, Answer] = {}
+        for future in as_completed(futures):
+            result = future.result()
+            if isinstance(result, tuple):
+                raise SceneError(result)
+            answers[futures[future]] = result
+    finally:
+        pool.shutdown(cancel_futures=True)
+    return [answers[place] for place in range(len(jobs))]
+
+
+def _job(solver: Solver, scene: Scene, choices: Choices) -> Answer | tuple[Mistake, ...]:
+    """A worker's job; mistakes travel as plain records, since an exception is rebuilt from its text alone."""
+    try:
+        return solver(scene, choices)
+    except SceneError as error:
+        return error.mistakes
+
+
+def _quiet_worker() -> None:
+    """Let an interrupt end a worker at once and without a word: the main process says what happened."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+@contextmanager
+def _named(key: str) -> Iterator[None]:
+    """Turn a solver's refusal of its settings into mistakes whose keys the user has typed."""
+    try:
+        yield
+    except ValidationError as error:
+        raise SceneError(
+            [
+                Mistake(
+                    ".".join(str(part) for part in details["loc"]) or key,
+                    repr(details.get("input")),
+                    details["msg"],
+                )
+                for details in error.errors()
+            ]
+        ) from None
+
+
+def _plain(count: int | Mapping[str, int]) -> int | dict[str, int]:
+    return count if isinstance(count, int) else dict(count)

@@ -1,0 +1,120 @@
+"""What the differences of a probe are measured by.
+
+A probe's *scale* in a stage is the largest norm that it has at any of the stage's stations, in either answer.
+A probe may vanish by symmetry, and then its largest norm is round-off and no scale.  So probes of one kind
+form a *family* with a scale of its own, and no probe's scale is less than a thousandth of its family's:
+
+=====================================  ==============================================================
+quantity                               the family's scale in a stage
+=====================================  ==============================================================
+displacement                           largest displacement of any point, or rotation times length
+rotation                               largest rotation of any body, or displacement over length
+force, reaction                        largest of them, of the force loads, and of the moments over length
+reaction_moment                        largest of them, of the moment loads, and of the forces times length
+bending_stress                         largest stress in any beam
+potential_energy                       largest energy
+closing_load                           largest value that the stage steps to
+centre                                 length of the contact's first beam, which is also the probe's scale
+=====================================  ==============================================================
+
+The length is the longest beam's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from comparisons.geometry import length
+from scene import Answer, Probe, Scene, Stage
+from scene.answer import Array
+from scene.statement import Moment, Quantity
+
+SMALLEST_SHARE = 1e-3
+"""Least scale of a probe as a share of its family's."""
+
+VANISHING = 1e-2
+"""A reference below this share of its probe's scale counts as one that may vanish."""
+
+_OWN_NORM = frozenset({"displacement", "rotation", "potential_energy", "closing_load"})
+"""Quantities whose differences are stated as shares of the reference itself."""
+
+
+def norm(quantity: Quantity, values: Array) -> float:
+    """Euclidean norm of ``values`` (k,); of a stress along a beam the largest magnitude."""
+    if values.size == 0:
+        return 0.0
+    return float(np.max(np.abs(values)) if quantity == "bending_stress" else np.linalg.norm(values))
+
+
+def probe_scale(scene: Scene, probe: Probe, stage: Stage, answers: tuple[Answer, ...]) -> float:
+    """The scale of a probe in a stage, in the probe's unit; 0 only where its whole family vanishes."""
+    family = family_scale(scene, probe.quantity, stage, answers, contact=probe.of)
+    if probe.quantity == "centre":
+        return family
+    return max(_largest((probe,), stage, answers), SMALLEST_SHARE * family)
+
+
+def family_scale(
+    scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[Answer, ...], *, contact: str
+) -> float:
+    """The scale of a quantity's family in a stage; ``contact`` is the contact of a ``centre``."""
+
+    def largest(*kinds: Quantity) -> float:
+        probes = tuple(probe for probe in scene.probes if probe.quantity in kinds)
+        return _largest(probes, stage, answers)
+
+    lever = max(length(beam.curve) for beam in scene.beams.values())
+    match quantity:
+        case "displacement":
+            return max(largest("displacement"), lever * largest("rotation"))
+        case "rotation":
+            return max(largest("rotation"), largest("displacement") / lever)
+        case "force" | "reaction":
+            return max(
+                largest("force", "reaction"),
+                _load(scene, stage, moments=False),
+                largest("reaction_moment") / lever,
+                _load(scene, stage, moments=True) / lever,
+            )
+        case "reaction_moment":
+            return max(
+                largest("reaction_moment"),
+                _load(scene, stage, moments=True),
+                largest("force", "reaction") * lever,
+                _load(scene, stage, moments=False) * lever,
+            )
+        case "closing_load":
+            return max(abs(station) for station in stage.stations)
+        case "centre":
+            return length(scene.beams[scene.contacts[contact].between[0]].curve)
+        case _:
+            return largest(quantity)
+
+
+def denominator(probe: Probe, reference: Array, scale: float) -> float:
+    """What a row's difference is divided by: the reference's norm, or the probe's scale where that may vanish."""
+    own = norm(probe.quantity, reference)
+    return own if probe.quantity in _OWN_NORM and own >= VANISHING * scale else scale
+
+
+def _largest(probes: tuple[Probe, ...], stage: Stage, answers: tuple[Answer, ...]) -> float:
+    return max(_norms(probes, stage, answers), default=0.0)
+
+
+def _norms(probes: tuple[Probe, ...], stage: Stage, answers: tuple[Answer, ...]) -> Iterator[float]:
+    for answer in answers:
+        for station in answer.stations:
+            if station.stage != stage.name:
+                continue
+            for probe in probes:
+                values = station.values.get(probe.name)
+                if values is not None and bool(np.all(np.isfinite(values))):
+                    yield norm(probe.quantity, values)
+
+
+def _load(scene: Scene, stage: Stage, *, moments: bool) -> float:
+    """Largest magnitude of the stepped load, if it is a moment (or, without ``moments``, a force)."""
+    is_moment = isinstance(scene.loads[stage.steps], Moment)
+    return max(abs(station) for station in stage.stations) if is_moment is moments else 0.0

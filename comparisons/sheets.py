@@ -1,0 +1,252 @@
+"""What a comparison's tables say, cell by cell, for the screen and for the page alike."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from comparisons.documents import claim_met, claim_of, worst
+from comparisons.formats import number, percent, scaled_unit, vector
+from comparisons.geometry import radius
+from comparisons.measures import Row, unit_of
+from comparisons.scales import norm
+from comparisons.verdict import Comparison
+from scene import Answer, Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Sheet:
+    """A table of texts: ``rows`` have as many cells as ``headers``; ``note`` says how to read it."""
+
+    title: str
+    headers: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    note: str = ""
+
+
+def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
+    """All tables of a comparison."""
+    rows = last_rows(compared)
+    found = [_values(compared, rows), _verdicts(compared, rows)]
+    found.append(_claims(compared))
+    found.append(_stresses(compared.scene, rows))
+    found.append(_steps(rows))
+    found.append(_certificates(compared))
+    return tuple(sheet for sheet in found if sheet.rows)
+
+
+def of_answer(scene: Scene, answer: Answer) -> tuple[Sheet, ...]:
+    """All tables of one solver's answer."""
+    return tuple(sheet for sheet in (_answered(scene, answer), _events(answer)) if sheet.rows)
+
+
+def last_rows(compared: Comparison) -> tuple[Row, ...]:
+    """The rows of the last station of the last stage."""
+    stage = compared.scene.stages[-1]
+    return tuple(
+        row for row in compared.rows if row.stage == stage.name and row.station == stage.stations[-1]
+    )
+
+
+def explanation(compared: Comparison) -> tuple[str, ...]:
+    """For each claim a sentence that says what our difference there is made of."""
+    sentences = []
+    for row in compared.rows:
+        claim = claim_of(compared.scene, row)
+        if claim is None or row.steps is None:
+            continue
+        sentences.append(
+            f"{row.probe.name} at {row.station:g}: our difference of {_of(row, row.difference)} is the finite "
+            f"elements' own step of theory, {_of(row, row.steps.stretch)} from bending to stretch and "
+            f"{_of(row, row.steps.shear)} from stretch to shear, and {_of(row, row.steps.own)} between the two "
+            f"methods within one theory, for which the two discretisations state "
+            f"{_of(row, row.bounds.same_theory if row.bounds else math.nan)}; the source's figure of "
+            f"{percent(claim.bound)} is not ours to approach."
+        )
+    return tuple(sentences)
+
+
+def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
+    runs = compared.runs
+    body = []
+    for row in rows:
+        size = max(norm(row.probe.quantity, row.cprbm), norm(row.probe.quantity, row.fea))
+        factor, unit = scaled_unit(row.unit, size)
+        body.append(
+            (
+                row.probe.name,
+                unit,
+                vector(row.cprbm, factor),
+                vector(row.fea, factor),
+                _of(row, row.difference),
+                *(
+                    (_of(row, row.bounds.cprbm), _of(row, row.bounds.fea), _of(row, row.bounds.theory))
+                    if row.bounds
+                    else ("–", "–", "–")
+                ),
+            )
+        )
+    where = f"{rows[0].stage} {rows[0].station:g}" if rows else "no station"
+    return Sheet(
+        f"{compared.scene.title or compared.scene.name}: {where}",
+        ("probe", "unit", "CPRBM", "FEA", "difference", "u CPRBM", "u FEA", "theory"),
+        tuple(body),
+        f"FEA: theory {runs.kinematics}. Fractions of the FEA's value, or of the probe's largest value where that "
+        "may vanish; uncertainties from two discretisations of each solver.",
+    )
+
+
+def _verdicts(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
+    words = dict(zip([id(row) for row in compared.rows], compared.verdict.words, strict=True)) if rows else {}
+    body = []
+    for row in rows:
+        word = words[id(row)]
+        body.append(
+            (
+                row.probe.name,
+                _of(row, row.difference),
+                _of(row, row.bounds.total) if row.bounds else "–",
+                _of(row, row.same_theory),
+                _of(row, row.bounds.same_theory) if row.bounds else "–",
+                _of(row, row.bounds.round_off) if row.bounds else "–",
+                "takes no part" if word is None else word.value,
+            )
+        )
+    return Sheet(
+        "What the verdict rests on",
+        ("probe", "difference", "may be", "within bending", "may be", "round-off", "says"),
+        tuple(body),
+        "Both differences must stay within what may be; within bending the FEA shares the CPRBM's theory.",
+    )
+
+
+def _claims(compared: Comparison) -> Sheet:
+    body = []
+    for row in compared.rows:
+        claim = claim_of(compared.scene, row)
+        if claim is None:
+            continue
+        met = claim_met(claim, row)
+        body.append(
+            (
+                claim.text or claim.probe,
+                percent(claim.bound),
+                _of(row, row.difference),
+                "–" if met is None else "met" if met else "not met",
+            )
+        )
+    return Sheet(
+        "Claims of the source",
+        ("claim", "theirs", "ours", ""),
+        tuple(body),
+        "They stand beside our figures and have no part in the verdict.",
+    )
+
+
+def _stresses(scene: Scene, rows: tuple[Row, ...]) -> Sheet:
+    body = []
+    for row in rows:
+        if row.probe.quantity != "bending_stress":
+            continue
+        factor, unit = scaled_unit(row.unit, norm("bending_stress", row.fea))
+        beam = scene.beams[row.probe.of]
+        body.append(
+            (
+                row.probe.name,
+                unit,
+                vector(row.cprbm, factor),
+                vector(row.fea, factor),
+                "–" if row.largest is None else _of(row, row.largest),
+                _of(row, row.difference),
+                percent(beam.thickness / (3.0 * radius(beam.curve))),
+            )
+        )
+    return Sheet(
+        "Bending stress along the beams",
+        ("probe", "unit", "CPRBM", "FEA", "of the largest", "anywhere", "t/(3R)"),
+        tuple(body),
+        "Anywhere: at least one thickness from held ends and contacts. Both solvers use the straight-beam formula; "
+        "in a beam of initial radius R the true stress at the inner edge is larger by about t/(3R).",
+    )
+
+
+def _steps(rows: tuple[Row, ...]) -> Sheet:
+    body = tuple(
+        (
+            row.probe.name,
+            _of(row, row.difference),
+            _of(row, row.steps.own),
+            _of(row, row.steps.stretch),
+            _of(row, row.steps.shear),
+        )
+        for row in rows
+        if row.steps is not None
+    )
+    return Sheet(
+        "What the difference is made of",
+        ("probe", "difference", "CPRBM to bending", "bending to stretch", "stretch to shear"),
+        body,
+        "Components along the difference; each line adds up.",
+    )
+
+
+def _certificates(compared: Comparison) -> Sheet:
+    names = ("cprbm", f"fea {compared.runs.kinematics}")
+    answers = (compared.runs.cprbm[0], compared.runs.reference)
+    found = [worst(tuple(station.certificate for station in answer.stations)) for answer in answers]
+    body = [
+        ("ending", *(answer.ending.name for answer in answers)),
+        ("stations", *(str(len(answer.stations)) for answer in answers)),
+    ]
+    keys = (
+        ("residual", "residual"),
+        ("residual_floor", "round-off floor of the residual"),
+        ("violation", "violation of joints"),
+        ("penetration", "penetration / thickness"),
+        ("complementarity", "gap × force"),
+        ("force_balance", "|ΣF|"),
+        ("moment_balance", "|ΣM|"),
+        ("smallest_curvature", "smallest curvature of the energy"),
+    )
+    body.extend(
+        (label, *("–" if cert is None else number(cert[key]) for cert in found)) for key, label in keys
+    )
+    body.append(("iterations", *("–" if cert is None else str(cert["iterations"]) for cert in found)))
+    body.append(("seconds", *(number(answer.seconds, 2) for answer in answers)))
+    return Sheet(
+        "Certificates",
+        ("worst of all stations", *names),
+        tuple(body),
+        "All but the last three relative to a scale of the problem; see the README.",
+    )
+
+
+def _answered(scene: Scene, answer: Answer) -> Sheet:
+    body = []
+    where = "no station reached"
+    if answer.stations:
+        station = answer.stations[-1]
+        stage = next(stage for stage in scene.stages if stage.name == station.stage)
+        where = f"{station.stage} {station.value:g}"
+        for probe in scene.probes:
+            found = station.values[probe.name]
+            factor, unit = scaled_unit(unit_of(scene, probe, stage), norm(probe.quantity, found))
+            body.append((probe.name, unit, vector(found, factor)))
+    return Sheet(
+        f"{scene.title or scene.name}: {where}",
+        ("probe", "unit", answer.solver),
+        tuple(body),
+        f"{answer.ending.name}: {answer.sentence or answer.ending.value}",
+    )
+
+
+def _events(answer: Answer) -> Sheet:
+    return Sheet(
+        "Events",
+        ("stage", "contact", "what", "at"),
+        tuple((e.stage, e.contact, e.kind, number(e.value, 6)) for e in answer.events),
+    )
+
+
+def _of(row: Row, value: float) -> str:
+    return percent(row.fraction(value))

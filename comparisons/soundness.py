@@ -1,0 +1,70 @@
+"""Whether an answer can be compared at all: what is incomplete about it, in sentences."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from comparisons.measures import station_of
+from scene import Answer, Probe, Scene, StationAnswer
+
+_COMPONENTS = {"displacement": 2, "reaction": 2}
+_MAY_BE_EMPTY = frozenset({"centre", "closing_load"})
+
+
+def complaints(scene: Scene, answer: Answer) -> tuple[str, ...]:
+    """Why an answer is no whole answer to a scene; empty if it is one.
+
+    An answer is whole if it says that it completed, has every station of every stage and none besides, every
+    certificate in it holds, and every number in it is finite and of the shape that its probe has.
+    """
+    found: list[str] = []
+    if not answer.completed:
+        found.append(f"it ended early: {answer.ending.value}")
+    asked = [(stage.name, value) for stage in scene.stages for value in stage.stations]
+    for stage, value in asked:
+        try:
+            station = station_of(answer, stage, value)
+        except KeyError:
+            found.append(f"it has no station {stage} {value:g}")
+            continue
+        found.extend(f"at {stage} {value:g} {what}" for what in _station_complaints(scene, station))
+    if len(answer.stations) > len(asked):
+        found.append(f"it has {len(answer.stations)} stations where {len(asked)} were asked")
+    return tuple(found)
+
+
+def _station_complaints(scene: Scene, station: StationAnswer) -> list[str]:
+    found = [f"its certificate does not hold: {failure}" for failure in station.certificate.failures]
+    numbers = (
+        station.certificate.residual,
+        station.certificate.residual_floor,
+        station.certificate.violation,
+        station.certificate.penetration,
+        station.certificate.force_balance,
+        station.certificate.moment_balance,
+    )
+    if not np.all(np.isfinite(numbers)):
+        found.append("its certificate holds a number that is not finite")
+    for beam in scene.beams:
+        shape = station.shapes.get(beam)
+        if shape is None or not all(np.all(np.isfinite(values)) for values in (shape.s, shape.x, shape.y)):
+            found.append(f"{beam} has no shape of finite numbers")
+    if not all(np.all(np.isfinite(places)) for places in station.touching.values()):
+        found.append("a place of contact is not finite")
+    for probe in scene.probes:
+        values = station.values.get(probe.name)
+        if values is None:
+            found.append(f"{probe.name} is missing")
+        elif values.shape not in _shapes(probe):
+            found.append(f"{probe.name} has the shape {values.shape}")
+        elif not np.all(np.isfinite(values)):
+            found.append(f"{probe.name} is not finite")
+    return found
+
+
+def _shapes(probe: Probe) -> tuple[tuple[int, ...], ...]:
+    if probe.quantity == "bending_stress":
+        return ((probe.points,),)
+    if probe.quantity in _MAY_BE_EMPTY:
+        return ((1,), (0,))
+    return ((_COMPONENTS.get(probe.quantity, 1),),)

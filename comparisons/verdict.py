@@ -1,0 +1,171 @@
+"""AGREE, DIFFER or UNDECIDED, and the row that decided.
+
+With the symbols of :mod:`comparisons.measures`, a row says
+
+* DIFFER if  |v_c − v_f| > u_c + u_f + |v_b − v_f| + r   or   |v_c − v_b| > u_c + u_b + r;
+* UNDECIDED if it does not differ, but one of the two sums is more than the scene's ``verdict_limit`` of the
+  probe's scale: such a sum would have excused a wrong answer too;
+* AGREE otherwise.
+
+The second condition makes the first one tight.  By the triangle inequality |v_c − v_f| ≤ |v_c − v_b| + |v_b − v_f|,
+so with the first alone a wrong CPRBM could hide in a large step between the theories; within one theory it has
+only the two discretisations to hide behind.
+
+A case differs if any row does, is undecided if a solver did not complete or any row is undecided, and agrees
+only if every row does.  A centre of contact or a closing load is absent while the contact is open; where one
+answer has it and another does not, the contact's force at that station (zero in one, not in the other) decides,
+and the row itself is undecided only if the scene does not ask for that force.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from comparisons.formats import percent
+from comparisons.measures import Bounds, Row, rows_of
+from comparisons.pairing import Runs
+from comparisons.soundness import complaints
+from scene import Scene
+
+
+class Word(Enum):
+    """What a verdict says."""
+
+    AGREE = "AGREE"
+    DIFFER = "DIFFER"
+    UNDECIDED = "UNDECIDED"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """The verdict on a case.
+
+    Attributes:
+        word: of the case.
+        sentence: which row decided, or why nothing could be decided.
+        words: one per row, in the order of the rows; None for a row that takes no part.
+        completed: whether every run gave a whole answer.
+    """
+
+    word: Word
+    sentence: str
+    words: tuple[Word | None, ...]
+    completed: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """A scene, all answers to it, the rows and the verdict."""
+
+    scene: Scene
+    runs: Runs
+    rows: tuple[Row, ...]
+    verdict: Verdict
+
+
+def compared(scene: Scene, runs: Runs) -> Comparison:
+    """Put the answers beside each other and judge them.
+
+    Rows stand only if every run gave a whole answer.
+    """
+    found = [
+        f"{name} gave no whole answer: {what[0]}" + (f" (and {len(what) - 1} more)" if len(what) > 1 else "")
+        for name, answer in runs.everything()
+        if (what := complaints(scene, answer))
+    ]
+    if found:
+        return Comparison(
+            scene, runs, (), Verdict(Word.UNDECIDED, "; ".join(found) + ".", (), completed=False)
+        )
+    rows = rows_of(scene, runs)
+    return Comparison(scene, runs, rows, judged(scene, rows))
+
+
+def judged(scene: Scene, rows: tuple[Row, ...]) -> Verdict:
+    """The verdict on the rows of whole answers."""
+    words = tuple(_word(scene, row) for row in rows)
+    judged_rows = [(row, word) for row, word in zip(rows, words, strict=True) if word is not None]
+    for word in (Word.DIFFER, Word.UNDECIDED):
+        worst = [row for row, said in judged_rows if said is word]
+        if worst:
+            row = max(worst, key=lambda row: _pressure(scene, row, word))
+            return Verdict(
+                word, _sentence(scene, row, word, len(worst), len(judged_rows)), words, completed=True
+            )
+    if not judged_rows:
+        return Verdict(Word.UNDECIDED, "There is no row that could be compared.", words, completed=True)
+    row = max((row for row, _ in judged_rows), key=lambda row: _pressure(scene, row, Word.DIFFER))
+    return Verdict(
+        Word.AGREE,
+        _sentence(scene, row, Word.AGREE, len(judged_rows), len(judged_rows)),
+        words,
+        completed=True,
+    )
+
+
+def _word(scene: Scene, row: Row) -> Word | None:
+    if row.bounds is None:
+        return None if _spoken_for(scene, row) else Word.UNDECIDED
+    within = row.difference <= row.bounds.total and row.same_theory <= row.bounds.same_theory
+    if not within:
+        return Word.DIFFER
+    tellable = max(row.bounds.total, row.bounds.same_theory) <= scene.verdict_limit * row.scale
+    return Word.AGREE if tellable else Word.UNDECIDED
+
+
+def _spoken_for(scene: Scene, row: Row) -> bool:
+    """Whether a row without a value has nothing to say, or leaves it to the contact's force."""
+    if row.probe.quantity not in ("centre", "closing_load"):
+        return False
+    if row.cprbm.size == 0 and row.fea.size == 0:
+        return True
+    return any(probe.of == row.probe.of and probe.quantity == "force" for probe in scene.probes)
+
+
+def _share(part: float, whole: float) -> float:
+    if whole > 0.0:
+        return part / whole
+    return 0.0 if part == 0.0 else float("inf")
+
+
+def _pressure(scene: Scene, row: Row, word: Word) -> float:
+    """How hard a row presses towards a word: a difference on its sum, or a sum on its limit."""
+    if row.bounds is None:
+        return float("inf")
+    if word is Word.UNDECIDED:
+        return _share(max(row.bounds.total, row.bounds.same_theory), scene.verdict_limit * row.scale)
+    return max(_share(row.difference, row.bounds.total), _share(row.same_theory, row.bounds.same_theory))
+
+
+def _sentence(scene: Scene, row: Row, word: Word, count: int, rows: int) -> str:
+    place = f"{row.probe.name} at {row.stage} {row.station:g}"
+    if row.bounds is None:
+        return f"{place} has no value in one of the runs, and no force of that contact is asked."
+    tight = _share(row.same_theory, row.bounds.same_theory) > _share(row.difference, row.bounds.total)
+    difference = row.same_theory if tight else row.difference
+    total = row.bounds.same_theory if tight else row.bounds.total
+    theory = " within one theory" if tight else ""
+    said = f"{_of_scale(difference, row)} of the scale{theory} against a stated {_of_scale(total, row)}"
+    match word:
+        case Word.DIFFER:
+            return f"{count} of {rows} rows differ, most of all {place}: {said} ({_sum(row.bounds, row, tight=tight)})."
+        case Word.UNDECIDED:
+            largest = max(row.bounds.total, row.bounds.same_theory)
+            return (
+                f"{count} of {rows} rows cannot be told, least of all {place}: the stated uncertainty is "
+                f"{_of_scale(largest, row)} of the scale, more than {percent(scene.verdict_limit)}."
+            )
+        case Word.AGREE:
+            return f"All {rows} rows agree; the closest call is {place}: {said}."
+
+
+def _sum(bounds: Bounds, row: Row, *, tight: bool) -> str:
+    parts = {"cprbm": bounds.cprbm, "fea": bounds.bending if tight else bounds.fea}
+    if not tight:
+        parts["theory"] = bounds.theory
+    return ", ".join(f"{name} {_of_scale(part, row)}" for name, part in parts.items())
+
+
+def _of_scale(value: float, row: Row) -> str:
+    return percent(_share(value, row.scale))
