@@ -66,7 +66,7 @@ def _packed_station(station: StationAnswer) -> Plain:
 
 
 def _unpacked_station(data: Plain) -> StationAnswer:
-    certificate = {
+    certificate: dict[str, Any] = {
         name: math.nan if value is None else tuple(value) if isinstance(value, list) else value
         for name, value in data["certificate"].items()
     }

@@ -78,7 +78,7 @@ def solver(answer: Answer) -> Plain:
 
 
 def worst(certificates: tuple[Certificate, ...]) -> Plain | None:
-    """Of every number of the certificates the one that is least reassuring; None if there is no certificate."""
+    """Of every number of the certificates the least reassuring one; None if there is no certificate."""
     if not certificates:
         return None
     largest = (

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import io
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _BLUE, _RED, _GREY = "#1f5fa8", "#c8321e", "#8a8a8a"
-_STYLE = {
+_STYLE: dict[Any, Any] = {  # the stubs name every key of every version
     "svg.hashsalt": "cprbm",
     "svg.fonttype": "path",
     "font.family": "DejaVu Sans",

@@ -60,7 +60,7 @@ def points(curve: Line | Arc, s: Array) -> Array:
 
 
 def nearest(shape: Shape, place: Array) -> float:
-    """Arc length, m, of the point on a deformed neutral line (taken as a polyline) that is nearest to ``place``."""
+    """Arc length, m, of the point of a deformed neutral line, taken as a polyline, nearest to ``place``."""
     start = np.stack([shape.x[:-1], shape.y[:-1]], axis=1)
     step = np.stack([np.diff(shape.x), np.diff(shape.y)], axis=1)
     square = np.maximum(np.sum(step**2, axis=1), np.finfo(float).tiny)

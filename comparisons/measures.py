@@ -15,8 +15,8 @@ r           round-off allowance
 ==========  ===========================================================================================
 
 The error of v is C/N^p and that of V a quarter of it (p = 2), so v − V is three quarters of v's error: hence
-the factor 4/3 (Richardson; Roache, *Verification and Validation in Computational Science*, whose safety factor
-for a known order is 1.25).  Where finite elements converge faster, p = 2 only makes u larger.
+the factor 4/3 (Richardson; Roache, *Verification and Validation in Computational Science*, whose safety
+factor for a known order is 1.25).  Where finite elements converge faster, p = 2 only makes u larger.
 
 The theory term is |v_b − v_f|, computed and never typed in.  The difference is the sum of three steps,
 
@@ -24,7 +24,8 @@ The theory term is |v_b − v_f|, computed and never typed in.  The difference i
 
 and the share of each in it is its component along d.
 
-Round-off: a certificate states the relative residual that is left and the floor below which none can be asked.
+Round-off: a certificate states the relative residual that is left and the floor below which none can be
+asked.
 Numbers that differ by no more than the larger of the two, times the scale of the probe's family, differ by
 nothing that the solvers have settled.
 """
@@ -34,6 +35,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -106,8 +108,8 @@ class Row:
     ``cprbm`` and ``fea`` are the values, (k,) in ``unit``.  ``bounds`` is absent where a value is (an open
     contact has no centre), and then nothing is measured.  ``scale`` is the probe's in this stage,
     ``denominator`` what the shown fractions are divided by.  For a stress, ``arc_length`` (k,) says where, m;
-    ``largest`` is the difference of the largest magnitudes, and the places next to the beam's held ends and to
-    the contacts take no part in ``difference``.
+    ``largest`` is the difference of the largest magnitudes, and the places next to the beam's held ends and
+    to the contacts take no part in ``difference``.
     """
 
     probe: Probe
@@ -225,7 +227,7 @@ def arc_lengths(scene: Scene, probe: Probe) -> Array:
 
 
 def _steps(quantity: Quantity, ladder: list[Array]) -> Steps | None:
-    """Each step of the ladder CPRBM → bending → stretch → shear, along the whole way; None if that is zero."""
+    """Each step from CPRBM to bending, stretch and shear, along the whole way; None if that is zero."""
     d = ladder[0] - ladder[-1]
     if not d.any():
         return None
@@ -237,6 +239,6 @@ def _steps(quantity: Quantity, ladder: list[Array]) -> Steps | None:
         along[worst] = np.sign(d[worst])
     else:
         along = d / np.linalg.norm(d)
-    steps = [float(np.dot(a - b, along)) for a, b in zip(ladder[:-1], ladder[1:], strict=True)]
+    steps = [float(np.dot(a - b, along)) for a, b in pairwise(ladder)]
     own, stretch, shear = steps + [0.0] * (3 - len(steps))
     return Steps(own, stretch, shear)

@@ -1,8 +1,8 @@
 """One scene to both solvers: the only module that knows them, and it imports each where it is used.
 
 What is run for a comparison: the CPRBM at N and 2N links; the finite elements at n and 2n in the theory that
-was chosen and in ``bending``, the CPRBM's own; and at n in the theory between the two, if there is one, so that
-the step from one theory to the next can be split.
+was chosen and in ``bending``, the CPRBM's own; and at n in the theory between the two, if there is one, so
+that the step from one theory to the next can be split.
 """
 
 from __future__ import annotations

@@ -94,7 +94,7 @@ def family_scale(
 
 
 def denominator(probe: Probe, reference: Array, scale: float) -> float:
-    """What a row's difference is divided by: the reference's norm, or the probe's scale where that may vanish."""
+    """What a row's difference is divided by: the reference's norm, or the scale where that may vanish."""
     own = norm(probe.quantity, reference)
     return own if probe.quantity in _OWN_NORM and own >= VANISHING * scale else scale
 

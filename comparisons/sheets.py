@@ -56,10 +56,10 @@ def explanation(compared: Comparison) -> tuple[str, ...]:
         if claim is None or row.steps is None:
             continue
         sentences.append(
-            f"{row.probe.name} at {row.station:g}: our difference of {_of(row, row.difference)} is the finite "
-            f"elements' own step of theory, {_of(row, row.steps.stretch)} from bending to stretch and "
-            f"{_of(row, row.steps.shear)} from stretch to shear, and {_of(row, row.steps.own)} between the two "
-            f"methods within one theory, for which the two discretisations state "
+            f"{row.probe.name} at {row.station:g}: our difference of {_of(row, row.difference)} is the "
+            f"finite elements' own step of theory, {_of(row, row.steps.stretch)} from bending to stretch and "
+            f"{_of(row, row.steps.shear)} from stretch to shear, and {_of(row, row.steps.own)} between the "
+            f"two methods within one theory, for which the two discretisations state "
             f"{_of(row, row.bounds.same_theory if row.bounds else math.nan)}; the source's figure of "
             f"{percent(claim.bound)} is not ours to approach."
         )
@@ -91,8 +91,8 @@ def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
         f"{compared.scene.title or compared.scene.name}: {where}",
         ("probe", "unit", "CPRBM", "FEA", "difference", "u CPRBM", "u FEA", "theory"),
         tuple(body),
-        f"FEA: theory {runs.kinematics}. Fractions of the FEA's value, or of the probe's largest value where that "
-        "may vanish; uncertainties from two discretisations of each solver.",
+        f"FEA: theory {runs.kinematics}. Fractions of the FEA's value, or of the probe's largest value where "
+        "that may vanish; uncertainties from two discretisations of each solver.",
     )
 
 
@@ -165,8 +165,8 @@ def _stresses(scene: Scene, rows: tuple[Row, ...]) -> Sheet:
         "Bending stress along the beams",
         ("probe", "unit", "CPRBM", "FEA", "of the largest", "anywhere", "t/(3R)"),
         tuple(body),
-        "Anywhere: at least one thickness from held ends and contacts. Both solvers use the straight-beam formula; "
-        "in a beam of initial radius R the true stress at the inner edge is larger by about t/(3R).",
+        "Anywhere: at least one thickness from held ends and contacts. Both solvers use the straight-beam "
+        "formula; in a beam of initial radius R the true stress at the inner edge is larger by about t/(3R).",
     )
 
 

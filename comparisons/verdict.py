@@ -7,14 +7,14 @@ With the symbols of :mod:`comparisons.measures`, a row says
   probe's scale: such a sum would have excused a wrong answer too;
 * AGREE otherwise.
 
-The second condition makes the first one tight.  By the triangle inequality |v_c − v_f| ≤ |v_c − v_b| + |v_b − v_f|,
-so with the first alone a wrong CPRBM could hide in a large step between the theories; within one theory it has
-only the two discretisations to hide behind.
+The second condition makes the first one tight.  By the triangle inequality
+|v_c − v_f| ≤ |v_c − v_b| + |v_b − v_f|, so with the first alone a wrong CPRBM could hide in a large step
+between the theories; within one theory it has only the two discretisations to hide behind.
 
 A case differs if any row does, is undecided if a solver did not complete or any row is undecided, and agrees
 only if every row does.  A centre of contact or a closing load is absent while the contact is open; where one
-answer has it and another does not, the contact's force at that station (zero in one, not in the other) decides,
-and the row itself is undecided only if the scene does not ask for that force.
+answer has it and another does not, the contact's force at that station (zero in one, not in the other)
+decides, and the row itself is undecided only if the scene does not ask for that force.
 """
 
 from __future__ import annotations
@@ -149,7 +149,8 @@ def _sentence(scene: Scene, row: Row, word: Word, count: int, rows: int) -> str:
     said = f"{_of_scale(difference, row)} of the scale{theory} against a stated {_of_scale(total, row)}"
     match word:
         case Word.DIFFER:
-            return f"{count} of {rows} rows differ, most of all {place}: {said} ({_sum(row.bounds, row, tight=tight)})."
+            made_of = _sum(row.bounds, row, tight=tight)
+            return f"{count} of {rows} rows differ, most of all {place}: {said} ({made_of})."
         case Word.UNDECIDED:
             largest = max(row.bounds.total, row.bounds.same_theory)
             return (

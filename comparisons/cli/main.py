@@ -1,0 +1,96 @@
+"""``cprbm``: the group of the sub-commands, and what becomes of every kind of trouble.
+
+Exit codes: 0 all agree, or all finished; 1 a verdict is DIFFER or a solve did not complete; 2 the question
+was wrong; 3 nothing worse than UNDECIDED; 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from concurrent.futures.process import BrokenProcessPool
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+import click
+
+from scene import SceneError
+
+if TYPE_CHECKING:
+    from comparisons.pairing import Solvers
+
+_COMMANDS = ("list", "solve", "compare", "regress")
+
+WRONG_QUESTION = 2
+INTERRUPTED = 130
+
+
+class _Commands(click.Group):
+    """Finds a sub-command in the module of its name, so that only the one that runs is imported."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names of all sub-commands."""
+        return list(_COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The sub-command of a name."""
+        if cmd_name not in _COMMANDS:
+            return None
+        command = import_module(f"comparisons.cli.{cmd_name}_").command
+        return command if isinstance(command, click.Command) else None
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(package_name="cprbm", prog_name="cprbm")
+def commands() -> None:
+    """Contact-aided compliant mechanisms: CPRBM beside finite elements, with a verdict."""
+
+
+def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
+    """Run a command line.
+
+    Args:
+        arguments: without the program's name.
+        solvers: who answers in place of the real solvers.
+
+    Returns:
+        The exit code; a sentence about any trouble is on standard error.
+    """
+    try:
+        code = commands.main(list(arguments), prog_name="cprbm", standalone_mode=False, obj=solvers)
+        sys.stdout.flush()
+    except SceneError as error:
+        return _said("The question is wrong. " + "; ".join(str(mistake) for mistake in error.mistakes))
+    except click.exceptions.NoArgsIsHelpError as error:
+        click.echo(error.format_message(), err=True)
+        return WRONG_QUESTION
+    except click.ClickException as error:
+        return _said(error.format_message())
+    except click.exceptions.Exit as stop:
+        return stop.exit_code
+    except (KeyboardInterrupt, click.Abort):
+        _said("Interrupted; what was finished before stands.")
+        return INTERRUPTED
+    except BrokenPipeError:
+        # What is still buffered must not be written again when the interpreter closes the stream.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        return _said("Standard output was closed before everything was written.")
+    except BrokenProcessPool:
+        _said(
+            "A process that was solving ended by force, perhaps for want of memory; what was finished stands."
+        )
+        return 1
+    except OSError as error:
+        return _said(f"Cannot write {error.filename or 'the output'}: {error.strerror or error}.")
+    return code if isinstance(code, int) else 0
+
+
+def main() -> None:
+    """The entry point of ``cprbm``."""
+    sys.exit(run(sys.argv[1:]))
+
+
+def _said(sentence: str) -> int:
+    click.echo(f"cprbm: {sentence}", err=True)
+    return WRONG_QUESTION

@@ -1,0 +1,82 @@
+"""Options that several sub-commands share, and the values they take."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import click
+
+from comparisons.choices import KINEMATICS, Choices
+
+Decorated = Callable[..., Any]
+
+
+def count(ctx: click.Context, param: click.Parameter, value: str) -> int | dict[str, int]:
+    """One number for all beams, or ``beam1=30,beam2=40`` as numbers by beam.
+
+    Raises:
+        click.BadParameter: the text is neither.
+    """
+    if "=" not in value:
+        return _whole(value)
+    counts: dict[str, int] = {}
+    for part in value.split(","):
+        beam, equals, text = (piece.strip() for piece in part.partition("="))
+        if not equals or not beam or beam in counts:
+            raise click.BadParameter(
+                f"found {value!r}; allowed: one number, or beam=number once for each beam"
+            )
+        counts[beam] = _whole(text)
+    return counts
+
+
+def _whole(text: str) -> int:
+    if not (text.isascii() and text.isdigit() and len(text) <= 6 and int(text) >= 1):
+        raise click.BadParameter(f"found {text!r}; allowed: a whole number from 1 to 999999")
+    return int(text)
+
+
+def fraction(ctx: click.Context, param: click.Parameter, value: str) -> float:
+    """A positive number that is at most 1.
+
+    Raises:
+        click.BadParameter: the text is none.
+    """
+    try:
+        number = float(value)
+    except ValueError:
+        number = math.nan
+    if not 0.0 < number <= 1.0:
+        raise click.BadParameter(f"found {value!r}; allowed: a number greater than 0 and at most 1")
+    return number
+
+
+def numerical(command: Decorated) -> Decorated:
+    """The options that make up :class:`comparisons.choices.Choices`."""
+    standard = Choices()
+    for option in (
+        click.option("--penetration", callback=fraction, default=str(standard.penetration), show_default=True,
+                     help="Overlap that the finite elements may leave, over the thickness."),
+        click.option("--kinematics", type=click.Choice(KINEMATICS), default=standard.kinematics,
+                     show_default=True, help="Beam theory of the finite elements."),
+        click.option("--formulation", type=click.Choice(["auto", "paper"]), default=standard.formulation,
+                     show_default=True, help="Contact formulation of the CPRBM."),
+        click.option("--elements", callback=count, metavar="COUNT", default=str(standard.elements), show_default=True,
+                     help="Finite elements per beam: one number or beam1=60,beam2=80."),
+        click.option("-n", "links", callback=count, metavar="COUNT", default=str(standard.links), show_default=True,
+                     help="CPRBM links per beam: one number or beam1=30,beam2=40."),
+    ):  # fmt: skip
+        command = option(command)
+    return command
+
+
+def output(command: Decorated) -> Decorated:
+    """``--json`` and ``--quiet``."""
+    command = click.option("--quiet", is_flag=True, help="No tables and no progress.")(command)
+    return click.option(
+        "--json", "json_file", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE",
+        help="Write the numbers as JSON; '-' is standard output, and then nothing else is printed there.",
+    )(command)  # fmt: skip

@@ -1,0 +1,53 @@
+"""What the sub-commands write: tables, JSON and a bar that shows how far they are."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+import click
+
+from comparisons.documents import Plain, text
+from comparisons.sheets import Sheet
+
+T = TypeVar("T")
+
+_PLAIN_WIDTH = 140
+"""Columns where there is no terminal to ask."""
+
+
+def tables(sheets: Iterable[Sheet]) -> None:
+    """Print tables; colours only reach a terminal."""
+    from comparisons.tables import drawn
+
+    width = shutil.get_terminal_size().columns if sys.stdout.isatty() else _PLAIN_WIDTH
+    for sheet in sheets:
+        click.echo(drawn(sheet, width=width))
+
+
+def json(file: Path, data: Plain) -> None:
+    """Write JSON to a file, or to standard output if the file is ``-``.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    if str(file) == "-":
+        click.echo(text(data), nl=False)
+        return
+    from comparisons.writing import write
+
+    write(file, text(data))
+
+
+def progress(items: Sequence[T], *, shown: bool) -> Iterator[T]:
+    """The items, with a bar on standard error if that is a terminal and the bar is wanted."""
+    if not shown or not sys.stderr.isatty():
+        yield from items
+        return
+    from rich.console import Console
+    from rich.progress import track
+
+    yield from track(items, "solving", console=Console(stderr=True), transient=True)
