@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -111,7 +112,7 @@ def values(probe: Probe, found: Array) -> Any:  # noqa: ANN401 - a number, a lis
 def plain(value: object) -> Any:  # noqa: ANN401 - whatever JSON holds
     """``value`` in JSON's own types; a number that is not finite becomes None."""
     match value:
-        case dict():
+        case Mapping():
             return {str(key): plain(item) for key, item in value.items()}
         case list() | tuple():
             return [plain(item) for item in value]

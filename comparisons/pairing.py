@@ -160,7 +160,7 @@ def _named(key: str) -> Iterator[None]:
         raise SceneError(
             [
                 Mistake(
-                    ".".join(str(part) for part in details["loc"]) or key,
+                    str(details["loc"][0]) if details["loc"] else key,
                     repr(details.get("input")),
                     details["msg"],
                 )

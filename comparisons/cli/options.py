@@ -64,10 +64,10 @@ def numerical(command: Decorated) -> Decorated:
                      show_default=True, help="Beam theory of the finite elements."),
         click.option("--formulation", type=click.Choice(["auto", "paper"]), default=standard.formulation,
                      show_default=True, help="Contact formulation of the CPRBM."),
-        click.option("--elements", callback=count, metavar="COUNT", default=str(standard.elements), show_default=True,
-                     help="Finite elements per beam: one number or beam1=60,beam2=80."),
-        click.option("-n", "links", callback=count, metavar="COUNT", default=str(standard.links), show_default=True,
-                     help="CPRBM links per beam: one number or beam1=30,beam2=40."),
+        click.option("--elements", callback=count, metavar="COUNT", default=str(standard.elements),
+                     show_default=True, help="Finite elements per beam: one number or beam1=60,beam2=80."),
+        click.option("-n", "links", callback=count, metavar="COUNT", default=str(standard.links),
+                     show_default=True, help="CPRBM links per beam: one number or beam1=30,beam2=40."),
     ):  # fmt: skip
         command = option(command)
     return command
