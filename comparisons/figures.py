@@ -13,7 +13,7 @@ import numpy as np
 
 from comparisons.formats import scaled_unit
 from comparisons.geometry import length, points
-from comparisons.measures import Row
+from comparisons.measures import Row, load_unit
 from comparisons.pairing import Runs
 from comparisons.scales import norm
 from comparisons.sheets import last_rows
@@ -174,7 +174,7 @@ def _against_load(scene: Scene, rows: list[Row], quantity: str, what: str) -> Pi
                 markersize=4,
                 label=f"{name}, CPRBM",
             )
-    axes.set_xlabel(f"{scene.stages[-1].steps}, SI")
+    axes.set_xlabel(f"{scene.stages[-1].steps}, {load_unit(scene, scene.stages[-1])}")
     axes.set_ylabel(f"{what.lower()}, {unit}")
     axes.legend(loc="best")
     return _picture(figure, quantity, f"{what} against the load.")

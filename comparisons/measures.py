@@ -216,9 +216,12 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float) -> 
 
 def unit_of(scene: Scene, probe: Probe, stage: Stage) -> str:
     """The SI unit of a probe's values in a stage."""
-    if probe.quantity == "closing_load":
-        return "N·m" if isinstance(scene.loads[stage.steps], Moment) else "N"
-    return UNITS[probe.quantity]
+    return load_unit(scene, stage) if probe.quantity == "closing_load" else UNITS[probe.quantity]
+
+
+def load_unit(scene: Scene, stage: Stage) -> str:
+    """The SI unit of the load that a stage steps."""
+    return "N·m" if isinstance(scene.loads[stage.steps], Moment) else "N"
 
 
 def arc_lengths(scene: Scene, probe: Probe) -> Array:

@@ -217,7 +217,7 @@ def _certificates(compared: Comparison) -> Sheet:
         "Certificates",
         ("worst of all stations", *names),
         tuple(body),
-        "All but the last three relative to a scale of the problem; see the README.",
+        "All numbers but iterations and seconds are relative to a scale of the problem; see the README.",
     )
 
 

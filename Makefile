@@ -1,0 +1,48 @@
+# What is needed: python3 (3.11 or later) with its venv module, and make.
+#
+#   make compare   set up where that is missing, run the comparison of all cases, write report/
+#   make test      set up where that is missing, run the whole test suite
+#   make check     the rules of style and the types
+#   make setup     only the set-up
+#   make lock      renew requirements.lock (needs uv)
+
+.POSIX:
+.PHONY: setup compare test check lock clean
+
+PYTHON = python3
+BIN = .venv/bin
+READY = .venv/ready
+ENVIRONMENT = MPLBACKEND=Agg PIP_DISABLE_PIP_VERSION_CHECK=1
+
+compare: $(READY)
+	$(ENVIRONMENT) $(BIN)/cprbm compare all
+
+test: $(READY)
+	$(ENVIRONMENT) $(BIN)/python -m pytest
+
+check: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+setup: $(READY)
+
+# The stamp is older than the lock or the project's description exactly if the environment may be stale.
+$(READY): requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+	  || { echo "Python 3.11 or later is needed: make PYTHON=/path/to/it"; exit 1; }
+	rm -rf .venv
+	$(PYTHON) -m venv .venv \
+	  || { echo "Python's venv module is needed; on Debian or Ubuntu: apt install python3-venv"; exit 1; }
+	$(ENVIRONMENT) $(BIN)/python -m pip install --quiet --require-hashes -r requirements.lock
+	$(ENVIRONMENT) $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
+	touch $(READY)
+
+lock:
+	{ sed '/^$$/q' requirements.lock; \
+	  uv pip compile --universal --generate-hashes --python-version 3.11 --all-extras --quiet \
+	    --no-header --no-emit-index-url pyproject.toml; } > requirements.new
+	mv requirements.new requirements.lock
+
+clean:
+	rm -rf .venv report build *.egg-info
