@@ -1,0 +1,47 @@
+"""Lengths and points of curves beside elementary geometry."""
+
+import math
+
+import numpy as np
+import pytest
+
+from comparisons.geometry import length, nearest, points, radius
+from scene import Arc, Line, Shape
+from scene.answer import frozen_array
+
+HALF = Arc(kind="arc", center=(0.0, 0.0), start=(-2.0, 0.0), end=(2.0, 0.0), direction="counterclockwise")
+QUARTER = Arc(kind="arc", center=(1.0, 0.0), start=(2.0, 0.0), end=(1.0, -1.0), direction="clockwise")
+
+
+def test_length_is_the_circles():
+    assert length(HALF) == pytest.approx(2.0 * math.pi, rel=1e-15)
+    assert length(QUARTER) == pytest.approx(0.5 * math.pi, rel=1e-15)
+    three_quarters = QUARTER.model_copy(update={"direction": "counterclockwise"})
+    assert length(three_quarters) == pytest.approx(1.5 * math.pi, rel=1e-15)
+
+
+def test_a_line_has_pythagoras_length_and_no_curvature():
+    line = Line(kind="line", start=(1.0, 1.0), end=(4.0, 5.0))
+    assert length(line) == 5.0
+    assert radius(line) == math.inf
+    np.testing.assert_allclose(points(line, np.array([0.0, 2.5, 5.0])), [[1, 1], [2.5, 3], [4, 5]])
+
+
+def test_points_pass_the_lowest_place_of_a_lower_half_circle():
+    found = points(HALF, np.array([0.0, math.pi, 2.0 * math.pi]))
+    np.testing.assert_allclose(found, [[-2, 0], [0, -2], [2, 0]], atol=1e-15)
+
+
+def test_points_go_clockwise():
+    np.testing.assert_allclose(
+        points(QUARTER, np.array([0.25 * math.pi])), [[1 + math.sqrt(0.5), -math.sqrt(0.5)]], atol=1e-15
+    )
+
+
+def test_nearest_measures_along_the_line_and_not_along_its_chord():
+    shape = Shape(
+        s=frozen_array([0.0, 1.0, 2.0]), x=frozen_array([0.0, 1.0, 1.0]), y=frozen_array([0.0, 0.0, 1.0])
+    )
+    assert nearest(shape, np.array([0.3, -0.2])) == pytest.approx(0.3)
+    assert nearest(shape, np.array([1.4, 0.6])) == pytest.approx(1.6)
+    assert nearest(shape, np.array([1.0, 5.0])) == pytest.approx(2.0)

@@ -1,0 +1,197 @@
+"""Differences and uncertainties beside numbers worked out by hand."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from frozendict import frozendict
+
+from comparisons.choices import Choices
+from comparisons.measures import rows_of, station_of
+from comparisons.pairing import Runs, Solvers, paired
+from comparisons.scales import SMALLEST_SHARE, probe_scale
+from comparisons.spots import clear_of_spots
+from scene import Probe
+from scene.answer import frozen_array
+from tests.comparisons.made_up import CLOSES, MadeUp, with_value
+
+
+def rows_by_name(scene, runs, station=0.67):
+    return {row.probe.name: row for row in rows_of(scene, runs) if row.station == station}
+
+
+def test_there_is_one_row_per_probe_and_station(hinge, right):
+    rows = rows_of(hinge, paired(hinge, Choices(), right))
+    assert len(rows) == len(hinge.probes) * len(hinge.stages[0].stations)
+    assert [row.station for row in rows] == sorted(row.station for row in rows)
+
+
+def test_rotation_row_is_what_the_planted_errors_make_it(hinge):
+    """Rotation 0.9·m·f before contact, f = 1 + e (40/n)² + theory: all terms follow in closed form."""
+    solvers = Solvers(cprbm=MadeUp("cprbm", 4e-3), fea=MadeUp("fea", -8e-3))
+    row = rows_by_name(hinge, paired(hinge, Choices(), solvers), station=0.067)["BD.rotation"]
+    rotation = 0.9 * 0.067
+    fea_error = -8e-3 / 4  # 80 elements where the law's error is stated at 40
+    assert row.bounds is not None
+    assert row.difference == pytest.approx(rotation * abs(4e-3 - 0.005 - fea_error), rel=1e-9)
+    assert row.bounds.theory == pytest.approx(rotation * 0.005, rel=1e-9)
+    assert row.bounds.cprbm == pytest.approx(1.25 * rotation * 4e-3, rel=1e-9)
+    assert row.bounds.fea == pytest.approx(1.25 * rotation * abs(fea_error), rel=1e-9)
+    assert row.same_theory == pytest.approx(rotation * (4e-3 - fea_error), rel=1e-9)
+    assert row.fraction(row.bounds.theory) == pytest.approx(0.005 / (1.005 + fea_error), rel=1e-9)
+
+
+def test_the_uncertainty_of_a_second_order_error_is_a_quarter_above_it(hinge, right):
+    row = rows_by_name(hinge, paired(hinge, Choices(), right), station=0.067)["BD.rotation"]
+    assert row.bounds is not None
+    assert row.bounds.cprbm / (0.9 * 0.067 * 2e-3) == pytest.approx(1.25, rel=1e-9)
+
+
+def test_the_steps_add_up_to_the_difference(hinge, right):
+    for row in rows_of(hinge, paired(hinge, Choices(), right)):
+        if row.steps is not None:
+            total = row.steps.own + row.steps.stretch + row.steps.shear
+            assert total == pytest.approx(row.difference, rel=1e-9)
+
+
+@pytest.mark.parametrize(("kinematics", "theories"), [("bending", 1), ("stretch", 2), ("shear", 3)])
+def test_only_the_theories_up_to_the_chosen_one_are_run(hinge, right, kinematics, theories):
+    runs = paired(hinge, Choices(kinematics=kinematics), right)
+    assert len(runs.fea) == theories
+    assert len(runs.fea[kinematics]) == len(runs.fea["bending"]) == 2
+
+
+def test_within_bending_there_is_no_theory_term(hinge, right):
+    for row in rows_of(hinge, paired(hinge, Choices(kinematics="bending"), right)):
+        if row.bounds is not None:
+            assert row.bounds.theory == 0.0
+            assert row.difference == row.same_theory
+
+
+def test_an_open_contact_has_a_force_of_zero_and_no_centre(hinge, right):
+    rows = rows_by_name(hinge, paired(hinge, Choices(), right), station=0.067)
+    assert rows["contact.force"].difference == 0.0
+    assert rows["contact.centre"].bounds is None
+    assert math.isnan(rows["contact.centre"].difference)
+    assert rows["contact.centre"].fraction(rows["contact.centre"].difference) is None
+
+
+def test_a_contact_that_one_solver_misses_is_a_difference_of_the_whole_force(hinge):
+    solvers = Solvers(cprbm=MadeUp("cprbm", 0.0, contact=False), fea=MadeUp("fea", 0.0))
+    rows = rows_by_name(hinge, paired(hinge, Choices(), solvers))
+    assert rows["contact.force"].fraction(rows["contact.force"].difference) == pytest.approx(1.0)
+    assert rows["contact.centre"].bounds is None
+
+
+def test_a_centre_is_measured_by_the_beams_length(hinge, right):
+    rows = rows_by_name(hinge, paired(hinge, Choices(), right))
+    assert rows["contact.centre"].scale == pytest.approx(math.pi * 0.025)
+
+
+def test_a_force_is_measured_by_its_largest_value_in_the_stage(hinge, right):
+    runs = paired(hinge, Choices(), right)
+    first = rows_by_name(hinge, runs, station=0.268)["contact.force"]
+    last = rows_by_name(hinge, runs)["contact.force"]
+    assert first.scale == last.scale == first.denominator
+    assert last.scale == pytest.approx(float(last.fea[0]))
+
+
+def test_a_displacement_is_measured_by_itself(hinge, right):
+    row = rows_by_name(hinge, paired(hinge, Choices(), right), station=0.067)["B.displacement"]
+    assert row.denominator == pytest.approx(float(np.linalg.norm(row.fea)))
+    assert row.denominator < row.scale
+
+
+def test_a_displacement_that_nearly_vanishes_is_measured_by_its_scale(hinge, right):
+    runs = paired(hinge, Choices(), right)
+    small = with_value("B.displacement", [1e-7, 0.0])
+    answers = {
+        theory: tuple(replace(one, stations=(*one.stations[:-1], small(one.stations[-1]))) for one in fea)
+        for theory, fea in runs.fea.items()
+    }
+    row = rows_by_name(hinge, Runs(runs.kinematics, runs.cprbm, frozendict(answers)))["B.displacement"]
+    assert row.denominator == row.scale
+
+
+def test_a_probe_that_vanishes_by_symmetry_is_measured_by_its_family(hinge, right):
+    """Reactions of 1e-17 N are no scale: a moment of 0.67 N·m on beams π·25 mm long makes forces of 8.5 N."""
+    runs = paired(hinge, Choices(), right)
+    answers = tuple(
+        replace(
+            answer,
+            stations=tuple(
+                replace(
+                    station,
+                    values=frozendict(
+                        {
+                            name: frozen_array(1e-17 * found)
+                            if ".reaction" in name or "force" in name
+                            else found
+                            for name, found in station.values.items()
+                        }
+                    ),
+                )
+                for station in answer.stations
+            ),
+        )
+        for answer in (runs.cprbm[0], runs.reference)
+    )
+    probe = Probe(of="A", quantity="reaction")
+    scale = probe_scale(hinge, probe, hinge.stages[0], answers)
+    assert scale == pytest.approx(SMALLEST_SHARE * 0.67 / (math.pi * 0.025))
+
+
+def test_stress_next_to_clamps_and_contact_takes_no_part(hinge, right):
+    runs = paired(hinge, Choices(), right)
+    station = station_of(runs.reference, "load", 0.67)
+    s = np.linspace(0.0, math.pi * 0.025, 81)
+    clear = clear_of_spots(hinge, "beam1", s, (station,))
+    middle = 0.5 * math.pi * 0.025
+    np.testing.assert_array_equal(clear[s < 0.0019], False)
+    np.testing.assert_array_equal(clear[s > math.pi * 0.025 - 0.0019], False)
+    assert not clear[np.argmin(np.abs(s - middle))]
+    assert clear.sum() >= 81 - 3 * 5
+
+
+def test_before_contact_only_the_clamps_are_left_out(hinge, right):
+    runs = paired(hinge, Choices(), right)
+    station = station_of(runs.reference, "load", 0.067)
+    s = np.linspace(0.0, math.pi * 0.025, 81)
+    # 0.98 mm from place to place, 2 mm of thickness: places 0, 1, 2 and their mirror images
+    np.testing.assert_array_equal(
+        np.flatnonzero(~clear_of_spots(hinge, "beam1", s, (station,))), [0, 1, 2, 78, 79, 80]
+    )
+
+
+def test_a_stress_differs_by_its_worst_place(hinge, right):
+    runs = paired(hinge, Choices(), right)
+    stress = np.array(runs.cprbm[0].stations[-1].values["beam1.bending_stress"])
+    stress[20] -= 5e6  # far from clamps and contact, and less than the largest
+    spoilt = with_value("beam1.bending_stress", stress)
+    wrong = replace(
+        runs.cprbm[0], stations=(*runs.cprbm[0].stations[:-1], spoilt(runs.cprbm[0].stations[-1]))
+    )
+    row = rows_by_name(hinge, Runs(runs.kinematics, (wrong, runs.cprbm[1]), runs.fea))["beam1.bending_stress"]
+    assert row.difference == pytest.approx(5e6, rel=0.02)
+    assert row.largest is not None
+    assert row.largest < 1e5
+
+
+def test_round_off_is_read_off_the_certificates(hinge, right):
+    runs = paired(hinge, Choices(), right)
+    row = rows_by_name(hinge, runs)["contact.force"]
+    assert row.bounds is not None
+    assert row.bounds.round_off == pytest.approx(1e-13 * row.scale, rel=1e-6)
+
+
+def test_the_closing_load_is_the_planted_one(hinge, right):
+    row = rows_by_name(hinge, paired(hinge, Choices(), right))["contact.closing_load"]
+    assert row.cprbm[0] == pytest.approx(CLOSES / 1.002)
+    assert row.unit == "N·m"
+
+
+def test_a_station_that_is_missing_is_an_error_here(hinge, right):
+    runs = paired(hinge, Choices(), right)
+    with pytest.raises(KeyError, match="no station"):
+        station_of(runs.reference, "load", 0.7)
