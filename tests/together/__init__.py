@@ -1,0 +1,1 @@
+"""Both solvers on one scene."""

@@ -1,0 +1,108 @@
+"""The rotational hinge: what the two solvers must show of each other.
+
+The bounds are those that the project set itself before there was a second solver, and the paper's claims.
+"""
+
+import numpy as np
+import pytest
+
+from comparisons.measures import rows_of, station_of
+from comparisons.verdict import Word, compared
+
+
+@pytest.fixture(scope="module")
+def comparison(hinge, hinge_runs):
+    return compared(hinge, hinge_runs)
+
+
+def row(comparison, probe, station=0.67):
+    return next(row for row in comparison.rows if row.probe.name == probe and row.station == station)
+
+
+def fraction_within_bending(comparison, probe):
+    found = row(comparison, probe)
+    return found.fraction(found.same_theory)
+
+
+def test_the_verdict_is_agree(comparison):
+    assert comparison.verdict.word is Word.AGREE, comparison.verdict.sentence
+
+
+@pytest.mark.parametrize(
+    ("probe", "bound"),
+    [
+        ("B.displacement", 3e-3),
+        ("D.displacement", 3e-3),
+        ("contact.force", 1e-2),
+        ("beam1.bending_stress", 1e-2),
+        ("beam2.bending_stress", 1e-2),
+    ],
+)
+def test_within_one_theory_the_methods_are_close(comparison, probe, bound):
+    assert fraction_within_bending(comparison, probe) < bound
+
+
+@pytest.mark.parametrize("probe", ["B.displacement", "D.displacement"])
+def test_the_difference_from_the_default_elements_is_their_theory_and_the_cprbms_own_error(comparison, probe):
+    found = row(comparison, probe)
+    assert found.steps is not None
+    assert found.bounds is not None
+    rest = found.difference - found.steps.stretch - found.steps.shear
+    assert rest == pytest.approx(found.steps.own, abs=1e-12)
+    assert abs(rest) <= found.bounds.same_theory
+
+
+def test_the_paper_stays_beside_and_not_inside(comparison):
+    """Claims change nothing: without them the verdict is the same."""
+    unclaimed = comparison.scene.model_copy(update={"claims": ()})
+    assert compared(unclaimed, comparison.runs).verdict == comparison.verdict
+
+
+def test_both_agree_where_the_beams_first_touch(comparison):
+    found = row(comparison, "contact.closing_load")
+    assert found.fraction(found.difference) < 5e-3
+    assert found.fraction(found.same_theory) < 5e-3
+
+
+def test_below_that_load_there_is_no_force_and_above_it_contact_at_one_place(comparison):
+    closing = row(comparison, "contact.closing_load").fea[0]
+    stations = comparison.scene.stages[0].stations
+    assert min(stations) < closing < max(stations)
+    for answer in (comparison.runs.cprbm[0], comparison.runs.reference):
+        for value in stations:
+            station = station_of(answer, "load", value)
+            if value < closing:
+                assert station.values["contact.force"] == 0.0
+                assert station.values["contact.centre"].size == 0
+                assert "contact" not in station.touching
+            else:
+                assert station.values["contact.force"] > 0.0
+                places = station.touching["contact"]
+                # One place: what touches is no longer than a thickness.
+                assert np.max(np.linalg.norm(places - places[0], axis=1)) < 0.002
+
+
+def test_what_supports_and_contacts_carry_balances_the_load(comparison):
+    for _, answer in comparison.runs.everything():
+        for station in answer.stations:
+            assert station.certificate.force_balance < 1e-8
+            assert station.certificate.moment_balance < 1e-8
+
+
+def test_the_reactions_balance_by_the_answers_own_numbers(comparison):
+    """ΣF = 0 and ΣM about the origin = 0 on the whole mechanism; the links AC and BD are all that is held or loaded."""
+    points = {name: np.array(place) for name, place in comparison.scene.bodies["AC"].points.items()}
+    for answer in (comparison.runs.cprbm[0], comparison.runs.reference):
+        for station in answer.stations:
+            forces = {name: station.values[f"{name}.reaction"] for name in points}
+            largest = max(np.linalg.norm(force) for force in forces.values())
+            assert np.linalg.norm(sum(forces.values())) <= 1e-8 * max(largest, station.value / 0.05)
+            moment = station.value + sum(
+                points[name][0] * force[1] - points[name][1] * force[0] for name, force in forces.items()
+            )
+            moment += sum(station.values[f"{name}.reaction_moment"][0] for name in points)
+            assert abs(moment) <= 1e-8 * station.value
+
+
+def test_every_row_of_the_case_is_there(hinge, hinge_runs):
+    assert len(rows_of(hinge, hinge_runs)) == 13 * 10

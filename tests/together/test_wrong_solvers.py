@@ -1,0 +1,171 @@
+"""Deliberately wrong solvers, made of the real ones: the verdict must say so, or at least not AGREE.
+
+How each is planted:
+
+* *too stiff*: the scene's Young's modulus is 2 % larger before one solver sees it;
+* *contact ignored*: the scene has no contacts when one solver sees it, and the contact's probes are then
+  answered as a solver would that found it open;
+* *thickness forgotten*: the beams touch as lines for one solver;
+* *contact sign*: inside a solver the side of a beam on which the other lies is turned round, so that what holds
+  beams apart holds them together;
+* *stops early*: stations are left out, with and without saying so;
+* *NaN*: one number of an otherwise right answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import cprbm.nearest
+import fea_reference.contact
+import numpy as np
+import pytest
+from frozendict import frozendict
+
+from comparisons.choices import Choices
+from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer, paired
+from comparisons.verdict import Verdict, Word, compared
+from scene import Answer, Ending, Scene
+from scene.answer import frozen_array
+
+COARSE = Choices(elements=20, kinematics="bending")
+
+
+def remembered(runs: Runs) -> Solvers:
+    """Solvers that hand out answers which are there already."""
+    finer = runs.cprbm[1].settings["links"]
+
+    def by_cprbm(scene: Scene, choices: Choices) -> Answer:
+        return runs.cprbm[int(choices.links == finer)]
+
+    def by_fea(scene: Scene, choices: Choices) -> Answer:
+        answers = runs.fea[choices.kinematics]
+        return next(answer for answer in answers if answer.settings["elements"] == choices.elements)
+
+    return Solvers(by_cprbm, by_fea)
+
+
+def with_cprbm(scene: Scene, runs: Runs, wrong: Solver) -> Verdict:
+    """The verdict on a wrong CPRBM beside the right finite elements, at the standard settings."""
+    return compared(scene, paired(scene, Choices(), replace(remembered(runs), cprbm=wrong))).verdict
+
+
+def with_fea(scene: Scene, runs: Runs, wrong: Solver) -> Verdict:
+    """The verdict on wrong finite elements beside the right CPRBM, in one theory and coarse."""
+    return compared(scene, paired(scene, COARSE, replace(remembered(runs), fea=wrong))).verdict
+
+
+def stiffer(scene: Scene) -> Scene:
+    materials = {
+        name: material.model_copy(update={"youngs_modulus": 1.02 * material.youngs_modulus})
+        for name, material in scene.materials.items()
+    }
+    return scene.model_copy(update={"materials": frozendict(materials)})
+
+
+def thin(scene: Scene) -> Scene:
+    contacts = {name: contact.model_copy(update={"thick": False}) for name, contact in scene.contacts.items()}
+    return scene.model_copy(update={"contacts": frozendict(contacts)})
+
+
+def asked_of(solver: Solver, altered: Callable[[Scene], Scene]) -> Solver:
+    return lambda scene, choices: solver(altered(scene), choices)
+
+
+def without_contact(solver: Solver) -> Solver:
+    def answer(scene: Scene, choices: Choices) -> Answer:
+        others = tuple(probe for probe in scene.probes if probe.of not in scene.contacts)
+        bare = scene.model_copy(update={"contacts": frozendict(), "probes": others})
+        found = solver(bare, choices)
+        open_contact = {
+            probe.name: frozen_array([0.0] if probe.quantity == "force" else [])
+            for probe in scene.probes
+            if probe.of in scene.contacts
+        }
+        stations = tuple(
+            replace(station, values=frozendict({**station.values, **open_contact}))
+            for station in found.stations
+        )
+        return replace(found, stations=stations)
+
+    return answer
+
+
+def stopping(solver: Solver, ending: Ending) -> Solver:
+    def answer(scene: Scene, choices: Choices) -> Answer:
+        found = solver(scene, choices)
+        return replace(found, stations=found.stations[:-3], ending=ending)
+
+    return answer
+
+
+def spoilt(solver: Solver, probe: str) -> Solver:
+    def answer(scene: Scene, choices: Choices) -> Answer:
+        found = solver(scene, choices)
+        last = found.stations[-1]
+        values = np.array(last.values[probe])
+        values[0] = np.nan
+        bad = replace(last, values=frozendict({**last.values, probe: frozen_array(values)}))
+        return replace(found, stations=(*found.stations[:-1], bad))
+
+    return answer
+
+
+def test_the_right_ones_agree(hinge, hinge_runs, coarse_runs):
+    right = paired(hinge, Choices(), remembered(hinge_runs))
+    assert compared(hinge, right).verdict.word is Word.AGREE
+    coarse = paired(hinge, COARSE, remembered(coarse_runs))
+    assert compared(hinge, coarse).verdict.word is Word.AGREE
+
+
+@pytest.mark.parametrize("altered", [stiffer, thin], ids=["too stiff", "thickness forgotten"])
+def test_another_question_is_caught_in_the_cprbm(hinge, hinge_runs, altered):
+    assert with_cprbm(hinge, hinge_runs, asked_of(cprbm_answer, altered)).word is Word.DIFFER
+
+
+@pytest.mark.parametrize("altered", [stiffer, thin], ids=["too stiff", "thickness forgotten"])
+def test_another_question_is_caught_in_the_finite_elements(hinge, coarse_runs, altered):
+    assert with_fea(hinge, coarse_runs, asked_of(fea_answer, altered)).word is Word.DIFFER
+
+
+def test_an_ignored_contact_is_caught_in_the_cprbm(hinge, hinge_runs):
+    assert with_cprbm(hinge, hinge_runs, without_contact(cprbm_answer)).word is Word.DIFFER
+
+
+def test_an_ignored_contact_is_caught_in_the_finite_elements(hinge, coarse_runs):
+    assert with_fea(hinge, coarse_runs, without_contact(fea_answer)).word is Word.DIFFER
+
+
+def test_a_wrong_sign_of_contact_is_caught_in_the_cprbm(hinge, hinge_runs, monkeypatch):
+    right = cprbm.nearest._side
+    monkeypatch.setattr(cprbm.nearest, "_side", lambda pair, state, at: -right(pair, state, at))
+    assert with_cprbm(hinge, hinge_runs, cprbm_answer).word is not Word.AGREE
+
+
+def test_a_wrong_sign_of_contact_is_caught_in_the_finite_elements(hinge, coarse_runs, monkeypatch):
+    right = fea_reference.contact.side_of
+    monkeypatch.setattr(fea_reference.contact, "side_of", lambda first, second: -right(first, second))
+    assert with_fea(hinge, coarse_runs, fea_answer).word is not Word.AGREE
+
+
+@pytest.mark.parametrize("ending", [Ending.COMPLETED, Ending.STEP_TOO_SMALL])
+def test_an_early_stop_is_caught(hinge, hinge_runs, coarse_runs, ending):
+    right = remembered(hinge_runs)
+    said = with_cprbm(hinge, hinge_runs, stopping(right.cprbm, ending))
+    assert said.word is Word.UNDECIDED
+    assert not said.completed
+    said = with_fea(hinge, coarse_runs, stopping(remembered(coarse_runs).fea, ending))
+    assert said.word is Word.UNDECIDED
+    assert not said.completed
+
+
+@pytest.mark.parametrize(
+    "probe",
+    ["B.displacement", "contact.force", "contact.centre", "beam1.bending_stress", "scene.potential_energy"],
+)
+def test_nan_is_caught(hinge, hinge_runs, coarse_runs, probe):
+    said = with_cprbm(hinge, hinge_runs, spoilt(remembered(hinge_runs).cprbm, probe))
+    assert said.word is Word.UNDECIDED
+    said = with_fea(hinge, coarse_runs, spoilt(remembered(coarse_runs).fea, probe))
+    assert said.word is Word.UNDECIDED
