@@ -19,6 +19,7 @@ import numpy as np
 from scene.answer import Array, Flags
 
 PATIENCE = 4
+RIGID = 1e-13  # of the largest compliance
 
 
 def pressing(G: Array, b: Array, first: Flags) -> tuple[Array, Flags]:
@@ -27,10 +28,18 @@ def pressing(G: Array, b: Array, first: Flags) -> tuple[Array, Flags]:
     Raises:
         np.linalg.LinAlgError: no solution was found; G is not positive semidefinite or too degenerate.
     """
+    compliance = np.diag(G)
+    # a gap between places that cannot move is no unknown: it is open or the question has no answer
+    yields = compliance > RIGID * np.max(compliance, initial=0.0)
+    if np.any(b[~yields] > 0.0):
+        raise np.linalg.LinAlgError("a closed contact that nothing yields to")
+    if not np.all(yields):
+        lam, active = np.zeros(len(b)), np.zeros(len(b), dtype=bool)
+        if np.any(yields):
+            lam[yields], active[yields] = pressing(G[np.ix_(yields, yields)], b[yields], first[yields])
+        return lam, active
     m = len(b)
-    scale = np.sqrt(np.maximum(np.diag(G), 0.0))
-    if np.any(scale == 0.0):
-        raise np.linalg.LinAlgError("a contact that nothing yields to")
+    scale = np.sqrt(compliance)
     # rows in units of their own compliance; a trace of the identity parts rows that are the same twice
     H = G / np.outer(scale, scale) + 1e-13 * np.eye(m)
     c = b / scale

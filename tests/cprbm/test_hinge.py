@@ -208,3 +208,38 @@ def test_links_that_do_not_fit_are_refused(links, key):
 def test_beams_may_have_links_of_their_own(truth):
     values = solved({"beam1": 46, "beam2": 31}).stations[-1].values
     assert values["BD.rotation"][0] == pytest.approx(truth.rotation, rel=2e-3)
+
+
+def test_action_is_reaction_where_the_gap_is_a_distance_and_nearly_so_at_a_fitted_boundary():
+    from cprbm.contact import no_rows
+    from cprbm.equilibrium import equilibrium, point_at
+    from cprbm.forces import contact_imbalance
+    from cprbm.kinematics import rest_state
+    from cprbm.mechanism import mechanism_of
+
+    left = {}
+    for formulation in ("auto", "paper"):
+        problem = mechanism_of(hinge(), cprbm.Settings(formulation=formulation)).problem
+        rest = point_at(problem, {}, rest_state(problem.model), np.zeros(problem.closure.rows), np.zeros(0), no_rows())
+        found = equilibrium(problem, {"M": 0.67}, rest, 1e-11, 30)
+        left[formulation] = contact_imbalance(problem, found.point)
+    assert left["auto"] < 1e-12
+    assert 1e-12 < left["paper"] < 1e-2
+    (note,) = cprbm.answer(hinge(), cprbm.Settings(formulation="paper")).notes
+    assert "leave a moment" in note
+
+
+def test_a_contact_that_never_closes_is_named():
+    answer = cprbm.answer(hinge(stages=[{"name": "load", "steps": "M", "stations": [0.1]}]))
+    assert answer.notes == ("contact 'contact' never closed at a station",)
+
+
+def test_a_gap_between_places_that_cannot_move_is_no_unknown():
+    from cprbm.complementarity import pressing
+
+    G = np.array([[2.0, 0.0], [0.0, 0.0]])
+    lam, active = pressing(G, np.array([1.0, -0.3]), np.zeros(2, dtype=bool))
+    assert lam == pytest.approx([0.5, 0.0])
+    assert active.tolist() == [True, False]
+    with pytest.raises(np.linalg.LinAlgError, match="nothing yields"):
+        pressing(G, np.array([1.0, 0.3]), np.zeros(2, dtype=bool))
