@@ -78,6 +78,14 @@ def supports(problem: Problem, point: Point) -> tuple[Support, ...]:
     return tuple(found)
 
 
+def contact_imbalance(problem: Problem, point: Point) -> float:
+    """Moment of all contact forces together over the supports' largest: zero where action is reaction."""
+    contact = contact_forces(problem, point)
+    own = point.at.x @ contact.fy - point.at.y @ contact.fx + np.sum(contact.moments)
+    largest = max((abs(support.moment) for support in supports(problem, point)), default=0.0)
+    return abs(float(own)) / largest if largest > 0.0 else 0.0
+
+
 def balances(problem: Problem, point: Point) -> tuple[float, float]:
     """ΣF and ΣM of supports, loads and contacts, each over the largest part in it."""
     model = problem.model

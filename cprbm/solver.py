@@ -11,6 +11,7 @@ from scipy.optimize import brentq
 from cprbm.certifying import certify
 from cprbm.contact import no_rows
 from cprbm.equilibrium import Equilibrium, Point, equilibrium, point_at
+from cprbm.forces import contact_imbalance
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.probing import probed, shapes, touching
@@ -49,6 +50,7 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
         stations=tuple(march.reached),
         events=tuple(march.events),
         seconds=time.perf_counter() - began,
+        notes=tuple(march.notes()),
     )
 
 
@@ -87,6 +89,21 @@ class _March:
                     )
                 )
         return Ending.COMPLETED, Ending.COMPLETED.value
+
+    def notes(self) -> list[str]:
+        """What a reader should know besides the numbers."""
+        said = [
+            f"contact '{name}' never closed at a station"
+            for name in self.scene.contacts
+            if not any(name in station.touching for station in self.reached)
+        ]
+        if self.mechanism.boundaries:
+            own = contact_imbalance(self.mechanism.problem, self.point)
+            said.append(
+                f"forces on a fitted boundary's points and on the joints that press it leave a moment of {own:.1e} "
+                "of the largest; the formulation has no rotational invariance"
+            )
+        return said
 
     def _advance(self, stage: str, load: str, begin: float, target: float) -> tuple[Ending, str, Certificate | None]:
         """Go from one load value to the next, directly or in steps; the certificate at the target."""
