@@ -128,19 +128,19 @@ def _shown(value: object) -> str:
 
 def _key_path(loc: tuple[int | str, ...]) -> str:
     """``("beams", "b", "curve", "arc", "radius")`` as ``beams.b.curve.radius``: tags of unions are no keys."""
-    tags = {"line", "arc", "weld", "pin", "free", "moment", "force", "beam-beam"}
-    union_keys = {"curve", "start", "end"}
-    union_tables = {"loads", "contacts"}
-    parts: list[str] = []
-    for i, part in enumerate(loc):
-        if part == "[key]":
+    path = ""
+    for depth, part in enumerate(loc):
+        if part == "[key]" or _is_tag(loc, depth):
             continue
-        before = loc[i - 1] if i else None
-        table = loc[i - 2] if i >= 2 else None
-        if part in tags and (before in union_keys or table in union_tables) and i >= 2:
-            continue
-        if isinstance(part, int):
-            parts[-1] += f"[{part}]" if parts else f"[{part}]"
-        else:
-            parts.append(part)
-    return ".".join(parts)
+        path += f"[{part}]" if isinstance(part, int) else f".{part}"
+    return path.removeprefix(".")
+
+
+def _is_tag(loc: tuple[int | str, ...], depth: int) -> bool:
+    """Whether pydantic put the tag of a union there: below a load, and below a beam's curve and ends."""
+    if loc[0] == "loads":
+        return depth == 2 and loc[2] in {"moment", "force"}
+    in_beam = loc[0] == "beams" and depth == 3
+    return (
+        in_beam and loc[2] in {"curve", "start", "end"} and loc[3] in {"line", "arc", "weld", "pin", "free"}
+    )

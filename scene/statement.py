@@ -11,7 +11,8 @@ record with a ``kind`` (or ``joint``) of its own, and nothing here changes.
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, TypeVar, cast
+from collections.abc import Mapping
+from typing import Annotated, Literal, TypeVar
 
 from frozendict import frozendict
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
@@ -19,12 +20,12 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstra
 T = TypeVar("T")
 
 
-def _freeze(value: dict[str, T]) -> dict[str, T]:
-    return cast("dict[str, T]", frozendict(value))
+def _freeze(value: Mapping[str, T]) -> Mapping[str, T]:
+    return frozendict(value)
 
 
 Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_][A-Za-z0-9_-]*$", max_length=64)]
-Named = Annotated[dict[Name, T], AfterValidator(_freeze)]
+Named = Annotated[Mapping[Name, T], AfterValidator(_freeze)]
 Point = tuple[float, float]
 Positive = Annotated[float, Field(gt=0.0)]
 Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
@@ -33,7 +34,7 @@ Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
 class Record(BaseModel):
     """What all records share: immutable, strict, nothing unknown, no number that is not finite."""
 
-    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False, validate_default=True)
+    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
 
 
 class Material(Record):
@@ -122,7 +123,7 @@ class Moment(Record):
 
 
 class Force(Record):
-    """A dead force at a body's ``point``, N: it keeps its ``direction`` (made a unit vector) while the body turns."""
+    """A dead force at a body's ``point``, N: its ``direction``, made a unit vector, stays while the body turns."""
 
     kind: Literal["force"]
     point: Name
@@ -133,7 +134,7 @@ Load = Annotated[Moment | Force, Field(discriminator="kind")]
 
 
 class Related(Record):
-    """The joints of one beam that may touch: those whose initial ``x`` (or ``y``) lies in the range, metres."""
+    """The joints of one beam that may touch: initial ``x`` (or ``y``) in the range, metres; exactly one given."""
 
     x: Point | None = None
     y: Point | None = None
@@ -148,7 +149,7 @@ class PaperContact(Record):
 
     boundary: Name
     axis: Literal["x", "y"] = "y"
-    related: Named[Related] = Field(default_factory=dict)
+    related: Named[Related] = Field(default_factory=frozendict)
 
 
 class BeamContact(Record):
@@ -228,7 +229,7 @@ class Scene(Record):
     beams: Annotated[Named[Beam], Field(min_length=1)]
     bodies: Named[Body]
     loads: Annotated[Named[Load], Field(min_length=1)]
-    contacts: Named[Contact] = Field(default_factory=dict)
+    contacts: Named[Contact] = Field(default_factory=frozendict)
     stages: Annotated[tuple[Stage, ...], Field(min_length=1)]
     probes: Annotated[tuple[Probe, ...], Field(min_length=1)]
     claims: tuple[Claim, ...] = ()

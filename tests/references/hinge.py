@@ -383,10 +383,12 @@ def closest(hinge: Hinge, unknowns: Array) -> tuple[float, Array]:
         normal = np.array([[-b, a] for a, b in tau])
         gradient = np.array([between @ tau[0], -between @ tau[1]])
         mixed = -tau[0] @ tau[1]
-        hessian = np.array([
-            [1.0 + kappa[0] * between @ normal[0], mixed],
-            [mixed, 1.0 - kappa[1] * between @ normal[1]],
-        ])
+        hessian = np.array(
+            [
+                [1.0 + kappa[0] * between @ normal[0], mixed],
+                [mixed, 1.0 - kappa[1] * between @ normal[1]],
+            ]
+        )
         step = np.linalg.solve(hessian, gradient)
         if np.abs(step).max() > 0.1:
             break
