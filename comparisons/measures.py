@@ -4,7 +4,8 @@
 symbol      meaning
 ==========  ===========================================================================================
 v_c, V_c    the CPRBM's value at N and at 2N links
-v_f, V_f    the finite elements' value at n and at 2n elements, in the chosen theory
+v_f, V_f    the finite elements' value at n and at 2n elements (with a quarter of the penetration), in the
+            chosen theory
 v_b, V_b    the same in the theory ``bending``, the CPRBM's own
 v_s         at n in the theory ``stretch``
 p           order of convergence that the error estimate assumes, 2
