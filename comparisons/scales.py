@@ -17,6 +17,10 @@ closing_load                           largest value that the stage steps to
 centre                                 length of the contact's first beam, which is also the probe's scale
 =====================================  ==============================================================
 
+A moment at a support depends on the point about which it is taken: it is what is left of the loads' and the
+other supports' moments, and may be small by accident of that point.  Its scale is therefore the largest moment
+of the balance that it closes, of the supports' and the stepped one's.
+
 The length is the longest beam's.
 """
 
@@ -53,6 +57,10 @@ def probe_scale(scene: Scene, probe: Probe, stage: Stage, answers: tuple[Answer,
     family = family_scale(scene, probe.quantity, stage, answers, contact=probe.of)
     if probe.quantity == "centre":
         return family
+    if probe.quantity == "reaction_moment":
+        supports = tuple(other for other in scene.probes if other.quantity == "reaction_moment")
+        moments = max(_largest(supports, stage, answers), _load(scene, stage, moments=True))
+        return max(moments, SMALLEST_SHARE * family)
     return max(_largest((probe,), stage, answers), SMALLEST_SHARE * family)
 
 

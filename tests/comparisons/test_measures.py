@@ -142,6 +142,12 @@ def test_a_probe_that_vanishes_by_symmetry_is_measured_by_its_family(hinge, righ
     assert scale == pytest.approx(SMALLEST_SHARE * 0.67 / (math.pi * 0.025))
 
 
+def test_a_supports_moment_is_measured_by_the_largest_moment_of_the_balance(hinge, right):
+    row = rows_by_name(hinge, paired(hinge, Choices(), right))["C.reaction_moment"]
+    assert abs(row.fea[0]) < 0.3
+    assert row.scale == row.denominator == 0.67
+
+
 def test_stress_next_to_clamps_and_contact_takes_no_part(hinge, right):
     runs = paired(hinge, Choices(), right)
     station = station_of(runs.reference, "load", 0.67)
