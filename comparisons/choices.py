@@ -37,7 +37,7 @@ class Choices:
         """The same with twice the links, twice the elements and a quarter of the penetration.
 
         The error that a penalty leaves is proportional to the penetration.  Were that kept, the two runs
-        would share it and their change would not show it; quartered, it falls as an error of second order does.
+        would share it and their change would not show it; quartered, it falls as an error of second order.
         """
         return replace(
             self,

@@ -8,6 +8,7 @@ that the step from one theory to the next can be split.
 from __future__ import annotations
 
 import signal
+import threading
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
@@ -123,10 +124,11 @@ def _in_order(scene: Scene, jobs: list[tuple[Solver, Choices]], workers: int) ->
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_quiet_worker)
     try:
         # The finest runs take longest, and they stand last: handed out first, they leave no worker idle.
-        futures: dict[Future[Answer | tuple[Mistake, ...]], int] = {
-            pool.submit(_job, solver, scene, choices): place
-            for place, (solver, choices) in reversed(list(enumerate(jobs)))
-        }
+        with _workers_deaf_at_first():
+            futures: dict[Future[Answer | tuple[Mistake, ...]], int] = {
+                pool.submit(_job, solver, scene, choices): place
+                for place, (solver, choices) in reversed(list(enumerate(jobs)))
+            }
         answers: dict[int, Answer] = {}
         for future in as_completed(futures):
             result = future.result()
@@ -144,6 +146,23 @@ def _job(solver: Solver, scene: Scene, choices: Choices) -> Answer | tuple[Mista
         return solver(scene, choices)
     except SceneError as error:
         return error.mistakes
+
+
+@contextmanager
+def _workers_deaf_at_first() -> Iterator[None]:
+    """Start workers that ignore interrupts, until :func:`_quiet_worker` says otherwise.
+
+    A process inherits that an interrupt is ignored, and nothing else of its parent's handling; one that is
+    interrupted while it still loads its modules would print a traceback.
+    """
+    if threading.current_thread() is not threading.main_thread():  # no other may say how signals are handled
+        yield
+        return
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _quiet_worker() -> None:

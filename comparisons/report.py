@@ -59,7 +59,7 @@ def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison) -> tup
     answers = {name: archive.packed(answer) for name, answer in compared.runs.everything()}
     write(own / "answers.json", documents.text(answers))
     write(own / "comparison.json", documents.text({"cases": [documents.comparison(compared)]}))
-    chapters = (*earlier, _chapter(compared, pictures))
+    chapters = (*earlier, chapter(compared, pictures))
     write(folder / "index.html", page(chapters))
     return chapters
 
@@ -76,7 +76,8 @@ def page(chapters: tuple[Chapter, ...]) -> str:
     return template.render(cases=chapters, style=style, marked=marked) + "\n"
 
 
-def _chapter(compared: Comparison, pictures: tuple[figures.Picture, ...]) -> Chapter:
+def chapter(compared: Comparison, pictures: tuple[figures.Picture, ...]) -> Chapter:
+    """What the page shows of a case and its figures."""
     return Chapter(
         name=compared.scene.name,
         title=compared.scene.title or compared.scene.name,

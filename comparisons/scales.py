@@ -18,8 +18,8 @@ centre                                 length of the contact's first beam, which
 =====================================  ==============================================================
 
 A moment at a support depends on the point about which it is taken: it is what is left of the loads' and the
-other supports' moments, and may be small by accident of that point.  Its scale is therefore the largest moment
-of the balance that it closes, of the supports' and the stepped one's.
+other supports' moments, and may be small by accident of that point.  Its scale is therefore the largest
+moment of the balance that it closes, of the supports' and the stepped one's.
 
 The length is the longest beam's.
 """

@@ -58,7 +58,9 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
         The exit code; a sentence about any trouble is on standard error.
     """
     try:
-        code = commands.main(list(arguments), prog_name="cprbm", standalone_mode=False, obj=solvers)
+        # Not ``commands.main``, which would end the process by itself when standard output is closed.
+        with commands.make_context("cprbm", list(arguments), obj=solvers) as context:
+            code = commands.invoke(context)
         sys.stdout.flush()
     except SceneError as error:
         return _said("The question is wrong. " + "; ".join(str(mistake) for mistake in error.mistakes))
@@ -69,7 +71,7 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
         return _said(error.format_message())
     except click.exceptions.Exit as stop:
         return stop.exit_code
-    except (KeyboardInterrupt, click.Abort):
+    except KeyboardInterrupt:
         _said("Interrupted; what was finished before stands.")
         return INTERRUPTED
     except BrokenPipeError:

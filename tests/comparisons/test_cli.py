@@ -1,0 +1,306 @@
+"""The command line: what it prints where, and the code with which it ends."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from comparisons import cases
+from comparisons.cli.main import run
+from comparisons.pairing import Solvers
+from scene import Ending
+from tests.comparisons.made_up import MadeUp
+
+HINGE = Path(cases.__file__).parent / "hinge.toml"
+ROOT = Path(__file__).parents[2]
+
+
+def ended(solver, ending=Ending.STEP_TOO_SMALL):
+    def answer(scene, choices):
+        found = solver(scene, choices)
+        return replace(
+            found, stations=found.stations[:4], ending=ending, sentence="The step fell below 1e-9."
+        )
+
+    return answer
+
+
+def test_list_has_a_line_for_every_case(capsys):
+    assert run(["list"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == list(cases.names())
+    assert "hinge" in cases.names()
+
+
+def test_compare_ends_with_0_if_all_agree(right, capsys):
+    assert run(["compare", "hinge"], right) == 0
+    captured = capsys.readouterr()
+    assert "hinge: AGREE" in captured.out
+    assert "t/(3R)" in captured.out
+    assert captured.err == ""
+
+
+def test_compare_ends_with_1_if_any_differs(right, capsys):
+    assert run(["compare", "hinge"], Solvers(MadeUp("cprbm", 2e-3, stiffness=1.02), right.fea)) == 1
+    assert "hinge: DIFFER" in capsys.readouterr().out
+
+
+def test_compare_ends_with_1_if_a_solver_does_not_complete(right, capsys):
+    assert run(["compare", "hinge", "--quiet"], Solvers(ended(right.cprbm), right.fea)) == 1
+    assert "UNDECIDED" in capsys.readouterr().out
+
+
+def test_compare_ends_with_3_if_nothing_is_worse_than_undecided(right, capsys):
+    assert run(["compare", "hinge", "--quiet"], Solvers(MadeUp("cprbm", 2e-2), right.fea)) == 3
+    assert capsys.readouterr().out.startswith("hinge: UNDECIDED")
+
+
+def test_solve_ends_with_0_or_1(right, capsys):
+    assert run(["solve", "hinge"], right) == 0
+    assert "B.displacement" in capsys.readouterr().out
+    assert run(["solve", "hinge", "--solver", "fea", "--quiet"], Solvers(right.cprbm, ended(right.fea))) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "The step fell below 1e-9." in captured.err
+
+
+def test_solve_that_reached_no_station_shows_what_it_has(right, capsys):
+    def nothing(scene, choices):
+        return replace(ended(right.cprbm)(scene, choices), stations=())
+
+    assert run(["solve", "hinge", "--json", "-"], Solvers(nothing, right.fea)) == 1
+    case = json.loads(capsys.readouterr().out)["cases"][0]
+    assert case["rows"] == []
+    assert case["solvers"]["cprbm"]["ending"] == "STEP_TOO_SMALL"
+
+
+@pytest.mark.parametrize("command", ["compare", "solve"])
+def test_json_on_standard_output_is_alone_there(right, capsys, command):
+    assert run([command, "hinge", "--json", "-"], right) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert [case["case"] for case in data["cases"]] == ["hinge"]
+    assert ("verdict" in data["cases"][0]) is (command == "compare")
+
+
+def test_json_in_a_file_comes_with_the_tables(right, capsys, tmp_path):
+    file = tmp_path / "new" / "numbers.json"
+    assert run(["compare", "hinge", "--json", str(file)], right) == 0
+    assert json.loads(file.read_text("utf-8"))["cases"][0]["verdict"] == "AGREE"
+    assert "Certificates" in capsys.readouterr().out
+
+
+def test_out_writes_a_report_whatever_the_verdict(right, tmp_path, capsys):
+    wrong = Solvers(MadeUp("cprbm", 2e-3, stiffness=1.02), right.fea)
+    assert run(["compare", "hinge", "--out", str(tmp_path / "r")], wrong) == 1
+    assert "DIFFER" in (tmp_path / "r" / "index.html").read_text("utf-8")
+
+
+def test_all_writes_the_report_where_it_stands(right, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run(["compare", "all", "--quiet"], right) == 0
+    assert (tmp_path / "report" / "index.html").is_file()
+
+
+def test_options_reach_the_solvers(right, capsys):
+    asked = []
+
+    def noting(scene, choices):
+        asked.append(choices)
+        return right.cprbm(scene, choices)
+
+    arguments = ["-n", "beam1=30,beam2=40", "--formulation", "paper", "--elements", "60"]
+    assert (
+        run(["solve", "hinge", "--quiet", *arguments, "--penetration", "1e-6"], Solvers(noting, right.fea))
+        == 0
+    )
+    assert asked[0].links == {"beam1": 30, "beam2": 40}
+    assert (asked[0].formulation, asked[0].elements, asked[0].penetration) == ("paper", 60, 1e-6)
+
+
+def test_kinematics_reach_the_table(right, capsys):
+    assert run(["compare", "hinge", "--kinematics", "bending"], right) == 0
+    assert "theory bending" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["compare", "hinge", "-n", "0"], "found '0'"),
+        (["solve", "hinge", "-n", "-3"], "found '-3'"),
+        (["solve", "hinge", "-n", "forty"], "found 'forty'"),
+        (["solve", "hinge", "-n", "4.5"], "found '4.5'"),
+        (["solve", "hinge", "-n", "99999999999999999999"], "found '99999999999999999999'"),
+        (["solve", "hinge", "-n", "beam1=0,beam2=3"], "found '0'"),
+        (["solve", "hinge", "-n", "beam1=3,beam1=4"], "once for each beam"),
+        (["solve", "hinge", "-n", "beam1=3,"], "once for each beam"),
+        (["solve", "hinge", "-n", "beam1=3"], "beam1, beam2"),
+        (["solve", "hinge", "-n", "beam1=3,beam9=3"], "beam1, beam2"),
+        (["compare", "hinge", "--elements", "0"], "found '0'"),
+        (["compare", "hinge", "--penetration", "nan"], "found 'nan'"),
+        (["compare", "hinge", "--penetration", "0"], "found '0'"),
+        (["compare", "hinge", "--kinematics", "timoshenko"], "timoshenko"),
+        (["compare", "hinge", "--formulation", "mine"], "mine"),
+        (["solve", "hinge", "--solver", "ansys"], "ansys"),
+        (["compare"], "CASE"),
+        (["compare", "no-such-case"], "hinge"),
+        (["compare", "no/such/file.toml"], "no/such/file.toml"),
+        (["solve", "."], "built-in case"),
+        (["dance"], "dance"),
+        (["solve", "hinge", "--colour"], "--colour"),
+        (["regress", "hinge", "--accept", "because"], "--date"),
+        (["regress", "hinge", "--accept", " ", "--date", "2025-01-01"], "empty"),
+        (["regress", "hinge", "--accept", "because", "--date", "1 May"], "1 May"),
+        (["regress", "hinge", "--folder", "no/such/folder"], "--accept"),
+    ],
+)
+def test_a_wrong_question_is_a_paragraph_and_2(right, capsys, arguments, said):
+    assert run(arguments, right) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert said in captured.err
+    assert captured.err.startswith("cprbm: ")
+    assert captured.err.count("\n") == 1
+
+
+def test_every_mistake_of_a_scene_is_in_the_paragraph(right, capsys, tmp_path):
+    text = HINGE.read_text("utf-8")
+    file = tmp_path / "bad.toml"
+    file.write_text(
+        text.replace("poisson_ratio", "poison_ratio").replace("width = 0.008", "width = -1.0"), "utf-8"
+    )
+    assert run(["compare", str(file)], right) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    for part in (str(file), "poison_ratio", "beams.beam1.width", "beams.beam2.width", "-1.0"):
+        assert part in said
+
+
+def test_a_later_scene_that_is_wrong_stops_the_first_from_being_solved(right, capsys, tmp_path):
+    def never(scene, choices):
+        pytest.fail("solved before every question was read")
+
+    assert run(["compare", "hinge", str(tmp_path / "none.toml")], Solvers(never, never)) == 2
+
+
+def test_two_scenes_of_one_name_are_refused(right, capsys, tmp_path):
+    file = tmp_path / "other.toml"
+    file.write_text(HINGE.read_text("utf-8"), "utf-8")
+    assert run(["compare", "hinge", str(file)], right) == 2
+    assert "hinge" in capsys.readouterr().err
+
+
+def test_a_place_that_cannot_be_written_is_a_sentence(right, capsys, tmp_path):
+    (tmp_path / "file").write_text("in the way", "utf-8")
+    assert run(["compare", "hinge", "--quiet", "--out", str(tmp_path / "file" / "r")], right) == 2
+    assert run(["solve", "hinge", "--quiet", "--json", str(tmp_path / "file" / "x.json")], right) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 2
+    assert "Cannot write" in said
+
+
+def test_an_interruption_leaves_what_is_finished(right, capsys, tmp_path):
+    file = tmp_path / "second.toml"
+    file.write_text(HINGE.read_text("utf-8").replace('name = "hinge"', 'name = "second"'), "utf-8")
+
+    def interrupted(scene, choices):
+        if scene.name == "second":
+            raise KeyboardInterrupt
+        return right.fea(scene, choices)
+
+    arguments = ["--out", str(tmp_path / "r"), "--json", str(tmp_path / "all.json"), "--quiet"]
+    assert run(["compare", "hinge", str(file), *arguments], Solvers(right.cprbm, interrupted)) == 130
+    assert "Interrupted" in capsys.readouterr().err
+    assert 'id="hinge"' in (tmp_path / "r" / "index.html").read_text("utf-8")
+    assert (tmp_path / "r" / "hinge" / "comparison.json").is_file()
+    assert len(json.loads((tmp_path / "all.json").read_text("utf-8"))["cases"]) == 1
+
+
+def test_help_and_version_are_no_mistakes(capsys):
+    assert run(["--help"]) == 0
+    assert "compare" in capsys.readouterr().out
+    assert run(["compare", "--help"]) == 0
+    assert "--kinematics" in capsys.readouterr().out
+
+
+def test_regress_accepts_compares_and_reports(right, capsys, tmp_path):
+    where = ["--folder", str(tmp_path)]
+    assert run(["regress", "hinge", "--accept", "first", "--date", "2025-01-31", *where], right) == 0
+    assert run(["regress", "hinge", *where], right) == 0
+    assert run(["regress", "all", *where], Solvers(MadeUp("cprbm", 4e-3), right.fea)) == 1
+    assert "the file says" in capsys.readouterr().out
+
+
+PROGRAM = "from comparisons.cli.main import main\nif __name__ == '__main__':\n    main()\n"
+
+
+def test_a_reader_that_goes_away_is_a_sentence(tmp_path):
+    """The reading end is closed before anything is written, so the first write finds nobody."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    with os.fdopen(writing, "wb") as nowhere:
+        done = subprocess.run(
+            [sys.executable, "-c", PROGRAM, "list"],
+            stdout=nowhere,
+            stderr=subprocess.PIPE,
+            text=True,
+            cwd=ROOT,
+            check=False,
+        )
+    assert done.returncode == 2
+    assert "closed" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+WAITING = """
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import comparisons.pairing
+from comparisons.cli.main import main
+
+
+class Waiting:
+    def __call__(self, scene, choices):
+        Path("started").touch()
+        time.sleep(600.0)
+
+
+@dataclass(frozen=True)
+class Planted:
+    cprbm: Waiting = Waiting()
+    fea: Waiting = Waiting()
+
+
+if __name__ == "__main__":
+    comparisons.pairing.Solvers = Planted
+    main()
+"""
+
+
+def test_an_interrupt_from_the_keyboard_ends_every_process_with_a_sentence(tmp_path):
+    """The whole group of processes is interrupted, as a terminal does it, while its workers solve."""
+    program = tmp_path / "program.py"
+    program.write_text(WAITING, "utf-8")
+    process = subprocess.Popen(
+        [sys.executable, str(program), "compare", "hinge"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        start_new_session=True,
+    )
+    while not (tmp_path / "started").exists():
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert said == "cprbm: Interrupted; what was finished before stands.\n"

@@ -1,0 +1,103 @@
+"""Which runs a comparison asks for, and what becomes of refusals."""
+
+import subprocess
+import sys
+
+import pytest
+
+from comparisons.choices import Choices
+from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
+from scene import Mistake, SceneError
+from tests.comparisons.made_up import MadeUp
+
+
+def test_every_run_is_asked_for_once(hinge, right):
+    asked = []
+
+    def noting(name, solver):
+        def answer(scene, choices):
+            asked.append((name, choices))
+            return solver(scene, choices)
+
+        return answer
+
+    paired(hinge, Choices(), Solvers(noting("cprbm", right.cprbm), noting("fea", right.fea)))
+    assert [choices.links for name, choices in asked if name == "cprbm"] == [40, 80]
+    assert [
+        (choices.kinematics, choices.elements, choices.penetration)
+        for name, choices in asked
+        if name == "fea"
+    ] == [
+        ("bending", 80, 1e-4),
+        ("bending", 160, 2.5e-5),
+        ("stretch", 80, 1e-4),
+        ("shear", 80, 1e-4),
+        ("shear", 160, 2.5e-5),
+    ]
+
+
+def test_counts_by_beam_are_doubled_beam_by_beam():
+    finer = Choices(links={"beam1": 30, "beam2": 40}, elements={"beam1": 7, "beam2": 8}).finer()
+    assert finer.links == {"beam1": 60, "beam2": 80}
+    assert finer.elements == {"beam1": 14, "beam2": 16}
+
+
+def test_two_processes_give_the_answers_of_one(hinge, right):
+    one, two = paired(hinge, Choices(), right), paired(hinge, Choices(), right, workers=2)
+    assert [name for name, _ in one.everything()] == [name for name, _ in two.everything()]
+    for (_, mine), (_, theirs) in zip(one.everything(), two.everything(), strict=True):
+        assert mine.settings == theirs.settings
+        for a, b in zip(mine.stations, theirs.stations, strict=True):
+            assert {name: values.tolist() for name, values in a.values.items()} == {
+                name: values.tolist() for name, values in b.values.items()
+            }
+
+
+class Refusing:
+    """A solver that refuses every question; a class, so that a process can be handed it."""
+
+    def __call__(self, scene, choices):
+        raise SceneError([Mistake("beams.beam1", "a beam", "another beam", "file.toml")])
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_refusal_keeps_its_words(hinge, workers):
+    with pytest.raises(SceneError) as caught:
+        paired(hinge, Choices(), Solvers(MadeUp("cprbm", 0.0), Refusing()), workers=workers)
+    assert caught.value.mistakes == (Mistake("beams.beam1", "a beam", "another beam", "file.toml"),)
+
+
+@pytest.mark.parametrize("links", [{"beam1": 30}, {"beam1": 30, "beam2": 30, "beam3": 30}, {}])
+def test_counts_must_name_every_beam_and_no_other(hinge, right, links):
+    with pytest.raises(SceneError, match=r"links.*beam1, beam2"):
+        paired(hinge, Choices(links=links), right)
+
+
+@pytest.mark.parametrize(
+    ("solver", "choices"), [(cprbm_answer, Choices(links=0)), (fea_answer, Choices(elements=0))]
+)
+def test_the_real_solvers_refuse_no_links_and_no_elements(hinge, solver, choices):
+    with pytest.raises(SceneError):
+        solver(hinge, choices)
+
+
+@pytest.mark.parametrize(
+    ("code", "absent"),
+    [
+        (
+            "import comparisons.cli.main as m; m.run(['list'])",
+            ("cprbm", "fea_reference", "skfem", "matplotlib", "scipy"),
+        ),
+        (
+            "import comparisons.cli.main as m; m.run(['solve', 'hinge', '--quiet'])",
+            ("skfem", "fea_reference", "matplotlib"),
+        ),
+    ],
+)
+def test_a_command_loads_only_what_it_needs(code, absent):
+    """In a fresh process, since this one has loaded everything."""
+    program = (
+        f"{code}; import sys; print([name for name in {absent!r} if name in sys.modules], file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stderr.strip().endswith("[]")
