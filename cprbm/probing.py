@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from cprbm import nearest, smooth
-from cprbm.energy import spring_moments
 from cprbm.equilibrium import Point, Problem, potential_energy
 from cprbm.forces import contact_forces, supports
 from cprbm.mechanism import Mechanism
-from cprbm.model import Chain
+from cprbm.stress import bending_stress
 from scene import Probe, Scene, Shape
 from scene.answer import Array, frozen_array
 from scene.statement import PinnedEnd, WeldedEnd
@@ -49,7 +48,7 @@ def _value(
         case "closing_load":
             return [closed_at[probe.of]] if probe.of in closed_at else []
         case "bending_stress":
-            return bending_stress(problem, point, model.chain(probe.of), probe.points)
+            return bending_stress(mechanism, point, model.chain(probe.of), probe.points)
         case "reaction" | "reaction_moment":
             force, moment = _reaction(scene, problem, point, probe.of)
             return force * model.unit_force if probe.quantity == "reaction" else moment * model.unit_moment
@@ -79,20 +78,6 @@ def _reaction(scene: Scene, problem: Problem, point: Point, name: str) -> tuple[
             force = force + support.force
             moment += support.moment
     return force, moment
-
-
-def bending_stress(problem: Problem, point: Point, chain: Chain, points: int) -> Array:
-    """Eq. (7) at ``points`` equal arc-length steps: E·t/2·δ_i/h at the springs, straight lines between them.
-
-    Beyond the first and last spring the line through the nearest two is continued.
-    """
-    moments = spring_moments(problem.model, point.state)[chain.first_link : chain.first_link + chain.n]
-    stress = chain.stress_unit * moments / (chain.stiffness * chain.h)
-    s = np.linspace(0.0, chain.s[-1], points)
-    first, last = stress[0], stress[-1]
-    if chain.n > 1:
-        first, last = 1.5 * stress[0] - 0.5 * stress[1], 1.5 * stress[-1] - 0.5 * stress[-2]
-    return np.asarray(np.interp(s, chain.s, np.concatenate(([first], stress, [last]))))
 
 
 def shapes(mechanism: Mechanism, point: Point) -> dict[str, Shape]:
