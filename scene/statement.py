@@ -123,7 +123,7 @@ class Moment(Record):
 
 
 class Force(Record):
-    """A dead force at a body's ``point``, N: its ``direction``, made a unit vector, stays while the body turns."""
+    """A dead force at a body's ``point``: its ``direction`` (made a unit vector) stays as the body turns."""
 
     kind: Literal["force"]
     point: Name
@@ -134,7 +134,7 @@ Load = Annotated[Moment | Force, Field(discriminator="kind")]
 
 
 class Related(Record):
-    """The joints of one beam that may touch: initial ``x`` (or ``y``) in the range, metres; exactly one given."""
+    """The joints of one beam that may touch: initial ``x`` or ``y`` (one of them) in the range, metres."""
 
     x: Point | None = None
     y: Point | None = None
