@@ -14,7 +14,7 @@ from math import hypot
 
 import numpy as np
 
-from scene.geometry import arc_length, closest_pair, largest_curvature, points_on, scaled, tangent
+from scene.geometry import arc_length, closest_pair, largest_curvature, points_on, scaled, tangents_on
 from scene.mistakes import Mistake
 from scene.statement import Arc, Beam, BeamContact, Curve, FreeEnd, Point, Scene
 
@@ -194,7 +194,8 @@ def _overlap(first: Beam, second: Beam, thick: bool) -> tuple[str, str] | None: 
             f"that overlap at the start by {depth * size:.3g} m, {depth / mean:.3g} of their mean thickness",
             f"beams that touch or are apart (overlap at most {OVERLAP:g} of the mean thickness)",
         )
-    t1, t2 = tangent(curve1, pair.u1), tangent(curve2, pair.u2)
+    t1 = tangents_on(curve1, np.array([pair.u1]))[0]
+    t2 = tangents_on(curve2, np.array([pair.u2]))[0]
     inside = all(1e-6 < u < 1.0 - 1e-6 for u in (pair.u1, pair.u2))
     meets = pair.distance <= MEETING * min(arc_length(curve1), arc_length(curve2))
     if not (inside and meets and abs(t1[0] * t2[1] - t1[1] * t2[0]) > CROSSING_ANGLE):

@@ -85,12 +85,18 @@ def closest_pair(
     range; of places equally near it gives one.
     """
     u1, u2 = np.linspace(*range1, _SAMPLES), np.linspace(*range2, _SAMPLES)
-    distance, neighbour = cKDTree(points_on(second, u2)).query(points_on(first, u1))
+    p1 = points_on(first, u1)
+    _, neighbour = cKDTree(points_on(second, u2)).query(p1)
+    # one step along the tangent takes the neighbour to the foot of the perpendicular: without it the samples'
+    # spacing would hide a shallow crossing
+    beside = ((p1 - points_on(second, u2[neighbour])) * tangents_on(second, u2[neighbour])).sum(axis=1)
+    foot = np.clip(u2[neighbour] + beside / arc_length(second), *range2)
+    distance = np.hypot(*(p1 - points_on(second, foot)).T)
     # a place that looks second best in the samples may be the best: refine the lowest few local minima
-    beside = np.pad(distance, 1, constant_values=np.inf)
-    minima = np.flatnonzero((distance <= beside[:-2]) & (distance <= beside[2:]))
+    fence = np.pad(distance, 1, constant_values=np.inf)
+    minima = np.flatnonzero((distance <= fence[:-2]) & (distance <= fence[2:]))
     lowest = minima[np.argsort(distance[minima], kind="stable")[:_REFINED]]
-    pairs = [_refined(first, second, (u1[i], u2[neighbour[i]]), range1, range2) for i in lowest]
+    pairs = [_refined(first, second, (u1[i], foot[i]), range1, range2) for i in lowest]
     return min(pairs, key=lambda pair: pair.distance)
 
 
@@ -123,14 +129,14 @@ def _refined(
     return ClosestPair(distance=squared(best) ** 0.5 * scale, u1=float(u[0]), u2=float(u[1]))
 
 
-def tangent(curve: Curve, u: float) -> Array:
-    """Unit tangent (2,) at the fraction ``u``, from start to end."""
+def tangents_on(curve: Curve, u: Array) -> Array:
+    """Unit tangents (n, 2) at the fractions ``u`` (n,), from start to end."""
     if isinstance(curve, Arc):
-        angle = _angle(curve, curve.start) + arc_angle(curve) * u
         turn = np.sign(arc_angle(curve))
-        return np.array([-turn * np.sin(angle), turn * np.cos(angle)])
+        angle = _angle(curve, curve.start) + arc_angle(curve) * u
+        return np.column_stack([-turn * np.sin(angle), turn * np.cos(angle)])
     along = np.array(curve.end) - np.array(curve.start)
-    return np.asarray(along / np.hypot(*along))
+    return np.tile(along / np.hypot(*along), (len(u), 1))
 
 
 def scaled(curve: Curve, size: float) -> Curve:

@@ -18,7 +18,7 @@ scalars = st.one_of(
     st.integers(-3, 3),
     st.integers(),
     st.floats(),
-    st.sampled_from([1e-308, 1e-200, 1e-9, 1e9, 1e154, 1e308, 10**400, 1 << 50_000]),
+    st.sampled_from([1e-308, 1e-200, 1e-9, 1e9, 1e154, 1e308, 10**400]),
     st.text(max_size=6),
     st.sampled_from(
         ["A", "B", "AC", "beam1", "beam2", "scene", "contact", "line", "arc", "free", "force", "M"]
@@ -62,7 +62,7 @@ def _scene_or_error(data):
         assert isinstance(scene_from(data), Scene)
 
 
-@settings(max_examples=250, deadline=None)
+@settings(max_examples=250, deadline=None, derandomize=True)
 @given(
     st.lists(
         st.tuples(
@@ -92,7 +92,7 @@ def test_random_edits_of_the_hinge(edits):
     _scene_or_error(data)
 
 
-@settings(max_examples=120, deadline=None)
+@settings(max_examples=120, deadline=None, derandomize=True)
 @given(st.lists(st.tuples(st.sampled_from(NUMBERS), st.floats(allow_nan=False)), min_size=1, max_size=4))
 def test_random_numbers_in_the_geometry(edits):
     data = copy.deepcopy(HINGE)
@@ -101,7 +101,7 @@ def test_random_numbers_in_the_geometry(edits):
     _scene_or_error(data)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40, deadline=None, derandomize=True)
 @given(exponent=st.integers(-290, 290))
 def test_the_hinge_at_any_scale_is_the_same_question(exponent):
     """All lengths times a power of two: no bound stands on a length, so nothing may change."""
@@ -121,7 +121,7 @@ def test_the_hinge_at_any_scale_is_the_same_question(exponent):
     assert scene_from(data).name == "hinge"
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100, deadline=None, derandomize=True)
 @given(start=st.integers(0, 4000), junk=st.binary(max_size=12), cut=st.integers(0, 12))
 def test_random_bytes_in_the_file(tmp_path_factory, start, junk, cut):
     good = FILE.read_bytes()
@@ -131,7 +131,7 @@ def test_random_bytes_in_the_file(tmp_path_factory, start, junk, cut):
         assert isinstance(read(path), Scene)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60, deadline=None, derandomize=True)
 @given(junk=st.binary(max_size=200))
 def test_nothing_but_random_bytes(tmp_path_factory, junk):
     path = tmp_path_factory.getbasetemp() / "noise.toml"
