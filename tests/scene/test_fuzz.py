@@ -51,7 +51,7 @@ NUMBERS = [path for path in PLACES if path[0] in ("beams", "bodies") and not isi
 def _put(data, path, change):
     place = data
     # an earlier edit may have taken this place away: then there is nothing to do
-    with suppress(KeyError, IndexError, TypeError):
+    with suppress(KeyError, IndexError, TypeError, AttributeError):
         for key in path[:-1]:
             place = place[key]
         change(place, path[-1])
