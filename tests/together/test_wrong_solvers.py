@@ -139,13 +139,13 @@ def test_an_ignored_contact_is_caught_in_the_finite_elements(hinge, coarse_runs)
 
 def test_a_wrong_sign_of_contact_is_caught_in_the_cprbm(hinge, hinge_runs, monkeypatch):
     right = cprbm.nearest._side
-    monkeypatch.setattr(cprbm.nearest, "_side", lambda pair, state, at: -right(pair, state, at))
+    monkeypatch.setattr(cprbm.nearest, "_side", lambda *given: -right(*given))
     assert with_cprbm(hinge, hinge_runs, cprbm_answer).word is not Word.AGREE
 
 
 def test_a_wrong_sign_of_contact_is_caught_in_the_finite_elements(hinge, coarse_runs, monkeypatch):
     right = fea_reference.contact.side_of
-    monkeypatch.setattr(fea_reference.contact, "side_of", lambda first, second: -right(first, second))
+    monkeypatch.setattr(fea_reference.contact, "side_of", lambda *given: -right(*given))
     assert with_fea(hinge, coarse_runs, fea_answer).word is not Word.AGREE
 
 
