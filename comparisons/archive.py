@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -15,20 +16,34 @@ from scene.answer import Array, frozen_array
 
 def packed(answer: Answer) -> Plain:
     """An answer as plain data; a number that is not finite becomes null."""
-    return {
-        "solver": answer.solver,
-        "scene": answer.scene,
-        "settings": plain(dict(answer.settings)),
-        "ending": answer.ending.name,
-        "sentence": answer.sentence,
-        "seconds": answer.seconds,
-        "notes": list(answer.notes),
-        "events": [
-            {"stage": event.stage, "contact": event.contact, "kind": event.kind, "value": event.value}
-            for event in answer.events
-        ],
-        "stations": [_packed_station(station) for station in answer.stations],
-    }
+    found: Plain = plain(
+        {
+            "solver": answer.solver,
+            "scene": answer.scene,
+            "settings": answer.settings,
+            "ending": answer.ending.name,
+            "sentence": answer.sentence,
+            "seconds": answer.seconds,
+            "notes": answer.notes,
+            "events": [_fields(event) for event in answer.events],
+            "stations": [
+                {
+                    "stage": station.stage,
+                    "value": station.value,
+                    "values": station.values,
+                    "shapes": {name: _fields(shape) for name, shape in station.shapes.items()},
+                    "touching": station.touching,
+                    "certificate": _fields(station.certificate),
+                }
+                for station in answer.stations
+            ],
+        }
+    )
+    return found
+
+
+def _fields(record: Event | Shape | Certificate) -> Plain:
+    return {field.name: getattr(record, field.name) for field in fields(record)}
 
 
 def unpacked(data: Plain) -> Answer:
@@ -48,21 +63,6 @@ def unpacked(data: Plain) -> Answer:
         seconds=data["seconds"],
         notes=tuple(data["notes"]),
     )
-
-
-def _packed_station(station: StationAnswer) -> Plain:
-    certificate = station.certificate
-    return {
-        "stage": station.stage,
-        "value": station.value,
-        "values": {name: plain(values) for name, values in station.values.items()},
-        "shapes": {
-            name: {"s": plain(shape.s), "x": plain(shape.x), "y": plain(shape.y)}
-            for name, shape in station.shapes.items()
-        },
-        "touching": {name: plain(places) for name, places in station.touching.items()},
-        "certificate": {name: plain(getattr(certificate, name)) for name in Certificate.__dataclass_fields__},
-    }
 
 
 def _unpacked_station(data: Plain) -> StationAnswer:

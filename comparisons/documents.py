@@ -66,12 +66,12 @@ def solver(answer: Answer) -> Plain:
     return {
         "ending": answer.ending.name,
         "sentence": answer.sentence,
-        "seconds": answer.seconds,
-        "settings": plain(dict(answer.settings)),
+        "seconds": plain(answer.seconds),
+        "settings": plain(answer.settings),
         "certificate": worst(tuple(station.certificate for station in answer.stations)),
         "stations": len(answer.stations),
         "events": [
-            {"stage": event.stage, "contact": event.contact, "kind": event.kind, "value": event.value}
+            {"stage": event.stage, "contact": event.contact, "kind": event.kind, "value": plain(event.value)}
             for event in answer.events
         ],
         "notes": list(answer.notes),

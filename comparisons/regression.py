@@ -55,7 +55,7 @@ def measured(scene: Scene, solvers: Solvers) -> Plain:
         found = complaints(scene, answer)
         if found:
             raise RuntimeError(f"{name} gave no whole answer: {found[0]}")
-        settings[name] = plain(dict(answer.settings))
+        settings[name] = plain(answer.settings)
         kept[name] = _kept(scene, answer)
     return {"case": scene.name, "tolerance": TOLERANCE, "settings": settings, "values": kept}
 
