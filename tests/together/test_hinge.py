@@ -90,7 +90,7 @@ def test_what_supports_and_contacts_carry_balances_the_load(comparison):
 
 
 def test_the_reactions_balance_by_the_answers_own_numbers(comparison):
-    """ΣF = 0 and ΣM about the origin = 0 on the whole mechanism; the links AC and BD are all that is held or loaded."""
+    """ΣF = 0 and ΣM = 0 about the origin: AC is all that is held, BD all that is loaded."""
     points = {name: np.array(place) for name, place in comparison.scene.bodies["AC"].points.items()}
     for answer in (comparison.runs.cprbm[0], comparison.runs.reference):
         for station in answer.stations:

@@ -6,8 +6,8 @@ How each is planted:
 * *contact ignored*: the scene has no contacts when one solver sees it, and the contact's probes are then
   answered as a solver would that found it open;
 * *thickness forgotten*: the beams touch as lines for one solver;
-* *contact sign*: inside a solver the side of a beam on which the other lies is turned round, so that what holds
-  beams apart holds them together;
+* *contact sign*: inside a solver the side of a beam on which the other lies is turned round, so that what
+  holds beams apart holds them together;
 * *stops early*: stations are left out, with and without saying so;
 * *NaN*: one number of an otherwise right answer.
 """
