@@ -1,5 +1,35 @@
-"""What ties the records together."""
+"""What ties the records together: everything that is wrong with a scene, at once."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from scene.check_motion import wrong_loads, wrong_stages, wrong_supports
+from scene.check_names import repeated_names, unknown_names
+from scene.check_questions import wrong_claims, wrong_probes
+from scene.check_shapes import overlaps, wrong_contacts, wrong_curves, wrong_ends, wrong_sections
 from scene.mistakes import Mistake
 from scene.statement import Scene
+
+_CHECKS = (
+    repeated_names,
+    unknown_names,
+    wrong_curves,
+    wrong_sections,
+    wrong_ends,
+    wrong_supports,
+    wrong_loads,
+    wrong_contacts,
+    overlaps,
+    wrong_stages,
+    wrong_probes,
+    wrong_claims,
+)
+
+
 def mistakes_in(scene: Scene) -> list[Mistake]:
-    return []
+    """Every mistake in what ties the records of ``scene`` together; empty where it is a good question.
+
+    A check that needs what another one found wrong keeps silent, so that one slip is named once.
+    """
+    return [replace(mistake, file=scene.file) for check in _CHECKS for mistake in check(scene)]

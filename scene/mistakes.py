@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from difflib import get_close_matches
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,3 +34,12 @@ class SceneError(ValueError):
     def __init__(self, mistakes: list[Mistake] | tuple[Mistake, ...]) -> None:
         self.mistakes = tuple(dict.fromkeys(mistakes))
         super().__init__("\n".join(str(mistake) for mistake in self.mistakes))
+
+
+def unknown_name(key: str, name: str, what: str, known: Iterable[str]) -> Mistake:
+    """The mistake of naming a ``what`` (such as ``beam``) that is not among the ``known``."""
+    names = list(known)
+    near = get_close_matches(name, names, n=1)
+    hint = f" (is {near[0]!r} meant?)" if near else ""
+    listed = ", ".join(repr(each) for each in names) or "there is none"
+    return Mistake(key, f"{name!r}, which names no {what}{hint}", f"the name of a {what}: {listed}")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,12 +11,11 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from scene.checks import mistakes_in
-from scene.mistakes import Mistake, SceneError
+from scene.keys import keys_at, tags_at
+from scene.mistakes import Mistake, SceneError, unknown_name
 from scene.statement import Scene
 
 _ALLOWED = {
-    "extra_forbidden": "no such key here",
-    "missing": "this key is required",
     "finite_number": "a finite number",
     "float_type": "a number",
     "int_type": "a whole number",
@@ -23,7 +23,10 @@ _ALLOWED = {
     "bool_type": "true or false",
     "tuple_type": "a list",
     "dict_type": "a table",
+    "mapping_type": "a table",
     "model_type": "a table",
+    "model_attributes_type": "a table",
+    "string_unicode": "a text in quotes",
     "string_pattern_mismatch": "a name of letters, digits, '_' and '-' that starts with a letter or '_'",
 }
 
@@ -62,11 +65,12 @@ def scene_from(data: dict[str, Any], *, file: str = "") -> Scene:
         SceneError: anything in it is wrong; all mistakes are named.
     """
     if "file" in data:
-        raise SceneError([Mistake("file", repr(data["file"]), "no such key here", file)])
+        raise SceneError([replace(unknown_name("file", "file", "key here", keys_at(())), file=file)])
     try:
         scene = Scene.model_validate({**_tuples(data), "file": file})
     except ValidationError as error:
-        raise SceneError([_mistake(details, file) for details in error.errors()]) from None
+        mistakes = [_mistake(details, file) for details in error.errors() if not _says_it_again(details)]
+        raise SceneError(mistakes) from None
     except RecursionError:
         raise SceneError([Mistake("", "tables nested too deeply", "a scene", file)]) from None
     found = mistakes_in(scene)
@@ -90,17 +94,16 @@ def _tuples(value: Any) -> Any:  # noqa: ANN401 - whatever TOML holds
 
 def _mistake(details: ErrorDetails, file: str) -> Mistake:
     """Pydantic's finding in the house's words."""
-    kind = details["type"]
-    key = _key_path(details["loc"])
-    given = details.get("input")
-    if kind == "extra_forbidden":
-        found = "an unknown key"
-    elif kind == "missing":
-        found = "nothing"
-    else:
-        found = _shown(given)
+    kind, loc = details["type"], details["loc"]
+    key = _key_path(loc)
     context = details.get("ctx", {})
+    found = _shown(details.get("input"))
     match kind:
+        case "extra_forbidden":
+            return replace(unknown_name(key, str(loc[-1]), "key here", keys_at(loc[:-1])), file=file)
+        case "missing":
+            found = "nothing"
+            allowed = "an item here" if isinstance(loc[-1], int) else "a value: this key is required"
         case "greater_than":
             allowed = f"a number greater than {context['gt']:g}"
         case "greater_than_equal":
@@ -109,38 +112,65 @@ def _mistake(details: ErrorDetails, file: str) -> Mistake:
             allowed = f"a number less than {context['lt']:g}"
         case "less_than_equal":
             allowed = f"a number of at most {context['le']:g}"
+        case "too_short":
+            allowed = f"at least {context['min_length']} of them"
+        case "too_long":
+            allowed = f"{context['max_length']} of them"
+        case "string_too_long":
+            allowed = f"at most {context['max_length']} characters"
         case "literal_error":
-            allowed = str(context["expected"])
-        case "union_tag_invalid":
-            allowed = f"{context['discriminator'].strip(chr(39))} = one of {context['expected_tags']}"
-            found = f"'{context['tag']}'"
-        case "union_tag_not_found":
-            allowed = f"a table with the key {context['discriminator']}"
+            allowed = f"one of {context['expected']}"
+        case "union_tag_invalid" | "union_tag_not_found":
+            tag = context["discriminator"].strip("'")
+            key = f"{key}.{tag}"
+            given = details["input"].get(tag)
+            found = "nothing" if kind == "union_tag_not_found" else _shown(given)
+            allowed = f"one of {', '.join(map(repr, tags_at(loc)))}"
         case _:
             allowed = _ALLOWED.get(kind, details["msg"])
     return Mistake(key, found, allowed, file)
 
 
+def _says_it_again(details: ErrorDetails) -> bool:
+    """Whether pydantic misses only items that were given and are named on their own."""
+    context = details.get("ctx", {})
+    given = details.get("input")
+    return details["type"] == "too_short" and isinstance(given, tuple) and len(given) >= context["min_length"]
+
+
 def _shown(value: object) -> str:
-    text = repr(value)
+    """The value as TOML shows it, cut where it is long."""
+    match value:
+        case dict():
+            text = f"a table with the keys {', '.join(map(repr, value))}" if value else "an empty table"
+        case tuple():
+            text = f"[{', '.join(_shown(item) for item in value[:9])}]"
+        case bool():
+            text = str(value).lower()
+        case int() if value.bit_length() > 64:  # Python refuses to write the longest ones
+            text = f"a whole number of {value.bit_length()} bits"
+        case None | str() | int() | float():
+            text = repr(value)
+        case _:
+            text = str(value)
     return text if len(text) <= 80 else text[:77] + "..."
 
 
 def _key_path(loc: tuple[int | str, ...]) -> str:
-    """``("beams", "b", "curve", "arc", "radius")`` as ``beams.b.curve.radius``: tags of unions are no keys."""
-    tags = {"line", "arc", "weld", "pin", "free", "moment", "force", "beam-beam"}
-    union_keys = {"curve", "start", "end"}
-    union_tables = {"loads", "contacts"}
-    parts: list[str] = []
-    for i, part in enumerate(loc):
-        if part == "[key]":
+    """``("beams", "b", "curve", "arc", "center")`` as ``beams.b.curve.center``: a tag is no key."""
+    path = ""
+    for depth, part in enumerate(loc):
+        if part == "[key]" or _is_tag(loc, depth):
             continue
-        before = loc[i - 1] if i else None
-        table = loc[i - 2] if i >= 2 else None
-        if part in tags and (before in union_keys or table in union_tables) and i >= 2:
-            continue
-        if isinstance(part, int):
-            parts[-1] += f"[{part}]" if parts else f"[{part}]"
-        else:
-            parts.append(part)
-    return ".".join(parts)
+        path += f"[{part}]" if isinstance(part, int) else f".{part}"
+    return path.removeprefix(".")
+
+
+def _is_tag(loc: tuple[int | str, ...], depth: int) -> bool:
+    """Whether pydantic put the tag of a union there: below a load, and below a beam's curve and ends."""
+    if loc[0] == "loads":
+        return depth == 2 and loc[2] in {"moment", "force"}
+    in_beam = loc[0] == "beams" and depth == 3
+    return (
+        in_beam and loc[2] in {"curve", "start", "end"} and loc[3] in {"line", "arc", "weld", "pin", "free"}
+    )

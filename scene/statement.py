@@ -11,6 +11,7 @@ record with a ``kind`` (or ``joint``) of its own, and nothing here changes.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal, TypeVar
 
 from frozendict import frozendict
@@ -19,12 +20,12 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstra
 T = TypeVar("T")
 
 
-def _freeze(value: dict[str, T]) -> dict[str, T]:
+def _freeze(value: Mapping[str, T]) -> Mapping[str, T]:
     return frozendict(value)
 
 
 Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z_][A-Za-z0-9_-]*$", max_length=64)]
-Named = Annotated[dict[Name, T], AfterValidator(_freeze)]
+Named = Annotated[Mapping[Name, T], AfterValidator(_freeze)]
 Point = tuple[float, float]
 Positive = Annotated[float, Field(gt=0.0)]
 Fraction = Annotated[float, Field(gt=0.0, le=1.0)]
@@ -122,7 +123,7 @@ class Moment(Record):
 
 
 class Force(Record):
-    """A dead force at a body's ``point``, N: it keeps its ``direction`` (made a unit vector) while the body turns."""
+    """A dead force at a body's ``point``: its ``direction`` (made a unit vector) stays as the body turns."""
 
     kind: Literal["force"]
     point: Name
@@ -133,7 +134,7 @@ Load = Annotated[Moment | Force, Field(discriminator="kind")]
 
 
 class Related(Record):
-    """The joints of one beam that may touch: those whose initial ``x`` (or ``y``) lies in the range, metres."""
+    """The joints of one beam that may touch: initial ``x`` or ``y`` (one of them) in the range, metres."""
 
     x: Point | None = None
     y: Point | None = None

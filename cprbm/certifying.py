@@ -1,0 +1,102 @@
+"""What makes a state believable: the certificate of the answer sheet, and which Ending a failure is."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cprbm import nearest
+from cprbm.equilibrium import Equilibrium, smallest_curvature
+from cprbm.forces import balances
+from cprbm.mechanism import Mechanism
+from cprbm.settings import Settings
+from scene import Certificate, Ending
+
+LARGEST_BEND = 1.0  # rad: change of angle of one spring beyond which a chord no longer stands for its element
+BALANCE = 1e-8
+OVERLAP_AUTO = 1e-4  # of the mean thickness
+OVERLAP_PAPER = 0.5  # joints of 'paper' may dip between each other; beyond this the beams have crossed
+
+
+def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tuple[Certificate, Ending]:
+    """The certificate of a state, and COMPLETED or the Ending that its first failure means."""
+    problem, point, measure = mechanism.problem, found.point, found.measure
+    failures: list[tuple[Ending, str]] = []
+
+    def ask(holds: bool, ending: Ending, sentence: str) -> None:  # noqa: FBT001
+        if not holds:
+            failures.append((ending, sentence))
+
+    asked = max(settings.tolerance, measure.floor)
+    ask(
+        found.converged and measure.residual <= asked,
+        Ending.NOT_CERTIFIED,
+        f"the residual is {measure.residual:.1e}, asked {asked:.1e}",
+    )
+    violation_asked = max(settings.tolerance, 1e-13)
+    ask(
+        measure.violation <= violation_asked,
+        Ending.NOT_CERTIFIED,
+        f"the closures are open by {measure.violation:.1e} of the longest beam, asked {violation_asked:.1e}",
+    )
+    bend = float(np.max(np.abs(np.diff(point.state.theta) - problem.model.rest_turns) * (problem.model.couplings > 0)))
+    ask(
+        bend <= LARGEST_BEND,
+        Ending.TURNED_TOO_FAR,
+        f"one element turns by {bend:.2f} rad, more than {LARGEST_BEND:.1f}: use more links",
+    )
+    penetration = penetration_of(mechanism, found)
+    limit = OVERLAP_PAPER if mechanism.boundaries else OVERLAP_AUTO
+    ask(
+        penetration <= limit,
+        Ending.BEAMS_CROSSED,
+        f"the beams of a contact overlap by {penetration:.1e} of the mean thickness, allowed {limit:.0e}",
+    )
+    for name, boundary in mechanism.boundaries.items():
+        pressing = np.array([lam > 0.0 for lam, c in zip(point.lam, point.rows.contact, strict=True) if c == name])
+        beyond = boundary.range_left(point.state, point.at)
+        ask(
+            not np.any(pressing & (beyond > 0.0)),
+            Ending.LEFT_BOUNDARY,
+            f"a touching joint of contact '{name}' lies beyond the ends of its fitted boundary",
+        )
+    force_balance, moment_balance = balances(problem, point)
+    balance_asked = max(BALANCE, 100.0 * measure.floor)
+    ask(
+        force_balance <= balance_asked,
+        Ending.NOT_CERTIFIED,
+        f"ΣF is {force_balance:.1e} of the largest force",
+    )
+    ask(
+        moment_balance <= balance_asked,
+        Ending.NOT_CERTIFIED,
+        f"ΣM is {moment_balance:.1e} of the largest moment",
+    )
+    curvature = smallest_curvature(problem, point) if found.converged else float("nan")
+    ask(
+        not found.converged or curvature > 0.0,
+        Ending.NOT_A_MINIMUM,
+        f"the energy's smallest curvature on the feasible directions is {curvature:.3g} EI/ℓ²",
+    )
+    certificate = Certificate(
+        residual=measure.residual,
+        residual_floor=measure.floor,
+        violation=measure.violation,
+        penetration=penetration,
+        complementarity=measure.complementarity,
+        force_balance=force_balance,
+        moment_balance=moment_balance,
+        smallest_curvature=curvature,
+        iterations=found.iterations,
+        failures=tuple(sentence for _, sentence in failures),
+    )
+    return certificate, failures[0][0] if failures else Ending.COMPLETED
+
+
+def penetration_of(mechanism: Mechanism, found: Equilibrium) -> float:
+    """Largest overlap of the smooth beams of all contacts, over the mean thickness (the longest beam for lines)."""
+    deepest = 0.0
+    state, at = found.point.state, found.point.at
+    for pair in mechanism.pairs.values():
+        scale = 0.5 * (pair.a.thickness + pair.b.thickness) if pair.offset > 0.0 else 1.0
+        deepest = max(deepest, nearest.deepest(pair, state, at) / scale)
+    return deepest

@@ -1,0 +1,120 @@
+"""Loop closures and welds: the equalities Z(θ) = 0 of eq. (1).
+
+==========  =======================================================================
+Z_x, Z_y    beam's last joint less the point of the body it is joined to
+Z_w         angle of the first or last link, less its stress-free one, less φ
+μ           multipliers: force and moment of the beam on what its end is joined to
+==========  =======================================================================
+
+The first joint of a beam sits at its point by construction.  A first link that
+is welded to the ground does not turn and is no unknown at all.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cprbm.kinematics import Positions, State, arm, place, position_rows
+from cprbm.model import Model
+from scene.answer import Array, Ints
+
+
+@dataclass(frozen=True, slots=True)
+class Closure:
+    """Which equalities a mechanism has, in the order of their rows: closures x, y by beam, then welds.
+
+    Attributes:
+        ends: index of each beam whose end is joined to a point.
+        end_joints: the last joints of those beams.
+        welds: (link, body) of every welded link that is an unknown; body −1 is the ground.
+        fixed: links that do not turn (ground welds at a beam's start).
+    """
+
+    ends: tuple[int, ...]
+    end_joints: Ints
+    welds: tuple[tuple[int, int], ...]
+    fixed: Ints
+
+    @property
+    def rows(self) -> int:
+        """Number of equalities."""
+        return 2 * len(self.ends) + len(self.welds)
+
+
+def closure_of(model: Model) -> Closure:
+    """The equalities of a mechanism."""
+    ends, welds, fixed = [], [], []
+    for c, chain in enumerate(model.chains):
+        start, end = chain.start, chain.end
+        if start.welded:
+            if start.body < 0:
+                fixed.append(chain.first_link)
+            else:
+                welds.append((chain.first_link, start.body))
+        if end is not None:
+            ends.append(c)
+            if end.welded:
+                welds.append((chain.first_link + chain.n, end.body))
+    last = [model.chains[c].first_joint + model.chains[c].n + 1 for c in ends]
+    return Closure(tuple(ends), np.array(last, dtype=np.intp), tuple(welds), np.array(fixed, dtype=np.intp))
+
+
+def closure_values(model: Model, closure: Closure, state: State, at: Positions) -> Array:
+    """Z (rows,)."""
+    values = []
+    for c, joint in zip(closure.ends, closure.end_joints, strict=True):
+        end = model.chains[c].end
+        assert end is not None
+        px, py = place(model, end, state.bodies)
+        values += [at.x[joint] - px, at.y[joint] - py]
+    for link, body in closure.welds:
+        turned = state.bodies[body, 2] if body >= 0 else 0.0
+        values.append(state.theta[link] - model.rest[link] - turned)
+    return np.array(values, dtype=float)
+
+
+def closure_rows(model: Model, closure: Closure, state: State, at: Positions) -> Array:
+    """∂Z over all unknowns, (rows, n_links + 3B)."""
+    n = model.n_links
+    rows = np.zeros((closure.rows, n + 3 * len(model.free_bodies)))
+    rows_x, rows_y = position_rows(model, state, at, closure.end_joints)
+    k = 2 * len(closure.ends)
+    rows[0:k:2], rows[1:k:2] = rows_x, rows_y
+    for r, c in enumerate(closure.ends):
+        end = model.chains[c].end
+        assert end is not None
+        if end.body >= 0:
+            rx, ry = arm(end, state.bodies)
+            b = n + 3 * end.body
+            rows[2 * r, b] -= 1.0
+            rows[2 * r, b + 2] += ry
+            rows[2 * r + 1, b + 1] -= 1.0
+            rows[2 * r + 1, b + 2] -= rx
+    for r, (link, body) in enumerate(closure.welds, start=k):
+        rows[r, link] = 1.0
+        if body >= 0:
+            rows[r, n + 3 * body + 2] = -1.0
+    return rows
+
+
+def closure_forces(model: Model, closure: Closure, multipliers: Array) -> tuple[Array, Array]:
+    """The multipliers as generalised forces on the joints, fx and fy (n_joints,)."""
+    fx, fy = np.zeros(model.n_joints), np.zeros(model.n_joints)
+    k = 2 * len(closure.ends)
+    fx[closure.end_joints] = multipliers[0:k:2]
+    fy[closure.end_joints] = multipliers[1:k:2]
+    return fx, fy
+
+
+def closure_second(model: Model, closure: Closure, state: State, multipliers: Array) -> Array:
+    """Second derivative over φ of each body (B,) of Σ μ·Z, the part of the bodies' points."""
+    second = np.zeros(len(model.free_bodies))
+    for r, c in enumerate(closure.ends):
+        end = model.chains[c].end
+        assert end is not None
+        if end.body >= 0:
+            rx, ry = arm(end, state.bodies)
+            second[end.body] += multipliers[2 * r] * rx + multipliers[2 * r + 1] * ry
+    return second

@@ -1,0 +1,109 @@
+"""Potential energy of springs and dead loads, eqs. (4)-(5), with exact derivatives.
+
+======  ========================================================================
+δ_i     (θ_i − θ_{i−1}) − (θ_i⁰ − θ_{i−1}⁰), change of angle at spring i
+m_i     k_i δ_i, moment of spring i
+W       work of the dead loads from the initial state
+======  ========================================================================
+
+PE = Σ ½ k_i δ_i² − W; the Hessian over θ is tridiagonal, W depends on bodies only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cprbm.kinematics import State
+from cprbm.model import Model
+from scene import Scene
+from scene.answer import Array
+from scene.statement import Force, Moment
+
+
+@dataclass(frozen=True, slots=True)
+class DeadLoad:
+    """A load on a free body, in numbers without units, per unit (SI) of the scene's load value."""
+
+    body: int
+    moment: float
+    force: tuple[float, float]
+    point: tuple[float, float]
+
+
+def dead_loads(scene: Scene, model: Model) -> dict[str, DeadLoad]:
+    """The scene's loads by name."""
+    loads = {}
+    for name, load in scene.loads.items():
+        if isinstance(load, Moment):
+            body = model.free_bodies.index(load.body)
+            loads[name] = DeadLoad(body, 1.0 / model.unit_moment, (0.0, 0.0), (0.0, 0.0))
+        elif isinstance(load, Force):
+            owner = scene.body_of(load.point)
+            body = model.free_bodies.index(owner)
+            size = np.hypot(*load.direction) * model.unit_force
+            x, y = scene.bodies[owner].points[load.point]
+            r = (
+                x / model.unit_length - model.references[body, 0],
+                y / model.unit_length - model.references[body, 1],
+            )
+            loads[name] = DeadLoad(body, 0.0, (load.direction[0] / size, load.direction[1] / size), r)
+    return loads
+
+
+def spring_moments(model: Model, state: State) -> Array:
+    """m_i of every spring in the shared numbering (n_links−1,), zero between beams."""
+    return model.couplings * (np.diff(state.theta) - model.rest_turns)
+
+
+def strain_energy(model: Model, state: State) -> float:
+    """Σ ½ k_i δ_i²."""
+    turns = np.diff(state.theta) - model.rest_turns
+    return float(0.5 * np.sum(model.couplings * turns * turns))
+
+
+def strain_gradient(model: Model, state: State) -> Array:
+    """∂/∂θ of the strain energy (n_links,)."""
+    moments = spring_moments(model, state)
+    gradient = np.zeros(model.n_links)
+    gradient[1:] += moments
+    gradient[:-1] -= moments
+    return gradient
+
+
+def strain_hessian(model: Model) -> tuple[Array, Array]:
+    """Diagonal (n_links,) and off-diagonal (n_links−1,) of the strain energy's Hessian."""
+    diagonal = np.zeros(model.n_links)
+    diagonal[1:] += model.couplings
+    diagonal[:-1] += model.couplings
+    return diagonal, -model.couplings
+
+
+@dataclass(frozen=True, slots=True)
+class LoadWork:
+    """W and its derivatives over the bodies' u, v, φ: value, gradient (3B,), second over φ (B,)."""
+
+    value: float
+    gradient: Array
+    second: Array
+
+
+def load_work(model: Model, loads: dict[str, DeadLoad], values: dict[str, float], state: State) -> LoadWork:
+    """Work of all loads at their present ``values`` (SI)."""
+    total = 0.0
+    gradient = np.zeros((len(model.free_bodies), 3))
+    second = np.zeros(len(model.free_bodies))
+    for name, load in loads.items():
+        value = values.get(name, 0.0)
+        if value == 0.0:
+            continue
+        u, v, phi = state.bodies[load.body]
+        fx, fy = value * load.force[0], value * load.force[1]
+        px, py = load.point
+        cos, sin = np.cos(phi), np.sin(phi)
+        rx, ry = cos * px - sin * py, sin * px + cos * py
+        total += value * load.moment * phi + fx * (u + rx - px) + fy * (v + ry - py)
+        gradient[load.body] += (fx, fy, value * load.moment + rx * fy - ry * fx)
+        second[load.body] -= fx * rx + fy * ry
+    return LoadWork(float(total), gradient.ravel(), second)

@@ -1,0 +1,396 @@
+"""Equilibrium as a minimum of potential energy under equalities and contacts, eq. (1), at one load.
+
+==========  =================================================================================
+q           unknowns: link angles θ, then u, v, φ of the free bodies
+Z, μ        equalities and their multipliers, :mod:`cprbm.closure`
+c, λ        contact constraints c ≤ 0 and forces λ ≥ 0, :mod:`cprbm.contact`
+H           Hessian of PE + μ·Z + λ·c: tridiagonal over θ, plus JᵀWJ of the touching places
+W = VΣVᵀ    second derivative of λ·c over its local numbers, entered as border columns JᵀV
+==========  =================================================================================
+
+One iteration is a Newton step on H with Z linearised; which contacts press is a small
+complementarity problem in the compliance of the gaps.  H is made positive definite on the feasible
+directions where it is not, first by the stiffness of the contacts that press, then by a shift.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from cprbm.bordered import Bordered, bordered
+from cprbm.closure import Closure, closure_forces, closure_rows, closure_second, closure_values
+from cprbm.complementarity import pressing
+from cprbm.contact import Formulation, Rows
+from cprbm.energy import (
+    DeadLoad,
+    LoadWork,
+    load_work,
+    spring_moments,
+    strain_energy,
+    strain_gradient,
+    strain_hessian,
+)
+from cprbm.kinematics import Positions, State, position_rows, positions, pulled_back
+from cprbm.model import Model
+from scene.answer import Array, Flags, Ints
+
+LONGEST_TURN = 0.5  # of any link in one iteration, rad
+CONTACT_STIFFNESS = 1e4  # of pressing contacts while the energy alone is not convex, S/ℓ²
+DENSE = 120  # unknowns up to which all curvatures are computed at once
+NOTHING = 1e-12  # S: moments below it are no load at all
+EPS = float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """What stays the same along a load path."""
+
+    model: Model
+    closure: Closure
+    loads: dict[str, DeadLoad]
+    formulation: Formulation
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """A state with its multipliers and everything first-order there.
+
+    Attributes:
+        state, at: the unknowns and the joints' positions.
+        mu, lam: multipliers of the equalities and of the contact rows.
+        Z, rows: equalities (mE,) and contact constraints.
+        gradient: of the potential energy (n,).
+        A_E, A_I: derivatives of Z and c over q.
+        J: derivatives of the contact's local numbers over q.
+        work: of the loads.
+    """
+
+    state: State
+    at: Positions
+    mu: Array
+    lam: Array
+    Z: Array
+    rows: Rows
+    gradient: Array
+    A_E: Array
+    A_I: Array
+    J: Array
+    work: LoadWork
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """How far a point is from equilibrium, each over its own scale; ``floor`` is round-off's share of residual."""
+
+    residual: float
+    floor: float
+    violation: float
+    overlap: float
+    complementarity: float
+
+
+@dataclass(frozen=True, slots=True)
+class Equilibrium:
+    """Where an equilibrium solve ended."""
+
+    point: Point
+    measure: Measure
+    iterations: int
+    converged: bool
+
+
+def point_at(problem: Problem, values: dict[str, float], state: State, mu: Array, lam: Array, before: Rows) -> Point:
+    """Evaluate a state; ``lam`` belongs to the rows ``before`` and is carried over to those found here."""
+    model = problem.model
+    at = positions(model, state)
+    rows = problem.formulation(state, at)
+    work = load_work(model, problem.loads, values, state)
+    gradient = np.concatenate((strain_gradient(model, state), -work.gradient))
+    A_E = closure_rows(model, problem.closure, state, at)
+    J = _local_rows(model, state, at, rows)
+    A_I = rows.slopes @ J if rows.size else np.zeros((0, len(gradient)))
+    return Point(
+        state=state,
+        at=at,
+        mu=mu,
+        lam=carried(before, lam, rows, model),
+        Z=closure_values(model, problem.closure, state, at),
+        rows=rows,
+        gradient=gradient,
+        A_E=A_E,
+        A_I=A_I,
+        J=J,
+        work=work,
+    )
+
+
+def _local_rows(model: Model, state: State, at: Positions, rows: Rows) -> Array:
+    """J, derivatives of the local numbers over q."""
+    rows_x, rows_y = position_rows(model, state, at, rows.joints)
+    angles = np.zeros((len(rows.angles), rows_x.shape[1]))
+    angles[np.arange(len(rows.angles)), rows.angles] = 1.0
+    return np.concatenate((rows_x, rows_y, angles))
+
+
+def carried(before: Rows, lam: Array, rows: Rows, model: Model) -> Array:
+    """Contact forces of an earlier state on the rows of this one: by key, or to the nearest place."""
+    if rows.keys == before.keys:
+        return lam
+    forces = np.zeros(rows.size)
+    reach = 2.0 * max(chain.h for chain in model.chains)
+    by_key = {key: i for i, key in enumerate(rows.keys)} if len(set(rows.keys)) == rows.size else {}
+    for force, key, arc, contact in zip(lam, before.keys, before.arc, before.contact, strict=True):
+        if force <= 0.0:
+            continue
+        if key in by_key:
+            forces[by_key[key]] += force
+            continue
+        near = [i for i in range(rows.size) if rows.contact[i] == contact and abs(rows.arc[i] - arc) <= reach]
+        if near:
+            forces[min(near, key=lambda i: abs(rows.arc[i] - arc))] += force
+    return forces
+
+
+def measure(problem: Problem, point: Point) -> Measure:
+    """Residuals of the optimality conditions over the largest terms in them."""
+    model = problem.model
+    free = np.ones(len(point.gradient), dtype=bool)
+    free[problem.closure.fixed] = False
+    terms = np.abs(point.gradient) + np.abs(point.A_E.T) @ np.abs(point.mu) + np.abs(point.A_I.T) @ point.lam
+    moments = np.abs(spring_moments(model, point.state))
+    scale = max(float(np.max(terms, initial=0.0)), float(np.max(moments, initial=0.0)), NOTHING)
+    residual = point.gradient + point.A_E.T @ point.mu + point.A_I.T @ point.lam
+    largest = float(np.max(np.abs(residual[free]), initial=0.0))
+    # an angle is known to eps·|θ|, a spring's moment to the stiffness times that
+    turned = max(1.0, float(np.max(np.abs(point.state.theta))))
+    floor = 4.0 * EPS * float(np.max(model.couplings)) * turned + 4.0 * EPS * np.sqrt(model.n_links) * scale
+    lengths = float(np.max(model.lengths)) * np.sqrt(model.n_links)
+    return Measure(
+        residual=largest / scale,
+        floor=float(floor / scale),
+        violation=float(np.max(np.abs(point.Z), initial=0.0)) / max(1.0, lengths),
+        overlap=float(np.max(point.rows.values, initial=0.0)),
+        complementarity=float(np.max(np.abs(point.lam * point.rows.values), initial=0.0)) / scale,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """A factorised Newton system and the places of its border columns."""
+
+    factors: Bordered
+    base: Ints
+    contacts: Ints
+    equalities: Ints
+    right: Array
+    anchors: Ints
+    expected: int
+    n_links: int
+
+    def step(self, keep: Ints, right: Array, f: Array) -> tuple[Array, Array]:
+        """Change of q and the border's solution for the columns ``keep``."""
+        a, b = self.factors.solve(f[: self.n_links], right, keep)
+        n_bodies = len(f) - self.n_links
+        change = np.concatenate((a, b[:n_bodies]))
+        change[self.anchors] = b[n_bodies : n_bodies + len(self.anchors)]
+        return change, b
+
+
+def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System:
+    """Assemble and factorise; ``stiff`` (m,) of bool marks contacts whose stiffness is added.
+
+    Raises:
+        np.linalg.LinAlgError: the tridiagonal part is exactly singular.
+    """
+    model, closure, rows = problem.model, problem.closure, point.rows
+    n, n_bodies, p = model.n_links, 3 * len(model.free_bodies), len(rows.joints)
+    fx, fy = closure_forces(model, closure, point.mu)
+    if rows.size:
+        np.add.at(fx, rows.joints, point.lam @ rows.slopes[:, :p])
+        np.add.at(fy, rows.joints, point.lam @ rows.slopes[:, p : 2 * p])
+    _, _, second, second_bodies = pulled_back(model, point.state, point.at, fx, fy)
+    diagonal, off = strain_hessian(model)
+    diagonal = diagonal + second + shift * model.lengths
+    over_phi = second_bodies + closure_second(model, closure, point.state, point.mu) - point.work.second
+
+    columns, curvatures, known = [], [], []
+    if np.any(point.lam > 0.0):
+        sigma, V = np.linalg.eigh(rows.curvature(point.lam))
+        real = np.abs(sigma) > 1e-13 * np.max(np.abs(sigma), initial=0.0)
+        columns.append(point.J.T @ V[:, real])
+        curvatures.append(sigma[real])
+        known.append(np.zeros(int(np.sum(real))))
+    if np.any(stiff):
+        columns.append(point.A_I[stiff].T)
+        curvatures.append(np.full(int(np.sum(stiff)), CONTACT_STIFFNESS))
+        known.append(-rows.values[stiff])
+    low_rank = np.concatenate(columns, axis=1) if columns else np.zeros((n + n_bodies, 0))
+    sigma = np.concatenate(curvatures) if curvatures else np.zeros(0)
+    anchors = np.array([c.first_link for c in model.chains if c.first_link not in closure.fixed], dtype=np.intp)
+
+    m_E, m_I, r, k = closure.rows, rows.size, len(sigma), len(anchors)
+    first = n_bodies + k
+    size = first + r + m_E + m_I
+    border, corner = np.zeros((n, size)), np.zeros((size, size))
+    wide = np.concatenate((low_rank, point.A_E.T, point.A_I.T), axis=1)
+    border[:, first:] = wide[:n]
+    corner[:n_bodies, first:] = wide[n:]
+    corner[2:n_bodies:3, 2:n_bodies:3] = np.diag(over_phi)
+    i = np.arange(r)
+    corner[first + i, first + i] = -1.0 / sigma
+    off = off.copy()
+    for place, link in enumerate(anchors, start=n_bodies):
+        corner[place, place] = diagonal[link]
+        corner[place, first:] = border[link, first:]
+        border[link + 1, place] = off[link]
+    corner[first:, :first] = corner[:first, first:].T
+    held = np.concatenate((anchors, closure.fixed))
+    border[held] = 0.0
+    diagonal[held] = 1.0
+    off[held] = 0.0
+    return System(
+        factors=bordered(diagonal, off, border, corner),
+        base=np.arange(first + r + m_E),
+        contacts=np.arange(first + r + m_E, size),
+        equalities=np.arange(first + r, first + r + m_E),
+        right=np.concatenate((np.zeros(first), *known, -point.Z))
+        if known
+        else np.concatenate((np.zeros(first), -point.Z)),
+        anchors=anchors,
+        expected=m_E + int(np.sum(sigma > 0.0)),
+        n_links=n,
+    )
+
+
+def _convex_system(problem: Problem, point: Point) -> System:
+    """A system that is positive definite on the feasible directions.
+
+    Raises:
+        np.linalg.LinAlgError: no shift up to the springs' own stiffness helped.
+    """
+    none = np.zeros(point.rows.size, dtype=bool)
+    tries = [(none, 0.0)]
+    if np.any(point.lam > 0.0):
+        tries.append((point.lam > 0.0, 0.0))
+    tries += [(none, 4.0**i) for i in range(1, 12)]
+    for stiff, shift in tries:
+        try:
+            found = system(problem, point, stiff, shift)
+            if found.factors.negative(found.base) == found.expected:
+                return found
+        except np.linalg.LinAlgError:
+            continue
+    raise np.linalg.LinAlgError("the energy cannot be made convex")
+
+
+def newton_step(problem: Problem, point: Point) -> tuple[Array, Array, Array]:
+    """Change of q and the new multipliers μ, λ.
+
+    Raises:
+        np.linalg.LinAlgError: the linearised problem has no solution.
+    """
+    found = _convex_system(problem, point)
+    f = -point.gradient.copy()
+    f[problem.closure.fixed] = 0.0
+    n, n_bodies = found.n_links, len(f) - found.n_links
+    right = found.right.copy()
+    right[:n_bodies] += f[n:]
+    right[n_bodies : n_bodies + len(found.anchors)] += f[found.anchors]
+    f[found.anchors] = 0.0
+    change, b = found.step(found.base, right, f)
+    lam = np.zeros(point.rows.size)
+    if point.rows.size:
+        S, base, contacts = found.factors.schur, found.base, found.contacts
+        across = S[np.ix_(base, contacts)]
+        G = -(S[np.ix_(contacts, contacts)] - across.T @ np.linalg.solve(S[np.ix_(base, base)], across))
+        lam, active = pressing(0.5 * (G + G.T), point.rows.values + point.A_I @ change, point.lam > 0.0)
+        if np.any(active):
+            keep = np.concatenate((base, contacts[active]))
+            change, b = found.step(keep, np.concatenate((right, -point.rows.values[active])), f)
+            lam = np.zeros(point.rows.size)
+            lam[active] = np.maximum(b[len(base) :], 0.0)
+    return change, b[found.equalities], lam
+
+
+def potential_energy(problem: Problem, point: Point) -> float:
+    """PE of eq. (4), units of S."""
+    return strain_energy(problem.model, point.state) - point.work.value
+
+
+def equilibrium(
+    problem: Problem, values: dict[str, float], start: Point, tolerance: float, iterations: int
+) -> Equilibrium:
+    """Newton's method from ``start`` to the equilibrium under the load ``values`` (SI)."""
+    model = problem.model
+    point = point_at(problem, values, start.state, start.mu, start.lam, start.rows)
+    now = measure(problem, point)
+    for iteration in range(1, iterations + 1):
+        try:
+            change, mu, lam = newton_step(problem, point)
+        except np.linalg.LinAlgError:
+            return Equilibrium(point, now, iteration, converged=False)
+        longest = float(np.max(np.abs(change[: model.n_links])))
+        if not np.isfinite(longest):
+            return Equilibrium(point, now, iteration, converged=False)
+        scale = min(1.0, LONGEST_TURN / longest) if longest > 0.0 else 1.0
+        state = point.state.moved(scale * change, model.n_links)
+        point = point_at(problem, values, state, mu, lam, point.rows)
+        now = measure(problem, point)
+        if scale == 1.0 and _settled(now, longest, tolerance):
+            return Equilibrium(point, now, iteration, converged=True)
+    return Equilibrium(point, now, iterations, converged=False)
+
+
+def _settled(now: Measure, longest: float, tolerance: float) -> bool:
+    return (
+        now.residual <= max(tolerance, now.floor)
+        and now.violation <= max(tolerance, 100.0 * EPS)
+        and now.overlap <= max(tolerance, 100.0 * EPS)
+        and longest <= 1e-5
+    )
+
+
+def smallest_curvature(problem: Problem, point: Point) -> float:
+    """Smallest curvature of PE on the directions that keep the equalities and the pressing contacts.
+
+    Over EI/ℓ² of the stiffest beam, in the metric ∫ dθ² ds.  Not finite where the system is singular.
+    """
+    none = np.zeros(point.rows.size, dtype=bool)
+    try:
+        found = system(problem, point, none, 0.0)
+        keep = np.concatenate((found.base, found.contacts[point.lam > 0.0]))
+        root = np.sqrt(problem.model.lengths)
+        root[problem.closure.fixed] = 0.0
+        n = found.n_links
+        n_bodies = 3 * len(problem.model.free_bodies)
+
+        def inverse(x: Array) -> Array:
+            columns = (root * x.reshape(n, -1).T).T
+            right = np.zeros((len(keep), columns.shape[1]))
+            right[n_bodies : n_bodies + len(found.anchors)] = columns[found.anchors]
+            columns[found.anchors] = 0.0
+            a, b = found.factors.solve(columns, right, keep)
+            a[found.anchors] = b[n_bodies : n_bodies + len(found.anchors)]
+            return np.asarray((root * a.T).T)
+
+        negative = found.factors.negative(keep) - found.expected - int(np.sum(point.lam > 0.0))
+        value = _extreme(inverse, n, lowest=negative > 0)
+    except np.linalg.LinAlgError:
+        return float("-inf")
+    return 1.0 / value if value != 0.0 else float("inf")
+
+
+def _extreme(inverse: Callable[[Array], Array], n: int, *, lowest: bool) -> float:
+    """The lowest or highest eigenvalue of a symmetric operator on R^n."""
+    if n <= DENSE:
+        full = inverse(np.eye(n))
+        values = np.linalg.eigvalsh(0.5 * (full + full.T))
+        return float(values[0] if lowest else values[-1])
+    from scipy.sparse.linalg import LinearOperator, eigsh
+
+    operator = LinearOperator((n, n), matvec=lambda x: inverse(x).ravel(), dtype=float)
+    start = np.cos(np.arange(n) * 0.7) + 1.5
+    return float(eigsh(operator, k=1, which="SA" if lowest else "LA", v0=start, tol=1e-6, return_eigenvectors=False)[0])

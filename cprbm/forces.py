@@ -1,0 +1,112 @@
+"""Forces at supports and contacts, from the multipliers.
+
+==========  ======================================================================
+f_j         ∂(μ·Z + λ·c)/∂p_j; the force that acts on joint j is −f_j
+R, M        force and moment of the ground on what is joined at a point
+==========  ======================================================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from cprbm.closure import closure_forces
+from cprbm.equilibrium import Point, Problem
+from scene.answer import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Support:
+    """What the ground does at one beam's end ``at``: ``place`` (2,), ``force`` (2,), ``moment`` about the place."""
+
+    beam: str
+    at: Literal["start", "end"]
+    place: Array
+    force: Array
+    moment: float
+
+
+@dataclass(frozen=True, slots=True)
+class ContactForces:
+    """Forces of the contacts on the joints fx, fy (n_joints,) and moments on the links (n_links,)."""
+
+    fx: Array
+    fy: Array
+    moments: Array
+
+
+def contact_forces(problem: Problem, point: Point, only: str | None = None) -> ContactForces:
+    """Forces that all contacts (or ``only`` one) exert on the chains."""
+    model, rows = problem.model, point.rows
+    fx, fy, moments = np.zeros(model.n_joints), np.zeros(model.n_joints), np.zeros(model.n_links)
+    if rows.size:
+        p = len(rows.joints)
+        mine = np.array([only is None or name == only for name in rows.contact])
+        local = -np.where(mine, point.lam, 0.0) @ rows.slopes
+        np.add.at(fx, rows.joints, local[:p])
+        np.add.at(fy, rows.joints, local[p : 2 * p])
+        np.add.at(moments, rows.angles, local[2 * p :])
+    return ContactForces(fx, fy, moments)
+
+
+def supports(problem: Problem, point: Point) -> tuple[Support, ...]:
+    """What the ground does to every beam that is joined to it."""
+    model, closure = problem.model, problem.closure
+    fx, fy = closure_forces(model, closure, point.mu)
+    contact = contact_forces(problem, point)
+    # ∂L/∂θ of the whole, whose entry at a link that does not turn is the moment that holds it
+    held = point.gradient + point.A_E.T @ point.mu + point.A_I.T @ point.lam
+    found = []
+    for chain in model.chains:
+        if chain.start.body < 0:
+            j = chain.joints
+            force = np.array([np.sum(fx[j] - contact.fx[j]), np.sum(fy[j] - contact.fy[j])])
+            place = np.array([point.at.x[chain.first_joint], point.at.y[chain.first_joint]])
+            moment = float(held[chain.first_link]) if chain.start.welded else 0.0
+            found.append(Support(chain.name, "start", place, force, moment))
+        if chain.end is not None and chain.end.body < 0:
+            last = chain.first_joint + chain.n + 1
+            moment = 0.0
+            if chain.end.welded:
+                row = 2 * len(closure.ends) + closure.welds.index((chain.first_link + chain.n, -1))
+                moment = -float(point.mu[row])
+            force = -np.array([fx[last], fy[last]])
+            found.append(Support(chain.name, "end", np.array([point.at.x[last], point.at.y[last]]), force, moment))
+    return tuple(found)
+
+
+def contact_imbalance(problem: Problem, point: Point) -> float:
+    """Moment of all contact forces together over the supports' largest: zero where action is reaction."""
+    contact = contact_forces(problem, point)
+    own = point.at.x @ contact.fy - point.at.y @ contact.fx + np.sum(contact.moments)
+    largest = max((abs(support.moment) for support in supports(problem, point)), default=0.0)
+    return abs(float(own)) / largest if largest > 0.0 else 0.0
+
+
+def balances(problem: Problem, point: Point) -> tuple[float, float]:
+    """ΣF and ΣM of supports, loads and contacts, each over the largest part in it."""
+    model = problem.model
+    parts: list[tuple[Array, Array, float]] = [
+        (support.place, support.force, support.moment) for support in supports(problem, point)
+    ]
+    work = point.work.gradient.reshape(-1, 3)
+    for b in range(len(model.free_bodies)):
+        place = model.references[b] + point.state.bodies[b, :2]
+        parts.append((place, work[b, :2], float(work[b, 2])))
+    contact = contact_forces(problem, point)
+    for chain in model.chains:
+        j = chain.joints
+        force = np.array([np.sum(contact.fx[j]), np.sum(contact.fy[j])])
+        moment = np.sum(point.at.x[j] * contact.fy[j] - point.at.y[j] * contact.fx[j])
+        moment += np.sum(contact.moments[chain.links])
+        parts.append((np.zeros(2), force, float(moment)))
+    forces = np.array([force for _, force, _ in parts])
+    moments = np.array([m + place[0] * force[1] - place[1] * force[0] for place, force, m in parts])
+    largest_force = float(np.max(np.abs(forces), initial=0.0))
+    largest_moment = max(float(np.max(np.abs(moments), initial=0.0)), largest_force)
+    smallest = np.finfo(float).tiny
+    force_balance = float(np.hypot(*forces.sum(axis=0))) / max(largest_force, largest_moment, smallest)
+    return force_balance, abs(float(moments.sum())) / max(largest_moment, smallest)

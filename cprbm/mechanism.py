@@ -1,0 +1,73 @@
+"""A scene made ready for solving: the problem, and the pairs of beams by which its answers are checked."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cprbm.boundary import FittedBoundary, fitted_boundary
+from cprbm.closure import closure_of
+from cprbm.contact import Formulation, Rows, no_rows, together
+from cprbm.energy import dead_loads
+from cprbm.equilibrium import Problem
+from cprbm.kinematics import Positions, State
+from cprbm.model import build
+from cprbm.nearest import Pair, pair_of
+from cprbm.settings import Settings
+from scene import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Mechanism:
+    """The problem with all contacts, the same without one of them, and the geometry of each contact.
+
+    Attributes:
+        problem: with every contact.
+        pairs: smooth beams of each contact, which measure overlap whatever the formulation.
+        boundaries: of the formulation ``paper``; empty for ``auto``.
+    """
+
+    problem: Problem
+    pairs: dict[str, Pair]
+    boundaries: dict[str, FittedBoundary]
+
+    def without(self, contact: str) -> Problem:
+        """The problem in which ``contact`` holds nothing apart."""
+        return Problem(
+            self.problem.model,
+            self.problem.closure,
+            self.problem.loads,
+            _formulation({name: self._rows(name) for name in self.pairs if name != contact}),
+        )
+
+    def overlap(self, contact: str, state: State, at: Positions) -> float:
+        """Largest constraint value of ``contact``, units of length: positive where it is violated."""
+        rows = self._rows(contact)(state, at)
+        return float(rows.values.max()) if rows.size else float("-inf")
+
+    def _rows(self, contact: str) -> Formulation:
+        return self.boundaries[contact].rows if self.boundaries else self.pairs[contact].rows
+
+
+def _formulation(parts: dict[str, Formulation]) -> Formulation:
+    def rows(state: State, at: Positions) -> Rows:
+        return together([part(state, at) for part in parts.values()]) if parts else no_rows()
+
+    return rows
+
+
+def mechanism_of(scene: Scene, settings: Settings) -> Mechanism:
+    """Make a scene ready.
+
+    Raises:
+        SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
+    """
+    model = build(scene, settings)
+    pairs = {name: pair_of(scene, model, name) for name in scene.contacts}
+    boundaries = {}
+    if settings.formulation == "paper":
+        boundaries = {name: fitted_boundary(scene, model, name, settings.degree) for name in scene.contacts}
+    parts: dict[str, Formulation] = {
+        name: boundaries[name].rows if boundaries else pair.rows for name, pair in pairs.items()
+    }
+    problem = Problem(model, closure_of(model), dead_loads(scene, model), _formulation(parts))
+    return Mechanism(problem, pairs, boundaries)

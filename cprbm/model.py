@@ -1,0 +1,213 @@
+"""A scene as chains of rigid links and torsional springs, in numbers without units.
+
+Beams stand one behind the other: links, springs and joints of all beams share
+one numbering each, so that every sum over the mechanism is one array.
+
+==========  =====================================================================
+N           elements of a beam; springs 1..N at their middles, links 0..N, and
+            joints 0..N+1: the beam's start, the springs, the beam's end
+h           arc length of an element
+L_i         length of link i, between joints i and i+1
+θ_i         tangent angle of link i; θ_i⁰ stress-free
+k_i         stiffness of spring i, E·I/h
+ℓ           unit of length: the longest beam, m
+S           unit of energy and moment: the largest E·I/ℓ, N·m; S/ℓ that of force
+==========  =====================================================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cprbm.curves import NeutralLine, neutral_line
+from cprbm.settings import Settings
+from scene import BeamEnd, FreeEnd, Scene, WeldedEnd
+from scene.answer import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Attachment:
+    """What a beam's end is joined to: ``body`` (−1 for the ground), the point there, and whether it is welded.
+
+    ``point`` is the point's position on the body: from the body's reference place for a free body,
+    absolute for the ground; units of length.
+    """
+
+    body: int
+    point: tuple[float, float]
+    welded: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """One beam's links, springs and joints, in units of length, and where they stand in the shared numbering.
+
+    Attributes:
+        name: the beam's name.
+        line: its stress-free neutral line, metres.
+        n: number of elements N.
+        first_link, first_joint: of this beam in the shared numbering.
+        h: element length.
+        s: arc length of the joints (N+2,).
+        lengths: of the links (N+1,), eq. (6).
+        rest: stress-free link angles (N+1,).
+        stiffness: E·I/h of the springs, units of S.
+        thickness: units of length.
+        stress_unit: E·t/2 in Pa; times a spring's change of angle over h in units of length⁻¹ per metre.
+        start, end: what the ends are joined to; no end is None for a free one, a free start a body of its own.
+    """
+
+    name: str
+    line: NeutralLine
+    n: int
+    first_link: int
+    first_joint: int
+    h: float
+    s: Array
+    lengths: Array
+    rest: Array
+    stiffness: float
+    thickness: float
+    stress_unit: float
+    start: Attachment
+    end: Attachment | None
+
+    @property
+    def links(self) -> slice:
+        """This beam's links in the shared numbering."""
+        return slice(self.first_link, self.first_link + self.n + 1)
+
+    @property
+    def joints(self) -> slice:
+        """This beam's joints in the shared numbering."""
+        return slice(self.first_joint, self.first_joint + self.n + 2)
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """The mechanism without units.
+
+    Attributes:
+        chains: one per beam, in the scene's order.
+        free_bodies: names of the bodies that move, in the order of their (x, y, φ) in the unknowns.
+        references: initial position of each free body's reference place (its first point), (B, 2), units of length.
+        unit_length: ℓ, m.
+        unit_moment: S, N·m.
+        couplings: springs' stiffness between link i and i+1 in the shared numbering, zero between
+            beams, (n_links−1,), units of S.
+        rest_turns: θ⁰_{i+1} − θ⁰_i in the same places.
+        lengths: of all links, units of length.
+        rest: stress-free angles of all links.
+    """
+
+    chains: tuple[Chain, ...]
+    free_bodies: tuple[str, ...]
+    references: Array
+    unit_length: float
+    unit_moment: float
+    couplings: Array
+    rest_turns: Array
+    lengths: Array
+    rest: Array
+
+    @property
+    def n_links(self) -> int:
+        """Links of all beams."""
+        return len(self.lengths)
+
+    @property
+    def n_joints(self) -> int:
+        """Joints of all beams, ends included."""
+        return self.n_links + len(self.chains)
+
+    @property
+    def unit_force(self) -> float:
+        """S/ℓ, N."""
+        return self.unit_moment / self.unit_length
+
+    def chain(self, name: str) -> Chain:
+        """The chain of a beam."""
+        return next(chain for chain in self.chains if chain.name == name)
+
+
+def build(scene: Scene, settings: Settings) -> Model:
+    """Cut every beam into elements, eqs. (2)-(3), and leave the units behind.
+
+    Raises:
+        SceneError: the numbers of links do not fit the scene's beams.
+    """
+    settings.check(scene)
+    lines = {name: neutral_line(beam.curve) for name, beam in scene.beams.items()}
+    unit_length = max(line.length for line in lines.values())
+    rigidities = {
+        name: scene.materials[beam.material].youngs_modulus * beam.width * beam.thickness**3 / 12.0
+        for name, beam in scene.beams.items()
+    }
+    unit_moment = max(rigidities.values()) / unit_length
+    places = {name: next(iter(body.points.values())) for name, body in scene.bodies.items() if body.motion == "free"}
+    # a chain begins somewhere: a start that nothing holds is welded to a body that nothing else holds
+    places |= {_loose(name): beam.curve.start for name, beam in scene.beams.items() if isinstance(beam.start, FreeEnd)}
+    free_bodies = tuple(places)
+    references = np.array(list(places.values()), dtype=float).reshape(-1, 2)
+
+    def attachment(end: BeamEnd) -> Attachment | None:
+        if isinstance(end, FreeEnd):
+            return None
+        owner = scene.body_of(end.point)
+        x, y = scene.bodies[owner].points[end.point]
+        body = free_bodies.index(owner) if owner in free_bodies else -1
+        if body >= 0:
+            x, y = x - references[body, 0], y - references[body, 1]
+        return Attachment(body, (x / unit_length, y / unit_length), isinstance(end, WeldedEnd))
+
+    chains: list[Chain] = []
+    first_link = first_joint = 0
+    for name, beam in scene.beams.items():
+        line, n = lines[name], settings.links_of(name)
+        h = line.length / n
+        s = np.concatenate(([0.0], (np.arange(n) + 0.5) * h, [line.length]))
+        x, y = line.position(s)
+        dx, dy = np.diff(x), np.diff(y)
+        middle = line.angle(0.5 * (s[1:] + s[:-1]))  # a chord of constant curvature has its middle's direction
+        chains.append(
+            Chain(
+                name=name,
+                line=line,
+                n=n,
+                first_link=first_link,
+                first_joint=first_joint,
+                h=h / unit_length,
+                s=s / unit_length,
+                lengths=np.hypot(dx, dy) / unit_length,
+                rest=middle,
+                stiffness=rigidities[name] / h / unit_moment,
+                thickness=beam.thickness / unit_length,
+                stress_unit=0.5 * scene.materials[beam.material].youngs_modulus * beam.thickness / unit_length,
+                start=attachment(beam.start) or Attachment(free_bodies.index(_loose(name)), (0.0, 0.0), welded=True),
+                end=attachment(beam.end),
+            )
+        )
+        first_link += n + 1
+        first_joint += n + 2
+    couplings = np.zeros(first_link - 1)
+    for chain in chains:
+        couplings[chain.first_link : chain.first_link + chain.n] = chain.stiffness
+    rest = np.concatenate([chain.rest for chain in chains])
+    return Model(
+        chains=tuple(chains),
+        free_bodies=free_bodies,
+        references=references / unit_length,
+        unit_length=unit_length,
+        unit_moment=unit_moment,
+        couplings=couplings,
+        rest_turns=np.diff(rest),
+        lengths=np.concatenate([chain.lengths for chain in chains]),
+        rest=rest,
+    )
+
+
+def _loose(beam: str) -> str:
+    """Name of the body of a beam's free start; no name in a scene holds a dot."""
+    return f"{beam}.start"

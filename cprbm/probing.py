@@ -1,0 +1,117 @@
+"""The numbers a scene asks for, read off a state; meanings in :mod:`scene.answer`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cprbm import nearest, smooth
+from cprbm.equilibrium import Point, Problem, potential_energy
+from cprbm.forces import contact_forces, supports
+from cprbm.mechanism import Mechanism
+from cprbm.stress import bending_stress
+from scene import Probe, Scene, Shape
+from scene.answer import Array, frozen_array
+from scene.statement import PinnedEnd, WeldedEnd
+
+
+def probed(scene: Scene, mechanism: Mechanism, point: Point, closed_at: dict[str, float]) -> dict[str, Array]:
+    """Every probe's value at a state; ``closed_at`` holds the load at which contacts closed."""
+    return {
+        probe.name: frozen_array(_value(scene, mechanism, point, probe, closed_at)).ravel() for probe in scene.probes
+    }
+
+
+def _value(
+    scene: Scene, mechanism: Mechanism, point: Point, probe: Probe, closed_at: dict[str, float]
+) -> Array | float | list[float]:
+    problem = mechanism.problem
+    model = problem.model
+    match probe.quantity:
+        case "displacement":
+            return _displacement(scene, problem, point, probe.of)
+        case "rotation":
+            return (
+                float(point.state.bodies[model.free_bodies.index(probe.of), 2])
+                if probe.of in model.free_bodies
+                else 0.0
+            )
+        case "force":
+            first = model.chain(scene.contacts[probe.of].between[0]).joints
+            forces = contact_forces(problem, point, probe.of)
+            return float(np.hypot(forces.fx[first].sum(), forces.fy[first].sum())) * model.unit_force
+        case "centre":
+            mine = np.array([name == probe.of for name in point.rows.contact], dtype=bool)
+            pressing = point.lam[mine]
+            if not np.any(pressing > 0.0):
+                return []
+            return float(pressing @ point.rows.arc[mine] / pressing.sum()) * model.unit_length
+        case "closing_load":
+            return [closed_at[probe.of]] if probe.of in closed_at else []
+        case "bending_stress":
+            return bending_stress(mechanism, point, model.chain(probe.of), probe.points)
+        case "reaction" | "reaction_moment":
+            force, moment = _reaction(scene, problem, point, probe.of)
+            return force * model.unit_force if probe.quantity == "reaction" else moment * model.unit_moment
+        case "potential_energy":
+            return potential_energy(problem, point) * model.unit_moment
+
+
+def _displacement(scene: Scene, problem: Problem, point: Point, name: str) -> Array:
+    owner = scene.body_of(name)
+    model = problem.model
+    if owner not in model.free_bodies:
+        return np.zeros(2)
+    b = model.free_bodies.index(owner)
+    u, v, phi = point.state.bodies[b]
+    rx, ry = np.array(scene.bodies[owner].points[name]) / model.unit_length - model.references[b]
+    # cos φ − 1 as −2 sin²(φ/2), which keeps small rotations exact
+    less, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
+    return np.array([u + less * rx - sin * ry, v + sin * rx + less * ry]) * model.unit_length
+
+
+def _reaction(scene: Scene, problem: Problem, point: Point, name: str) -> tuple[Array, float]:
+    force, moment = np.zeros(2), 0.0
+    for support in supports(problem, point):
+        beam = scene.beams[support.beam]
+        end = beam.start if support.at == "start" else beam.end
+        if isinstance(end, WeldedEnd | PinnedEnd) and end.point == name:
+            force = force + support.force
+            moment += support.moment
+    return force, moment
+
+
+def shapes(mechanism: Mechanism, point: Point) -> dict[str, Shape]:
+    """Deformed neutral lines, metres, two points per link."""
+    model = mechanism.problem.model
+    found = {}
+    for chain in model.chains:
+        s = smooth.halves(chain)
+        line = smooth.smooth_line(chain, model.unit_length, point.state, point.at).at(s)
+        found[chain.name] = Shape(
+            frozen_array(s * model.unit_length),
+            frozen_array(line.x * model.unit_length),
+            frozen_array(line.y * model.unit_length),
+        )
+    return found
+
+
+def touching(mechanism: Mechanism, point: Point) -> dict[str, Array]:
+    """Places (k, 2), metres, where closed contacts touch: between the neutral lines, by thickness."""
+    model = mechanism.problem.model
+    found = {}
+    for name, pair in mechanism.pairs.items():
+        pressing = [
+            arc
+            for arc, lam, contact in zip(point.rows.arc, point.lam, point.rows.contact, strict=True)
+            if contact == name and lam > 0.0
+        ]
+        if not pressing:
+            continue
+        s = np.array(pressing)
+        lines = pair.lines(point.state, point.at)
+        _, sigma, _ = nearest.distance_along(pair, lines, s)
+        A, B = lines[0].at(s), lines[1].at(sigma)
+        share = pair.a.thickness / (pair.a.thickness + pair.b.thickness)
+        xy = np.stack((A.x + share * (B.x - A.x), A.y + share * (B.y - A.y)), axis=1)
+        found[name] = frozen_array(xy * model.unit_length)
+    return found

@@ -1,0 +1,86 @@
+"""The CPRBM solver's numerical choices: nothing here belongs to the physical question."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Literal, cast
+
+from frozendict import frozendict
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+from scene import Mistake, Scene, SceneError
+
+FEWEST_LINKS = 2
+
+
+def _frozen(links: dict[str, int]) -> dict[str, int]:
+    return cast("dict[str, int]", frozendict(links))
+
+
+class Settings(BaseModel):
+    """How finely and by which contact formulation a scene is solved.
+
+    Attributes:
+        links: number of elements N per beam (N springs, N + 1 links), one number or one per beam's name.
+        formulation: ``auto`` measures the gap between smooth curves where they are closest;
+            ``paper`` constrains related joints against a fitted polynomial, eqs. (8)-(11).
+        degree: of the fitted polynomial of ``paper``; lowered to the number of points less one.
+        tolerance: largest scaled residual and violation of an equilibrium; round-off may set a higher floor.
+        iterations: most Newton iterations of one equilibrium.
+        largest_turn: most that a link may turn between two accepted load steps, rad.
+        smallest_step: smallest load step, as a fraction of the way between two stations.
+    """
+
+    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
+
+    links: int | Annotated[dict[str, int], AfterValidator(_frozen)] = 40
+    formulation: Literal["auto", "paper"] = "auto"
+    degree: Annotated[int, Field(ge=1, le=8)] = 4
+    tolerance: Annotated[float, Field(gt=0.0, le=1e-4)] = 1e-11
+    iterations: Annotated[int, Field(ge=1)] = 50
+    largest_turn: Annotated[float, Field(gt=0.0)] = 1.6
+    smallest_step: Annotated[float, Field(gt=0.0, le=1.0)] = 1e-5
+
+    def links_of(self, beam: str) -> int:
+        """Number of elements of ``beam``."""
+        return self.links if isinstance(self.links, int) else self.links[beam]
+
+    def finer(self) -> Settings:
+        """The same with twice the elements."""
+        return self.model_copy(update={"links": _doubled(self.links)})
+
+    def plain(self) -> dict[str, object]:
+        """The settings as plain values for the answer sheet."""
+        return self.model_dump(mode="json")
+
+    def check(self, scene: Scene) -> None:
+        """Refuse numbers of links that fit no beam of ``scene``.
+
+        Raises:
+            SceneError: a beam has no number, a number has no beam, or one is too small.
+        """
+        mistakes = []
+        named: Mapping[str, int] = dict.fromkeys(scene.beams, self.links) if isinstance(self.links, int) else self.links
+        for beam in named:
+            if beam not in scene.beams:
+                mistakes.append(Mistake(f"settings.links.{beam}", "no such beam", " or ".join(scene.beams), scene.file))
+        for beam in scene.beams:
+            if beam not in named:
+                mistakes.append(Mistake(f"settings.links.{beam}", "nothing", "a number of links", scene.file))
+            elif named[beam] < FEWEST_LINKS:
+                mistakes.append(
+                    Mistake(
+                        f"settings.links.{beam}",
+                        f"{named[beam]}",
+                        f"at least {FEWEST_LINKS} elements per beam",
+                        scene.file,
+                    )
+                )
+        if mistakes:
+            raise SceneError(mistakes)
+
+
+def _doubled(links: int | Mapping[str, int]) -> int | Mapping[str, int]:
+    if isinstance(links, int):
+        return 2 * links
+    return frozendict({beam: 2 * number for beam, number in links.items()})

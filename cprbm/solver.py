@@ -1,0 +1,181 @@
+"""From a scene to an answer: marching through the stations, load steps that cut and grow."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+import numpy as np
+from scipy.optimize import brentq
+
+from cprbm.certifying import certify
+from cprbm.contact import no_rows
+from cprbm.equilibrium import Equilibrium, Point, equilibrium, point_at
+from cprbm.forces import contact_imbalance
+from cprbm.kinematics import rest_state
+from cprbm.mechanism import Mechanism, mechanism_of
+from cprbm.probing import probed, shapes, touching
+from cprbm.settings import Settings
+from scene import Answer, Certificate, Ending, Event, Scene, StationAnswer
+
+GROWTH = 2.0
+EVENT_TOLERANCE = 1e-10  # of the load step in which a contact closed
+CLOSER = 8
+
+
+def answer(scene: Scene, settings: Settings | None = None) -> Answer:
+    """Solve a scene by the chained pseudo-rigid-body model.
+
+    Args:
+        scene: the problem statement.
+        settings: numerical choices; by default 40 links per beam and contact where beams are closest.
+
+    Returns:
+        Certified answers at the scene's stations, or those reached before the solver's Ending says why it stopped.
+
+    Raises:
+        SceneError: the settings do not fit the scene.
+    """
+    began = time.perf_counter()
+    settings = settings or Settings()
+    mechanism = mechanism_of(scene, settings)
+    march = _March(scene, settings, mechanism)
+    ending, sentence = march.run()
+    return Answer(
+        solver="cprbm",
+        scene=scene.name,
+        settings=settings.plain(),
+        ending=ending,
+        sentence=sentence,
+        stations=tuple(march.reached),
+        events=tuple(march.events),
+        seconds=time.perf_counter() - began,
+        notes=tuple(march.notes()),
+    )
+
+
+class _March:
+    """The state while marching: where we are, under which loads, and what was reached."""
+
+    def __init__(self, scene: Scene, settings: Settings, mechanism: Mechanism) -> None:
+        self.scene, self.settings, self.mechanism = scene, settings, mechanism
+        self.values: dict[str, float] = {}
+        problem = mechanism.problem
+        state = rest_state(problem.model)
+        closed = np.zeros(problem.closure.rows)
+        self.point = point_at(problem, {}, state, closed, np.zeros(0), no_rows())
+        self.reached: list[StationAnswer] = []
+        self.events: list[Event] = []
+        self.closed_at: dict[str, float] = {}
+        self.asked_events = {p.of for p in scene.probes if p.quantity == "closing_load"}
+
+    def run(self) -> tuple[Ending, str]:
+        """March through every stage; the Ending and its sentence."""
+        for stage in self.scene.stages:
+            for target in stage.stations:
+                begin = self.values.get(stage.steps, 0.0)
+                ending, sentence, certificate = self._advance(stage.name, stage.steps, begin, target)
+                if certificate is None:
+                    last = f"the last good value of {stage.steps} is {self.values.get(stage.steps, 0.0):.6g}"
+                    return ending, f"{ending.value}: {sentence}; {last}"
+                self.reached.append(
+                    StationAnswer(
+                        stage=stage.name,
+                        value=target,
+                        values=probed(self.scene, self.mechanism, self.point, self.closed_at),
+                        shapes=shapes(self.mechanism, self.point),
+                        touching=touching(self.mechanism, self.point),
+                        certificate=certificate,
+                    )
+                )
+        return Ending.COMPLETED, Ending.COMPLETED.value
+
+    def notes(self) -> list[str]:
+        """What a reader should know besides the numbers."""
+        said = [
+            f"contact '{name}' never closed at a station"
+            for name in self.scene.contacts
+            if not any(name in station.touching for station in self.reached)
+        ]
+        if self.mechanism.boundaries:
+            own = contact_imbalance(self.mechanism.problem, self.point)
+            said.append(
+                f"forces on a fitted boundary's points and on the joints that press it leave a moment of {own:.1e} "
+                "of the largest; the formulation has no rotational invariance"
+            )
+        return said
+
+    def _advance(self, stage: str, load: str, begin: float, target: float) -> tuple[Ending, str, Certificate | None]:
+        """Go from one load value to the next, directly or in steps; the certificate at the target."""
+        done, step, iterations = 0.0, 1.0, 0
+        while True:
+            step = min(step, 1.0 - done)
+            fraction = 1.0 if done + step >= 1.0 else done + step
+            value = target if fraction == 1.0 else begin + fraction * (target - begin)
+            found = self._try(self.point, {**self.values, load: value})
+            iterations += found.iterations
+            certificate, ending = certify(self.mechanism, self.settings, found)
+            turned = float(np.max(np.abs(found.point.state.theta - self.point.state.theta)))
+            if ending is Ending.COMPLETED and turned > self.settings.largest_turn:
+                ending, sentence = (
+                    Ending.STEP_TOO_SMALL,
+                    f"a link turned by {turned:.2f} rad in one load step",
+                )
+            elif certificate.failures:
+                sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
+            if ending is Ending.COMPLETED:
+                self._note_events(stage, load, found.point, value)
+                self.point, done = found.point, fraction
+                self.values[load] = value
+                if fraction == 1.0:
+                    return ending, "", replace(certificate, iterations=iterations)
+                step *= GROWTH
+                continue
+            step *= 0.5
+            if step < self.settings.smallest_step:
+                if not found.converged:
+                    ending = Ending.STEP_TOO_SMALL
+                return ending, sentence, None
+
+    def _try(self, start: Point, values: dict[str, float]) -> Equilibrium:
+        return equilibrium(self.mechanism.problem, values, start, self.settings.tolerance, self.settings.iterations)
+
+    def _note_events(self, stage: str, load: str, after: Point, value: float) -> None:
+        """Find where contacts closed in the load step that led to ``after``, if the scene asks."""
+        for name in self.asked_events:
+            if name in self.closed_at or not _presses(after, name) or _presses(self.point, name):
+                continue
+            closing = self._closing(name, load, value)
+            if closing is not None:
+                self.closed_at[name] = closing
+                self.events.append(Event(stage, name, "closes", closing))
+
+    def _closing(self, name: str, load: str, target: float) -> float | None:
+        """The load at which the gap of an open contact becomes zero, the contact itself left out."""
+        problem = self.mechanism.without(name)
+        begin = self.values.get(load, 0.0)
+        near = point_at(problem, self.values, self.point.state, self.point.mu, np.zeros(0), no_rows())
+
+        def overlap(value: float) -> float:
+            nonlocal near
+            values = {**self.values, load: value}
+            found = equilibrium(problem, values, near, self.settings.tolerance, self.settings.iterations)
+            if not found.converged:
+                return float("nan")
+            near = found.point
+            return max(self.mechanism.overlap(name, found.point.state, found.point.at), -1.0)
+
+        # without the contact the far end may be out of reach: come closer until it is not
+        low, high = overlap(begin), overlap(target)
+        for _ in range(CLOSER):
+            if not np.isnan(high):
+                break
+            target = 0.5 * (begin + target)
+            high = overlap(target)
+        if not low <= 0.0 <= high:
+            return None
+        return float(brentq(overlap, begin, target, xtol=EVENT_TOLERANCE * abs(target - begin), rtol=8.9e-16))
+
+
+def _presses(point: Point, contact: str) -> bool:
+    return any(lam > 0.0 for lam, name in zip(point.lam, point.rows.contact, strict=True) if name == contact)

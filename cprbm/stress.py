@@ -1,0 +1,74 @@
+"""Bending moment and stress along a beam, eq. (7), with the kinks that contact forces make.
+
+==========  ==============================================================================
+m_i         moment of spring i: the mean of M over element i, whose change of curvature is even
+s_c, V      place of a contact force on the beam and its part along the left normal
+K(s)        ½ Σ V |s − s_c|, the kinks of M: dM/ds jumps by V at s_c
+K̄_i         mean of K over element i
+σ           E·t/2 · M/(EI)
+==========  ==============================================================================
+
+M − K is smooth: its means m_i − K̄_i stand for its values at the springs and are joined by straight
+lines; K is added back where the stress is wanted.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cprbm import nearest
+from cprbm.energy import spring_moments
+from cprbm.equilibrium import Point
+from cprbm.forces import contact_forces
+from cprbm.mechanism import Mechanism
+from cprbm.model import Chain
+from scene.answer import Array
+
+
+def bending_stress(mechanism: Mechanism, point: Point, chain: Chain, points: int) -> Array:
+    """σ (points,), Pa, at equal arc-length steps; beyond the outer springs the nearest two are continued."""
+    moments = spring_moments(mechanism.problem.model, point.state)[chain.first_link : chain.first_link + chain.n]
+    at, jumps = _kinks(mechanism, point, chain)
+    edges = np.linspace(0.0, chain.s[-1], chain.n + 1)
+    # ∫|s − s_c| ds = ½ (s − s_c)|s − s_c|
+    integral = 0.25 * ((edges[:, None] - at) * np.abs(edges[:, None] - at)) @ jumps
+    smooth = moments - np.diff(integral) / chain.h
+    first, last = 1.5 * smooth[0] - 0.5 * smooth[1], 1.5 * smooth[-1] - 0.5 * smooth[-2]
+    s = np.linspace(0.0, chain.s[-1], points)
+    moment = np.interp(s, chain.s, np.concatenate(([first], smooth, [last])))
+    moment += 0.5 * np.abs(s[:, None] - at) @ jumps
+    return np.asarray(chain.stress_unit * moment / (chain.stiffness * chain.h))
+
+
+def _kinks(mechanism: Mechanism, point: Point, chain: Chain) -> tuple[Array, Array]:
+    """s_c and V of all contact forces on a beam, (k,) each."""
+    places: list[float] = []
+    jumps: list[float] = []
+    if mechanism.boundaries:  # forces of a fitted boundary act on joints
+        forces = contact_forces(mechanism.problem, point)
+        theta = point.state.theta[chain.links]
+        tangent = np.concatenate((theta[:1], 0.5 * (theta[1:] + theta[:-1]), theta[-1:]))
+        normal = forces.fy[chain.joints] * np.cos(tangent) - forces.fx[chain.joints] * np.sin(tangent)
+        pressed = np.flatnonzero(normal)
+        return chain.s[pressed], normal[pressed]
+    rows = point.rows
+    for name, pair in mechanism.pairs.items():
+        if chain not in (pair.a, pair.b):
+            continue
+        pressing = [r for r in range(rows.size) if rows.contact[r] == name and point.lam[r] > 0.0]
+        if not pressing:
+            continue
+        lines = pair.lines(point.state, point.at)
+        s = rows.arc[pressing]
+        _, sigma, _ = nearest.distance_along(pair, lines, s)
+        on_a = rows.joints - pair.a.first_joint
+        mine = (on_a >= 0) & (on_a < pair.a.n + 2)
+        p = len(rows.joints)
+        for r, s_a, s_b in zip(pressing, s, sigma, strict=True):
+            force = -point.lam[r] * np.array([rows.slopes[r, :p][mine].sum(), rows.slopes[r, p : 2 * p][mine].sum()])
+            on_this = force if chain is pair.a else -force
+            place, line = (s_a, lines[0]) if chain is pair.a else (s_b, lines[1])
+            psi = float(line.at(np.array([place])).psi[0])
+            places.append(float(place))
+            jumps.append(float(on_this[1] * np.cos(psi) - on_this[0] * np.sin(psi)))
+    return np.array(places), np.array(jumps)

@@ -1,0 +1,62 @@
+"""Names: each used once across the scene, and none that nothing bears."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from scene.mistakes import Mistake, unknown_name
+from scene.statement import FreeEnd, Moment, Scene
+
+RESERVED = "scene"
+
+
+def point_names(scene: Scene) -> list[str]:
+    """Names of the points of all bodies."""
+    return [point for body in scene.bodies.values() for point in body.points]
+
+
+def repeated_names(scene: Scene) -> Iterator[Mistake]:
+    """Names of points, bodies, beams, contacts and loads that are used twice or reserved."""
+    bearers = [
+        *((f"bodies.{name}", name) for name in scene.bodies),
+        *(
+            (f"bodies.{name}.points.{point}", point)
+            for name, body in scene.bodies.items()
+            for point in body.points
+        ),
+        *((f"beams.{name}", name) for name in scene.beams),
+        *((f"loads.{name}", name) for name in scene.loads),
+        *((f"contacts.{name}", name) for name in scene.contacts),
+    ]
+    first: dict[str, str] = {}
+    for key, name in bearers:
+        if name == RESERVED:
+            yield Mistake(key, f"the name {name!r}, which stands for the scene itself", "another name")
+        elif name in first:
+            allowed = "names that are used once among points, bodies, beams, loads and contacts"
+            yield Mistake(key, f"the name {name!r}, which {first[name]} has too", allowed)
+        first.setdefault(name, key)
+
+
+def unknown_names(scene: Scene) -> Iterator[Mistake]:
+    """References to materials, points, bodies, beams and loads that do not exist."""
+    points = point_names(scene)
+    for name, beam in scene.beams.items():
+        if beam.material not in scene.materials:
+            yield unknown_name(f"beams.{name}.material", beam.material, "material", scene.materials)
+        for side, end in (("start", beam.start), ("end", beam.end)):
+            if not isinstance(end, FreeEnd) and end.point not in points:
+                yield unknown_name(f"beams.{name}.{side}.point", end.point, "point", points)
+    for name, load in scene.loads.items():
+        if isinstance(load, Moment):
+            if load.body not in scene.bodies:
+                yield unknown_name(f"loads.{name}.body", load.body, "body", scene.bodies)
+        elif load.point not in points:
+            yield unknown_name(f"loads.{name}.point", load.point, "point", points)
+    for name, contact in scene.contacts.items():
+        for i, beam_name in enumerate(contact.between):
+            if beam_name not in scene.beams:
+                yield unknown_name(f"contacts.{name}.between[{i}]", beam_name, "beam", scene.beams)
+    for i, stage in enumerate(scene.stages):
+        if stage.steps not in scene.loads:
+            yield unknown_name(f"stages[{i}].steps", stage.steps, "load", scene.loads)

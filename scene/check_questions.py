@@ -1,0 +1,79 @@
+"""What is asked and what is claimed: probes fit what they are of, claims are about what is asked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import isclose
+
+from scene.check_names import RESERVED, point_names
+from scene.mistakes import Mistake, unknown_name
+from scene.statement import FreeEnd, Quantity, Scene
+
+# what a quantity may be asked of
+_OF: dict[Quantity, str] = {
+    "displacement": "point",
+    "rotation": "body",
+    "force": "contact",
+    "centre": "contact",
+    "closing_load": "contact",
+    "bending_stress": "beam",
+    "reaction": "support",
+    "reaction_moment": "support",
+    "potential_energy": RESERVED,
+}
+_SAID = {
+    "point": "a body's point",
+    "body": "a body",
+    "contact": "a contact",
+    "beam": "a beam",
+    "support": "a point of a fixed body at which a beam ends",
+    RESERVED: f"{RESERVED!r}, the scene itself",
+}
+
+
+def wrong_probes(scene: Scene) -> Iterator[Mistake]:
+    """Probes of nothing, of the wrong thing, or named twice."""
+    bearers = _bearers(scene)
+    everything = list(dict.fromkeys(name for names in bearers.values() for name in names))
+    seen: set[str] = set()
+    for i, probe in enumerate(scene.probes):
+        key = f"probes[{i}]"
+        kind = _OF[probe.quantity]
+        if probe.of not in everything:
+            yield unknown_name(f"{key}.of", probe.of, "point, body, beam or contact", everything)
+        elif probe.of not in bearers[kind]:
+            listed = ", ".join(repr(name) for name in bearers[kind]) or "there is none"
+            found = f"{probe.quantity!r} of {probe.of!r}"
+            yield Mistake(key, found, f"{probe.quantity!r} of {_SAID[kind]}: {listed}")
+        if probe.name in seen:
+            yield Mistake(key, f"{probe.name!r} again", "each probe once")
+        seen.add(probe.name)
+        if "points" in probe.model_fields_set and probe.quantity != "bending_stress":
+            yield Mistake(f"{key}.points", f"places along {probe.name!r}", "points for 'bending_stress' only")
+
+
+def wrong_claims(scene: Scene) -> Iterator[Mistake]:
+    """Claims about probes or stations that the scene does not have."""
+    probes = [probe.name for probe in scene.probes]
+    stations = [value for stage in scene.stages for value in stage.stations]
+    for i, claim in enumerate(scene.claims):
+        if claim.probe not in probes:
+            yield unknown_name(f"claims[{i}].probe", claim.probe, "probe", probes)
+        if not any(isclose(claim.station, value, rel_tol=1e-9) for value in stations):
+            listed = ", ".join(f"{value:g}" for value in stations)
+            yield Mistake(f"claims[{i}].station", f"{claim.station:g}", f"a station of a stage: {listed}")
+
+
+def _bearers(scene: Scene) -> dict[str, list[str]]:
+    """Names by what they are of: the keys of ``_SAID``."""
+    fixed = {p for body in scene.bodies.values() if body.motion == "fixed" for p in body.points}
+    ends = [end for beam in scene.beams.values() for end in (beam.start, beam.end)]
+    supports = [end.point for end in ends if not isinstance(end, FreeEnd) and end.point in fixed]
+    return {
+        "point": point_names(scene),
+        "body": list(scene.bodies),
+        "contact": list(scene.contacts),
+        "beam": list(scene.beams),
+        "support": list(dict.fromkeys(supports)),
+        RESERVED: [RESERVED],
+    }

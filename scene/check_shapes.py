@@ -1,0 +1,232 @@
+"""Shapes: curves that exist, sections that are beams, ends that meet bodies, beams that do not overlap.
+
+Bounds stand on dimensionless numbers only.  With thickness t, arc length L, curvature κ:
+
+* 1e-5 ≤ t/L ≤ 0.2: above, no beam theory holds; below, EI/L³ leaves nothing above round-off;
+* t κ / 2 < 0.5: the inner edge keeps at least half of the neutral line's length;
+* L ≥ 1e-6 of the largest coordinate: nearer to nothing, positions lose the digits the other checks ask for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import hypot
+
+import numpy as np
+
+from scene.geometry import arc_length, closest_pair, largest_curvature, points_on, scaled, tangents_on
+from scene.mistakes import Mistake
+from scene.statement import Arc, Beam, BeamContact, Curve, FreeEnd, Point, Scene
+
+THINNEST, THICKEST = 1e-5, 0.2
+MOST_CURVED = 0.5
+SHORTEST = 1e-6
+MEETING = 1e-6  # of the beam's length, or of the arc's radius
+OVERLAP = 1e-6  # of the mean thickness
+CROSSING_ANGLE = 1e-3  # rad; lines that meet at less are taken as tangent
+JOINED = 5.0  # mean thicknesses beside a shared end in which an overlap is no mistake
+
+
+def wrong_curves(scene: Scene) -> Iterator[Mistake]:
+    """Curves without length, arcs whose ends lie on no common circle."""
+    for name, beam in scene.beams.items():
+        mistake = _wrong_curve(f"beams.{name}.curve", beam.curve)
+        if mistake is not None:
+            yield mistake
+
+
+def wrong_sections(scene: Scene) -> Iterator[Mistake]:
+    """Thicknesses out of proportion to the beam's length or curvature."""
+    for name, beam in scene.beams.items():
+        if _has_shape(beam.curve) and (mistake := _wrong_section(name, beam)) is not None:
+            yield mistake
+
+
+def wrong_ends(scene: Scene) -> Iterator[Mistake]:
+    """Ends of beams that meet no body where they are said to."""
+    places = {name: place for body in scene.bodies.values() for name, place in body.points.items()}
+    for name, beam in scene.beams.items():
+        if not _has_shape(beam.curve):
+            continue
+        for side, end, at in (
+            ("start", beam.start, beam.curve.start),
+            ("end", beam.end, beam.curve.end),
+        ):
+            if isinstance(end, FreeEnd) or end.point not in places:
+                continue
+            place = places[end.point]
+            apart = _distance(at, place)
+            if not apart <= MEETING * arc_length(beam.curve):
+                yield Mistake(
+                    f"beams.{name}.{side}",
+                    f"a beam end that meets no body: the curve's {side} is at {_at(at)} m, "
+                    f"the point {end.point!r} at {_at(place)} m, {apart:.3g} m apart",
+                    f"at most {MEETING:g} of the beam's length between them",
+                )
+
+
+def wrong_contacts(scene: Scene) -> Iterator[Mistake]:
+    """Contacts of a beam with itself, pairs named twice, and paper entries that do not belong to the pair."""
+    seen: dict[frozenset[str], str] = {}
+    for name, contact in scene.contacts.items():
+        key = f"contacts.{name}"
+        pair = frozenset(contact.between)
+        if len(pair) == 1:
+            yield Mistake(f"{key}.between", f"{contact.between[0]!r} twice", "two different beams")
+        elif pair in seen:
+            yield Mistake(
+                f"{key}.between", f"the pair of contacts.{seen[pair]} again", "each pair of beams once"
+            )
+        seen.setdefault(pair, name)
+        yield from _wrong_paper(key, contact)
+
+
+def overlaps(scene: Scene) -> Iterator[Mistake]:
+    """Beams of a contact that overlap (thick) or cross (lines) where they start.
+
+    Where the two beams share an end, they overlap there by their nature: a stretch of a few thicknesses
+    beside the shared end is left out of the check.
+    """
+    for name, contact in scene.contacts.items():
+        first, second = (scene.beams.get(beam) for beam in contact.between)
+        if first is None or second is None or contact.between[0] == contact.between[1]:
+            continue
+        if any(
+            not _has_shape(beam.curve) or _wrong_section(name, beam) is not None for beam in (first, second)
+        ):
+            continue
+        found = _overlap(first, second, contact.thick)
+        if found is not None:
+            beams = f"{contact.between[0]!r} and {contact.between[1]!r}"
+            yield Mistake(f"contacts.{name}", f"{beams} {found[0]}", found[1])
+
+
+def _wrong_curve(key: str, curve: Curve) -> Mistake | None:
+    if curve.start == curve.end:
+        return Mistake(
+            key, f"a start and an end at the same place {_at(curve.start)} m", "two different places"
+        )
+    if isinstance(curve, Arc):
+        radii = _distance(curve.start, curve.center), _distance(curve.end, curve.center)
+        if min(radii) == 0.0:
+            return Mistake(key, "an end at the arc's own center", "ends on a circle about the center")
+        if not abs(radii[1] - radii[0]) <= MEETING * radii[0]:
+            return Mistake(
+                key,
+                f"ends that lie on no common circle: the start is {radii[0]:.9g} m from the center, "
+                f"the end {radii[1]:.9g} m",
+                f"distances that differ by at most {MEETING:g} of the radius",
+            )
+    length, largest = arc_length(curve), _largest_coordinate(curve)
+    if not SHORTEST * largest <= length < float("inf"):
+        return Mistake(
+            key,
+            f"a length of {length:.3g} m at coordinates up to {largest:.3g} m",
+            f"a length of at least {SHORTEST:g} of the largest coordinate",
+        )
+    return None
+
+
+def _has_shape(curve: Curve) -> bool:
+    return _wrong_curve("", curve) is None
+
+
+def _wrong_section(name: str, beam: Beam) -> Mistake | None:
+    key = f"beams.{name}.thickness"
+    slenderness = beam.thickness / arc_length(beam.curve)
+    if not THINNEST <= slenderness <= THICKEST:
+        return Mistake(
+            key,
+            f"{beam.thickness:g} m, which is {slenderness:.3g} of the beam's length",
+            f"a thickness between {THINNEST:g} and {THICKEST:g} of the beam's length",
+        )
+    bentness = 0.5 * beam.thickness * largest_curvature(beam.curve)
+    if bentness >= MOST_CURVED:
+        return Mistake(
+            key,
+            f"{beam.thickness:g} m, half of which is {bentness:.3g} of the radius of curvature",
+            f"half a thickness less than {MOST_CURVED:g} of the radius of curvature",
+        )
+    return None
+
+
+def _wrong_paper(key: str, contact: BeamContact) -> Iterator[Mistake]:
+    paper = contact.paper
+    if paper is None:
+        return
+    pair = f"one of the pair: {contact.between[0]!r}, {contact.between[1]!r}"
+    if paper.boundary not in contact.between:
+        yield Mistake(f"{key}.paper.boundary", repr(paper.boundary), pair)
+    for beam, related in paper.related.items():
+        where = f"{key}.paper.related.{beam}"
+        if beam not in contact.between:
+            yield Mistake(where, f"the beam {beam!r}", pair)
+        given = [(axis, span) for axis, span in (("x", related.x), ("y", related.y)) if span is not None]
+        if len(given) != 1:
+            yield Mistake(
+                where, "both x and y" if given else "neither x nor y", "a range in exactly one of x and y"
+            )
+        for axis, span in given:
+            if span[0] >= span[1]:
+                yield Mistake(
+                    f"{where}.{axis}", str(list(span)), "a range from the smaller to the larger value"
+                )
+
+
+def _overlap(first: Beam, second: Beam, thick: bool) -> tuple[str, str] | None:  # noqa: FBT001
+    """What is wrong between two beams, and what is allowed; None where nothing is."""
+    size = max(_largest_coordinate(first.curve), _largest_coordinate(second.curve))
+    curve1, curve2 = scaled(first.curve, size), scaled(second.curve, size)
+    mean = 0.5 * (first.thickness + second.thickness) / size
+    left_out = JOINED * mean if thick else CROSSING_ANGLE * min(arc_length(curve1), arc_length(curve2))
+    range1, range2 = (
+        _apart_from_shared(curve1, curve2, left_out),
+        _apart_from_shared(curve2, curve1, left_out),
+    )
+    if range1[0] >= range1[1] or range2[0] >= range2[1]:
+        return None
+    pair = closest_pair(curve1, curve2, range1, range2)
+    if thick:
+        depth = mean - pair.distance
+        if depth <= OVERLAP * mean:
+            return None
+        return (
+            f"that overlap at the start by {depth * size:.3g} m, {depth / mean:.3g} of their mean thickness",
+            f"beams that touch or are apart (overlap at most {OVERLAP:g} of the mean thickness)",
+        )
+    t1 = tangents_on(curve1, np.array([pair.u1]))[0]
+    t2 = tangents_on(curve2, np.array([pair.u2]))[0]
+    inside = all(1e-6 < u < 1.0 - 1e-6 for u in (pair.u1, pair.u2))
+    meets = pair.distance <= MEETING * min(arc_length(curve1), arc_length(curve2))
+    if not (inside and meets and abs(t1[0] * t2[1] - t1[1] * t2[0]) > CROSSING_ANGLE):
+        return None
+    place = points_on(curve1, np.array([pair.u1]))[0] * size
+    where = _at((float(place[0]), float(place[1])))
+    return f"that cross at the start, at {where} m", "neutral lines that touch or are apart"
+
+
+def _apart_from_shared(curve: Curve, other: Curve, left_out: float) -> tuple[float, float]:
+    """Range of u on ``curve`` without ``left_out`` metres beside an end that is an end of ``other`` too."""
+    length = arc_length(curve)
+    share = left_out / length
+    low, high = 0.0, 1.0
+    near = MEETING * max(length, arc_length(other))
+    for end in (other.start, other.end):
+        if _distance(curve.start, end) <= near:
+            low = share
+        if _distance(curve.end, end) <= near:
+            high = 1.0 - share
+    return low, high
+
+
+def _distance(a: Point, b: Point) -> float:
+    return hypot(b[0] - a[0], b[1] - a[1])
+
+
+def _largest_coordinate(curve: Curve) -> float:
+    places = [curve.start, curve.end, *([curve.center] if isinstance(curve, Arc) else [])]
+    return max(abs(coordinate) for place in places for coordinate in place)
+
+
+def _at(place: Point) -> str:
+    return f"({place[0]:.9g}, {place[1]:.9g})"

@@ -1,0 +1,53 @@
+"""Which keys a table of a scene file may have, read from the records themselves."""
+
+from __future__ import annotations
+
+from types import NoneType, UnionType
+from typing import Annotated, Any, Union, get_args, get_origin
+
+from pydantic import BaseModel
+
+from scene.statement import Scene
+
+
+def keys_at(loc: tuple[int | str, ...]) -> tuple[str, ...]:
+    """Keys of the table at ``loc``, a place in a scene as pydantic names it (tags of unions included)."""
+    place: Any = Scene
+    for part in loc:
+        place = _below(_bare(place), part)
+    record = _bare(place)
+    return tuple(key for key in record.model_fields if (record, key) != (Scene, "file"))
+
+
+def tags_at(loc: tuple[int | str, ...]) -> tuple[str, ...]:
+    """Kinds (or joints) of which the table at ``loc`` may be one."""
+    place: Any = Scene
+    for part in loc:
+        place = _below(_bare(place), part)
+    return tuple(tag for record in get_args(_bare(place)) for tag in _tags(record))
+
+
+def _below(place: Any, part: int | str) -> Any:  # noqa: ANN401 - annotations are whatever they are
+    """The annotation one step below ``place``."""
+    if isinstance(place, type) and issubclass(place, BaseModel):
+        return place.model_fields[str(part)].annotation
+    if get_origin(place) in (Union, UnionType):
+        return next(record for record in get_args(place) if part in _tags(record))
+    # of Mapping[Name, T] and tuple[T, ...], T
+    return next(each for each in reversed(get_args(place)) if each is not ...)
+
+
+def _bare(place: Any) -> Any:  # noqa: ANN401
+    """An annotation without its metadata and without None."""
+    while get_origin(place) is Annotated:
+        place = get_args(place)[0]
+    if get_origin(place) in (Union, UnionType):
+        some = [each for each in get_args(place) if each is not NoneType]
+        if len(some) == 1:
+            return _bare(some[0])
+    return place
+
+
+def _tags(record: type[BaseModel]) -> tuple[str, ...]:
+    fields = record.model_fields
+    return get_args(fields["kind" if "kind" in fields else "joint"].annotation)

@@ -1,0 +1,100 @@
+"""Scenes with textbook answers, with awkward numbers: powers of two hide faults."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from scene.reading import scene_from
+
+LENGTH, THICKNESS, WIDTH, MODULUS = 0.0731, 0.00113, 0.0087, 7.13e9
+RIGIDITY = MODULUS * WIDTH * THICKNESS**3 / 12.0
+HINGE = Path(__file__).parents[2] / "comparisons" / "cases" / "hinge.toml"
+
+
+def hinge_data() -> dict[str, Any]:
+    return tomllib.loads(HINGE.read_text(encoding="utf-8"))
+
+
+def hinge(**changes: Any):
+    """The hinge with some top-level keys replaced, and without the paper's claims."""
+    return scene_from({**hinge_data(), "claims": [], **changes})
+
+
+def cantilever_data(load: dict[str, Any], stations: list[float]) -> dict[str, Any]:
+    return {
+        "name": "cantilever",
+        "materials": {"m": {"youngs_modulus": MODULUS, "poisson_ratio": 0.31}},
+        "bodies": {
+            "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
+            "tip": {"motion": "free", "points": {"T": [LENGTH, 0.0]}},
+        },
+        "beams": {
+            "beam": {
+                "curve": {"kind": "line", "start": [0.0, 0.0], "end": [LENGTH, 0.0]},
+                "thickness": THICKNESS,
+                "width": WIDTH,
+                "material": "m",
+                "start": {"joint": "weld", "point": "R"},
+                "end": {"joint": "weld", "point": "T"},
+            }
+        },
+        "loads": {"P": load},
+        "stages": [{"name": "load", "steps": "P", "stations": stations}],
+        "probes": [
+            {"of": "T", "quantity": "displacement"},
+            {"of": "tip", "quantity": "rotation"},
+            {"of": "R", "quantity": "reaction"},
+            {"of": "R", "quantity": "reaction_moment"},
+            {"of": "beam", "quantity": "bending_stress", "points": 11},
+            {"of": "scene", "quantity": "potential_energy"},
+        ],
+    }
+
+
+def force(x: float, y: float) -> dict[str, Any]:
+    return {"kind": "force", "point": "T", "direction": [x, y]}
+
+
+MOMENT = {"kind": "moment", "body": "tip"}
+
+
+def cantilever(load: dict[str, Any], stations: list[float]):
+    return scene_from(cantilever_data(load, stations))
+
+
+def turned(data: dict[str, Any], angle: float, shift: tuple[float, float]) -> dict[str, Any]:
+    """The same scene after a rigid motion: every place and every direction turned."""
+    from math import cos, sin
+
+    c, s = cos(angle), sin(angle)
+
+    def place(p: list[float]) -> list[float]:
+        return [c * p[0] - s * p[1] + shift[0], s * p[0] + c * p[1] + shift[1]]
+
+    out = {**data}
+    out["bodies"] = {
+        name: {**body, "points": {k: place(p) for k, p in body["points"].items()}}
+        for name, body in data["bodies"].items()
+    }
+    out["beams"] = {
+        name: {
+            **beam,
+            "curve": {k: place(v) if isinstance(v, list) else v for k, v in beam["curve"].items()},
+        }
+        for name, beam in data["beams"].items()
+    }
+    out["loads"] = {
+        name: {
+            **load,
+            "direction": [
+                c * load["direction"][0] - s * load["direction"][1],
+                s * load["direction"][0] + c * load["direction"][1],
+            ],
+        }
+        if "direction" in load
+        else load
+        for name, load in data["loads"].items()
+    }
+    return out

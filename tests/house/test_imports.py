@@ -1,0 +1,116 @@
+"""Law 1 of the house, held by the source, and shown to bite on planted violations."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.house.imports import sources, violations
+
+ROOT = Path(__file__).parents[2]
+
+
+def _house(tmp_path, **files):
+    """A small house that keeps the law, with ``files`` (room__module: source) put in."""
+    lawful = {
+        "scene____init__": "from scene.statement import Scene\n",
+        "scene__statement": "import pydantic\nclass Scene: ...\n",
+        "cprbm____init__": "from scene import Scene\nfrom .chain import link\n",
+        "cprbm__chain": "import numpy\nfrom scene.statement import Scene\ndef link(): ...\n",
+        "fea_reference____init__": "from scene import Scene\nimport skfem\n",
+        "comparisons____init__": "",
+        "comparisons__pairing": "import cprbm\nfrom fea_reference import answer\n",
+        "comparisons__verdict": "from comparisons import pairing\nfrom scene import Scene\n",
+        "comparisons__figures": "def draw():\n    import matplotlib.pyplot as plt\n    return plt\n",
+    }
+    for name, source in (lawful | files).items():
+        room, _, module = name.partition("__")
+        path = tmp_path / room / (module.replace("__dot__", "/") + ".py")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(source)
+    return tmp_path
+
+
+def test_the_source_keeps_the_law():
+    assert violations(ROOT) == []
+
+
+def test_the_source_is_there_to_be_read():
+    assert {"scene", "scene.reading", "scene.statement"} <= set(sources(ROOT))
+
+
+def test_a_lawful_house_passes(tmp_path):
+    assert violations(_house(tmp_path)) == []
+
+
+PLANTED = {
+    "scene imports a solver": ("scene__bad", "import cprbm.chain", "scene may not import cprbm"),
+    "scene imports comparisons": (
+        "scene__bad",
+        "from comparisons import verdict",
+        "may not import comparisons",
+    ),
+    "a solver imports the other": ("cprbm__bad", "import fea_reference", "may not import fea_reference"),
+    "in a function": (
+        "cprbm__bad",
+        "def f():\n    from fea_reference import x",
+        "may not import fea_reference",
+    ),
+    "in a method in a branch": (
+        "fea_reference__bad",
+        "class A:\n    def f(self):\n        if self:\n            import cprbm as c\n",
+        "fea_reference may not import cprbm",
+    ),
+    "in a try": ("cprbm__bad", "try:\n    import comparisons\nexcept ImportError:\n    pass", "comparisons"),
+    "for type checkers only": (
+        "cprbm__bad",
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import fea_reference",
+        "may not import fea_reference",
+    ),
+    "else of a type checkers' branch": (
+        "cprbm__bad",
+        "import typing\nif typing.TYPE_CHECKING:\n    pass\nelse:\n    import fea_reference",
+        "may not import fea_reference",
+    ),
+    "by its name": (
+        "cprbm__bad",
+        "import importlib\nimportlib.import_module('fea_reference.x')",
+        "fea_reference",
+    ),
+    "by __import__": ("cprbm__bad", "m = __import__('comparisons')", "may not import comparisons"),
+    "by a name made at run time": (
+        "cprbm__bad",
+        "from importlib import import_module\nimport_module('fea' + '_reference')",
+        "nobody can tell",
+    ),
+    "comparisons beside pairing": ("comparisons__tables", "from cprbm import answer", "may not import cprbm"),
+    "a sub-package of comparisons": (
+        "comparisons__cli__dot__main",
+        "from fea_reference import answer",
+        "comparisons.cli.main:1",
+    ),
+    "a second door": (
+        "comparisons__views",
+        "def f():\n    import matplotlib",
+        "its one door is comparisons.figures",
+    ),
+    "a heavy library at the top": (
+        "comparisons__figures",
+        "from matplotlib import pyplot",
+        "inside the function",
+    ),
+    "skfem elsewhere": ("comparisons__bad", "def f():\n    import skfem", "only fea_reference may"),
+    "a cycle": ("cprbm__chain", "from cprbm.energy import e", None),
+    "a relative cycle in functions": ("cprbm__chain", "def f():\n    from . import energy", None),
+    "tests in a room": ("cprbm__bad", "from tests.references import hinge", "not the rooms the tests"),
+}
+
+
+@pytest.mark.parametrize("plant", PLANTED)
+def test_a_planted_violation_is_found(tmp_path, plant):
+    name, source, words = PLANTED[plant]
+    if words is None:
+        house = _house(tmp_path, **{name: source, "cprbm__energy": "from .chain import link\n"})
+        assert violations(house) == ["import cycle among cprbm.chain, cprbm.energy"]
+    else:
+        (sentence,) = violations(_house(tmp_path, **{name: source}))
+        assert words in sentence
