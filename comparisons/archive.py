@@ -81,10 +81,7 @@ def _unpacked_station(data: Plain) -> StationAnswer:
             }
         ),
         touching=frozendict(
-            {
-                name: frozen_array(np.reshape(_array(places), (-1, 2)))
-                for name, places in data["touching"].items()
-            }
+            {name: frozen_array(np.reshape(_array(places), (-1, 2))) for name, places in data["touching"].items()}
         ),
         certificate=Certificate(**certificate),
     )

@@ -94,9 +94,7 @@ def _shapes(scene: Scene, runs: Runs) -> Picture:
         for place, spots in enumerate(station.touching.values()):
             label = f"contact, {name}" if place == 0 else None
             x, y = 1e3 * spots.T
-            axes.plot(
-                x, y, marker, color=colour, markersize=9, markerfacecolor="none", linestyle="", label=label
-            )
+            axes.plot(x, y, marker, color=colour, markersize=9, markerfacecolor="none", linestyle="", label=label)
     for body in scene.bodies.values():
         for name, (x, y) in body.points.items():
             axes.annotate(name, (1e3 * x, 1e3 * y), textcoords="offset points", xytext=(-4, 7), ha="right")

@@ -235,9 +235,7 @@ def _steps(quantity: Quantity, ladder: list[Array]) -> Steps | None:
     d = ladder[0] - ladder[-1]
     if not d.any():
         return None
-    if (
-        quantity == "bending_stress"
-    ):  # the norm is the largest magnitude: the share is taken where that stands
+    if quantity == "bending_stress":  # the norm is the largest magnitude: the share is taken where that stands
         along = np.zeros_like(d)
         worst = int(np.argmax(np.abs(d)))
         along[worst] = np.sign(d[worst])

@@ -64,9 +64,7 @@ def probe_scale(scene: Scene, probe: Probe, stage: Stage, answers: tuple[Answer,
     return max(_largest((probe,), stage, answers), SMALLEST_SHARE * family)
 
 
-def family_scale(
-    scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[Answer, ...], *, contact: str
-) -> float:
+def family_scale(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[Answer, ...], *, contact: str) -> float:
     """The scale of a quantity's family in a stage; ``contact`` is the contact of a ``centre``."""
 
     def largest(*kinds: Quantity) -> float:

@@ -43,9 +43,7 @@ def of_answer(scene: Scene, answer: Answer) -> tuple[Sheet, ...]:
 def last_rows(compared: Comparison) -> tuple[Row, ...]:
     """The rows of the last station of the last stage."""
     stage = compared.scene.stages[-1]
-    return tuple(
-        row for row in compared.rows if row.stage == stage.name and row.station == stage.stations[-1]
-    )
+    return tuple(row for row in compared.rows if row.stage == stage.name and row.station == stage.stations[-1])
 
 
 def explanation(compared: Comparison) -> tuple[str, ...]:
@@ -208,9 +206,7 @@ def _certificates(compared: Comparison) -> Sheet:
         ("moment_balance", "|ΣM|"),
         ("smallest_curvature", "smallest curvature of the energy"),
     )
-    body.extend(
-        (label, *("–" if cert is None else number(cert[key]) for cert in found)) for key, label in keys
-    )
+    body.extend((label, *("–" if cert is None else number(cert[key]) for cert in found)) for key, label in keys)
     body.append(("iterations", *("–" if cert is None else str(cert["iterations"]) for cert in found)))
     body.append(("seconds", *(number(answer.seconds, 2) for answer in answers)))
     return Sheet(

@@ -75,9 +75,7 @@ def compared(scene: Scene, runs: Runs) -> Comparison:
         if (what := complaints(scene, answer))
     ]
     if found:
-        return Comparison(
-            scene, runs, (), Verdict(Word.UNDECIDED, "; ".join(found) + ".", (), completed=False)
-        )
+        return Comparison(scene, runs, (), Verdict(Word.UNDECIDED, "; ".join(found) + ".", (), completed=False))
     rows = rows_of(scene, runs)
     return Comparison(scene, runs, rows, judged(scene, rows))
 
@@ -90,9 +88,7 @@ def judged(scene: Scene, rows: tuple[Row, ...]) -> Verdict:
         worst = [row for row, said in judged_rows if said is word]
         if worst:
             row = max(worst, key=lambda row: _pressure(scene, row, word))
-            return Verdict(
-                word, _sentence(scene, row, word, len(worst), len(judged_rows)), words, completed=True
-            )
+            return Verdict(word, _sentence(scene, row, word, len(worst), len(judged_rows)), words, completed=True)
     if not judged_rows:
         return Verdict(Word.UNDECIDED, "There is no row that could be compared.", words, completed=True)
     row = max((row for row, _ in judged_rows), key=lambda row: _pressure(scene, row, Word.DIFFER))

@@ -10,7 +10,6 @@ import os
 import sys
 from collections.abc import Sequence
 from concurrent.futures.process import BrokenProcessPool
-from importlib import import_module
 from typing import TYPE_CHECKING
 
 import click
@@ -35,10 +34,18 @@ class _Commands(click.Group):
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The sub-command of a name."""
-        if cmd_name not in _COMMANDS:
-            return None
-        command = import_module(f"comparisons.cli.{cmd_name}_").command
-        return command if isinstance(command, click.Command) else None
+        match cmd_name:
+            case "list":
+                from comparisons.cli.list_ import command
+            case "solve":
+                from comparisons.cli.solve_ import command
+            case "compare":
+                from comparisons.cli.compare_ import command
+            case "regress":
+                from comparisons.cli.regress_ import command
+            case _:
+                return None
+        return command
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
@@ -79,9 +86,7 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return _said("Standard output was closed before everything was written.")
     except BrokenProcessPool:
-        _said(
-            "A process that was solving ended by force, perhaps for want of memory; what was finished stands."
-        )
+        _said("A process that was solving ended by force, perhaps for want of memory; what was finished stands.")
         return 1
     except OSError as error:
         return _said(f"Cannot write {error.filename or 'the output'}: {error.strerror or error}.")

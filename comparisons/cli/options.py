@@ -26,9 +26,7 @@ def count(ctx: click.Context, param: click.Parameter, value: str) -> int | dict[
     for part in value.split(","):
         beam, equals, text = (piece.strip() for piece in part.partition("="))
         if not equals or not beam or beam in counts:
-            raise click.BadParameter(
-                f"found {value!r}; allowed: one number, or beam=number once for each beam"
-            )
+            raise click.BadParameter(f"found {value!r}; allowed: one number, or beam=number once for each beam")
         counts[beam] = _whole(text)
     return counts
 

@@ -12,9 +12,7 @@ DEPARTED = 1
 
 @click.command("regress")
 @click.argument("asked", metavar="CASE|all")
-@click.option(
-    "--accept", "reason", metavar="REASON", help="Make today's numbers the file's own, and say why."
-)
+@click.option("--accept", "reason", metavar="REASON", help="Make today's numbers the file's own, and say why.")
 @click.option("--date", "day", metavar="YYYY-MM-DD", help="The date of the reason; needed with --accept.")
 @click.option(
     "--folder",

@@ -41,9 +41,7 @@ class MadeUp:
         theory = 0.0 if self.solver == "cprbm" else THEORY[choices.kinematics]
         factor = (1.0 + self.error * (40.0 / n) ** 2 + theory) / self.stiffness
         stations = [
-            self._station(scene, stage.name, value, factor)
-            for stage in scene.stages
-            for value in stage.stations
+            self._station(scene, stage.name, value, factor) for stage in scene.stages for value in stage.stations
         ]
         if self.spoilt is not None:
             stations[-1] = self.spoilt(stations[-1])
@@ -89,9 +87,7 @@ class MadeUp:
             shapes[name] = Shape(frozen_array(s), frozen_array(x), frozen_array(y))
         if closed:
             touching["contact"] = frozen_array([[shapes["beam1"].x[20], shapes["beam1"].y[20] - 0.001]])
-        return StationAnswer(
-            stage, load, frozendict(values), frozendict(shapes), frozendict(touching), CERTIFICATE
-        )
+        return StationAnswer(stage, load, frozendict(values), frozendict(shapes), frozendict(touching), CERTIFICATE)
 
 
 def with_value(probe: str, value: object) -> Callable[[StationAnswer], StationAnswer]:

@@ -24,9 +24,7 @@ ROOT = Path(__file__).parents[2]
 def ended(solver, ending=Ending.STEP_TOO_SMALL):
     def answer(scene, choices):
         found = solver(scene, choices)
-        return replace(
-            found, stations=found.stations[:4], ending=ending, sentence="The step fell below 1e-9."
-        )
+        return replace(found, stations=found.stations[:4], ending=ending, sentence="The step fell below 1e-9.")
 
     return answer
 
@@ -115,10 +113,7 @@ def test_options_reach_the_solvers(right, capsys):
         return right.cprbm(scene, choices)
 
     arguments = ["-n", "beam1=30,beam2=40", "--formulation", "paper", "--elements", "60"]
-    assert (
-        run(["solve", "hinge", "--quiet", *arguments, "--penetration", "1e-6"], Solvers(noting, right.fea))
-        == 0
-    )
+    assert run(["solve", "hinge", "--quiet", *arguments, "--penetration", "1e-6"], Solvers(noting, right.fea)) == 0
     assert asked[0].links == {"beam1": 30, "beam2": 40}
     assert (asked[0].formulation, asked[0].elements, asked[0].penetration) == ("paper", 60, 1e-6)
 
@@ -171,9 +166,7 @@ def test_a_wrong_question_is_a_paragraph_and_2(right, capsys, arguments, said):
 def test_every_mistake_of_a_scene_is_in_the_paragraph(right, capsys, tmp_path):
     text = HINGE.read_text("utf-8")
     file = tmp_path / "bad.toml"
-    file.write_text(
-        text.replace("poisson_ratio", "poison_ratio").replace("width = 0.008", "width = -1.0"), "utf-8"
-    )
+    file.write_text(text.replace("poisson_ratio", "poison_ratio").replace("width = 0.008", "width = -1.0"), "utf-8")
     assert run(["compare", str(file)], right) == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1

@@ -39,9 +39,7 @@ def test_points_go_clockwise():
 
 
 def test_nearest_measures_along_the_line_and_not_along_its_chord():
-    shape = Shape(
-        s=frozen_array([0.0, 1.0, 2.0]), x=frozen_array([0.0, 1.0, 1.0]), y=frozen_array([0.0, 0.0, 1.0])
-    )
+    shape = Shape(s=frozen_array([0.0, 1.0, 2.0]), x=frozen_array([0.0, 1.0, 1.0]), y=frozen_array([0.0, 0.0, 1.0]))
     assert nearest(shape, np.array([0.3, -0.2])) == pytest.approx(0.3)
     assert nearest(shape, np.array([1.4, 0.6])) == pytest.approx(1.6)
     assert nearest(shape, np.array([1.0, 5.0])) == pytest.approx(2.0)

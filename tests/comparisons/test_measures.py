@@ -125,9 +125,7 @@ def test_a_probe_that_vanishes_by_symmetry_is_measured_by_its_family(hinge, righ
                     station,
                     values=frozendict(
                         {
-                            name: frozen_array(1e-17 * found)
-                            if ".reaction" in name or "force" in name
-                            else found
+                            name: frozen_array(1e-17 * found) if ".reaction" in name or "force" in name else found
                             for name, found in station.values.items()
                         }
                     ),
@@ -165,9 +163,7 @@ def test_before_contact_only_the_clamps_are_left_out(hinge, right):
     station = station_of(runs.reference, "load", 0.067)
     s = np.linspace(0.0, math.pi * 0.025, 81)
     # 0.98 mm from place to place, 2 mm of thickness: places 0, 1, 2 and their mirror images
-    np.testing.assert_array_equal(
-        np.flatnonzero(~clear_of_spots(hinge, "beam1", s, (station,))), [0, 1, 2, 78, 79, 80]
-    )
+    np.testing.assert_array_equal(np.flatnonzero(~clear_of_spots(hinge, "beam1", s, (station,))), [0, 1, 2, 78, 79, 80])
 
 
 def test_a_stress_differs_by_its_worst_place(hinge, right):
@@ -175,9 +171,7 @@ def test_a_stress_differs_by_its_worst_place(hinge, right):
     stress = np.array(runs.cprbm[0].stations[-1].values["beam1.bending_stress"])
     stress[20] -= 5e6  # far from clamps and contact, and less than the largest
     spoilt = with_value("beam1.bending_stress", stress)
-    wrong = replace(
-        runs.cprbm[0], stations=(*runs.cprbm[0].stations[:-1], spoilt(runs.cprbm[0].stations[-1]))
-    )
+    wrong = replace(runs.cprbm[0], stations=(*runs.cprbm[0].stations[:-1], spoilt(runs.cprbm[0].stations[-1])))
     row = rows_by_name(hinge, Runs(runs.kinematics, (wrong, runs.cprbm[1]), runs.fea))["beam1.bending_stress"]
     assert row.difference == pytest.approx(5e6, rel=0.02)
     assert row.largest is not None

@@ -24,9 +24,7 @@ def test_every_run_is_asked_for_once(hinge, right):
     paired(hinge, Choices(), Solvers(noting("cprbm", right.cprbm), noting("fea", right.fea)))
     assert [choices.links for name, choices in asked if name == "cprbm"] == [40, 80]
     assert [
-        (choices.kinematics, choices.elements, choices.penetration)
-        for name, choices in asked
-        if name == "fea"
+        (choices.kinematics, choices.elements, choices.penetration) for name, choices in asked if name == "fea"
     ] == [
         ("bending", 80, 1e-4),
         ("bending", 160, 2.5e-5),
@@ -73,9 +71,7 @@ def test_counts_must_name_every_beam_and_no_other(hinge, right, links):
         paired(hinge, Choices(links=links), right)
 
 
-@pytest.mark.parametrize(
-    ("solver", "choices"), [(cprbm_answer, Choices(links=0)), (fea_answer, Choices(elements=0))]
-)
+@pytest.mark.parametrize(("solver", "choices"), [(cprbm_answer, Choices(links=0)), (fea_answer, Choices(elements=0))])
 def test_the_real_solvers_refuse_no_links_and_no_elements(hinge, solver, choices):
     with pytest.raises(SceneError):
         solver(hinge, choices)
@@ -96,8 +92,6 @@ def test_the_real_solvers_refuse_no_links_and_no_elements(hinge, solver, choices
 )
 def test_a_command_loads_only_what_it_needs(code, absent):
     """In a fresh process, since this one has loaded everything."""
-    program = (
-        f"{code}; import sys; print([name for name in {absent!r} if name in sys.modules], file=sys.stderr)"
-    )
+    program = f"{code}; import sys; print([name for name in {absent!r} if name in sys.modules], file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stderr.strip().endswith("[]")

@@ -70,9 +70,7 @@ def test_the_page_shows_verdict_claims_and_certificates(written):
 
 
 def test_names_from_a_scene_are_only_text(comparison):
-    sly = replace(
-        comparison, scene=comparison.scene.model_copy(update={"title": "<script>alert(1)</script>"})
-    )
+    sly = replace(comparison, scene=comparison.scene.model_copy(update={"title": "<script>alert(1)</script>"}))
     chapter = report.chapter(sly, ())
     assert "<script>" not in report.page((chapter,))
     assert "&lt;script&gt;" in report.page((chapter,))

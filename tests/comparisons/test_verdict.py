@@ -77,9 +77,7 @@ def test_a_solver_that_stops_early_is_undecided_even_if_it_says_that_it_complete
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
-@pytest.mark.parametrize(
-    ("probe", "size"), [("B.displacement", 2), ("contact.force", 1), ("beam2.bending_stress", 81)]
-)
+@pytest.mark.parametrize(("probe", "size"), [("B.displacement", 2), ("contact.force", 1), ("beam2.bending_stress", 81)])
 def test_a_number_that_is_not_finite_is_undecided(hinge, bad, probe, size):
     for solver in (0, 1):
         values = np.zeros(size)

@@ -84,8 +84,7 @@ def without_contact(solver: Solver) -> Solver:
             if probe.of in scene.contacts
         }
         stations = tuple(
-            replace(station, values=frozendict({**station.values, **open_contact}))
-            for station in found.stations
+            replace(station, values=frozendict({**station.values, **open_contact})) for station in found.stations
         )
         return replace(found, stations=stations)
 
