@@ -34,13 +34,9 @@ def wrong_supports(scene: Scene) -> Iterator[Mistake]:
         if body.motion == "fixed":
             continue
         if not any(name in bodies for bodies in met.values()):
-            yield Mistake(
-                f"bodies.{name}", "a free body that no beam meets", "a beam's end at one of its points"
-            )
+            yield Mistake(f"bodies.{name}", "a free body that no beam meets", "a beam's end at one of its points")
         elif name not in held_bodies:
-            yield Mistake(
-                f"bodies.{name}", "a free body that no fixed body holds", "beams that lead to a fixed body"
-            )
+            yield Mistake(f"bodies.{name}", "a free body that no fixed body holds", "beams that lead to a fixed body")
 
 
 def wrong_loads(scene: Scene) -> Iterator[Mistake]:
@@ -66,9 +62,7 @@ def wrong_stages(scene: Scene) -> Iterator[Mistake]:
         if stage.name in seen:
             yield Mistake(f"stages[{i}].name", f"{stage.name!r} again", "each stage's name once")
         seen.add(stage.name)
-        for j, (before, value) in enumerate(
-            zip(stage.stations[:-1], stage.stations[1:], strict=True), start=1
-        ):
+        for j, (before, value) in enumerate(zip(stage.stations[:-1], stage.stations[1:], strict=True), start=1):
             if before == value:
                 found = f"{value:g} twice in a row"
                 yield Mistake(f"stages[{i}].stations[{j}]", found, "neighbouring stations that differ")

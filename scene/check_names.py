@@ -19,11 +19,7 @@ def repeated_names(scene: Scene) -> Iterator[Mistake]:
     """Names of points, bodies, beams, contacts and loads that are used twice or reserved."""
     bearers = [
         *((f"bodies.{name}", name) for name in scene.bodies),
-        *(
-            (f"bodies.{name}.points.{point}", point)
-            for name, body in scene.bodies.items()
-            for point in body.points
-        ),
+        *((f"bodies.{name}.points.{point}", point) for name, body in scene.bodies.items() for point in body.points),
         *((f"beams.{name}", name) for name in scene.beams),
         *((f"loads.{name}", name) for name in scene.loads),
         *((f"contacts.{name}", name) for name in scene.contacts),

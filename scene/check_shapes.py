@@ -74,9 +74,7 @@ def wrong_contacts(scene: Scene) -> Iterator[Mistake]:
         if len(pair) == 1:
             yield Mistake(f"{key}.between", f"{contact.between[0]!r} twice", "two different beams")
         elif pair in seen:
-            yield Mistake(
-                f"{key}.between", f"the pair of contacts.{seen[pair]} again", "each pair of beams once"
-            )
+            yield Mistake(f"{key}.between", f"the pair of contacts.{seen[pair]} again", "each pair of beams once")
         seen.setdefault(pair, name)
         yield from _wrong_paper(key, contact)
 
@@ -91,9 +89,7 @@ def overlaps(scene: Scene) -> Iterator[Mistake]:
         first, second = (scene.beams.get(beam) for beam in contact.between)
         if first is None or second is None or contact.between[0] == contact.between[1]:
             continue
-        if any(
-            not _has_shape(beam.curve) or _wrong_section(name, beam) is not None for beam in (first, second)
-        ):
+        if any(not _has_shape(beam.curve) or _wrong_section(name, beam) is not None for beam in (first, second)):
             continue
         found = _overlap(first, second, contact.thick)
         if found is not None:
@@ -103,9 +99,7 @@ def overlaps(scene: Scene) -> Iterator[Mistake]:
 
 def _wrong_curve(key: str, curve: Curve) -> Mistake | None:
     if curve.start == curve.end:
-        return Mistake(
-            key, f"a start and an end at the same place {_at(curve.start)} m", "two different places"
-        )
+        return Mistake(key, f"a start and an end at the same place {_at(curve.start)} m", "two different places")
     if isinstance(curve, Arc):
         radii = _distance(curve.start, curve.center), _distance(curve.end, curve.center)
         if min(radii) == 0.0:
@@ -163,14 +157,10 @@ def _wrong_paper(key: str, contact: BeamContact) -> Iterator[Mistake]:
             yield Mistake(where, f"the beam {beam!r}", pair)
         given = [(axis, span) for axis, span in (("x", related.x), ("y", related.y)) if span is not None]
         if len(given) != 1:
-            yield Mistake(
-                where, "both x and y" if given else "neither x nor y", "a range in exactly one of x and y"
-            )
+            yield Mistake(where, "both x and y" if given else "neither x nor y", "a range in exactly one of x and y")
         for axis, span in given:
             if span[0] >= span[1]:
-                yield Mistake(
-                    f"{where}.{axis}", str(list(span)), "a range from the smaller to the larger value"
-                )
+                yield Mistake(f"{where}.{axis}", str(list(span)), "a range from the smaller to the larger value")
 
 
 def _overlap(first: Beam, second: Beam, thick: bool) -> tuple[str, str] | None:  # noqa: FBT001

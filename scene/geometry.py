@@ -121,9 +121,7 @@ def _refined(
         (max(-3.0, (low - u) / width), min(3.0, (high - u) / width))
         for u, width, (low, high) in zip(at, widths, (range1, range2), strict=True)
     ]
-    found = minimize(
-        squared, np.zeros(2), method="L-BFGS-B", bounds=bounds, options={"ftol": 0.0, "gtol": 1e-12}
-    )
+    found = minimize(squared, np.zeros(2), method="L-BFGS-B", bounds=bounds, options={"ftol": 0.0, "gtol": 1e-12})
     best = min((np.zeros(2), found.x), key=squared)
     u = np.clip(at + widths * best, [range1[0], range2[0]], [range1[1], range2[1]])
     return ClosestPair(distance=squared(best) ** 0.5 * scale, u1=float(u[0]), u2=float(u[1]))

@@ -171,6 +171,4 @@ def _is_tag(loc: tuple[int | str, ...], depth: int) -> bool:
     if loc[0] == "loads":
         return depth == 2 and loc[2] in {"moment", "force"}
     in_beam = loc[0] == "beams" and depth == 3
-    return (
-        in_beam and loc[2] in {"curve", "start", "end"} and loc[3] in {"line", "arc", "weld", "pin", "free"}
-    )
+    return in_beam and loc[2] in {"curve", "start", "end"} and loc[3] in {"line", "arc", "weld", "pin", "free"}

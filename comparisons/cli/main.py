@@ -19,6 +19,8 @@ from scene import SceneError
 if TYPE_CHECKING:
     from comparisons.pairing import Solvers
 
+_COMMANDS = ("list", "solve", "compare", "regress")
+
 WRONG_QUESTION = 2
 INTERRUPTED = 130
 
@@ -28,29 +30,22 @@ class _Commands(click.Group):
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Names of all sub-commands."""
-        return ["list", "solve", "compare", "regress"]
+        return list(_COMMANDS)
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The sub-command of a name."""
         match cmd_name:
             case "list":
-                from comparisons.cli import list_
-
-                return list_.command
+                from comparisons.cli.list_ import command
             case "solve":
-                from comparisons.cli import solve_
-
-                return solve_.command
+                from comparisons.cli.solve_ import command
             case "compare":
-                from comparisons.cli import compare_
-
-                return compare_.command
+                from comparisons.cli.compare_ import command
             case "regress":
-                from comparisons.cli import regress_
-
-                return regress_.command
+                from comparisons.cli.regress_ import command
             case _:
                 return None
+        return command
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})

@@ -65,9 +65,7 @@ def _walk(node, importer, package, modules, late, typing_only) -> Iterator[Impor
             yield Import(importer, name, child.lineno, late, typing_only)
         if isinstance(child, ast.If) and _is_type_checking(child.test):
             for part, hidden in ((child.body, True), (child.orelse, typing_only)):
-                yield from _walk(
-                    ast.Module(body=part, type_ignores=[]), importer, package, modules, late, hidden
-                )
+                yield from _walk(ast.Module(body=part, type_ignores=[]), importer, package, modules, late, hidden)
         else:
             yield from _walk(child, importer, package, modules, in_function, typing_only)
 

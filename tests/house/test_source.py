@@ -15,9 +15,7 @@ FILES = sorted(
     if path.suffix in {".py", ".toml", ".html", ".css", ".md"} and path.resolve() != HERE
 )
 # a folder below the root that only one machine has, or a Windows drive
-MACHINE_PATH = re.compile(
-    r"""(?<![\w.)\]}/-])/(?:home|root|tmp|work|opt|mnt|srv|Users)/\w|\b[A-Z]:\\\\?Users"""
-)
+MACHINE_PATH = re.compile(r"""(?<![\w.)\]}/-])/(?:home|root|tmp|work|opt|mnt|srv|Users)/\w|\b[A-Z]:\\\\?Users""")
 
 
 def _called(node):
@@ -33,9 +31,7 @@ def _is_idle(node):
         return constant or _called(node.test).startswith("assert_")
     if isinstance(node, ast.Expr):
         # a comparison nobody looks at, an exception that is built and not raised
-        dropped = _called(node.value) in {"allclose", "isclose", "approx"} or _called(node.value).endswith(
-            "Error"
-        )
+        dropped = _called(node.value) in {"allclose", "isclose", "approx"} or _called(node.value).endswith("Error")
         return dropped or isinstance(node.value, ast.Compare)
     return False
 
@@ -64,9 +60,7 @@ def test_a_planted_path_is_found(line):
     assert MACHINE_PATH.search(line)
 
 
-@pytest.mark.parametrize(
-    "line", ["N·m/rad", "a/home/b", "https://example.org/home/x", "(n,)/tmp", "../tmp/x"]
-)
+@pytest.mark.parametrize("line", ["N·m/rad", "a/home/b", "https://example.org/home/x", "(n,)/tmp", "../tmp/x"])
 def test_what_is_no_path_of_a_machine_passes(line):
     assert not MACHINE_PATH.search(line)
 
@@ -106,8 +100,6 @@ def test_the_rooms_print_nothing():
         and path.relative_to(ROOT).parts[:2] != ("comparisons", "cli")
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
         if isinstance(node, ast.Call)
-        and (
-            getattr(node.func, "id", "") in {"print", "exit", "quit"} or ast.unparse(node.func) == "sys.exit"
-        )
+        and (getattr(node.func, "id", "") in {"print", "exit", "quit"} or ast.unparse(node.func) == "sys.exit")
     ]
     assert found == []

@@ -67,9 +67,7 @@ def test_energy_rises_with_the_distance_held_by_the_contact_force(full):
 
     def energy(t):
         same_stiffness = PAPER.youngs_modulus * (PAPER.thickness / t) ** 3
-        return solve(
-            dataclasses.replace(PAPER, thickness=t, youngs_modulus=same_stiffness), 0.67
-        ).potential_energy
+        return solve(dataclasses.replace(PAPER, thickness=t, youngs_modulus=same_stiffness), 0.67).potential_energy
 
     h = 2e-6
     assert (energy(0.002 + h) - energy(0.002 - h)) / (2 * h) == pytest.approx(full.contact_force, rel=1e-6)

@@ -7,9 +7,7 @@ from pathlib import Path
 from scene import SceneError
 from scene.reading import scene_from
 
-HINGE = tomllib.loads(
-    (Path(__file__).parents[2] / "comparisons" / "cases" / "hinge.toml").read_text(encoding="utf-8")
-)
+HINGE = tomllib.loads((Path(__file__).parents[2] / "comparisons" / "cases" / "hinge.toml").read_text(encoding="utf-8"))
 REMOVED = object()
 
 

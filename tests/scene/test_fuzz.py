@@ -20,16 +20,12 @@ scalars = st.one_of(
     st.floats(),
     st.sampled_from([1e-308, 1e-200, 1e-9, 1e9, 1e154, 1e308, 10**400]),
     st.text(max_size=6),
-    st.sampled_from(
-        ["A", "B", "AC", "beam1", "beam2", "scene", "contact", "line", "arc", "free", "force", "M"]
-    ),
+    st.sampled_from(["A", "B", "AC", "beam1", "beam2", "scene", "contact", "line", "arc", "free", "force", "M"]),
     st.dates(),
 )
 values = st.recursive(
     scalars,
-    lambda inner: st.one_of(
-        st.lists(inner, max_size=3), st.dictionaries(st.text(max_size=6), inner, max_size=3)
-    ),
+    lambda inner: st.one_of(st.lists(inner, max_size=3), st.dictionaries(st.text(max_size=6), inner, max_size=3)),
     max_leaves=6,
 )
 

@@ -129,9 +129,7 @@ def test_a_mistake_in_one_record_is_the_only_one(path, value, key, words):
 
 
 def test_several_mistakes_are_reported_at_once():
-    found = mistakes(
-        (f"{BEAM}/thicknes", 1), (f"{BEAM}/width", -1), ("name", 3), ("stages/0/stations", [NAN])
-    )
+    found = mistakes((f"{BEAM}/thicknes", 1), (f"{BEAM}/width", -1), ("name", 3), ("stages/0/stations", [NAN]))
     assert set(found) == {"beams.beam1.thicknes", "beams.beam1.width", "name", "stages[0].stations[0]"}
 
 
@@ -168,7 +166,5 @@ def test_a_beam_that_turns_about_its_only_pin():
 
 
 def test_a_body_that_leads_to_no_fixed_one():
-    data = edited(
-        ("bodies/block/points/S", [0.0, 0.0]), ("beams/lower/start/point", "S"), base=two_lines(0.01)
-    )
+    data = edited(("bodies/block/points/S", [0.0, 0.0]), ("beams/lower/start/point", "S"), base=two_lines(0.01))
     assert "no fixed body holds" in mistakes(base=data)["bodies.block"]

@@ -78,9 +78,7 @@ def test_the_distance_of_two_circles_is_that_of_their_centres_less_the_radii(off
     centre = (offset * np.cos(towards), offset * np.sin(towards))
 
     def ring(middle, R, opening):
-        ends = [
-            (middle[0] + R * np.cos(opening + d), middle[1] + R * np.sin(opening + d)) for d in (0.1, -0.1)
-        ]
+        ends = [(middle[0] + R * np.cos(opening + d), middle[1] + R * np.sin(opening + d)) for d in (0.1, -0.1)]
         return Arc(kind="arc", center=middle, start=ends[0], end=ends[1], direction="counterclockwise")
 
     pair = closest_pair(ring((0.0, 0.0), 1.0, towards + np.pi), ring(centre, radius, towards))

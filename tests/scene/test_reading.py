@@ -80,6 +80,4 @@ def test_the_message_names_file_key_finding_and_what_is_allowed(tmp_path, hinge_
     path.write_text(hinge_text.replace("thickness = 0.002", "thickness = -0.002", 1))
     with pytest.raises(SceneError) as caught:
         read(path)
-    assert str(caught.value) == (
-        f"{path}: beams.beam1.thickness: found -0.002; allowed: a number greater than 0"
-    )
+    assert str(caught.value) == (f"{path}: beams.beam1.thickness: found -0.002; allowed: a number greater than 0")
