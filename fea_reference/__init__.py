@@ -1,0 +1,9 @@
+"""The independent reference: planar corotational beam elements with penalty contact, on scikit-fem.
+
+It reads a :class:`scene.Scene` and hands back a :class:`scene.Answer`; it knows nothing of the other solver.
+"""
+
+from fea_reference.settings import Settings
+from fea_reference.solve import answer
+
+__all__ = ["Settings", "answer"]

@@ -1,0 +1,92 @@
+"""What makes a station's answer believable."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse.linalg import splu
+
+from fea_reference.curvature import smallest_curvature
+from fea_reference.march import March
+from fea_reference.model import Model
+from fea_reference.supports import support
+from scene.answer import Array, Certificate
+
+_VIOLATION = 1e-9
+_BALANCE = 1e-8
+
+
+def certify(march: March) -> Certificate:
+    """Look at the state that the march has reached, from outside of the loop that reached it.
+
+    The complementarity of a penalty is not zero: the gap that remains times the pressure, over the mean thickness times the
+    largest pressure, is the penetration again.
+    """
+    model, system, settings = march.model, march.system, march.settings
+    free = np.ones(model.size, dtype=bool)
+    free[model.multipliers] = False
+    free[model.element_dofs[6]] = False
+    residual = float(np.abs(system.residual[free]).max()) / system.scale
+    floor = system.floor / system.scale
+    violation = float(np.abs(system.residual[~free]).max())
+    penetration = max((one.penetration / one.pair.scale for one in system.touches), default=0.0)
+    force, moment = _balance(model, march.values, system.z)
+    try:
+        curvature = smallest_curvature(model, splu(system.tangent))
+    except RuntimeError:
+        curvature = 0.0
+
+    failures = []
+    if not residual <= max(settings.residual, floor):
+        failures.append(f"the unbalanced force is {residual:.1e} of the largest")
+    if not violation <= max(_VIOLATION, system.floor):
+        failures.append(f"a joint or an element's length is violated by {violation:.1e} of the longest beam")
+    if not penetration <= settings.penetration:
+        failures.append(f"the beams of a contact overlap by {penetration:.1e}; {settings.penetration:.1e} was asked")
+    if not force <= max(_BALANCE, floor):
+        failures.append(f"the forces of loads and supports leave {force:.1e} of the largest")
+    if not moment <= max(_BALANCE, floor):
+        failures.append(f"the moments of loads and supports leave {moment:.1e} of the largest")
+    if not curvature > 0.0:
+        failures.append(f"the smallest curvature of the potential energy is {curvature:.1e}: no minimum")
+    return Certificate(
+        residual=residual,
+        residual_floor=floor,
+        violation=violation,
+        penetration=penetration,
+        complementarity=penetration,
+        force_balance=force,
+        moment_balance=moment,
+        smallest_curvature=curvature,
+        iterations=march.iterations,
+        failures=tuple(failures),
+    )
+
+
+def _balance(model: Model, values: Array, z: Array) -> tuple[float, float]:
+    """|ΣF| and |ΣM| about the origin of loads and supports, each over the largest in it.
+
+    A contact's two forces are opposite on one line: they cancel in both sums.
+    """
+    forces: list[Array] = []
+    moments: list[float] = []
+    for joint in model.joints:
+        if model.bodies[joint.body].dofs is None:
+            force, moment = support(joint, z)
+            forces.append(force)
+            at = z[joint.dofs[:2]]
+            moments += [moment, float(at[0] * force[1] - at[1] * force[0])]
+    for part, value in zip(model.loads, values, strict=True):
+        body = model.bodies[part.body]
+        if part.direction is None:
+            moments.append(float(value))
+        else:
+            forces.append(value * part.direction)
+            at = model.carried(body, part.arm, z)
+            moments.append(float(at[0] * forces[-1][1] - at[1] * forces[-1][0]))
+    largest_force = max((float(np.hypot(*force)) for force in forces), default=0.0)
+    largest_moment = max(map(abs, moments), default=0.0)
+    # Forces that vanish are judged by the moments, and these by them: lengths are of order one here.
+    scale = max(largest_force, largest_moment)
+    if scale == 0.0:
+        return 0.0, 0.0
+    return float(np.hypot(*sum(forces, np.zeros(2)))) / scale, abs(sum(moments)) / scale

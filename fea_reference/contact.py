@@ -1,0 +1,170 @@
+"""Frictionless contact of two beams by a penalty along the first one's neutral line.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+ε       penalty stiffness per unit length of the first beam
+p       line pressure ε⟨−g⟩
+r, p_τ  x − x_m, and τ·δr
+k       n·δx_m'
+J, a    |x_m'| and n·x_m'';  Z = J² − d a
+======  =====================================================================================
+
+Energy Π_c = ∫ ½ ε ⟨−g⟩² ds over the first beam's undeformed arc length.  At the closest point
+
+    δg = side n·δr,     δ²g = side { n·δ²r − [ a p_τ² + d k² + 2 J p_τ k ] / Z }
+
+(Konyukhov and Schweizerhof, Computational Contact Mechanics, ch. 5, in the plane).  The integral runs over the exact
+intervals on which g < 0, so the pressure vanishes at their moving ends, which therefore add nothing to either derivative,
+and what is integrated is smooth in between.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea_reference.hermite import Index, along, bending_along, shape_slopes, shapes
+from fea_reference.model import Model
+from fea_reference.projection import project
+from fea_reference.zones import Zones, find, side_of
+from scene.answer import Array
+from scene.statement import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Two beams that may touch.
+
+    Attributes:
+        first, second: their numbers; the first carries the integral.
+        side: of the second on which the first lies.
+        distance: T, of the neutral lines when they touch.
+        scale: what penetration is measured by: the mean thickness, or the longest beam for lines.
+        stiffness: the penalty to begin with, the softer beam's EI over its element's length to the fourth.
+    """
+
+    name: str
+    first: int
+    second: int
+    side: float
+    distance: float
+    scale: float
+    stiffness: float
+
+
+@dataclass(frozen=True, slots=True)
+class Touch:
+    """A pair's contact at its k Gauss points.
+
+    ``dofs`` (12, k) of the element of the first beam and that of the second, ``gradient`` (12, k) and ``hessian``
+    (12, 12, k) of Π_c; places ``zeta``, ``zeta_m`` (k,), points ``x``, ``x_m`` (2, k), the forces ``force`` on the first
+    beam (2, k), its tension-free ``normal`` (2, k), the ``penetration`` and the ``pressure`` there (k,).
+    """
+
+    pair: Pair
+    zones: Zones
+    dofs: Index
+    gradient: Array
+    hessian: Array
+    zeta: Array
+    zeta_m: Array
+    x: Array
+    x_m: Array
+    force: Array
+    normal: Array
+    pressure: Array
+
+    @property
+    def penetration(self) -> float:
+        """Largest depth of overlap."""
+        return max(0.0, -self.zones.least)
+
+    @property
+    def closed(self) -> bool:
+        """Whether the beams touch anywhere."""
+        return self.zeta.size > 0
+
+
+def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
+    """The scene's contacts, their sides seen in the undeformed state."""
+    found = []
+    number = {beam.name: i for i, beam in enumerate(model.beams)}
+    for name, contact in scene.contacts.items():
+        i, j = (number[beam] for beam in contact.between)
+        first, second = model.beams[i], model.beams[j]
+        mean = 0.5 * (first.thickness + second.thickness)
+        side = side_of(model.line(first, model.start), model.line(second, model.start))
+        stiffness = min(
+            beam.bending / model.elements.length[beam.elements.start] ** 4 for beam in (first, second)
+        )
+        found.append(
+            Pair(name, i, j, side, mean if contact.thick else 0.0, mean if contact.thick else 1.0, stiffness)
+        )
+    return tuple(found)
+
+
+def zones_of(model: Model, pair: Pair, z: Array) -> Zones:
+    """Where the beams of a pair overlap in state ``z``."""
+    first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
+    return find(first, second, pair.side, pair.distance)
+
+
+def touch(model: Model, pair: Pair, stiffness: float, quadrature: int, z: Array) -> Touch:
+    """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
+    beam, beam_m = model.beams[pair.first], model.beams[pair.second]
+    line, line_m = model.line(beam, z), model.line(beam_m, z)
+    zones = find(line, line_m, pair.side, pair.distance)
+
+    points, weights = np.polynomial.legendre.leggauss(quadrature)
+    share = 0.5 * (points + 1.0)
+    width = zones.intervals[:, 1] - zones.intervals[:, 0]
+    zeta = (zones.intervals[:, :1] + width[:, None] * share).ravel()
+    guess = (zones.zeta_m[:, :1] + np.diff(zones.zeta_m, axis=1) * share).ravel()
+    # An interval lies within one element, and so do its Gauss points.
+    e, xi = line.locate(zeta)
+    ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
+
+    x = line.at(zeta)[0]
+    zeta_m, _ = project(line_m, x, guess)
+    e_m, xi_m = line_m.locate(zeta_m)
+    x_m, x_m1, x_m2 = line_m.at(zeta_m)
+    J = np.hypot(x_m1[0], x_m1[1])
+    tau = x_m1 / J
+    n = np.stack([-tau[1], tau[0]])
+    d = (n * (x - x_m)).sum(axis=0)
+    a = (n * x_m2).sum(axis=0)
+    Z = J**2 - d * a
+    g = pair.side * d - pair.distance
+
+    H = shapes(xi, line.lengths[e])
+    H_m, H_m1 = shapes(xi_m, line_m.lengths[e_m]), shape_slopes(xi_m, line_m.lengths[e_m])
+    d_q = np.concatenate([along(n, H, line, e), -along(n, H_m, line_m, e_m)])
+    p = np.concatenate([along(tau, H, line, e), -along(tau, H_m, line_m, e_m)])
+    k = np.concatenate([np.zeros_like(d_q[:6]), along(n, H_m1, line_m, e_m)])
+    pk = p[:, None] * k[None, :]
+    d_qq = -(a * p[:, None] * p[None, :] + d * k[:, None] * k[None, :] + J * (pk + pk.transpose(1, 0, 2))) / Z
+    bent, bent_m = bending_along(n, H, line, e), bending_along(n, H_m, line_m, e_m)
+    for i, value in zip((2, 5, 8, 11), (*bent, *-bent_m), strict=True):
+        d_qq[i, i] += value
+
+    weight = stiffness * ds
+    dofs = np.concatenate(
+        [model.element_dofs[:6, e + beam.elements.start], model.element_dofs[:6, e_m + beam_m.elements.start]]
+    )
+    normal = pair.side * n
+    return Touch(
+        pair=pair,
+        zones=zones,
+        dofs=dofs,
+        gradient=weight * g * pair.side * d_q,
+        hessian=weight * (d_q[:, None] * d_q[None, :] + g * pair.side * d_qq),
+        zeta=zeta,
+        zeta_m=zeta_m,
+        x=x,
+        x_m=x_m,
+        force=-weight * g * normal,
+        normal=normal,
+        pressure=-stiffness * g,
+    )

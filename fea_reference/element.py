@@ -1,0 +1,161 @@
+"""The corotational beam element with an independent axial force.
+
+=======  =====================================================================================
+symbol   meaning (lengths over the longest beam, forces over EI/length²)
+=======  =====================================================================================
+l, α     length and angle of the chord between an element's nodes
+ϑ        end rotations against the chord, (2,); ϑ⁰ those of the undeformed curve's tangents
+Δ        ϑ − ϑ⁰
+L, l⁰    arc length of the undeformed element, and its chord
+θ(s)     rotation of the section against the chord: a parabola through both ends
+γ        angle of shear, one per element: w' = θ + γ, and w is zero at both ends, so γ = −∫θ ds / L
+N        axial force, an unknown of its own
+c        axial compliance 1/(EA), zero for an inextensible beam
+EI, GA   bending stiffness; effective shear stiffness k_s G A, k_s = 5/6
+=======  =====================================================================================
+
+The element's contribution to the Hellinger–Reissner functional is
+
+    Π_e = ½ Δᵀ K Δ + N [ (l − l⁰) + ½ ∫ (w'² − w⁰'²) ds ] − ½ c L N²,
+
+with the membrane strain averaged over the element (a shallow arch on its chord), so that a curved element is neither
+locked nor shortened by its own curvature.  The parabola's middle value makes the energy of bending and shear
+stationary: without shear w is the cubic of Hermite, and (½/L) ∫ w'² ds = (2ϑ₁² − ϑ₁ϑ₂ + 2ϑ₂²)/30.
+Corotational kinematics: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1, ch. 7.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from skfem import BilinearForm, CellBasis, ElementLineP2, MeshLine
+
+from scene.answer import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Elements:
+    """What n elements keep of their undeformed shape: element last in every array.
+
+    ``length`` L, ``chord`` l⁰, ``compliance`` c (n,); ``rotation`` ϑ⁰, ``slope`` ∫ w⁰' ∂w'/∂Δ ds (2, n);
+    ``bending`` K, ``shortening`` ∫ ∂w'/∂Δ ∂w'/∂Δ ds (2, 2, n).
+    """
+
+    length: Array
+    chord: Array
+    compliance: Array
+    rotation: Array
+    slope: Array
+    bending: Array
+    shortening: Array
+
+
+@dataclass(frozen=True, slots=True)
+class ElementForces:
+    """Values and derivatives of Π_e by (x₁, y₁, θ₁, x₂, y₂, θ₂, N): element last.
+
+    ``gradient`` (7, n), ``hessian`` (7, 7, n), ``energy`` the strain energy (n,), ``rotation`` ϑ (2, n).
+    """
+
+    gradient: Array
+    hessian: Array
+    energy: Array
+    rotation: Array
+
+
+def reference(
+    mesh: MeshLine,
+    points: Array,
+    tangents: Array,
+    bending: Array,
+    compliance: Array,
+    shear_compliance: Array,
+) -> Elements:
+    """Integrate what the elements need over the undeformed beams.
+
+    Args:
+        mesh: lines whose only coordinate is the arc length.
+        points: nodes (m, 2); tangents: tangent angles at the nodes (m,).
+        bending: EI; compliance: c; shear_compliance: 1/GA, of every element (n,).
+    """
+    basis = CellBasis(mesh, ElementLineP2(), intorder=4)
+    D = _local(BilinearForm(lambda u, v, _: u.grad[0] * v.grad[0]), basis)
+    G = _local(BilinearForm(lambda u, v, _: u * v), basis)
+    m = G.sum(axis=1)  # ∫ of each function: together they are one
+    L = m.sum(axis=0)
+
+    first, second = mesh.t
+    chord = points[second] - points[first]
+    alpha = np.arctan2(chord[:, 1], chord[:, 0])
+    rotation = _wrapped(np.stack([tangents[first] - alpha, tangents[second] - alpha]))
+
+    stiff, rigid = _section_rotation(D, m, bending, shear_compliance), _section_rotation(D, m, bending, 0 * L)
+    # The mean of θ is −γ; where the compliance is zero so is the mean, and the shear force is a reaction.
+    shear_force = -bending * np.einsum("in,ijn->jn", D[2], stiff) / m[2]
+    mean = np.einsum("in,ijn->jn", m, stiff)
+    K = bending * np.einsum("ain,abn,bjn->ijn", stiff, D, stiff) + mean[:, None] * shear_force[None, :]
+    W = G - m[:, None] * m[None, :] / L  # ∫ w' w' ds
+    slope = np.einsum("kn,akn,abn,bjn->jn", rotation, rigid, W, stiff)
+    shortening = np.einsum("ain,abn,bjn->ijn", stiff, W, stiff)
+    return Elements(L, np.hypot(*chord.T), compliance, rotation, slope, K, shortening)
+
+
+def _local(form: BilinearForm, basis: CellBasis) -> Array:
+    """Local matrices (3, 3, n) of a symmetric form."""
+    return np.moveaxis(np.asarray(form.coo_data(basis).tolocal(), dtype=float), 0, -1)
+
+
+def _section_rotation(D: Array, m: Array, bending: Array, shear_compliance: Array) -> Array:
+    """θ at both ends and in the middle by the end rotations, (3, 2, n): the middle makes the energy stationary.
+
+    The energy ½ EI θᵀ D θ + ½ (GA/L) (mᵀθ)², differentiated by the middle value and divided by GA/L.
+    """
+    flexibility = bending * shear_compliance * m.sum(axis=0)
+    middle = -(flexibility * D[2, :2] + m[2] * m[:2]) / (flexibility * D[2, 2] + m[2] ** 2)
+    ends = np.broadcast_to(np.eye(2)[:, :, None], (2, 2, middle.shape[-1]))
+    return np.concatenate([ends, middle[None]], axis=0)
+
+
+def forces(elements: Elements, u: Array) -> ElementForces:
+    """Value and derivatives at nodal values ``u`` (7, n) in the order (x₁, y₁, θ₁, x₂, y₂, θ₂, N)."""
+    n = u.shape[1]
+    dx, dy = u[3] - u[0], u[4] - u[1]
+    l = np.hypot(dx, dy)  # noqa: E741 - the chord's length
+    alpha = np.arctan2(dy, dx)
+    theta = _wrapped(np.stack([u[2] - alpha, u[5] - alpha]))
+    delta = theta - elements.rotation
+    N = u[6]
+
+    bent = np.einsum("ijn,jn->in", elements.bending, delta)
+    shortened = np.einsum("ijn,jn->in", elements.shortening, delta)
+    strain_by_rotation = elements.slope + shortened
+    moment = bent + N * strain_by_rotation
+    elongation = l - elements.chord + ((elements.slope + 0.5 * shortened) * delta).sum(axis=0)
+    energy = 0.5 * (delta * bent).sum(axis=0) + 0.5 * elements.compliance * elements.length * N**2
+
+    # Derivatives of the chord: l by the nodes is r, α is z/l.
+    cos, sin, zero = dx / l, dy / l, np.zeros(n)
+    r = np.stack([-cos, -sin, zero, cos, sin, zero, zero])
+    z = np.stack([sin, -cos, zero, -sin, cos, zero, zero])
+    turn = np.zeros((2, 7, n))  # ϑ by the unknowns
+    turn[:] = -z / l
+    turn[0, 2] += 1.0
+    turn[1, 5] += 1.0
+    total = moment.sum(axis=0)
+
+    gradient = N * r + np.einsum("in,ian->an", moment, turn)
+    gradient[6] += elongation - elements.compliance * elements.length * N
+    rz = r[:, None] * z[None, :]
+    H = np.einsum("ian,ijn,jbn->abn", turn, elements.bending + N * elements.shortening, turn)
+    H += N / l * (z[:, None] * z[None, :]) + total / l**2 * (rz + rz.transpose(1, 0, 2))
+    coupling = r + np.einsum("in,ian->an", strain_by_rotation, turn)
+    H[6] += coupling
+    H[:, 6] += coupling
+    H[6, 6] -= elements.compliance * elements.length
+    return ElementForces(gradient, H, energy, theta)
+
+
+def _wrapped(angle: Array) -> Array:
+    """The same angle in [−π, π)."""
+    return (angle + np.pi) % (2 * np.pi) - np.pi

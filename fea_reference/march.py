@@ -1,0 +1,203 @@
+"""From station to station: load steps that are cut and grow, contacts that close on the way, penalties that tighten."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.sparse.linalg import splu
+
+from fea_reference.contact import Pair, zones_of
+from fea_reference.crossing import cross
+from fea_reference.model import Model
+from fea_reference.newton import equilibrium
+from fea_reference.settings import Settings
+from fea_reference.system import System, assemble, load_direction
+from scene.answer import Array, Ending
+
+_PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
+_CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
+_TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
+_CUTS = 24  # halvings in a row
+_TIGHTENINGS = 30
+_SLACK = 1.3  # on the penalty foreseen for the penetration asked
+
+
+class StoppedError(Exception):
+    """The march cannot go on; internal to this package: it becomes the answer's ending."""
+
+    def __init__(self, ending: Ending, sentence: str) -> None:
+        super().__init__(sentence)
+        self.ending, self.sentence = ending, sentence
+
+
+@dataclass
+class March:
+    """Where the march stands: the state of the one loop that is allowed one.
+
+    ``values`` are the loads' without units; ``penalties`` the contacts that have closed so far, with their stiffness;
+    ``closing`` the value of the stepped load at which each did; ``iterations`` are counted since the last station.
+    """
+
+    model: Model
+    settings: Settings
+    open: list[Pair]
+    values: Array
+    system: System
+    penalties: dict[Pair, float] = field(default_factory=dict)
+    closing: dict[str, float] = field(default_factory=dict)
+    iterations: int = 0
+    steps: int = 0
+
+    def reach(self, load: int, target: float) -> None:
+        """March one load to ``target`` and land on it exactly.
+
+        Raises:
+            StoppedError: it cannot be reached.
+        """
+        self.iterations = 0
+        self._watch_what_touches(load)
+        stride, cuts = np.inf, 0
+        reason = (Ending.STEP_TOO_SMALL, "")
+        while self.values[load] != target:
+            if cuts > _CUTS:
+                raise StoppedError(*reason)
+            self.steps += 1
+            if self.steps > self.settings.step_limit:
+                raise StoppedError(
+                    Ending.STEP_TOO_SMALL, f"more than {self.settings.step_limit} load steps would be needed"
+                )
+            rate = self._rate(load)
+            speed = float(np.abs(rate[self._moving]).max())
+            way = target - self.values[load]
+            size = min(abs(way), stride, _PREDICTED / max(speed, 1e-300))
+            value = target if size >= abs(way) else self.values[load] + np.copysign(size, way)
+            if value == self.values[load]:
+                raise StoppedError(*reason)
+            trouble = self._step(load, value, rate)
+            if trouble is None:
+                stride, cuts = 2.0 * size, 0
+            else:
+                stride, cuts, reason = 0.5 * size, cuts + 1, trouble
+        self._tighten()
+
+    @property
+    def _moving(self) -> Array:
+        bodies = [body.dofs for body in self.model.bodies if body.dofs is not None]
+        return np.concatenate([self.model.node_dofs.ravel(), *bodies])
+
+    def _rate(self, load: int) -> Array:
+        """dz/dvalue along the branch; zero where the tangent is singular."""
+        try:
+            rate = splu(self.system.tangent).solve(load_direction(self.model, load, self.system.z))
+        except RuntimeError:
+            return np.zeros_like(self.system.z)
+        return rate if np.isfinite(rate).all() else np.zeros_like(self.system.z)
+
+    def _solve(self, load: int, value: float, z: Array, guess: Array | None = None) -> System | None:
+        """Equilibrium at ``value`` near ``z``; None if there is none to be found."""
+        values = self.values.copy()
+        values[load] = value
+        solved = equilibrium(self.model, self.settings, self.penalties, values, z if guess is None else guess)
+        self.iterations += solved.iterations
+        return solved.system if solved.converged else None
+
+    def _step(self, load: int, value: float, rate: Array) -> tuple[Ending, str] | None:
+        """Try to step to ``value``, or to where a contact closes before; the trouble if neither can be."""
+        before, start = self.system.z, float(self.values[load])
+        predicted = before + (value - start) * rate
+        system = self._solve(load, value, predicted)
+        if system is None:
+            return Ending.STEP_TOO_SMALL, f"Newton's method finds no equilibrium beyond {self._shown(load, start)}"
+        if float(np.abs((system.z - predicted)[self._moving]).max()) > _CORRECTED:
+            return (
+                Ending.STEP_TOO_SMALL,
+                f"beyond {self._shown(load, start)} the nearest equilibrium is on another branch",
+            )
+        touched = [pair for pair in self.open if zones_of(self.model, pair, system.z).least < 0.0]
+        if touched:
+            found = self._first_touch(load, start, value, before, system.z)
+            if found is None:
+                return Ending.STEP_TOO_SMALL, f"no closing of a contact found beyond {self._shown(load, start)}"
+            value, system = found
+        turned = float(np.abs(system.elements.rotation).max())
+        if turned > _TURNED:
+            return (
+                Ending.TURNED_TOO_FAR,
+                f"beyond {self._shown(load, start)} an element turns by {turned:.2f} rad: take more elements",
+            )
+        for pair in (*self.open, *self.penalties):
+            lines = [self.model.line(self.model.beams[i], system.z) for i in (pair.first, pair.second)]
+            if cross(*lines):
+                return Ending.BEAMS_CROSSED, f"beyond {self._shown(load, start)} the beams of {pair.name} cross"
+        self.values[load], self.system = value, system
+        if touched:
+            self._watch_what_touches(load)
+        return None
+
+    def _first_touch(
+        self, load: int, start: float, end: float, z_start: Array, z_end: Array
+    ) -> tuple[float, System] | None:
+        """The value at which the least gap of the open contacts is zero, found on the equilibria without them."""
+        latest: dict[float, System] = {}
+
+        def least_gap(value: float) -> float:
+            share = (value - start) / (end - start)
+            system = self._solve(load, value, z_start + share * (z_end - z_start))
+            if system is None:
+                raise ArithmeticError
+            latest[value] = system
+            return min(zones_of(self.model, pair, system.z).least for pair in self.open)
+
+        try:
+            root = float(brentq(least_gap, start, end, xtol=1e-11 * abs(end), rtol=1e-11))
+            least_gap(root)
+        except (ArithmeticError, ValueError):
+            return None
+        return root, latest[root]
+
+    def _watch_what_touches(self, load: int) -> None:
+        """Give a penalty to every open contact whose gap has vanished."""
+        for pair in list(self.open):
+            if zones_of(self.model, pair, self.system.z).least <= 1e-9 * pair.scale:
+                self.open.remove(pair)
+                self.penalties[pair] = pair.stiffness
+                self.closing[pair.name] = float(self.values[load]) * self.model.loads[load].unit
+        self.system = assemble(
+            self.model, self.penalties, self.settings.quadrature, self.values, self.system.z
+        )
+
+    def _tighten(self) -> None:
+        """Raise penalties, each time from the last equilibrium, until the penetration asked is kept.
+
+        The penetration of a contact in a point falls with the penalty to the power −2/3, in an area with −1.
+        """
+        for _ in range(_TIGHTENINGS):
+            excess = {
+                one.pair: one.penetration / (self.settings.penetration * one.pair.scale) for one in self.system.touches
+            }
+            if max(excess.values(), default=0.0) <= 1.0:
+                return
+            kept = dict(self.penalties)
+            for pair, ratio in excess.items():
+                if ratio > 1.0:
+                    self.penalties[pair] *= min(_SLACK * ratio**1.5, 10.0)
+            solved = equilibrium(self.model, self.settings, self.penalties, self.values, self.system.z)
+            self.iterations += solved.iterations
+            if not solved.converged:
+                self.penalties = kept
+                return
+            self.system = solved.system
+
+    def _shown(self, load: int, value: float) -> str:
+        part = self.model.loads[load]
+        return f"{part.name} = {value * part.unit:.6g}"
+
+
+def begin(model: Model, settings: Settings, contacts: Iterator[Pair] | tuple[Pair, ...]) -> March:
+    """The undeformed mechanism, unloaded."""
+    values = np.zeros(len(model.loads))
+    system = assemble(model, {}, settings.quadrature, values, model.start)
+    return March(model, settings, list(contacts), values, system)

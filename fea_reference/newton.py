@@ -1,0 +1,50 @@
+"""Newton's method for one equilibrium."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse.linalg import splu
+
+from fea_reference.contact import Pair
+from fea_reference.model import Model
+from fea_reference.settings import Settings
+from fea_reference.system import System, assemble
+from scene.answer import Array
+
+_TURN = 0.4  # rad, and the same in lengths of the longest beam: the most that one iteration may move anything
+
+
+@dataclass(frozen=True, slots=True)
+class Solved:
+    """What came of it: the last system, whether it is in equilibrium, and the iterations spent."""
+
+    system: System
+    converged: bool
+    iterations: int
+
+
+def equilibrium(
+    model: Model, settings: Settings, penalties: Mapping[Pair, float], values: Array, z: Array
+) -> Solved:
+    """Seek the equilibrium near ``z`` under load ``values``."""
+    moving = np.concatenate([model.node_dofs.ravel(), *(b.dofs for b in model.bodies if b.dofs is not None)])
+    correction = np.inf
+    system = assemble(model, penalties, settings.quadrature, values, z)
+    for iteration in range(settings.newton_limit):
+        unbalanced = float(np.abs(system.residual).max())
+        accepted = max(settings.residual * system.scale, system.floor)
+        if correction <= settings.correction and unbalanced <= accepted:
+            return Solved(system, converged=True, iterations=iteration)
+        try:
+            step = splu(system.tangent).solve(-system.residual)
+        except RuntimeError:  # exactly singular
+            return Solved(system, converged=False, iterations=iteration + 1)
+        if not np.isfinite(step).all():
+            return Solved(system, converged=False, iterations=iteration + 1)
+        correction = float(np.abs(step[moving]).max())
+        z = z + min(1.0, _TURN / max(correction, _TURN)) * step
+        system = assemble(model, penalties, settings.quadrature, values, z)
+    return Solved(system, converged=False, iterations=settings.newton_limit)

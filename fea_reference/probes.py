@@ -1,0 +1,102 @@
+"""What is asked at a station, in SI units, as :mod:`scene.answer` defines it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea_reference.contact import Touch
+from fea_reference.march import March
+from fea_reference.recovery import bending_moment
+from fea_reference.supports import support
+from scene.answer import Array, Shape, frozen_array
+from scene.statement import Probe, Scene
+
+
+def value(scene: Scene, march: March, probe: Probe) -> Array:
+    """One probe's value; the potential energy leaves out what the contact's penalty stores."""
+    model, z = march.model, march.system.z
+    units = model.units
+    match probe.quantity:
+        case "displacement":
+            body = next(body for body in model.bodies if probe.of in body.points)
+            return frozen_array((model.place(body, probe.of, z) - body.points[probe.of]) * units.length)
+        case "rotation":
+            body = next(body for body in model.bodies if body.name == probe.of)
+            return frozen_array(model.body_state(body, z)[2])
+        case "reaction":
+            held = [support(joint, z)[0] for joint in model.joints if joint.point == probe.of]
+            return frozen_array(sum(held, np.zeros(2)) * units.force)
+        case "reaction_moment":
+            return frozen_array(
+                sum(support(joint, z)[1] for joint in model.joints if joint.point == probe.of) * units.moment
+            )
+        case "bending_stress":
+            moment = bending_moment(model, march.system, model.beam(probe.of), np.linspace(0.0, 1.0, probe.points))
+            beam = scene.beams[probe.of]
+            # M t/(2I), with I of the rectangle
+            return frozen_array(moment * units.moment * 6.0 / (beam.width * beam.thickness**2))
+        case "potential_energy":
+            return frozen_array(_potential_energy(march) * units.moment)
+        case "closing_load":
+            touch = _touch(march, probe.of)
+            return frozen_array([] if touch is None else march.closing[probe.of])
+        case "force":
+            touch = _touch(march, probe.of)
+            return frozen_array(0.0 if touch is None else np.hypot(*touch.force.sum(axis=1)) * units.force)
+        case "centre":
+            touch = _touch(march, probe.of)
+            return frozen_array([] if touch is None else _centre(march, touch) * units.length)
+
+
+def shapes(march: March) -> dict[str, Shape]:
+    """The beams' nodes as they lie, SI."""
+    model, drawn = march.model, {}
+    for beam in model.beams:
+        line = model.line(beam, march.system.z)
+        x, y = line.points * model.units.length + model.units.origin[:, None]
+        s = np.linspace(0.0, beam.length * model.units.length, line.n + 1)
+        drawn[beam.name] = Shape(frozen_array(s), frozen_array(x), frozen_array(y))
+    return drawn
+
+
+def touching(march: March) -> dict[str, Array]:
+    """The middle between the surfaces at every Gauss point of the closed contacts' zones, (k, 2) in metres."""
+    model, places = march.model, {}
+    for one in march.system.touches:
+        if one.closed:
+            first, second = model.beams[one.pair.first], model.beams[one.pair.second]
+            # From each neutral line to its own surface; lines have none.
+            share = one.pair.distance / (first.thickness + second.thickness)
+            middle = 0.5 * (one.x + one.x_m + share * (second.thickness - first.thickness) * one.normal)
+            places[one.pair.name] = frozen_array(
+                (middle * model.units.length + model.units.origin[:, None]).T
+            )
+    return places
+
+
+def _touch(march: March, name: str) -> Touch | None:
+    """A contact's state, None while it is open."""
+    return next((one for one in march.system.touches if one.pair.name == name and one.closed), None)
+
+
+def _centre(march: March, touch: Touch) -> float:
+    """Arc length on the first beam of the pressure's centre."""
+    weight = np.hypot(*touch.force)
+    line = march.model.line(march.model.beams[touch.pair.first], march.system.z)
+    e, xi = line.locate(touch.zeta)
+    start = np.concatenate([[0.0], np.cumsum(line.lengths)])
+    return float(weight @ (start[e] + xi * line.lengths[e]) / weight.sum())
+
+
+def _potential_energy(march: March) -> float:
+    """Strain energy less the work of the dead loads."""
+    model, z = march.model, march.system.z
+    energy = float(march.system.elements.energy.sum())
+    for part, load in zip(model.loads, march.values, strict=True):
+        body = model.bodies[part.body]
+        if part.direction is None:
+            energy -= load * model.body_state(body, z)[2]
+        else:
+            moved = model.carried(body, part.arm, z) - (body.centre + part.arm)
+            energy -= load * float(part.direction @ moved)
+    return energy

@@ -1,0 +1,53 @@
+"""The bending moment along a beam, by statics.
+
+The moment at s is what balances the forces on the piece of an element between its first node and s: the element's own end
+force and end moment there, and the contact's forces at the Gauss points in between.  End forces follow from equilibrium of
+the whole and not from differentiated displacements, so the moment is as accurate as the nodes' positions (of fourth order),
+continuous across the nodes, and keeps the contact's kink where it is.  The contact's share of the nodal forces is taken out
+of the end forces first, for it acts within the element.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea_reference.contact import Touch
+from fea_reference.model import BeamPart, Model
+from fea_reference.system import System
+from scene.answer import Array
+
+
+def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:
+    """EI (κ − κ⁰) at ``fractions`` (k,) of the arc length, in units of EI/length."""
+    line = model.line(beam, system.z)
+    ends = system.elements.gradient[:3, beam.elements].copy()  # force and moment on every element's first node
+    number = model.beams.index(beam)
+    loads = [_on_beam(touch, number) for touch in system.touches]
+    place, point, force, gradient = (np.concatenate(parts, axis=-1) for parts in zip(*loads, strict=True)) if loads else (
+        np.empty(0),
+        np.empty((2, 0)),
+        np.empty((2, 0)),
+        np.empty((3, 0)),
+    )
+    owner, _ = line.locate(place)
+    for i in range(3):
+        np.add.at(ends[i], owner, gradient[i])
+
+    zeta = fractions * line.n
+    e, _ = line.locate(zeta)
+    x = line.at(zeta)[0]
+    arm = line.points[:, e] - x
+    moment = -(ends[2, e] + arm[0] * ends[1, e] - arm[1] * ends[0, e])
+    before = (owner[None, :] == e[:, None]) & (place[None, :] < zeta[:, None])
+    lever = point[:, None, :] - x[:, :, None]
+    moment -= ((lever[0] * force[1] - lever[1] * force[0]) * before).sum(axis=1)
+    return moment
+
+
+def _on_beam(touch: Touch, number: int) -> tuple[Array, Array, Array, Array]:
+    """Places, points, forces and the gradient at the element's first node, of one contact on one beam."""
+    if touch.pair.first == number:
+        return touch.zeta, touch.x, touch.force, touch.gradient[:3]
+    if touch.pair.second == number:
+        return touch.zeta_m, touch.x_m, -touch.force, touch.gradient[6:9]
+    return np.empty(0), np.empty((2, 0)), np.empty((2, 0)), np.empty((3, 0))

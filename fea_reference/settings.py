@@ -1,0 +1,116 @@
+"""The numerical choices of the finite-element reference."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
+
+from frozendict import frozendict
+
+from scene.mistakes import Mistake, SceneError
+
+Kinematics = Literal["bending", "stretch", "shear"]
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How finely and with which beam theory a scene is solved.
+
+    Attributes:
+        elements: per beam, one number for all or one for each name.
+        kinematics: ``bending`` (exactly inextensible, no shear), ``stretch`` (with axial flexibility) or
+            ``shear`` (with axial and shear flexibility).
+        penetration: largest depth of overlap that the contact penalty may leave, as a fraction of the mean
+            thickness of the two beams (of the longest beam for contacts of lines).
+        quadrature: Gauss points on each interval of a contact zone.
+        residual: unbalanced generalised force at which an equilibrium is accepted, as a fraction of the largest.
+        correction: last Newton correction (of lengths over the longest beam, and of angles) at which it is.
+        newton_limit: Newton iterations after which a load step is cut.
+        step_limit: load steps after which a stage is given up.
+
+    Raises:
+        SceneError: a value is out of its bounds.
+    """
+
+    elements: int | Mapping[str, int] = 80
+    kinematics: Kinematics = "shear"
+    penetration: float = 1e-4
+    quadrature: int = 6
+    residual: float = 1e-10
+    correction: float = 1e-8
+    newton_limit: int = 30
+    step_limit: int = 1000
+
+    def __post_init__(self) -> None:
+        mistakes = []
+        if isinstance(self.elements, Mapping):
+            object.__setattr__(self, "elements", frozendict(self.elements))
+            counts: list[tuple[str, object]] = [(f"elements.{k}", n) for k, n in self.elements.items()]
+        else:
+            counts = [("elements", self.elements)]
+        counts += [
+            ("quadrature", self.quadrature),
+            ("newton_limit", self.newton_limit),
+            ("step_limit", self.step_limit),
+        ]
+        for key, count in counts:
+            if not isinstance(count, int) or isinstance(count, bool) or count < 1:
+                mistakes.append(Mistake(f"settings.{key}", repr(count), "a whole number of at least 1"))
+        for key, value in (
+            ("penetration", self.penetration),
+            ("residual", self.residual),
+            ("correction", self.correction),
+        ):
+            if not (math.isfinite(value) and 0.0 < value < 1.0):
+                mistakes.append(Mistake(f"settings.{key}", repr(value), "a number between 0 and 1"))
+        if self.kinematics not in get_args(Kinematics):
+            allowed = ", ".join(get_args(Kinematics))
+            mistakes.append(Mistake("settings.kinematics", repr(self.kinematics), f"one of {allowed}"))
+        if mistakes:
+            raise SceneError(mistakes)
+
+    def elements_of(self, beams: Iterable[str]) -> dict[str, int]:
+        """The number of elements of every beam.
+
+        Raises:
+            SceneError: ``elements`` names a beam that is not there, or leaves one out.
+        """
+        names = list(beams)
+        if not isinstance(self.elements, Mapping):
+            return dict.fromkeys(names, self.elements)
+        allowed = "one number for each of " + ", ".join(names)
+        mistakes = [
+            Mistake("settings.elements", f"the unknown beam {name!r}", allowed)
+            for name in self.elements
+            if name not in names
+        ]
+        mistakes += [
+            Mistake("settings.elements", f"nothing for the beam {name!r}", allowed)
+            for name in names
+            if name not in self.elements
+        ]
+        if mistakes:
+            raise SceneError(mistakes)
+        return {name: self.elements[name] for name in names}
+
+    def finer(self) -> Settings:
+        """The same with twice the elements."""
+        if isinstance(self.elements, Mapping):
+            return replace(self, elements={name: 2 * n for name, n in self.elements.items()})
+        return replace(self, elements=2 * self.elements)
+
+    def plain(self) -> dict[str, object]:
+        """The choices as plain values."""
+        elements = self.elements
+        return {
+            "elements": dict(elements) if isinstance(elements, Mapping) else elements,
+            "kinematics": self.kinematics,
+            "penetration": self.penetration,
+            "quadrature": self.quadrature,
+            "residual": self.residual,
+            "correction": self.correction,
+            "newton_limit": self.newton_limit,
+            "step_limit": self.step_limit,
+        }

@@ -1,0 +1,82 @@
+"""A scene in, an answer out."""
+
+from __future__ import annotations
+
+import time
+
+from fea_reference.certificates import certify
+from fea_reference.contact import pairs
+from fea_reference.march import March, StoppedError, begin
+from fea_reference.model import build
+from fea_reference.probes import shapes, touching, value
+from fea_reference.settings import Settings
+from scene.answer import Answer, Ending, Event, StationAnswer
+from scene.statement import Scene, Stage
+
+_DEFAULT = Settings()
+
+
+def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
+    """Solve a scene by finite elements.
+
+    Raises:
+        SceneError: the settings do not fit the scene.
+    """
+    began = time.perf_counter()
+    model = build(scene, settings)
+    march = begin(model, settings, pairs(scene, model))
+    stations: list[StationAnswer] = []
+    events: list[Event] = []
+    ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
+    try:
+        for stage in scene.stages:
+            load = list(scene.loads).index(stage.steps)
+            for station in stage.stations:
+                known = set(march.closing)
+                march.reach(load, station / model.loads[load].unit)
+                events += [
+                    Event(stage.name, name, "closes", closing)
+                    for name, closing in march.closing.items()
+                    if name not in known
+                ]
+                stations.append(_certified(scene, march, stage, station))
+    except StoppedError as stopped:
+        ending, sentence = stopped.ending, stopped.sentence
+    tested = [
+        f"{name}: {'closed at ' + format(march.closing[name], '.6g') if name in march.closing else 'stayed open'}"
+        for name in scene.contacts
+    ]
+    return Answer(
+        solver="fea",
+        scene=scene.name,
+        settings=settings.plain(),
+        ending=ending,
+        sentence=sentence,
+        stations=tuple(stations),
+        events=tuple(events),
+        seconds=time.perf_counter() - began,
+        notes=tuple(tested),
+    )
+
+
+def _certified(scene: Scene, march: March, stage: Stage, station: float) -> StationAnswer:
+    """The station's answer, if its certificate holds.
+
+    Raises:
+        StoppedError: it does not.
+    """
+    certificate = certify(march)
+    if not certificate.holds:
+        minimum = certificate.smallest_curvature > 0.0
+        raise StoppedError(
+            Ending.NOT_CERTIFIED if minimum else Ending.NOT_A_MINIMUM,
+            f"at {stage.steps} = {station:g}: " + "; ".join(certificate.failures),
+        )
+    return StationAnswer(
+        stage=stage.name,
+        value=station,
+        values={probe.name: value(scene, march, probe) for probe in scene.probes},
+        shapes=shapes(march),
+        touching=touching(march),
+        certificate=certificate,
+    )

@@ -1,0 +1,153 @@
+"""The whole mechanism's unbalanced forces and their tangent: elements, joints, loads and contacts summed.
+
+The residual is the derivative of the Lagrangian Π(z) − Σ loads + λᵀ c(z) by all unknowns, the multipliers included, and
+the tangent its second derivative: symmetric and indefinite.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csc_matrix
+from skfem.assembly.form.coo_data import COOData
+
+from fea_reference.contact import Pair, Touch, touch
+from fea_reference.element import ElementForces, forces
+from fea_reference.hermite import Index
+from fea_reference.model import Model, turned
+from scene.answer import Array
+
+
+@dataclass(frozen=True, slots=True)
+class System:
+    """A state ``z`` and what follows from it.
+
+    Attributes:
+        residual: unbalanced generalised forces and violations of rows, (size,).
+        tangent: its derivative, sparse (size, size).
+        scale: the largest generalised force that balances.
+        floor: round-off of the residual: an element's end force is 12 EI/h³ times differences of positions and angles that
+            are known to machine precision, and errors of n elements add up like a random walk: eps EI h^-3.5.
+    """
+
+    z: Array
+    residual: Array
+    tangent: csc_matrix
+    elements: ElementForces
+    touches: tuple[Touch, ...]
+    scale: float
+    floor: float
+
+
+def assemble(
+    model: Model, penalties: Mapping[Pair, float], quadrature: int, values: Array, z: Array
+) -> System:
+    """Sum everything up in state ``z``.
+
+    Args:
+        model: the mechanism.
+        penalties: the contacts that are watched, with their stiffness.
+        quadrature: Gauss points per interval of a contact zone.
+        values: of the loads (number of loads,), without units.
+        z: the unknowns (size,).
+    """
+    elements = forces(model.elements, z[model.element_dofs])
+    touches = tuple(touch(model, pair, stiffness, quadrature, z) for pair, stiffness in penalties.items())
+    vectors = [_vector(model.element_dofs, elements.gradient, model.size)]
+    matrices = [_matrix(model.element_dofs, elements.hessian, model.size)]
+    for one in touches:
+        if one.closed:
+            vectors.append(_vector(one.dofs, one.gradient, model.size))
+            matrices.append(_matrix(one.dofs, one.hessian, model.size))
+    rigid, rows, columns, entries = _rigid(model, values, z)
+    matrices.append(
+        COOData(np.array([rows, columns]), np.array(entries), (model.size, model.size), local_shape=None)
+    )
+    residual = sum(vectors).toarray() + rigid
+    tangent = sum(matrices).tocsr().tocsc()
+    balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values).max(initial=0.0)]
+    balanced += [np.abs(one.gradient).max(initial=0.0) for one in touches]
+    largest = float(max(balanced))
+    h = model.elements.length
+    EI = np.repeat([beam.bending for beam in model.beams], [b.elements.stop - b.elements.start for b in model.beams])
+    floor = float(np.finfo(float).eps * (EI / h**3.5).max())
+    return System(z, residual, tangent, elements, touches, max(largest, floor), floor)
+
+
+def load_direction(model: Model, load: int, z: Array) -> Array:
+    """The generalised force of one load of unit value, (size,)."""
+    part = model.loads[load]
+    body = model.bodies[part.body]
+    f = np.zeros(model.size)
+    if body.dofs is None:
+        return f
+    if part.direction is None:
+        f[body.dofs[2]] = 1.0
+        return f
+    arm = turned(part.arm, z[body.dofs[2]])
+    f[body.dofs] = [*part.direction, arm[0] * part.direction[1] - arm[1] * part.direction[0]]
+    return f
+
+
+def _rigid(model: Model, values: Array, z: Array) -> tuple[Array, list[int], list[int], list[float]]:
+    """Joints and loads: few, so one after the other."""
+    residual = np.zeros(model.size)
+    rows: list[int] = []
+    columns: list[int] = []
+    entries: list[float] = []
+
+    def couple(i: int, j: int, value: float) -> None:
+        rows.extend((i, j))
+        columns.extend((j, i))
+        entries.extend((value, value))
+
+    for joint in model.joints:
+        body = model.bodies[joint.body]
+        X, Y, phi = model.body_state(body, z)
+        arm = turned(joint.arm, phi)
+        gap = z[joint.dofs[:2]] - body.centre - (X, Y) - arm
+        across = (-arm[1], arm[0])  # ∂(R r)/∂φ
+        for i in range(2):
+            row, multiplier = int(joint.rows[i]), z[joint.rows[i]]
+            residual[row] += gap[i]
+            residual[joint.dofs[i]] += multiplier
+            couple(row, int(joint.dofs[i]), 1.0)
+            if body.dofs is not None:
+                residual[body.dofs[i]] -= multiplier
+                residual[body.dofs[2]] -= multiplier * across[i]
+                couple(row, int(body.dofs[i]), -1.0)
+                couple(row, int(body.dofs[2]), -across[i])
+                rows.append(int(body.dofs[2]))
+                columns.append(int(body.dofs[2]))
+                entries.append(multiplier * arm[i])
+        if joint.rows.size == 3:
+            row, multiplier = int(joint.rows[2]), z[joint.rows[2]]
+            residual[row] += z[joint.dofs[2]] - phi - joint.angle
+            residual[joint.dofs[2]] += multiplier
+            couple(row, int(joint.dofs[2]), 1.0)
+            if body.dofs is not None:
+                residual[body.dofs[2]] -= multiplier
+                couple(row, int(body.dofs[2]), -1.0)
+    for i, (part, value) in enumerate(zip(model.loads, values, strict=True)):
+        if value == 0.0:
+            continue
+        residual -= value * load_direction(model, i, z)
+        dofs = model.bodies[part.body].dofs
+        if part.direction is not None and dofs is not None:
+            rows.append(int(dofs[2]))
+            columns.append(int(dofs[2]))
+            entries.append(value * float(turned(part.arm, z[dofs[2]]) @ part.direction))
+    return residual, rows, columns, entries
+
+
+def _vector(dofs: Index, local: Array, size: int) -> COOData:
+    return COOData(dofs.reshape(1, -1), local.ravel(), (size,), local_shape=None)
+
+
+def _matrix(dofs: Index, local: Array, size: int) -> COOData:
+    """Local matrices (m, m, n) in scikit-fem's order, trial before test; they are symmetric."""
+    trial = np.broadcast_to(dofs[:, None], local.shape)
+    test = np.broadcast_to(dofs[None, :], local.shape)
+    return COOData(np.stack([test.ravel(), trial.ravel()]), local.ravel(), (size, size), local_shape=None)

@@ -1,0 +1,205 @@
+"""Where two beams overlap: the gap along the first beam, and the intervals on which it is negative.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+x, x_m  point of the first beam's neutral line at ζ, its closest point on the second's at ζ_m
+τ, n    unit tangent and normal of the second beam at ζ_m
+d       n·(x − x_m)
+T       distance of the neutral lines when the surfaces touch
+g       gap, side·d − T
+J, a    |x_m'| and n·x_m'', by ζ_m
+======  =====================================================================================
+
+The closest point moves with ζ by J (τ·x')/(J² − d a), and with it n; thence
+
+    g' = side n·x',     g'' = side [ n·x'' − a (τ·x')²/(J² − d a) ].
+
+A zone may be far narrower than an element: samples of g and g' along the beam bracket its least values and then
+its ends, which are found by Newton's method kept within the brackets.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from fea_reference.hermite import NeutralLine
+from fea_reference.projection import project
+from scene.answer import Array
+
+SAMPLES_PER_ELEMENT = 4
+_ITERATIONS = 60
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """g, g' and g'' by ζ, and ζ_m, at some places (k,); ``found`` where there is a closest point."""
+
+    g: Array
+    slope: Array
+    curvature: Array
+    zeta_m: Array
+    found: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Zones:
+    """Intervals (k, 2) of ζ with a negative gap, none of which holds a node of either beam in its inside.
+
+    ``zeta_m`` (k, 2) are the closest points of their ends; ``least`` is the least gap anywhere, an upper bound of it
+    where the beams are far apart.
+    """
+
+    intervals: Array
+    zeta_m: Array
+    least: float
+
+
+def gap(first: NeutralLine, second: NeutralLine, side: float, T: float, zeta: Array, zeta_m: Array) -> Gap:
+    """The gap at ``zeta`` (k,), closest points sought from ``zeta_m`` (k,)."""
+    x, x1, x2 = first.at(zeta)
+    zeta_m, found = project(second, x, zeta_m)
+    xm, xm1, xm2 = second.at(zeta_m)
+    J = np.hypot(xm1[0], xm1[1])
+    tau = xm1 / J
+    n = np.stack([-tau[1], tau[0]])
+    d = (n * (x - xm)).sum(axis=0)
+    a = (n * xm2).sum(axis=0)
+    slope = side * (n * x1).sum(axis=0)
+    curvature = side * ((n * x2).sum(axis=0) - a * (tau * x1).sum(axis=0) ** 2 / (J**2 - d * a))
+    return Gap(side * d - T, slope, curvature, zeta_m, found)
+
+
+def side_of(first: NeutralLine, second: NeutralLine) -> float:
+    """On which side of the second beam the first lies: +1 to the left of its direction, −1 to the right."""
+    zeta = np.arange(SAMPLES_PER_ELEMENT * first.n + 1) / SAMPLES_PER_ELEMENT
+    near = KDTree(second.points.T).query(first.at(zeta)[0].T)[1].astype(float)
+    there = gap(first, second, 1.0, 0.0, zeta, near)
+    d = there.g[there.found]
+    if d.size == 0:
+        return 1.0
+    nearest = d[np.argmin(np.abs(d))]
+    # Lines that touch at the start show their side elsewhere.
+    return float(np.sign(nearest if abs(nearest) > 1e-9 else d.sum())) or 1.0
+
+
+def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zones:
+    """All intervals on which the first beam overlaps the second."""
+    zeta = np.arange(SAMPLES_PER_ELEMENT * first.n + 1) / SAMPLES_PER_ELEMENT
+    x = first.at(zeta)[0]
+    distance, nearest = KDTree(second.points.T).query(x.T)
+    # Farther than this no sample, and nothing within a quarter of an element of one, can touch.
+    reach = 2.0 * T + 2.0 * second.lengths.max() + first.lengths.max()
+    near = np.flatnonzero(distance < reach)
+    least = float(distance.min()) - T
+    if near.size == 0:
+        return _none(least)
+    there = gap(first, second, side, T, zeta[near], nearest[near].astype(float))
+    # A point that sees the far side of a strongly bent second beam is no overlap.
+    usable = there.found & (there.g > -T - reach)
+    near, zeta = near[usable], zeta[near][usable]
+    g, slope, zeta_m = there.g[usable], there.slope[usable], there.zeta_m[usable]
+    if near.size == 0:
+        return _none(least)
+
+    def slope_at(where: Array, guess: Array) -> tuple[Array, Array, Array]:
+        at = gap(first, second, side, T, where, guess)
+        return at.slope, at.curvature, at.zeta_m
+
+    def gap_at(where: Array, guess: Array) -> tuple[Array, Array, Array]:
+        at = gap(first, second, side, T, where, guess)
+        return at.g, at.slope, at.zeta_m
+
+    neighbours = np.diff(near) == 1
+    turning = np.flatnonzero(neighbours & (slope[:-1] * slope[1:] < 0.0))
+    if turning.size:
+        where, guess = _roots(slope_at, zeta, slope, zeta_m, turning)
+        value, _, guess = gap_at(where, guess)
+        at = turning + 1
+        zeta, g, zeta_m = np.insert(zeta, at, where), np.insert(g, at, value), np.insert(zeta_m, at, guess)
+        neighbours = np.insert(neighbours, turning, True)  # noqa: FBT003 - a new point follows its sample
+    least = float(g.min())
+    if least >= 0.0:
+        return _none(least)
+
+    ends = np.flatnonzero(neighbours & (g[:-1] * g[1:] < 0.0))
+    if ends.size:
+        where, guess = _roots(gap_at, zeta, g, zeta_m, ends)
+        at = ends + 1
+        zeta, g, zeta_m = np.insert(zeta, at, where), np.insert(g, at, 0.0), np.insert(zeta_m, at, guess)
+        neighbours = np.insert(neighbours, ends, True)  # noqa: FBT003
+    inside = np.flatnonzero(neighbours & (g[:-1] <= 0.0) & (g[1:] <= 0.0) & (g[:-1] + g[1:] < 0.0))
+    intervals = np.stack([zeta[inside], zeta[inside + 1]], axis=1)
+    closest = np.stack([zeta_m[inside], zeta_m[inside + 1]], axis=1)
+    return Zones(*_split_at_nodes(first, second, intervals, closest), least)
+
+
+def _none(least: float) -> Zones:
+    return Zones(np.empty((0, 2)), np.empty((0, 2)), least)
+
+
+def _roots(
+    function: Callable[[Array, Array], tuple[Array, Array, Array]],
+    zeta: Array,
+    values: Array,
+    zeta_m: Array,
+    left: NDArray[np.int64],
+) -> tuple[Array, Array]:
+    """Roots between the places ``left`` and the next, where ``values`` change their sign; with their ζ_m."""
+    low, high = zeta[left].copy(), zeta[left + 1].copy()
+    f_low, f_high = values[left], values[left + 1]
+    share = f_low / (f_low - f_high)
+    x = low + share * (high - low)
+    guess = zeta_m[left] + share * (zeta_m[left + 1] - zeta_m[left])
+    rising = np.sign(f_high)
+    for _ in range(_ITERATIONS):
+        f, df, guess = function(x, guess)
+        below = f * rising < 0.0
+        low, high = np.where(below, x, low), np.where(below, high, x)
+        safe = np.where(df == 0.0, 1.0, df)
+        newton = x - f / safe
+        good = (newton > low) & (newton < high) & (df != 0.0)
+        moved = np.where(f == 0.0, x, np.where(good, newton, 0.5 * (low + high)))
+        done = np.abs(moved - x).max() < 1e-12
+        x = moved
+        if done:
+            break
+    return x, guess
+
+
+def _split_at_nodes(
+    first: NeutralLine, second: NeutralLine, intervals: Array, closest: Array
+) -> tuple[Array, Array]:
+    """Cut intervals where their closest point passes a node of the second beam: the gap has a kink of curvature there."""
+    low, high = closest.min(axis=1), closest.max(axis=1)
+    lowest, highest = np.floor(low) + 1.0, np.ceil(high) - 1.0
+    count = np.maximum(highest - lowest + 1.0, 0.0).astype(int)
+    if not count.any():
+        return intervals, closest
+    owner = np.repeat(np.arange(count.size), count)
+    node = lowest[owner] + np.arange(owner.size) - np.repeat(np.cumsum(count) - count, count)
+    at = second.points[:, node.astype(int)]
+    tangent = second.tangents[:, node.astype(int)]
+    share = (node - closest[owner, 0]) / (closest[owner, 1] - closest[owner, 0])
+    zeta = intervals[owner, 0] + share * (intervals[owner, 1] - intervals[owner, 0])
+    for _ in range(_ITERATIONS):
+        x, x1, _x2 = first.at(zeta)
+        step = ((x - at) * tangent).sum(axis=0) / (x1 * tangent).sum(axis=0)
+        zeta = np.clip(zeta - step, intervals[owner, 0], intervals[owner, 1])
+        if np.abs(step).max() < 1e-12:
+            break
+    places = np.concatenate([intervals[:, 0], intervals[:, 1], zeta])
+    closest_all = np.concatenate([closest[:, 0], closest[:, 1], node])
+    owners = np.concatenate([np.arange(count.size), np.arange(count.size), owner])
+    order = np.lexsort((places, owners))
+    places, closest_all, owners = places[order], closest_all[order], owners[order]
+    same = np.flatnonzero(owners[:-1] == owners[1:])
+    return (
+        np.stack([places[same], places[same + 1]], axis=1),
+        np.stack([closest_all[same], closest_all[same + 1]], axis=1),
+    )
