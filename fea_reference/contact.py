@@ -21,7 +21,7 @@ and what is integrated is smooth in between.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -60,7 +60,7 @@ class Touch:
 
     ``dofs`` (12, k) of the element of the first beam and that of the second, ``gradient`` (12, k) and ``hessian``
     (12, 12, k) of Π_c; places ``zeta``, ``zeta_m`` (k,), points ``x``, ``x_m`` (2, k), the forces ``force`` on the first
-    beam (2, k), its tension-free ``normal`` (2, k), the ``penetration`` and the ``pressure`` there (k,).
+    beam (2, k), the ``normal`` away from the second (2, k).
     """
 
     pair: Pair
@@ -74,12 +74,16 @@ class Touch:
     x_m: Array
     force: Array
     normal: Array
-    pressure: Array
 
     @property
     def penetration(self) -> float:
         """Largest depth of overlap."""
         return max(0.0, -self.zones.least)
+
+    @property
+    def push(self) -> float:
+        """The resultant with its sign: negative while a held contact pulls."""
+        return float((self.force * self.normal).sum())
 
     @property
     def closed(self) -> bool:
@@ -111,11 +115,20 @@ def zones_of(model: Model, pair: Pair, z: Array) -> Zones:
     return find(first, second, pair.side, pair.distance)
 
 
-def touch(model: Model, pair: Pair, stiffness: float, quadrature: int, z: Array) -> Touch:
-    """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
+def touch(
+    model: Model, pair: Pair, stiffness: float, quadrature: int, z: Array, held: float | None = None
+) -> Touch:
+    """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval.
+
+    A ``held`` contact acts, in tension too, where the gap is least by up to that depth: while Newton's method is still
+    far from equilibrium, a contact that was closed before neither vanishes nor hits like a wall.
+    """
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
     line, line_m = model.line(beam, z), model.line(beam_m, z)
     zones = find(line, line_m, pair.side, pair.distance)
+    if held is not None:
+        shifted = find(line, line_m, pair.side, pair.distance + zones.least + held)
+        zones = replace(shifted, least=zones.least)
 
     points, weights = np.polynomial.legendre.leggauss(quadrature)
     share = 0.5 * (points + 1.0)
@@ -166,5 +179,4 @@ def touch(model: Model, pair: Pair, stiffness: float, quadrature: int, z: Array)
         x_m=x_m,
         force=-weight * g * normal,
         normal=normal,
-        pressure=-stiffness * g,
     )

@@ -96,11 +96,12 @@ class March:
             return np.zeros_like(self.system.z)
         return rate if np.isfinite(rate).all() else np.zeros_like(self.system.z)
 
-    def _solve(self, load: int, value: float, z: Array, guess: Array | None = None) -> System | None:
+    def _solve(self, load: int, value: float, z: Array) -> System | None:
         """Equilibrium at ``value`` near ``z``; None if there is none to be found."""
         values = self.values.copy()
         values[load] = value
-        solved = equilibrium(self.model, self.settings, self.penalties, values, z if guess is None else guess)
+        depths = {one.pair: one.penetration for one in self.system.touches if one.closed}
+        solved = equilibrium(self.model, self.settings, self.penalties, values, z, depths)
         self.iterations += solved.iterations
         return solved.system if solved.converged else None
 
@@ -184,7 +185,7 @@ class March:
             for pair, ratio in excess.items():
                 if ratio > 1.0:
                     self.penalties[pair] *= min(_SLACK * ratio**1.5, 10.0)
-            solved = equilibrium(self.model, self.settings, self.penalties, self.values, self.system.z)
+            solved = equilibrium(self.model, self.settings, self.penalties, self.values, self.system.z, {})
             self.iterations += solved.iterations
             if not solved.converged:
                 self.penalties = kept

@@ -15,6 +15,8 @@ from fea_reference.system import System, assemble
 from scene.answer import Array
 
 _TURN = 0.4  # rad, and the same in lengths of the longest beam: the most that one iteration may move anything
+_NEAR = 3.0  # factor between penetrations that Newton's method bridges by itself
+_HELD = 6  # iterations for which a contact is held at most
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,16 +29,26 @@ class Solved:
 
 
 def equilibrium(
-    model: Model, settings: Settings, penalties: Mapping[Pair, float], values: Array, z: Array
+    model: Model,
+    settings: Settings,
+    penalties: Mapping[Pair, float],
+    values: Array,
+    z: Array,
+    depths: Mapping[Pair, float],
 ) -> Solved:
-    """Seek the equilibrium near ``z`` under load ``values``."""
+    """Seek the equilibrium near ``z`` under load ``values``.
+
+    ``depths`` are the penetrations of the contacts that were closed in the equilibrium before: these are held until their
+    penetration is near that again, or until they pull.
+    """
     moving = np.concatenate([model.node_dofs.ravel(), *(b.dofs for b in model.bodies if b.dofs is not None)])
     correction = np.inf
-    system = assemble(model, penalties, settings.quadrature, values, z)
+    held = dict(depths)
+    system = assemble(model, penalties, settings.quadrature, values, z, held)
     for iteration in range(settings.newton_limit):
         unbalanced = float(np.abs(system.residual).max())
         accepted = max(settings.residual * system.scale, system.floor)
-        if correction <= settings.correction and unbalanced <= accepted:
+        if not held and correction <= settings.correction and unbalanced <= accepted:
             return Solved(system, converged=True, iterations=iteration)
         try:
             step = splu(system.tangent).solve(-system.residual)
@@ -46,5 +58,14 @@ def equilibrium(
             return Solved(system, converged=False, iterations=iteration + 1)
         correction = float(np.abs(step[moving]).max())
         z = z + min(1.0, _TURN / max(correction, _TURN)) * step
-        system = assemble(model, penalties, settings.quadrature, values, z)
+        system = assemble(model, penalties, settings.quadrature, values, z, held)
+        if held:
+            for one in system.touches:
+                depth = held.get(one.pair)
+                if depth is None:
+                    continue
+                near = depth / _NEAR < one.penetration < _NEAR * depth
+                if near or iteration >= _HELD or (iteration > 0 and one.push < 0.0):
+                    del held[one.pair]
+            system = assemble(model, penalties, settings.quadrature, values, z, held)
     return Solved(system, converged=False, iterations=settings.newton_limit)

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from frozendict import frozendict
 from scipy.sparse import csc_matrix
 from skfem.assembly.form.coo_data import COOData
 
@@ -18,6 +19,8 @@ from fea_reference.element import ElementForces, forces
 from fea_reference.hermite import Index
 from fea_reference.model import Model, turned
 from scene.answer import Array
+
+_NONE_HELD: Mapping[Pair, float] = frozendict()
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +45,12 @@ class System:
 
 
 def assemble(
-    model: Model, penalties: Mapping[Pair, float], quadrature: int, values: Array, z: Array
+    model: Model,
+    penalties: Mapping[Pair, float],
+    quadrature: int,
+    values: Array,
+    z: Array,
+    held: Mapping[Pair, float] = _NONE_HELD,
 ) -> System:
     """Sum everything up in state ``z``.
 
@@ -52,9 +60,12 @@ def assemble(
         quadrature: Gauss points per interval of a contact zone.
         values: of the loads (number of loads,), without units.
         z: the unknowns (size,).
+        held: the contacts that are held at a depth, see :func:`~fea_reference.contact.touch`.
     """
     elements = forces(model.elements, z[model.element_dofs])
-    touches = tuple(touch(model, pair, stiffness, quadrature, z) for pair, stiffness in penalties.items())
+    touches = tuple(
+        touch(model, pair, stiffness, quadrature, z, held.get(pair)) for pair, stiffness in penalties.items()
+    )
     vectors = [_vector(model.element_dofs, elements.gradient, model.size)]
     matrices = [_matrix(model.element_dofs, elements.hessian, model.size)]
     for one in touches:
