@@ -42,7 +42,8 @@ class Pair:
         side: of the second on which the first lies.
         distance: T, of the neutral lines when they touch.
         scale: what penetration is measured by: the mean thickness, or the longest beam for lines.
-        stiffness: the penalty to begin with, the softer beam's EI over its element's length to the fourth.
+        stiffness: the penalty to begin with, the softer beam's EI over its element's length (or half of the mean
+            thickness, if that is more) to the fourth.
     """
 
     name: str
@@ -101,7 +102,8 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         mean = 0.5 * (first.thickness + second.thickness)
         side = side_of(model.line(first, model.start), model.line(second, model.start))
         stiffness = min(
-            beam.bending / model.elements.length[beam.elements.start] ** 4 for beam in (first, second)
+            beam.bending / max(model.elements.length[beam.elements.start], 0.5 * mean) ** 4
+            for beam in (first, second)
         )
         found.append(
             Pair(name, i, j, side, mean if contact.thick else 0.0, mean if contact.thick else 1.0, stiffness)

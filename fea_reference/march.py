@@ -20,8 +20,9 @@ from scene.answer import Array, Ending
 _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
 _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
-_CUTS = 24  # halvings in a row
-_TIGHTENINGS = 30
+_CUTS = 10  # in a row, each to a quarter
+_TIGHTEN = 100.0  # the most by which a penalty is raised at once
+_TIGHTENINGS = 20
 _SLACK = 1.3  # on the penalty foreseen for the penetration asked
 
 
@@ -80,7 +81,7 @@ class March:
             if trouble is None:
                 stride, cuts = 2.0 * size, 0
             else:
-                stride, cuts, reason = 0.5 * size, cuts + 1, trouble
+                stride, cuts, reason = 0.25 * size, cuts + 1, trouble
         self._tighten()
 
     @property
@@ -100,8 +101,7 @@ class March:
         """Equilibrium at ``value`` near ``z``; None if there is none to be found."""
         values = self.values.copy()
         values[load] = value
-        depths = {one.pair: one.penetration for one in self.system.touches if one.closed}
-        solved = equilibrium(self.model, self.settings, self.penalties, values, z, depths)
+        solved = equilibrium(self.model, self.settings, self.penalties, values, z, self._depths())
         self.iterations += solved.iterations
         return solved.system if solved.converged else None
 
@@ -112,7 +112,7 @@ class March:
         system = self._solve(load, value, predicted)
         if system is None:
             return Ending.STEP_TOO_SMALL, f"Newton's method finds no equilibrium beyond {self._shown(load, start)}"
-        if float(np.abs((system.z - predicted)[self._moving]).max()) > _CORRECTED:
+        if self._moved(system, predicted) > _CORRECTED:
             return (
                 Ending.STEP_TOO_SMALL,
                 f"beyond {self._shown(load, start)} the nearest equilibrium is on another branch",
@@ -175,22 +175,33 @@ class March:
 
         The penetration of a contact in a point falls with the penalty to the power −2/3, in an area with −1.
         """
+        most = _TIGHTEN
         for _ in range(_TIGHTENINGS):
             excess = {
                 one.pair: one.penetration / (self.settings.penetration * one.pair.scale) for one in self.system.touches
             }
             if max(excess.values(), default=0.0) <= 1.0:
                 return
-            kept = dict(self.penalties)
+            tighter, depths = dict(self.penalties), self._depths()
             for pair, ratio in excess.items():
                 if ratio > 1.0:
-                    self.penalties[pair] *= min(_SLACK * ratio**1.5, 10.0)
-            solved = equilibrium(self.model, self.settings, self.penalties, self.values, self.system.z, {})
+                    factor = min(_SLACK * ratio**1.5, most)
+                    tighter[pair] *= factor
+                    depths[pair] *= factor ** (-2.0 / 3.0)
+            solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, depths)
             self.iterations += solved.iterations
-            if not solved.converged:
-                self.penalties = kept
-                return
-            self.system = solved.system
+            if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
+                self.system, self.penalties = solved.system, tighter
+            else:
+                most **= 0.5
+
+    def _depths(self) -> dict[Pair, float]:
+        """The penetrations of the closed contacts."""
+        return {one.pair: one.penetration for one in self.system.touches if one.closed}
+
+    def _moved(self, system: System, z: Array) -> float:
+        """The most by which anything differs."""
+        return float(np.abs((system.z - z)[self._moving]).max())
 
     def _shown(self, load: int, value: float) -> str:
         part = self.model.loads[load]

@@ -29,10 +29,11 @@ def project(line: NeutralLine, points: Array, zeta: Array) -> tuple[Array, NDArr
         if iteration > _ITERATIONS // 4:
             step *= 0.5  # a kink of the curvature between two elements can hold Newton's method in a cycle
         moved = np.clip(zeta + step, 0.0, line.n)
-        done = np.abs(moved - zeta).max(initial=0.0) < 1e-13 * line.n
+        # The step that was just made leaves an error of the order of its square.
+        done = np.abs(moved - zeta).max(initial=0.0) < 1e-8
         zeta = moved
         if done:
             break
     # f is the one before the last, vanishing step; where a step was cut at an end it is not small.
-    found = np.abs(f) <= 1e-8 * np.sqrt(speed * ((r * r).sum(axis=0) + speed))
+    found = np.abs(f) <= 1e-6 * np.sqrt(speed * ((r * r).sum(axis=0) + speed))
     return zeta, found

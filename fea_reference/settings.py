@@ -40,8 +40,8 @@ class Settings:
     quadrature: int = 6
     residual: float = 1e-10
     correction: float = 1e-8
-    newton_limit: int = 30
-    step_limit: int = 1000
+    newton_limit: int = 25
+    step_limit: int = 400
 
     def __post_init__(self) -> None:
         mistakes = []

@@ -103,7 +103,8 @@ def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zone
     # A point that sees the far side of a strongly bent second beam is no overlap.
     usable = there.found & (there.g > -T - reach)
     near, zeta = near[usable], zeta[near][usable]
-    g, slope, zeta_m = there.g[usable], there.slope[usable], there.zeta_m[usable]
+    g, slope, curvature = there.g[usable], there.slope[usable], there.curvature[usable]
+    zeta_m = there.zeta_m[usable]
     if near.size == 0:
         return _none(least)
 
@@ -118,10 +119,13 @@ def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zone
     neighbours = np.diff(near) == 1
     turning = np.flatnonzero(neighbours & (slope[:-1] * slope[1:] < 0.0))
     if turning.size:
-        where, guess = _roots(slope_at, zeta, slope, zeta_m, turning)
-        value, _, guess = gap_at(where, guess)
+        share = slope[turning] / (slope[turning] - slope[turning + 1])
+        where, guess = _roots(slope_at, zeta, slope, zeta_m, turning, share)
+        least_there = gap(first, second, side, T, where, guess)
         at = turning + 1
-        zeta, g, zeta_m = np.insert(zeta, at, where), np.insert(g, at, value), np.insert(zeta_m, at, guess)
+        zeta, zeta_m = np.insert(zeta, at, where), np.insert(zeta_m, at, least_there.zeta_m)
+        g, slope = np.insert(g, at, least_there.g), np.insert(slope, at, least_there.slope)
+        curvature = np.insert(curvature, at, least_there.curvature)
         neighbours = np.insert(neighbours, turning, True)  # noqa: FBT003 - a new point follows its sample
     least = float(g.min())
     if least >= 0.0:
@@ -129,7 +133,7 @@ def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zone
 
     ends = np.flatnonzero(neighbours & (g[:-1] * g[1:] < 0.0))
     if ends.size:
-        where, guess = _roots(gap_at, zeta, g, zeta_m, ends)
+        where, guess = _roots(gap_at, zeta, g, zeta_m, ends, _parabola(zeta, g, slope, curvature, ends))
         at = ends + 1
         zeta, g, zeta_m = np.insert(zeta, at, where), np.insert(g, at, 0.0), np.insert(zeta_m, at, guess)
         neighbours = np.insert(neighbours, ends, True)  # noqa: FBT003
@@ -149,14 +153,16 @@ def _roots(
     values: Array,
     zeta_m: Array,
     left: NDArray[np.int64],
+    share: Array,
 ) -> tuple[Array, Array]:
-    """Roots between the places ``left`` and the next, where ``values`` change their sign; with their ζ_m."""
+    """Roots between the places ``left`` and the next, where ``values`` change their sign; with their ζ_m.
+
+    ``share`` of the way from one to the next is where to begin.
+    """
     low, high = zeta[left].copy(), zeta[left + 1].copy()
-    f_low, f_high = values[left], values[left + 1]
-    share = f_low / (f_low - f_high)
     x = low + share * (high - low)
     guess = zeta_m[left] + share * (zeta_m[left + 1] - zeta_m[left])
-    rising = np.sign(f_high)
+    rising = np.sign(values[left + 1])
     for _ in range(_ITERATIONS):
         f, df, guess = function(x, guess)
         below = f * rising < 0.0
@@ -165,11 +171,24 @@ def _roots(
         newton = x - f / safe
         good = (newton > low) & (newton < high) & (df != 0.0)
         moved = np.where(f == 0.0, x, np.where(good, newton, 0.5 * (low + high)))
-        done = np.abs(moved - x).max() < 1e-12
+        done = np.abs(moved - x).max() < 1e-8  # as in a projection, the last step's error is of second order
         x = moved
         if done:
             break
     return x, guess
+
+
+def _parabola(zeta: Array, g: Array, slope: Array, curvature: Array, left: NDArray[np.int64]) -> Array:
+    """Where between the places ``left`` and the next a parabola through the overlapping one has its zero, as a share."""
+    forward = g[left] < 0.0
+    inner = np.where(forward, left, left + 1)
+    way = np.where(forward, 1.0, -1.0)
+    width = zeta[left + 1] - zeta[left]
+    a, b, c = 0.5 * curvature[inner] * width**2, way * slope[inner] * width, g[inner]
+    root = np.sqrt(np.maximum(b * b - 4.0 * a * c, 0.0))
+    # The stable form of (−b + root)/(2a)
+    distance = np.clip(-2.0 * c / np.maximum(b + root, 1e-300), 1e-3, 1.0 - 1e-3)
+    return np.where(forward, distance, 1.0 - distance)
 
 
 def _split_at_nodes(
