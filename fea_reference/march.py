@@ -22,7 +22,7 @@ _CORRECTED = 0.2  # the most by which the equilibrium may differ from its predic
 _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
 _CUTS = 10  # in a row, each to a quarter
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
-_TIGHTENINGS = 20
+_TIGHTENINGS = 25
 _SLACK = 1.3  # on the penalty foreseen for the penetration asked
 
 
@@ -39,7 +39,7 @@ class March:
     """Where the march stands: the state of the one loop that is allowed one.
 
     ``values`` are the loads' without units; ``penalties`` the contacts that have closed so far, with their stiffness;
-    ``closing`` the value of the stepped load at which each did; ``iterations`` are counted since the last station.
+    ``closing`` the value of the stepped load at which each did; ``iterations`` and ``steps`` are counted since the last station.
     """
 
     model: Model
@@ -58,7 +58,7 @@ class March:
         Raises:
             StoppedError: it cannot be reached.
         """
-        self.iterations = 0
+        self.iterations = self.steps = 0
         self._watch_what_touches(load)
         stride, cuts = np.inf, 0
         reason = (Ending.STEP_TOO_SMALL, "")
@@ -68,7 +68,7 @@ class March:
             self.steps += 1
             if self.steps > self.settings.step_limit:
                 raise StoppedError(
-                    Ending.STEP_TOO_SMALL, f"more than {self.settings.step_limit} load steps would be needed"
+                    Ending.STEP_TOO_SMALL, f"{self.settings.step_limit} load steps brought {self._shown(load, float(self.values[load]))}"
                 )
             rate = self._rate(load)
             speed = float(np.abs(rate[self._moving]).max())
@@ -192,12 +192,18 @@ class March:
             self.iterations += solved.iterations
             if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
                 self.system, self.penalties = solved.system, tighter
+                most = min(most**1.5, _TIGHTEN)
             else:
-                most **= 0.5
+                most = max(most**0.4, 1.2)
 
     def _depths(self) -> dict[Pair, float]:
-        """The penetrations of the closed contacts."""
-        return {one.pair: one.penetration for one in self.system.touches if one.closed}
+        """The penetrations of the closed contacts; of those just closed, what they will be allowed."""
+        allowed = self.settings.penetration
+        return {
+            one.pair: max(one.penetration, allowed * one.pair.scale)
+            for one in self.system.touches
+            if one.zones.least <= 1e-9 * one.pair.scale
+        }
 
     def _moved(self, system: System, z: Array) -> float:
         """The most by which anything differs."""

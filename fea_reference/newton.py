@@ -16,6 +16,7 @@ from scene.answer import Array
 
 _TURN = 0.4  # rad, and the same in lengths of the longest beam: the most that one iteration may move anything
 _NEAR = 3.0  # factor between penetrations that Newton's method bridges by itself
+_SETTLED = 1e-4  # correction after which holding has done what it can
 _HELD = 6  # iterations for which a contact is held at most
 
 
@@ -65,7 +66,8 @@ def equilibrium(
                 if depth is None:
                     continue
                 near = depth / _NEAR < one.penetration < _NEAR * depth
-                if near or iteration >= _HELD or (iteration > 0 and one.push < 0.0):
+                settled = iteration >= _HELD or correction < _SETTLED
+                if near or settled or (iteration > 0 and one.push < 0.0):
                     del held[one.pair]
             system = assemble(model, penalties, settings.quadrature, values, z, held)
     return Solved(system, converged=False, iterations=settings.newton_limit)

@@ -28,7 +28,7 @@ class Settings:
         residual: unbalanced generalised force at which an equilibrium is accepted, as a fraction of the largest.
         correction: last Newton correction (of lengths over the longest beam, and of angles) at which it is.
         newton_limit: Newton iterations after which a load step is cut.
-        step_limit: load steps after which a stage is given up.
+        step_limit: load steps after which a station is given up.
 
     Raises:
         SceneError: a value is out of its bounds.
@@ -41,7 +41,7 @@ class Settings:
     residual: float = 1e-10
     correction: float = 1e-8
     newton_limit: int = 25
-    step_limit: int = 400
+    step_limit: int = 150
 
     def __post_init__(self) -> None:
         mistakes = []
