@@ -18,7 +18,9 @@ from fea_reference.system import System, assemble, load_direction
 from scene.answer import Array, Ending
 
 _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
-_CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
+_CORRECTED = (
+    0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
+)
 _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
 _CUTS = 10  # in a row, each to a quarter
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
@@ -68,7 +70,8 @@ class March:
             self.steps += 1
             if self.steps > self.settings.step_limit:
                 raise StoppedError(
-                    Ending.STEP_TOO_SMALL, f"{self.settings.step_limit} load steps brought {self._shown(load, float(self.values[load]))}"
+                    Ending.STEP_TOO_SMALL,
+                    f"{self.settings.step_limit} load steps brought {self._shown(load, float(self.values[load]))}",
                 )
             rate = self._rate(load)
             speed = float(np.abs(rate[self._moving]).max())
@@ -111,7 +114,10 @@ class March:
         predicted = before + (value - start) * rate
         system = self._solve(load, value, predicted)
         if system is None:
-            return Ending.STEP_TOO_SMALL, f"Newton's method finds no equilibrium beyond {self._shown(load, start)}"
+            return (
+                Ending.STEP_TOO_SMALL,
+                f"Newton's method finds no equilibrium beyond {self._shown(load, start)}",
+            )
         if self._moved(system, predicted) > _CORRECTED:
             return (
                 Ending.STEP_TOO_SMALL,
@@ -121,7 +127,10 @@ class March:
         if touched:
             found = self._first_touch(load, start, value, before, system.z)
             if found is None:
-                return Ending.STEP_TOO_SMALL, f"no closing of a contact found beyond {self._shown(load, start)}"
+                return (
+                    Ending.STEP_TOO_SMALL,
+                    f"no closing of a contact found beyond {self._shown(load, start)}",
+                )
             value, system = found
         turned = float(np.abs(system.elements.rotation).max())
         if turned > _TURNED:
@@ -132,7 +141,10 @@ class March:
         for pair in (*self.open, *self.penalties):
             lines = [self.model.line(self.model.beams[i], system.z) for i in (pair.first, pair.second)]
             if cross(*lines):
-                return Ending.BEAMS_CROSSED, f"beyond {self._shown(load, start)} the beams of {pair.name} cross"
+                return (
+                    Ending.BEAMS_CROSSED,
+                    f"beyond {self._shown(load, start)} the beams of {pair.name} cross",
+                )
         self.values[load], self.system = value, system
         if touched:
             self._watch_what_touches(load)
@@ -178,7 +190,8 @@ class March:
         most = _TIGHTEN
         for _ in range(_TIGHTENINGS):
             excess = {
-                one.pair: one.penetration / (self.settings.penetration * one.pair.scale) for one in self.system.touches
+                one.pair: one.penetration / (self.settings.penetration * one.pair.scale)
+                for one in self.system.touches
             }
             if max(excess.values(), default=0.0) <= 1.0:
                 return

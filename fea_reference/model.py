@@ -183,7 +183,12 @@ def build(scene: Scene, settings: Settings) -> Model:
     basis = CellBasis(mesh, ElementVector(ElementLineP1(), 3) * ElementLineP0(), intorder=2)
     nodes, angles = np.concatenate(points), np.concatenate(tangents)
     elements = reference(
-        mesh, nodes, angles, np.concatenate(bending), np.concatenate(compliance), np.concatenate(shear_compliance)
+        mesh,
+        nodes,
+        angles,
+        np.concatenate(bending),
+        np.concatenate(compliance),
+        np.concatenate(shear_compliance),
     )
     node_dofs = np.asarray(basis.nodal_dofs, dtype=np.int64)
     size = int(basis.N)
@@ -204,7 +209,9 @@ def build(scene: Scene, settings: Settings) -> Model:
         for end, at in ((ends.start, part.nodes.start), (ends.end, part.nodes.stop - 1)):
             if isinstance(end, FreeEnd):
                 continue
-            joints.append(_joint(end, number[scene.body_of(end.point)], bodies, node_dofs[:, at], angles[at], size))
+            joints.append(
+                _joint(end, number[scene.body_of(end.point)], bodies, node_dofs[:, at], angles[at], size)
+            )
             size += joints[-1].rows.size
 
     loads: list[LoadPart] = []

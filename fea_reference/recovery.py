@@ -20,14 +20,20 @@ from scene.answer import Array
 def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:
     """EI (κ − κ⁰) at ``fractions`` (k,) of the arc length, in units of EI/length."""
     line = model.line(beam, system.z)
-    ends = system.elements.gradient[:3, beam.elements].copy()  # force and moment on every element's first node
+    ends = system.elements.gradient[
+        :3, beam.elements
+    ].copy()  # force and moment on every element's first node
     number = model.beams.index(beam)
     loads = [_on_beam(touch, number) for touch in system.touches]
-    place, point, force, gradient = (np.concatenate(parts, axis=-1) for parts in zip(*loads, strict=True)) if loads else (
-        np.empty(0),
-        np.empty((2, 0)),
-        np.empty((2, 0)),
-        np.empty((3, 0)),
+    place, point, force, gradient = (
+        (np.concatenate(parts, axis=-1) for parts in zip(*loads, strict=True))
+        if loads
+        else (
+            np.empty(0),
+            np.empty((2, 0)),
+            np.empty((2, 0)),
+            np.empty((3, 0)),
+        )
     )
     owner, _ = line.locate(place)
     for i in range(3):

@@ -83,7 +83,9 @@ def assemble(
     balanced += [np.abs(one.gradient).max(initial=0.0) for one in touches]
     largest = float(max(balanced))
     h = model.elements.length
-    EI = np.repeat([beam.bending for beam in model.beams], [b.elements.stop - b.elements.start for b in model.beams])
+    EI = np.repeat(
+        [beam.bending for beam in model.beams], [b.elements.stop - b.elements.start for b in model.beams]
+    )
     floor = float(_ROUND_OFF * np.finfo(float).eps * (EI / h**3.5).max())
     return System(z, residual, tangent, elements, touches, max(largest, floor), floor)
 

@@ -126,7 +126,7 @@ def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zone
         zeta, zeta_m = np.insert(zeta, at, where), np.insert(zeta_m, at, least_there.zeta_m)
         g, slope = np.insert(g, at, least_there.g), np.insert(slope, at, least_there.slope)
         curvature = np.insert(curvature, at, least_there.curvature)
-        neighbours = np.insert(neighbours, turning, True)  # noqa: FBT003 - a new point follows its sample
+        neighbours = np.insert(neighbours, turning, True)
     least = float(g.min())
     if least >= 0.0:
         return _none(least)
@@ -136,7 +136,7 @@ def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zone
         where, guess = _roots(gap_at, zeta, g, zeta_m, ends, _parabola(zeta, g, slope, curvature, ends))
         at = ends + 1
         zeta, g, zeta_m = np.insert(zeta, at, where), np.insert(g, at, 0.0), np.insert(zeta_m, at, guess)
-        neighbours = np.insert(neighbours, ends, True)  # noqa: FBT003
+        neighbours = np.insert(neighbours, ends, True)
     inside = np.flatnonzero(neighbours & (g[:-1] <= 0.0) & (g[1:] <= 0.0) & (g[:-1] + g[1:] < 0.0))
     intervals = np.stack([zeta[inside], zeta[inside + 1]], axis=1)
     closest = np.stack([zeta_m[inside], zeta_m[inside + 1]], axis=1)

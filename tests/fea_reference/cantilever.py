@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.special import ellipk, ellipkinc, ellipeinc
+from scipy.special import ellipeinc, ellipk, ellipkinc
 
 from scene import Scene
 from scene.reading import scene_from

@@ -50,9 +50,7 @@ def test_tip_force_follows_the_elastica(angle):
         assert tip + (1.0, 0.0) == pytest.approx([x, y], abs=1e-6)
         assert station.values["end.rotation"][0] == pytest.approx(phi, abs=1e-6)
         # Clapeyron does not hold; the root's moment is statics on the bent shape.
-        assert station.values["root.reaction_moment"][0] == pytest.approx(
-            -alpha * EI / LENGTH * x, rel=1e-5
-        )
+        assert station.values["root.reaction_moment"][0] == pytest.approx(-alpha * EI / LENGTH * x, rel=1e-5)
 
 
 def test_the_error_falls_with_the_fourth_power_of_the_element():
@@ -61,7 +59,9 @@ def test_the_error_falls_with_the_fourth_power_of_the_element():
     errors = []
     for n in (4, 8, 16, 32):
         scene = cantilever(force(0, 1), (6.0 * EI / LENGTH**2,))
-        tip = answer(scene, Settings(elements=n, kinematics="bending")).stations[-1].values["tip.displacement"]
+        tip = (
+            answer(scene, Settings(elements=n, kinematics="bending")).stations[-1].values["tip.displacement"]
+        )
         errors.append(np.hypot(*(tip / LENGTH + (1.0, 0.0) - (x, y))))
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert orders[-1] == pytest.approx(4.0, abs=0.2)
@@ -125,11 +125,16 @@ def test_a_straight_column_beyond_eulers_load_is_no_answer():
     euler = np.pi**2 * EI / (4 * LENGTH**2)
     for kinematics in ("bending", "shear"):
         got = answer(
-            cantilever(force(-1, 0), (0.5 * euler, 0.98 * euler, 1.02 * euler)), Settings(elements=20, kinematics=kinematics)
+            cantilever(force(-1, 0), (0.5 * euler, 0.98 * euler, 1.02 * euler)),
+            Settings(elements=20, kinematics=kinematics),
         )
         assert got.ending is Ending.NOT_A_MINIMUM
         assert [station.value for station in got.stations] == [0.5 * euler, 0.98 * euler]
-        assert got.stations[0].certificate.smallest_curvature > got.stations[1].certificate.smallest_curvature > 0
+        assert (
+            got.stations[0].certificate.smallest_curvature
+            > got.stations[1].certificate.smallest_curvature
+            > 0
+        )
 
 
 def test_the_smallest_curvature_is_the_lowest_vibration():
@@ -142,9 +147,17 @@ def test_the_smallest_curvature_is_the_lowest_vibration():
     K, M = np.zeros((2 * n + 2, 2 * n + 2)), np.zeros((2 * n + 2, 2 * n + 2))
     for e in range(n):
         at = slice(2 * e, 2 * e + 4)
-        K[at, at] += np.array(
-            [[12, 6 * h, -12, 6 * h], [6 * h, 4 * h**2, -6 * h, 2 * h**2], [-12, -6 * h, 12, -6 * h], [6 * h, 2 * h**2, -6 * h, 4 * h**2]]
-        ) / h**3
+        K[at, at] += (
+            np.array(
+                [
+                    [12, 6 * h, -12, 6 * h],
+                    [6 * h, 4 * h**2, -6 * h, 2 * h**2],
+                    [-12, -6 * h, 12, -6 * h],
+                    [6 * h, 2 * h**2, -6 * h, 4 * h**2],
+                ]
+            )
+            / h**3
+        )
         M[at, at] += np.eye(4) * h / 2
     M[-2:, -2:] += np.eye(2)
     lowest = np.min(np.linalg.eigvals(np.linalg.solve(M[2:, 2:], K[2:, 2:])).real)

@@ -1,0 +1,145 @@
+"""The rotational hinge: what must hold of its answer whatever the numbers are."""
+
+import numpy as np
+import pytest
+
+from fea_reference import Settings, answer
+from scene import Ending, read
+
+CASE = "comparisons/cases/hinge.toml"
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return read(CASE)
+
+
+@pytest.fixture(scope="module")
+def solved(scene):
+    return answer(scene)
+
+
+def stepped(scene, *stations):
+    stage = scene.stages[0].model_copy(update={"stations": stations})
+    return scene.model_copy(update={"stages": (stage,)})
+
+
+def test_every_station_is_certified(scene, solved):
+    assert solved.ending is Ending.COMPLETED
+    assert tuple(station.value for station in solved.stations) == scene.stages[0].stations
+    for station in solved.stations:
+        certificate = station.certificate
+        assert certificate.holds
+        assert certificate.force_balance < 1e-8
+        assert certificate.moment_balance < 1e-8
+        assert certificate.penetration <= 1e-4
+        assert certificate.smallest_curvature > 0.0
+        assert set(station.values) == {probe.name for probe in scene.probes}
+
+
+def test_the_supports_balance_the_load(solved):
+    """ΣF and ΣM about C, from the probes alone: no multiplier, no unit of the solver's own."""
+    for station in solved.stations:
+        values = station.values
+        force = values["A.reaction"] + values["C.reaction"]
+        assert force == pytest.approx([0.0, 0.0], abs=1e-8 * np.abs(values["A.reaction"]).max())
+        lever = 2 * 0.02625
+        moment = values["A.reaction_moment"] + values["C.reaction_moment"] - lever * values["A.reaction"][0]
+        assert moment[0] == pytest.approx(-station.value, rel=1e-8)
+
+
+def test_the_contact_closes_once_and_pushes_after(solved):
+    (event,) = solved.events
+    assert (event.contact, event.stage) == ("contact", "load")
+    for station in solved.stations:
+        values, closed = station.values, station.value > event.value
+        assert (values["contact.force"][0] > 0.0) == closed
+        assert values["contact.centre"].size == values["contact.closing_load"].size == int(closed)
+        assert ("contact" in station.touching) == closed
+    forces = [station.values["contact.force"][0] for station in solved.stations]
+    assert forces == sorted(forces)
+
+
+def test_the_beams_touch_at_the_closing_load(scene, solved):
+    """Just below it there is no force; just above it there is one, small beside the last."""
+    (event,) = solved.events
+    got = answer(stepped(scene, event.value * (1 - 1e-6), event.value * (1 + 1e-6)))
+    below, above = (station.values["contact.force"][0] for station in got.stations)
+    assert below == 0.0
+    assert 0.0 < above < 1e-3 * solved.stations[-1].values["contact.force"][0]
+
+
+def test_the_stress_is_statics(scene, solved):
+    """At the clamps the bending moment is the support's; it is read at the beam's ends, where both are known."""
+    for station in solved.stations:
+        for beam, root in (("beam1", "A"), ("beam2", "C")):
+            stress = station.values[f"{beam}.bending_stress"][0]
+            section = scene.beams[beam]
+            modulus = section.width * section.thickness**2 / 6
+            # The ground turns the beam's start by M; the section beyond answers with −M.
+            expected = -station.values[f"{root}.reaction_moment"][0] / modulus
+            assert stress == pytest.approx(expected, rel=1e-7)
+
+
+def test_twice_the_elements_change_little(scene, solved):
+    """Fourth order: what 40 and 80 elements differ by is far below what the comparison asks."""
+    coarse = answer(scene, Settings(elements=40)).stations[-1].values
+    fine = solved.stations[-1].values
+    for probe in ("B.displacement", "D.displacement", "BD.rotation", "contact.closing_load"):
+        assert coarse[probe] == pytest.approx(fine[probe], rel=1e-5)
+    assert coarse["contact.force"] == pytest.approx(fine["contact.force"], rel=1e-4)
+    largest = np.abs(fine["beam1.bending_stress"]).max()
+    assert coarse["beam1.bending_stress"] == pytest.approx(fine["beam1.bending_stress"], abs=1e-4 * largest)
+
+
+def test_unlike_numbers_of_elements(scene, solved):
+    """No node of one beam faces a node of the other."""
+    got = answer(scene, Settings(elements={"beam1": 47, "beam2": 61})).stations[-1].values
+    fine = solved.stations[-1].values
+    assert got["B.displacement"] == pytest.approx(fine["B.displacement"], rel=1e-4)
+    assert got["contact.force"] == pytest.approx(fine["contact.force"], rel=1e-3)
+
+
+def test_doubling_the_rule_changes_nothing(scene, solved):
+    got = answer(scene, Settings(quadrature=12))
+    for one, other in zip(got.stations, solved.stations, strict=True):
+        assert one.values["contact.force"] == pytest.approx(other.values["contact.force"], rel=1e-8)
+
+
+def test_penetration_on_request(scene, solved):
+    got = answer(scene, Settings(penetration=1e-6))
+    assert got.ending is Ending.COMPLETED
+    assert all(station.certificate.penetration <= 1e-6 for station in got.stations)
+    tight, loose = got.stations[-1].values, solved.stations[-1].values
+    assert tight["contact.force"] == pytest.approx(loose["contact.force"], rel=5e-4)
+
+
+def test_the_other_way_round_is_the_mirror_image(scene, solved):
+    got = answer(stepped(scene, *(-value for value in scene.stages[0].stations)))
+    mirrored, values = got.stations[-1].values, solved.stations[-1].values
+    assert mirrored["B.displacement"] == pytest.approx(values["D.displacement"] * (1, -1), rel=1e-5)
+    assert mirrored["D.displacement"] == pytest.approx(values["B.displacement"] * (1, -1), rel=1e-5)
+    assert mirrored["BD.rotation"] == pytest.approx(-values["BD.rotation"], rel=1e-5)
+
+
+def test_one_bold_step_arrives_where_ten_do(scene, solved):
+    got = answer(stepped(scene, 0.67))
+    assert got.ending is Ending.COMPLETED
+    assert got.stations[0].values["B.displacement"] == pytest.approx(
+        solved.stations[-1].values["B.displacement"], rel=1e-5
+    )
+
+
+@pytest.mark.parametrize("far", [1e3, 1e9])
+def test_a_load_far_beyond_ends_by_name(scene, far):
+    got = answer(stepped(scene, 0.335, far), Settings(elements=20, step_limit=40))
+    assert got.ending in (
+        Ending.STEP_TOO_SMALL,
+        Ending.TURNED_TOO_FAR,
+        Ending.BEAMS_CROSSED,
+        Ending.NOT_A_MINIMUM,
+        Ending.NOT_CERTIFIED,
+    )
+    assert len(got.sentence) > 20
+    assert [station.value for station in got.stations] == [0.335]
+    assert all(np.isfinite(value).all() for value in got.stations[0].values.values())
