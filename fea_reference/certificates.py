@@ -18,8 +18,8 @@ _BALANCE = 1e-8
 def certify(march: March) -> Certificate:
     """Look at the state that the march has reached, from outside of the loop that reached it.
 
-    The complementarity of a penalty is not zero: the gap that remains times the pressure, over the mean thickness times the
-    largest pressure, is the penetration again.
+    The complementarity of a penalty is not zero: the gap that remains times the pressure, over the mean
+    thickness times the largest pressure, is the penetration again.
     """
     model, system, settings = march.model, march.system, march.settings
     free = np.ones(model.size, dtype=bool)

@@ -14,9 +14,9 @@ Energy Π_c = ∫ ½ ε ⟨−g⟩² ds over the first beam's undeformed arc len
 
     δg = side n·δr,     δ²g = side { n·δ²r − [ a p_τ² + d k² + 2 J p_τ k ] / Z }
 
-(Konyukhov and Schweizerhof, Computational Contact Mechanics, ch. 5, in the plane).  The integral runs over the exact
-intervals on which g < 0, so the pressure vanishes at their moving ends, which therefore add nothing to either derivative,
-and what is integrated is smooth in between.
+(Konyukhov and Schweizerhof, Computational Contact Mechanics, ch. 5, in the plane).  The integral runs over
+the exact intervals on which g < 0, so the pressure vanishes at their moving ends, which therefore add nothing
+to either derivative, and what is integrated is smooth in between.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ class Pair:
         side: of the second on which the first lies.
         distance: T, of the neutral lines when they touch.
         scale: what penetration is measured by: the mean thickness, or the longest beam for lines.
-        stiffness: the penalty to begin with, the softer beam's EI over its element's length (or half of the mean
-            thickness, if that is more) to the fourth.
+        stiffness: the penalty to begin with, the softer beam's EI over its element's length (or half of the
+            mean thickness, if that is more) to the fourth.
     """
 
     name: str
@@ -59,9 +59,9 @@ class Pair:
 class Touch:
     """A pair's contact at its k Gauss points.
 
-    ``dofs`` (12, k) of the element of the first beam and that of the second, ``gradient`` (12, k) and ``hessian``
-    (12, 12, k) of Π_c; places ``zeta``, ``zeta_m`` (k,), points ``x``, ``x_m`` (2, k), the forces ``force`` on the first
-    beam (2, k), the ``normal`` away from the second (2, k).
+    ``dofs`` (12, k) of the element of the first beam and that of the second, ``gradient`` (12, k) and
+    ``hessian`` (12, 12, k) of Π_c; places ``zeta``, ``zeta_m`` (k,), points ``x``, ``x_m`` (2, k), the forces
+    ``force`` on the first beam (2, k), the ``normal`` away from the second (2, k).
     """
 
     pair: Pair
@@ -122,8 +122,8 @@ def touch(
 ) -> Touch:
     """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval.
 
-    A ``held`` contact acts, in tension too, where the gap is least by up to that depth: while Newton's method is still
-    far from equilibrium, a contact that was closed before neither vanishes nor hits like a wall.
+    A ``held`` contact acts, in tension too, where the gap is least by up to that depth: while Newton's method
+    is still far from equilibrium, a contact that was closed before neither vanishes nor hits like a wall.
     """
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
     line, line_m = model.line(beam, z), model.line(beam_m, z)

@@ -9,9 +9,9 @@ M       lumped mass: arc length for the nodes, one for the bodies
 μ       curvatures: K u = μ M u on the feasible directions, in EI per length of the longest beam to the fourth
 ======  =====================================================================================
 
-Forces outside of the joints' rows move the mechanism along feasible directions only, so S is the inverse of the energy's
-second derivative on them and zero across, and M^½ S M^½ has the eigenvalues 1/μ.  Lanczos' method finds the outermost of
-them first; a Ritz value below zero proves a direction of negative curvature.
+Forces outside of the joints' rows move the mechanism along feasible directions only, so S is the inverse of
+the energy's second derivative on them and zero across, and M^½ S M^½ has the eigenvalues 1/μ.  Lanczos'
+method finds the outermost of them first; a Ritz value below zero proves a direction of negative curvature.
 """
 
 from __future__ import annotations

@@ -18,10 +18,11 @@ The element's contribution to the Hellinger–Reissner functional is
 
     Π_e = ½ Δᵀ K Δ + N [ (l − l⁰) + ½ ∫ (w'² − w⁰'²) ds ] − ½ c L N²,
 
-with the membrane strain averaged over the element (a shallow arch on its chord), so that a curved element is neither
-locked nor shortened by its own curvature.  The parabola's middle value makes the energy of bending and shear
-stationary: without shear w is the cubic of Hermite, and (½/L) ∫ w'² ds = (2ϑ₁² − ϑ₁ϑ₂ + 2ϑ₂²)/30.
-Corotational kinematics: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1, ch. 7.
+with the membrane strain averaged over the element (a shallow arch on its chord), so that a curved element is
+neither locked nor shortened by its own curvature.  The parabola's middle value makes the energy of bending
+and shear stationary: without shear w is the cubic of Hermite, and (½/L) ∫ w'² ds = (2ϑ₁² − ϑ₁ϑ₂ + 2ϑ₂²)/30.
+Corotational kinematics: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1,
+ch. 7.
 """
 
 from __future__ import annotations
@@ -107,9 +108,10 @@ def _local(form: BilinearForm, basis: CellBasis) -> Array:
 
 
 def _section_rotation(D: Array, m: Array, bending: Array, shear_compliance: Array) -> Array:
-    """θ at both ends and in the middle by the end rotations, (3, 2, n): the middle makes the energy stationary.
+    """θ at both ends and in the middle by the end rotations, (3, 2, n).
 
-    The energy ½ EI θᵀ D θ + ½ (GA/L) (mᵀθ)², differentiated by the middle value and divided by GA/L.
+    The middle makes the energy ½ EI θᵀ D θ + ½ (GA/L) (mᵀθ)² stationary: differentiated by the middle value
+    and divided by GA/L.
     """
     flexibility = bending * shear_compliance * m.sum(axis=0)
     middle = -(flexibility * D[2, :2] + m[2] * m[:2]) / (flexibility * D[2, 2] + m[2] ** 2)

@@ -23,7 +23,7 @@ Index = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class NeutralLine:
-    """A beam of n elements as it lies: ``points`` (2, n+1), ``angles`` (n+1,), ``lengths`` of the elements (n,)."""
+    """A beam of n elements as it lies: ``points`` (2, n+1), ``angles`` (n+1,), elements' ``lengths`` (n,)."""
 
     points: Array
     angles: Array

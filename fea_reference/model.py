@@ -1,10 +1,10 @@
 """A scene made discrete: nodes, elements, bodies, joints and loads, all without units.
 
-Lengths are over the longest beam, bending stiffnesses over the largest, so forces are over EI/length² and moments over
-EI/length: the same scene in other units is the same problem to the last digits.
+Lengths are over the longest beam, bending stiffnesses over the largest, so forces are over EI/length² and
+moments over EI/length: the same scene in other units is the same problem to the last digits.
 
-The unknowns z are, in this order: the nodes' (x, y, θ) and the elements' axial forces N, numbered by scikit-fem;
-(X, Y, φ) of every free body, its displacement and rotation; one multiplier per joint row.
+The unknowns z are, in this order: the nodes' (x, y, θ) and the elements' axial forces N, numbered by
+scikit-fem; (X, Y, φ) of every free body, its displacement and rotation; one multiplier per joint row.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SHEAR_FACTOR = 5.0 / 6.0  # of a rectangle
 
 @dataclass(frozen=True, slots=True)
 class Units:
-    """The scene's own units: ``length`` of the longest beam (m), ``bending`` stiffness (N·m²), ``origin`` (2,) (m)."""
+    """The scene's own: longest beam's ``length`` (m), ``bending`` stiffness (N·m²), ``origin`` (2,) (m)."""
 
     length: float
     bending: float
@@ -57,7 +57,7 @@ class BeamPart:
 
 @dataclass(frozen=True, slots=True)
 class BodyPart:
-    """A rigid body: its reference ``centre`` (2,), its ``points`` (2,) by name, its three unknowns if it is free."""
+    """A rigid body: reference ``centre`` (2,), ``points`` (2,) by name, its three unknowns if it is free."""
 
     name: str
     centre: Array
@@ -82,7 +82,7 @@ class JointPart:
 
 @dataclass(frozen=True, slots=True)
 class LoadPart:
-    """A moment on a body (``direction`` is None), or a force along ``direction`` (2,) at ``arm`` (2,) of it."""
+    """A moment on a body (``direction`` is None), or a force along ``direction`` (2,) at its ``arm`` (2,)."""
 
     name: str
     body: int
@@ -118,7 +118,7 @@ class Model:
 
     def body_state(self, body: BodyPart, z: Array) -> Array:
         """(X, Y, φ) of a body, zero for the ground."""
-        return np.zeros(3) if body.dofs is None else z[body.dofs]
+        return np.zeros(3) if body.dofs is None else np.asarray(z[body.dofs])
 
     def place(self, body: BodyPart, point: str, z: Array) -> Array:
         """Where a body's point is, (2,)."""
@@ -127,7 +127,7 @@ class Model:
     def carried(self, body: BodyPart, arm: Array, z: Array) -> Array:
         """Where what lay at ``arm`` (2,) from a body's centre is, (2,)."""
         X, Y, phi = self.body_state(body, z)
-        return body.centre + np.array([X, Y]) + turned(arm, phi)
+        return np.asarray(body.centre + np.array([X, Y]) + turned(arm, phi))
 
 
 def turned(r: Array, phi: float) -> Array:
@@ -178,7 +178,7 @@ def build(scene: Scene, settings: Settings) -> Model:
         )
         node, cell, offset = node + n + 1, cell + n, offset + own_length + 1.0
 
-    # One coordinate, the arc length, for all beams one after the other; the gaps between them hold no element.
+    # One coordinate, the arc length, for all beams one after the other; no element spans the gaps.
     mesh = MeshLine(np.concatenate(arc)[None, :], np.concatenate(cells, axis=1))
     basis = CellBasis(mesh, ElementVector(ElementLineP1(), 3) * ElementLineP0(), intorder=2)
     nodes, angles = np.concatenate(points), np.concatenate(tangents)

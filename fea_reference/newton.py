@@ -39,8 +39,8 @@ def equilibrium(
 ) -> Solved:
     """Seek the equilibrium near ``z`` under load ``values``.
 
-    ``depths`` are the penetrations of the contacts that were closed in the equilibrium before: these are held until their
-    penetration is near that again, or until they pull.
+    ``depths`` are the penetrations of the contacts that were closed in the equilibrium before: these are held
+    until their penetration is near that again, or until they pull.
     """
     moving = np.concatenate([model.node_dofs.ravel(), *(b.dofs for b in model.bodies if b.dofs is not None)])
     correction = np.inf

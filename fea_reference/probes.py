@@ -12,7 +12,7 @@ from scene.answer import Array, Shape, frozen_array
 from scene.statement import Probe, Scene
 
 
-def value(scene: Scene, march: March, probe: Probe) -> Array:
+def probed(scene: Scene, march: March, probe: Probe) -> Array:
     """One probe's value; the potential energy leaves out what the contact's penalty stores."""
     model, z = march.model, march.system.z
     units = model.units
@@ -62,7 +62,7 @@ def shapes(march: March) -> dict[str, Shape]:
 
 
 def touching(march: March) -> dict[str, Array]:
-    """The middle between the surfaces at every Gauss point of the closed contacts' zones, (k, 2) in metres."""
+    """The middle between the surfaces at the Gauss points of the closed contacts' zones, (k, 2) in metres."""
     model, places = march.model, {}
     for one in march.system.touches:
         if one.closed:

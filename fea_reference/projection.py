@@ -15,8 +15,8 @@ def project(line: NeutralLine, points: Array, zeta: Array) -> tuple[Array, NDArr
     """The places on ``line`` closest to ``points`` (2, k), by Newton's method from ``zeta`` (k,).
 
     Returns:
-        The places ζ (k,) where (x − x_m)·x_m' vanishes, and where that was found: a point beyond an end of the line has
-        no closest point within it.
+        The places ζ (k,) where (x − x_m)·x_m' vanishes, and where that was found: a point beyond an end of
+        the line has no closest point within it.
     """
     for iteration in range(_ITERATIONS):
         x, x1, x2 = line.at(zeta)

@@ -1,10 +1,11 @@
 """The bending moment along a beam, by statics.
 
-The moment at s is what balances the forces on the piece of an element between its first node and s: the element's own end
-force and end moment there, and the contact's forces at the Gauss points in between.  End forces follow from equilibrium of
-the whole and not from differentiated displacements, so the moment is as accurate as the nodes' positions (of fourth order),
-continuous across the nodes, and keeps the contact's kink where it is.  The contact's share of the nodal forces is taken out
-of the end forces first, for it acts within the element.
+The moment at s is what balances the forces on the piece of an element between its first node and s: the
+element's own end force and end moment there, and the contact's forces at the Gauss points in between.  End
+forces follow from equilibrium of the whole and not from differentiated displacements, so the moment is as
+accurate as the nodes' positions (of fourth order), continuous across the nodes, and keeps the contact's kink
+where it is.  The contact's share of the nodal forces is taken out of the end forces first, for it acts within
+the element.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from fea_reference.model import BeamPart, Model
 from fea_reference.system import System
 from scene.answer import Array
 
+_NOTHING = (np.empty(0), np.empty((2, 0)), np.empty((2, 0)), np.empty((3, 0)))
+
 
 def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:
     """EI (κ − κ⁰) at ``fractions`` (k,) of the arc length, in units of EI/length."""
@@ -24,17 +27,8 @@ def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Arra
         :3, beam.elements
     ].copy()  # force and moment on every element's first node
     number = model.beams.index(beam)
-    loads = [_on_beam(touch, number) for touch in system.touches]
-    place, point, force, gradient = (
-        (np.concatenate(parts, axis=-1) for parts in zip(*loads, strict=True))
-        if loads
-        else (
-            np.empty(0),
-            np.empty((2, 0)),
-            np.empty((2, 0)),
-            np.empty((3, 0)),
-        )
-    )
+    parts = [_NOTHING, *(_on_beam(touch, number) for touch in system.touches)]
+    place, point, force, gradient = (np.concatenate(arrays, axis=-1) for arrays in zip(*parts, strict=True))
     owner, _ = line.locate(place)
     for i in range(3):
         np.add.at(ends[i], owner, gradient[i])
@@ -47,7 +41,7 @@ def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Arra
     before = (owner[None, :] == e[:, None]) & (place[None, :] < zeta[:, None])
     lever = point[:, None, :] - x[:, :, None]
     moment -= ((lever[0] * force[1] - lever[1] * force[0]) * before).sum(axis=1)
-    return moment
+    return np.asarray(moment)
 
 
 def _on_beam(touch: Touch, number: int) -> tuple[Array, Array, Array, Array]:
@@ -56,4 +50,4 @@ def _on_beam(touch: Touch, number: int) -> tuple[Array, Array, Array, Array]:
         return touch.zeta, touch.x, touch.force, touch.gradient[:3]
     if touch.pair.second == number:
         return touch.zeta_m, touch.x_m, -touch.force, touch.gradient[6:9]
-    return np.empty(0), np.empty((2, 0)), np.empty((2, 0)), np.empty((3, 0))
+    return _NOTHING

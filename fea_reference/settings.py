@@ -25,10 +25,11 @@ class Settings:
         penetration: largest depth of overlap that the contact penalty may leave, as a fraction of the mean
             thickness of the two beams (of the longest beam for contacts of lines).
         quadrature: Gauss points on each interval of a contact zone.
-        residual: unbalanced generalised force at which an equilibrium is accepted, as a fraction of the largest.
+        residual: unbalanced generalised force at which an equilibrium is accepted, as a fraction of the
+            largest.
         correction: last Newton correction (of lengths over the longest beam, and of angles) at which it is.
         newton_limit: Newton iterations after which a load step is cut.
-        step_limit: load steps after which a station is given up.
+        iteration_limit: Newton iterations, of all load steps, after which a station is given up.
 
     Raises:
         SceneError: a value is out of its bounds.
@@ -41,7 +42,7 @@ class Settings:
     residual: float = 1e-10
     correction: float = 1e-8
     newton_limit: int = 25
-    step_limit: int = 150
+    iteration_limit: int = 1000
 
     def __post_init__(self) -> None:
         mistakes = []
@@ -53,7 +54,7 @@ class Settings:
         counts += [
             ("quadrature", self.quadrature),
             ("newton_limit", self.newton_limit),
-            ("step_limit", self.step_limit),
+            ("iteration_limit", self.iteration_limit),
         ]
         for key, count in counts:
             if not isinstance(count, int) or isinstance(count, bool) or count < 1:
@@ -112,5 +113,5 @@ class Settings:
             "residual": self.residual,
             "correction": self.correction,
             "newton_limit": self.newton_limit,
-            "step_limit": self.step_limit,
+            "iteration_limit": self.iteration_limit,
         }

@@ -8,7 +8,7 @@ from fea_reference.certificates import certify
 from fea_reference.contact import pairs
 from fea_reference.march import March, StoppedError, begin
 from fea_reference.model import build
-from fea_reference.probes import shapes, touching, value
+from fea_reference.probes import probed, shapes, touching
 from fea_reference.settings import Settings
 from scene.answer import Answer, Ending, Event, StationAnswer
 from scene.statement import Scene, Stage
@@ -42,10 +42,8 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
                 stations.append(_certified(scene, march, stage, station))
     except StoppedError as stopped:
         ending, sentence = stopped.ending, stopped.sentence
-    tested = [
-        f"{name}: {'closed at ' + format(march.closing[name], '.6g') if name in march.closing else 'stayed open'}"
-        for name in scene.contacts
-    ]
+    closed = {name: f"closed at {value:.6g}" for name, value in march.closing.items()}
+    tested = [f"{name}: {closed.get(name, 'stayed open')}" for name in scene.contacts]
     return Answer(
         solver="fea",
         scene=scene.name,
@@ -75,7 +73,7 @@ def _certified(scene: Scene, march: March, stage: Stage, station: float) -> Stat
     return StationAnswer(
         stage=stage.name,
         value=station,
-        values={probe.name: value(scene, march, probe) for probe in scene.probes},
+        values={probe.name: probed(scene, march, probe) for probe in scene.probes},
         shapes=shapes(march),
         touching=touching(march),
         certificate=certificate,

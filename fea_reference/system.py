@@ -1,7 +1,7 @@
 """The whole mechanism's unbalanced forces and their tangent: elements, joints, loads and contacts summed.
 
-The residual is the derivative of the Lagrangian Π(z) − Σ loads + λᵀ c(z) by all unknowns, the multipliers included, and
-the tangent its second derivative: symmetric and indefinite.
+The residual is the derivative of the Lagrangian Π(z) − Σ loads + λᵀ c(z) by all unknowns, the multipliers
+included, and the tangent its second derivative: symmetric and indefinite.
 """
 
 from __future__ import annotations
@@ -32,8 +32,9 @@ class System:
         residual: unbalanced generalised forces and violations of rows, (size,).
         tangent: its derivative, sparse (size, size).
         scale: the largest generalised force that balances.
-        floor: round-off of the residual: an element's end force is 12 EI/h³ times differences of positions and angles that
-            are known to machine precision, and errors of n elements add up like a random walk: _ROUND_OFF eps EI h^-3.5.
+        floor: round-off of the residual: an element's end force is 12 EI/h³ times differences of positions
+            and angles that are known to machine precision, and errors of n elements add up like a random
+            walk: _ROUND_OFF eps EI h^-3.5.
     """
 
     z: Array

@@ -15,8 +15,8 @@ The closest point moves with ζ by J (τ·x')/(J² − d a), and with it n; then
 
     g' = side n·x',     g'' = side [ n·x'' − a (τ·x')²/(J² − d a) ].
 
-A zone may be far narrower than an element: samples of g and g' along the beam bracket its least values and then
-its ends, which are found by Newton's method kept within the brackets.
+A zone may be far narrower than an element: samples of g and g' along the beam bracket its least values and
+then its ends, which are found by Newton's method kept within the brackets.
 """
 
 from __future__ import annotations
@@ -51,8 +51,8 @@ class Gap:
 class Zones:
     """Intervals (k, 2) of ζ with a negative gap, none of which holds a node of either beam in its inside.
 
-    ``zeta_m`` (k, 2) are the closest points of their ends; ``least`` is the least gap anywhere, an upper bound of it
-    where the beams are far apart.
+    ``zeta_m`` (k, 2) are the closest points of their ends; ``least`` is the least gap anywhere, an upper
+    bound of it where the beams are far apart.
     """
 
     intervals: Array
@@ -77,7 +77,7 @@ def gap(first: NeutralLine, second: NeutralLine, side: float, T: float, zeta: Ar
 
 def side_of(first: NeutralLine, second: NeutralLine) -> float:
     """On which side of the second beam the first lies: +1 to the left of its direction, −1 to the right."""
-    zeta = np.arange(SAMPLES_PER_ELEMENT * first.n + 1) / SAMPLES_PER_ELEMENT
+    zeta = _samples(first, second)
     near = KDTree(second.points.T).query(first.at(zeta)[0].T)[1].astype(float)
     there = gap(first, second, 1.0, 0.0, zeta, near)
     d = there.g[there.found]
@@ -90,7 +90,7 @@ def side_of(first: NeutralLine, second: NeutralLine) -> float:
 
 def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zones:
     """All intervals on which the first beam overlaps the second."""
-    zeta = np.arange(SAMPLES_PER_ELEMENT * first.n + 1) / SAMPLES_PER_ELEMENT
+    zeta = _samples(first, second)
     x = first.at(zeta)[0]
     distance, nearest = KDTree(second.points.T).query(x.T)
     # Farther than this no sample, and nothing within a quarter of an element of one, can touch.
@@ -143,6 +143,25 @@ def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zone
     return Zones(*_split_at_nodes(first, second, intervals, closest), least)
 
 
+def _samples(first: NeutralLine, second: NeutralLine) -> Array:
+    """Equal steps within every element, and the places straight across from the second beam's ends.
+
+    Beyond an end there is no gap, and a zone that reaches up to one may be narrower than a step.
+    """
+    even = np.arange(SAMPLES_PER_ELEMENT * first.n + 1) / SAMPLES_PER_ELEMENT
+    ends, tangents = second.points[:, [0, -1]], second.tangents[:, [0, -1]]
+    away = first.points[:, :, None] - ends[:, None, :]
+    zeta = np.argmin((away**2).sum(axis=0), axis=0).astype(float)
+    for _ in range(_ITERATIONS):
+        x, x1, _ = first.at(zeta)
+        ahead = (x1 * tangents).sum(axis=0)
+        step = ((x - ends) * tangents).sum(axis=0) / np.where(ahead == 0.0, 1.0, ahead)
+        zeta = np.clip(zeta - np.clip(step, -1.0, 1.0), 0.0, first.n)
+        if np.abs(step).max() < 1e-12 * first.n:
+            break
+    return np.unique(np.concatenate([even, zeta]))
+
+
 def _none(least: float) -> Zones:
     return Zones(np.empty((0, 2)), np.empty((0, 2)), least)
 
@@ -179,7 +198,7 @@ def _roots(
 
 
 def _parabola(zeta: Array, g: Array, slope: Array, curvature: Array, left: NDArray[np.int64]) -> Array:
-    """Where between the places ``left`` and the next a parabola through the overlapping one has its zero, as a share."""
+    """The share of the way from ``left`` to the next where a parabola through the overlapping one is zero."""
     forward = g[left] < 0.0
     inner = np.where(forward, left, left + 1)
     way = np.where(forward, 1.0, -1.0)
@@ -194,7 +213,7 @@ def _parabola(zeta: Array, g: Array, slope: Array, curvature: Array, left: NDArr
 def _split_at_nodes(
     first: NeutralLine, second: NeutralLine, intervals: Array, closest: Array
 ) -> tuple[Array, Array]:
-    """Cut intervals where their closest point passes a node of the second beam: the gap has a kink of curvature there."""
+    """Cut intervals where the closest point passes a node of the second beam: the curvature jumps there."""
     low, high = closest.min(axis=1), closest.max(axis=1)
     lowest, highest = np.floor(low) + 1.0, np.ceil(high) - 1.0
     count = np.maximum(highest - lowest + 1.0, 0.0).astype(int)

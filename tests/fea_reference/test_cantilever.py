@@ -47,14 +47,14 @@ def test_tip_force_follows_the_elastica(angle):
     for alpha, station in zip(alphas, got.stations, strict=True):
         x, y, phi = elastica(alpha)
         tip = back @ station.values["tip.displacement"] / LENGTH
-        assert tip + (1.0, 0.0) == pytest.approx([x, y], abs=1e-6)
+        assert tip + np.array([1.0, 0.0]) == pytest.approx([x, y], abs=1e-6)
         assert station.values["end.rotation"][0] == pytest.approx(phi, abs=1e-6)
         # Clapeyron does not hold; the root's moment is statics on the bent shape.
         assert station.values["root.reaction_moment"][0] == pytest.approx(-alpha * EI / LENGTH * x, rel=1e-5)
 
 
 def test_the_error_falls_with_the_fourth_power_of_the_element():
-    """Of a shallow-arch membrane strain in a corotational frame; a straight-chord element has the second power."""
+    """The shallow-arch membrane strain makes it so; a straight-chord element has the second power."""
     x, y, _ = elastica(6.0)
     errors = []
     for n in (4, 8, 16, 32):
@@ -138,7 +138,8 @@ def test_a_straight_column_beyond_eulers_load_is_no_answer():
 
 
 def test_the_smallest_curvature_is_the_lowest_vibration():
-    """Of an unloaded cantilever with a massive rigid tip; here the tip's mass and inertia are one, the beam's is one.
+    """Of an unloaded cantilever with a massive rigid tip; here the tip's mass and inertia are one, the beam's
+    is one.
 
     Independent: eigenvalues of cubic Hermite beam matrices by hand, written out for the linear beam.
     """

@@ -27,7 +27,7 @@ def bent(model, seed=1, size=0.02):
 
 @pytest.mark.parametrize("kinematics", ["bending", "stretch", "shear"])
 def test_the_elements_derivatives(hinge, kinematics):
-    """The gradient is that of the mixed functional, written here from its parts; the hessian is the gradient's."""
+    """The gradient is that of the mixed functional, put together from its parts; the hessian is its own."""
     model = build(hinge, Settings(elements=10, kinematics=kinematics))
     u = bent(model)[model.element_dofs]
     at = forces(model.elements, u)
@@ -38,7 +38,8 @@ def test_the_elements_derivatives(hinge, kinematics):
         ahead, behind = forces(model.elements, u + step), forces(model.elements, u - step)
         slope = (ahead.gradient - behind.gradient) / (2 * h)
         assert at.hessian[i] == pytest.approx(slope, abs=1e-6 * np.abs(at.hessian).max())
-        # Π = strain energy + N ∂Π/∂N, because ∂Π/∂N is the membrane gap and c L N² is counted once too often in it
+        # Π = strain energy + N ∂Π/∂N, because ∂Π/∂N is the membrane gap and c L N² is counted once too often
+        # in it
         value = [side.energy + v[6] * side.gradient[6] for side, v in ((ahead, u + step), (behind, u - step))]
         assert at.gradient[i] == pytest.approx(
             (value[0] - value[1]) / (2 * h), abs=1e-6 * np.abs(at.gradient).max()

@@ -70,7 +70,7 @@ def test_the_beams_touch_at_the_closing_load(scene, solved):
 
 
 def test_the_stress_is_statics(scene, solved):
-    """At the clamps the bending moment is the support's; it is read at the beam's ends, where both are known."""
+    """At the clamps the bending moment is the support's."""
     for station in solved.stations:
         for beam, root in (("beam1", "A"), ("beam2", "C")):
             stress = station.values[f"{beam}.bending_stress"][0]
@@ -132,7 +132,7 @@ def test_one_bold_step_arrives_where_ten_do(scene, solved):
 
 @pytest.mark.parametrize("far", [1e3, 1e9])
 def test_a_load_far_beyond_ends_by_name(scene, far):
-    got = answer(stepped(scene, 0.335, far), Settings(elements=20, step_limit=40))
+    got = answer(stepped(scene, 0.335, far), Settings(elements=20, iteration_limit=300))
     assert got.ending in (
         Ending.STEP_TOO_SMALL,
         Ending.TURNED_TOO_FAR,

@@ -33,7 +33,7 @@ def test_elements_of_unknown_and_forgotten_beams():
         answer(cantilever(MOMENT, (1e-3,)), Settings(elements={"beam7": 10}))
     assert {mistake.key for mistake in caught.value.mistakes} == {"settings.elements"}
     assert len(caught.value.mistakes) == 2
-    with pytest.raises(SceneError, match="settings.elements.beam"):
+    with pytest.raises(SceneError, match=r"settings\.elements\.beam"):
         Settings(elements={"beam": 0})
 
 

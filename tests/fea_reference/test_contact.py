@@ -1,0 +1,136 @@
+"""Contacts whose force is known by hand."""
+
+import numpy as np
+import pytest
+
+from fea_reference import Settings, answer
+from fea_reference.crossing import cross
+from fea_reference.hermite import NeutralLine
+from scene import Ending
+from scene.reading import scene_from
+
+YOUNG, WIDTH, T = 2e9, 0.01, 0.002
+EI = YOUNG * WIDTH * T**3 / 12
+A, B = 0.1, 0.13
+GAP = 1e-6
+
+
+def clamped(y, length, point, tip=None):
+    return {
+        "curve": {"kind": "line", "start": [0.0, y], "end": [length, y]},
+        "thickness": T,
+        "width": WIDTH,
+        "material": "m",
+        "start": {"joint": "weld", "point": point},
+        "end": {"joint": "weld", "point": tip} if tip else {"joint": "free"},
+    }
+
+
+def two_cantilevers(first, second, stations, *, thick=True):
+    """The shorter one above, pressed down at its tip onto the inside of the longer one."""
+    y = (T if thick else 0.0) + GAP
+    return scene_from(
+        {
+            "name": "two",
+            "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
+            "bodies": {
+                "ground": {"motion": "fixed", "points": {"U": [0.0, y], "V": [0.0, 0.0]}},
+                "end": {"motion": "free", "points": {"tip": [A, y]}},
+            },
+            "beams": {"upper": clamped(y, A, "U", "tip"), "lower": clamped(0.0, B, "V")},
+            "loads": {"P": {"kind": "force", "point": "tip", "direction": [0.0, -1.0]}},
+            "contacts": {"touch": {"kind": "beam-beam", "between": [first, second], "thick": thick}},
+            "stages": [{"name": "load", "steps": "P", "stations": list(stations)}],
+            "probes": [
+                {"of": "touch", "quantity": "force"},
+                {"of": "touch", "quantity": "centre"},
+                {"of": "touch", "quantity": "closing_load"},
+                {"of": "tip", "quantity": "displacement"},
+                {"of": "V", "quantity": "reaction"},
+                {"of": "V", "quantity": "reaction_moment"},
+                {"of": "lower", "quantity": "bending_stress", "points": 27},
+            ],
+        }
+    )
+
+
+@pytest.mark.parametrize("thick", [True, False])
+@pytest.mark.parametrize("order", [("upper", "lower"), ("lower", "upper")])
+def test_two_cantilevers_share_the_load(order, thick):
+    """Small deflections: (P − R) a³/3EI − R a³/3EI = gap, so R = P/2 − 3 EI gap/(2 a³).
+
+    The upper's tip slopes more than the lower there, so the contact is at the tip, a zone at the one's end.
+    """
+    closing = 3 * EI * GAP / A**3
+    P = 3 * closing
+    settings = Settings(elements={"upper": 20, "lower": 26}, kinematics="stretch", penetration=1e-6)
+    got = answer(two_cantilevers(*order, (0.5 * closing, P), thick=thick), settings)
+    assert got.ending is Ending.COMPLETED, got.sentence
+    assert got.stations[0].values["touch.force"][0] == 0.0
+    values = got.stations[1].values
+    assert values["touch.closing_load"][0] == pytest.approx(closing, rel=1e-5)
+    R = P / 2 - closing / 2
+    assert values["touch.force"][0] == pytest.approx(R, rel=5e-3)
+    assert values["touch.centre"][0] == pytest.approx(A, rel=2e-2)
+    assert values["V.reaction"][1] == pytest.approx(values["touch.force"][0], rel=1e-6)
+    # The moment falls linearly from the clamp to the contact and vanishes beyond.
+    s = np.linspace(0, B, 27)
+    moment = values["lower.bending_stress"] * WIDTH * T**2 / 6
+    lever = np.maximum(values["touch.centre"][0] - s, 0.0) if order[0] == "lower" else np.maximum(A - s, 0.0)
+    assert moment == pytest.approx(-values["touch.force"][0] * lever, abs=1e-2 * R * A)
+
+
+def test_a_propped_cantilever():
+    """Clamped, loaded in the middle, pinned at the far end: prop 5P/16, deflection 7 P L³/(768 EI)."""
+    P, L = 1e-5 * EI, 1.0
+
+    def half(start, end, x):
+        return {
+            "curve": {"kind": "line", "start": [x, 0.0], "end": [x + L / 2, 0.0]},
+            "thickness": T,
+            "width": WIDTH,
+            "material": "m",
+            "start": start,
+            "end": end,
+        }
+
+    middle = {"joint": "weld", "point": "middle"}
+    scene = scene_from(
+        {
+            "name": "propped",
+            "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
+            "bodies": {
+                "ground": {"motion": "fixed", "points": {"root": [0.0, 0.0], "prop": [L, 0.0]}},
+                "block": {"motion": "free", "points": {"middle": [L / 2, 0.0]}},
+            },
+            "beams": {
+                "left": half({"joint": "weld", "point": "root"}, middle, 0.0),
+                "right": half(middle, {"joint": "pin", "point": "prop"}, L / 2),
+            },
+            "loads": {"P": {"kind": "force", "point": "middle", "direction": [0.0, -3.0]}},
+            "stages": [{"name": "load", "steps": "P", "stations": [P]}],
+            "probes": [
+                {"of": "middle", "quantity": "displacement"},
+                {"of": "prop", "quantity": "reaction"},
+                {"of": "prop", "quantity": "reaction_moment"},
+            ],
+        }
+    )
+    got = answer(scene, Settings(elements=8, kinematics="stretch"))
+    assert got.ending is Ending.COMPLETED, got.sentence
+    values = got.stations[0].values
+    assert values["prop.reaction"][1] == pytest.approx(5 * P / 16, rel=1e-4)
+    assert values["prop.reaction_moment"][0] == 0.0
+    assert values["middle.displacement"][1] == pytest.approx(-7 * P * L**3 / (768 * EI), rel=1e-4)
+
+
+def test_crossing_is_seen():
+    def straight(*points):
+        return NeutralLine.through(
+            np.array(points, dtype=float).T, np.zeros(len(points)), np.ones(len(points) - 1)
+        )
+
+    level = straight((0, 0), (1, 0), (2, 0))
+    assert cross(level, straight((0.3, -1), (0.7, 0.5)))
+    assert not cross(level, straight((0.3, 0.1), (0.7, 0.5)))
+    assert not cross(level, straight((2.1, -1), (2.2, 0.5)))
