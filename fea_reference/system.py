@@ -21,6 +21,7 @@ from fea_reference.model import Model, turned
 from scene.answer import Array
 
 _ROUND_OFF = 3.0  # measured: one to two from 20 to 320 elements
+_NOTHING = 10.0  # floors: a force below this is round-off itself
 _NONE_HELD: Mapping[Pair, float] = frozendict()
 
 
@@ -31,7 +32,7 @@ class System:
     Attributes:
         residual: unbalanced generalised forces and violations of rows, (size,).
         tangent: its derivative, sparse (size, size).
-        scale: the largest generalised force that balances.
+        scale: the largest generalised force that balances; where there is none but round-off, EI/length².
         floor: round-off of the residual: an element's end force is 12 EI/h³ times differences of positions
             and angles that are known to machine precision, and errors of n elements add up like a random
             walk: _ROUND_OFF eps EI h^-3.5.
@@ -75,16 +76,21 @@ def assemble(
             vectors.append(_vector(one.dofs, one.gradient, model.size))
             matrices.append(_matrix(one.dofs, one.hessian, model.size))
     rigid, rows, columns, entries = _rigid(model, values, z)
-    matrices.append(COOData(np.array([rows, columns]), np.array(entries), (model.size, model.size), local_shape=None))
+    matrices.append(
+        COOData(np.array([rows, columns]), np.array(entries), (model.size, model.size), local_shape=None)
+    )
     residual = sum(vectors).toarray() + rigid
     tangent = sum(matrices).tocsr().tocsc()
     balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values).max(initial=0.0)]
     balanced += [np.abs(one.gradient).max(initial=0.0) for one in touches]
     largest = float(max(balanced))
     h = model.elements.length
-    EI = np.repeat([beam.bending for beam in model.beams], [b.elements.stop - b.elements.start for b in model.beams])
+    EI = np.repeat(
+        [beam.bending for beam in model.beams], [b.elements.stop - b.elements.start for b in model.beams]
+    )
     floor = float(_ROUND_OFF * np.finfo(float).eps * (EI / h**3.5).max())
-    return System(z, residual, tangent, elements, touches, max(largest, floor), floor)
+    scale = largest if largest > _NOTHING * floor else 1.0
+    return System(z, residual, tangent, elements, touches, scale, floor)
 
 
 def load_direction(model: Model, load: int, z: Array) -> Array:
