@@ -41,9 +41,7 @@ def certify(march: March) -> Certificate:
     if not violation <= max(_VIOLATION, system.floor):
         failures.append(f"a joint or an element's length is violated by {violation:.1e} of the longest beam")
     if not penetration <= settings.penetration:
-        failures.append(
-            f"the beams of a contact overlap by {penetration:.1e}; {settings.penetration:.1e} was asked"
-        )
+        failures.append(f"the beams of a contact overlap by {penetration:.1e}; {settings.penetration:.1e} was asked")
     if not force <= max(_BALANCE, floor):
         failures.append(f"the forces of loads and supports leave {force:.1e} of the largest")
     if not moment <= max(_BALANCE, floor):

@@ -102,12 +102,9 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         mean = 0.5 * (first.thickness + second.thickness)
         side = side_of(model.line(first, model.start), model.line(second, model.start))
         stiffness = min(
-            beam.bending / max(model.elements.length[beam.elements.start], 0.5 * mean) ** 4
-            for beam in (first, second)
+            beam.bending / max(model.elements.length[beam.elements.start], 0.5 * mean) ** 4 for beam in (first, second)
         )
-        found.append(
-            Pair(name, i, j, side, mean if contact.thick else 0.0, mean if contact.thick else 1.0, stiffness)
-        )
+        found.append(Pair(name, i, j, side, mean if contact.thick else 0.0, mean if contact.thick else 1.0, stiffness))
     return tuple(found)
 
 
@@ -117,9 +114,7 @@ def zones_of(model: Model, pair: Pair, z: Array) -> Zones:
     return find(first, second, pair.side, pair.distance)
 
 
-def touch(
-    model: Model, pair: Pair, stiffness: float, quadrature: int, z: Array, held: float | None = None
-) -> Touch:
+def touch(model: Model, pair: Pair, stiffness: float, quadrature: int, z: Array, held: float | None = None) -> Touch:
     """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval.
 
     A ``held`` contact acts, in tension too, where the gap is least by up to that depth: while Newton's method

@@ -19,9 +19,7 @@ from fea_reference.system import System, assemble, load_direction
 from scene.answer import Array, Ending
 
 _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
-_CORRECTED = (
-    0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
-)
+_CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
 _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
 _CUTS = 10  # in a row, each to a quarter
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
@@ -181,9 +179,7 @@ class March:
                 self.open.remove(pair)
                 self.penalties[pair] = pair.stiffness
                 self.closing[pair.name] = float(self.values[load]) * self.model.loads[load].unit
-        self.system = assemble(
-            self.model, self.penalties, self.settings.quadrature, self.values, self.system.z
-        )
+        self.system = assemble(self.model, self.penalties, self.settings.quadrature, self.values, self.system.z)
 
     def _tighten(self) -> None:
         """Raise penalties, each time from the last equilibrium, until the penetration asked is kept.
@@ -193,8 +189,7 @@ class March:
         most = _TIGHTEN
         for _ in range(_TIGHTENINGS):
             excess = {
-                one.pair: one.penetration / (self.settings.penetration * one.pair.scale)
-                for one in self.system.touches
+                one.pair: one.penetration / (self.settings.penetration * one.pair.scale) for one in self.system.touches
             }
             if max(excess.values(), default=0.0) <= 1.0:
                 return

@@ -170,12 +170,8 @@ def build(scene: Scene, settings: Settings) -> Model:
         bending.append(np.full(n, own_bending))
         compliance.append(np.full(n, 0.0 if settings.kinematics == "bending" else soft))
         shear_over_axial = 2.0 * (1.0 + material.poisson_ratio) / SHEAR_FACTOR
-        shear_compliance.append(
-            np.full(n, soft * shear_over_axial if settings.kinematics == "shear" else 0.0)
-        )
-        beams.append(
-            BeamPart(name, slice(node, node + n + 1), slice(cell, cell + n), own_length, t, own_bending)
-        )
+        shear_compliance.append(np.full(n, soft * shear_over_axial if settings.kinematics == "shear" else 0.0))
+        beams.append(BeamPart(name, slice(node, node + n + 1), slice(cell, cell + n), own_length, t, own_bending))
         node, cell, offset = node + n + 1, cell + n, offset + own_length + 1.0
 
     # One coordinate, the arc length, for all beams one after the other; no element spans the gaps.
@@ -209,9 +205,7 @@ def build(scene: Scene, settings: Settings) -> Model:
         for end, at in ((ends.start, part.nodes.start), (ends.end, part.nodes.stop - 1)):
             if isinstance(end, FreeEnd):
                 continue
-            joints.append(
-                _joint(end, number[scene.body_of(end.point)], bodies, node_dofs[:, at], angles[at], size)
-            )
+            joints.append(_joint(end, number[scene.body_of(end.point)], bodies, node_dofs[:, at], angles[at], size))
             size += joints[-1].rows.size
 
     loads: list[LoadPart] = []

@@ -31,9 +31,7 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
                 sum(support(joint, z)[1] for joint in model.joints if joint.point == probe.of) * units.moment
             )
         case "bending_stress":
-            moment = bending_moment(
-                model, march.system, model.beam(probe.of), np.linspace(0.0, 1.0, probe.points)
-            )
+            moment = bending_moment(model, march.system, model.beam(probe.of), np.linspace(0.0, 1.0, probe.points))
             beam = scene.beams[probe.of]
             # M t/(2I), with I of the rectangle
             return frozen_array(moment * units.moment * 6.0 / (beam.width * beam.thickness**2))
@@ -70,9 +68,7 @@ def touching(march: March) -> dict[str, Array]:
             # From each neutral line to its own surface; lines have none.
             share = one.pair.distance / (first.thickness + second.thickness)
             middle = 0.5 * (one.x + one.x_m + share * (second.thickness - first.thickness) * one.normal)
-            places[one.pair.name] = frozen_array(
-                (middle * model.units.length + model.units.origin[:, None]).T
-            )
+            places[one.pair.name] = frozen_array((middle * model.units.length + model.units.origin[:, None]).T)
     return places
 
 

@@ -23,9 +23,7 @@ _NOTHING = (np.empty(0), np.empty((2, 0)), np.empty((2, 0)), np.empty((3, 0)))
 def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:
     """EI (κ − κ⁰) at ``fractions`` (k,) of the arc length, in units of EI/length."""
     line = model.line(beam, system.z)
-    ends = system.elements.gradient[
-        :3, beam.elements
-    ].copy()  # force and moment on every element's first node
+    ends = system.elements.gradient[:3, beam.elements].copy()  # force and moment on every element's first node
     number = model.beams.index(beam)
     parts = [_NOTHING, *(_on_beam(touch, number) for touch in system.touches)]
     place, point, force, gradient = (np.concatenate(arrays, axis=-1) for arrays in zip(*parts, strict=True))

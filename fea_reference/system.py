@@ -76,18 +76,14 @@ def assemble(
             vectors.append(_vector(one.dofs, one.gradient, model.size))
             matrices.append(_matrix(one.dofs, one.hessian, model.size))
     rigid, rows, columns, entries = _rigid(model, values, z)
-    matrices.append(
-        COOData(np.array([rows, columns]), np.array(entries), (model.size, model.size), local_shape=None)
-    )
+    matrices.append(COOData(np.array([rows, columns]), np.array(entries), (model.size, model.size), local_shape=None))
     residual = sum(vectors).toarray() + rigid
     tangent = sum(matrices).tocsr().tocsc()
     balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values).max(initial=0.0)]
     balanced += [np.abs(one.gradient).max(initial=0.0) for one in touches]
     largest = float(max(balanced))
     h = model.elements.length
-    EI = np.repeat(
-        [beam.bending for beam in model.beams], [b.elements.stop - b.elements.start for b in model.beams]
-    )
+    EI = np.repeat([beam.bending for beam in model.beams], [b.elements.stop - b.elements.start for b in model.beams])
     floor = float(_ROUND_OFF * np.finfo(float).eps * (EI / h**3.5).max())
     scale = largest if largest > _NOTHING * floor else 1.0
     return System(z, residual, tangent, elements, touches, scale, floor)

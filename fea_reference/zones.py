@@ -221,9 +221,7 @@ def _parabola(zeta: Array, g: Array, slope: Array, curvature: Array, left: NDArr
     return np.where(forward, distance, 1.0 - distance)
 
 
-def _split_at_nodes(
-    first: NeutralLine, second: NeutralLine, intervals: Array, closest: Array
-) -> tuple[Array, Array]:
+def _split_at_nodes(first: NeutralLine, second: NeutralLine, intervals: Array, closest: Array) -> tuple[Array, Array]:
     """Cut intervals where the closest point passes a node of the second beam: the curvature jumps there."""
     low, high = closest.min(axis=1), closest.max(axis=1)
     lowest, highest = np.floor(low) + 1.0, np.ceil(high) - 1.0

@@ -59,9 +59,7 @@ def test_the_error_falls_with_the_fourth_power_of_the_element():
     errors = []
     for n in (4, 8, 16, 32):
         scene = cantilever(force(0, 1), (6.0 * EI / LENGTH**2,))
-        tip = (
-            answer(scene, Settings(elements=n, kinematics="bending")).stations[-1].values["tip.displacement"]
-        )
+        tip = answer(scene, Settings(elements=n, kinematics="bending")).stations[-1].values["tip.displacement"]
         errors.append(np.hypot(*(tip / LENGTH + (1.0, 0.0) - (x, y))))
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert orders[-1] == pytest.approx(4.0, abs=0.2)
@@ -130,11 +128,7 @@ def test_a_straight_column_beyond_eulers_load_is_no_answer():
         )
         assert got.ending is Ending.NOT_A_MINIMUM
         assert [station.value for station in got.stations] == [0.5 * euler, 0.98 * euler]
-        assert (
-            got.stations[0].certificate.smallest_curvature
-            > got.stations[1].certificate.smallest_curvature
-            > 0
-        )
+        assert got.stations[0].certificate.smallest_curvature > got.stations[1].certificate.smallest_curvature > 0
 
 
 def test_the_smallest_curvature_is_the_lowest_vibration():

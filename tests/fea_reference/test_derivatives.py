@@ -43,9 +43,7 @@ def test_the_elements_derivatives(hinge, kinematics):
         # Π = strain energy + N ∂Π/∂N, because ∂Π/∂N is the membrane gap and c L N² is counted once too often
         # in it
         value = [side.energy + v[6] * side.gradient[6] for side, v in ((ahead, u + step), (behind, u - step))]
-        assert at.gradient[i] == pytest.approx(
-            (value[0] - value[1]) / (2 * h), abs=1e-6 * np.abs(at.gradient).max()
-        )
+        assert at.gradient[i] == pytest.approx((value[0] - value[1]) / (2 * h), abs=1e-6 * np.abs(at.gradient).max())
 
 
 def test_rigid_motion_gives_no_force(hinge):
@@ -131,7 +129,6 @@ def test_the_whole_tangent():
         step = np.zeros(model.size)
         step[i] = 1e-6
         slope = (
-            assemble(model, {}, 6, values, z + step).residual
-            - assemble(model, {}, 6, values, z - step).residual
+            assemble(model, {}, 6, values, z + step).residual - assemble(model, {}, 6, values, z - step).residual
         ) / 2e-6
         assert tangent[:, i] == pytest.approx(slope, abs=1e-6 * np.abs(tangent).max())

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import dataclasses
 import tomllib
-from itertools import product
 
 import numpy as np
 import pytest
@@ -64,7 +63,7 @@ def ratios():
     """True error over stated uncertainty, per solver, for every row with an error worth the name."""
     wider = dataclasses.replace(exact.PAPER, radius=0.0287, yc=0.0287 + 0.0017, thickness=0.0023)
     found: dict[str, list[tuple[float, str]]] = {"cprbm": [], "fea": []}
-    for hinge, (links, elements) in product((exact.PAPER, wider), ((17, 21), (40, 80))):
+    for hinge, links, elements in ((exact.PAPER, 17, 21), (exact.PAPER, 40, 80), (wider, 23, 30)):
         closing = exact.closing_moment(hinge)
         moments = [0.6 * closing, 1.4 * closing, 2.2 * closing]
         scene = scene_of(hinge, moments)
@@ -88,11 +87,6 @@ def ratios():
                 if error > QUIET * row.scale:
                     found[solver].append((float(error / (stated + row.bounds.round_off)), where))
     return found
-
-
-def test_print(ratios):
-    for k, v in ratios.items():
-        print(k, len(v), np.median([r for r, _ in v]), sorted(v)[-12:])
 
 
 @pytest.mark.parametrize("solver", ["cprbm", "fea"])
