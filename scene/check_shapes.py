@@ -91,7 +91,7 @@ def overlaps(scene: Scene) -> Iterator[Mistake]:
             continue
         if any(not _has_shape(beam.curve) or _wrong_section(name, beam) is not None for beam in (first, second)):
             continue
-        found = _overlap(first, second, contact.thick)
+        found = _overlap(first, second, thick=contact.thick)
         if found is not None:
             beams = f"{contact.between[0]!r} and {contact.between[1]!r}"
             yield Mistake(f"contacts.{name}", f"{beams} {found[0]}", found[1])
@@ -163,7 +163,7 @@ def _wrong_paper(key: str, contact: BeamContact) -> Iterator[Mistake]:
                 yield Mistake(f"{where}.{axis}", str(list(span)), "a range from the smaller to the larger value")
 
 
-def _overlap(first: Beam, second: Beam, thick: bool) -> tuple[str, str] | None:  # noqa: FBT001
+def _overlap(first: Beam, second: Beam, *, thick: bool) -> tuple[str, str] | None:
     """What is wrong between two beams, and what is allowed; None where nothing is."""
     size = max(_largest_coordinate(first.curve), _largest_coordinate(second.curve))
     curve1, curve2 = scaled(first.curve, size), scaled(second.curve, size)
