@@ -80,6 +80,25 @@ def test_two_cantilevers_share_the_load(order, thick):
     assert moment == pytest.approx(-values["touch.force"][0] * lever, abs=1e-2 * R * A)
 
 
+@pytest.mark.parametrize("order", [("upper", "lower"), ("lower", "upper")])
+def test_the_moment_has_its_kink_where_the_contact_is_and_not_at_a_node(order):
+    """Statics: V's reaction alone bends the lower beam up to the contact, and nothing does beyond.
+
+    With 7 elements the contact stands in the middle third of the sixth, and the stress is asked at places
+    before and behind it.
+    """
+    P = 9 * EI * GAP / A**3
+    scene = two_cantilevers(*order, (P,))
+    values = answer(scene, Settings(elements={"upper": 20, "lower": 7}, kinematics="stretch")).stations[0].values
+    force, root = values["V.reaction"][1], values["V.reaction_moment"][0]
+    s = np.linspace(0, B, 27)
+    moment = values["lower.bending_stress"] * WIDTH * T**2 / 6
+    # Section forces are those of the piece before it, turned round.
+    inner = s < 0.91 * A
+    assert moment[inner] == pytest.approx((-root + force * s)[inner], abs=1e-6 * abs(root))
+    assert moment[s > 1.001 * A] == pytest.approx(0.0, abs=1e-6 * abs(root))
+
+
 def test_a_propped_cantilever():
     """Clamped, loaded in the middle, pinned at the far end: prop 5P/16, deflection 7 P L³/(768 EI)."""
     P, L = 1e-5 * EI, 1.0

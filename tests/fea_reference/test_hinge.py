@@ -7,6 +7,8 @@ import pytest
 
 from fea_reference import Settings, answer
 from scene import Ending, read
+from scene.reading import scene_from
+from tests.references import hinge as exact
 
 CASE = Path(__file__).parents[2] / "comparisons" / "cases" / "hinge.toml"
 
@@ -81,6 +83,61 @@ def test_the_stress_is_statics(scene, solved):
             # The ground turns the beam's start by M; the section beyond answers with −M.
             expected = -station.values[f"{root}.reaction_moment"][0] / modulus
             assert stress == pytest.approx(expected, rel=1e-7)
+
+
+def test_the_beams_touch_and_lie_where_the_elastica_does(scene):
+    # reference: tests.references.hinge, in the bending theory
+    truth = exact.solve(exact.PAPER, 0.67)
+    (station,) = answer(stepped(scene, 0.67), Settings(kinematics="bending")).stations
+    places = station.touching["contact"]
+    assert places.mean(axis=0) == pytest.approx(truth.contact_point, abs=1e-5)
+    # A zone's width, and the gap that the penalty leaves there.
+    assert np.ptp(places, axis=0).max() < scene.beams["beam1"].thickness
+    assert station.values["contact.centre"][0] == pytest.approx(truth.contact_arc_lengths[0], abs=1e-5)
+    for beam in (1, 2):
+        shape = station.shapes[f"beam{beam}"]
+        assert shape.s[[0, -1]] == pytest.approx([0.0, exact.PAPER.length], rel=1e-12)
+        assert np.stack([shape.x, shape.y]) == pytest.approx(truth.shape(beam, shape.s), abs=1e-6)
+
+
+def test_beams_of_unlike_thickness_touch_between_their_surfaces():
+    """A thin beam above a thick one, pressed down: they touch half the thick one's thickness above its line."""
+    upper, lower = 0.0011, 0.0037
+    y = 0.5 * (upper + lower)
+    ends = {"ground": {"R": [0.0, y], "S": [0.0, 0.0], "T": [0.19, 0.0]}, "tip": {"P": [0.17, y]}}
+
+    def beam(start, end, first, last, thickness):
+        return {
+            "curve": {"kind": "line", "start": start, "end": end},
+            "thickness": thickness,
+            "width": 0.0071,
+            "material": "m",
+            "start": {"joint": "weld", "point": first},
+            "end": {"joint": "weld", "point": last},
+        }
+
+    pressed = scene_from(
+        {
+            "name": "unlike",
+            "materials": {"m": {"youngs_modulus": 2.3e9, "poisson_ratio": 0.35}},
+            "bodies": {
+                "ground": {"motion": "fixed", "points": ends["ground"]},
+                "block": {"motion": "free", "points": ends["tip"]},
+            },
+            "beams": {
+                "thin": beam(ends["ground"]["R"], ends["tip"]["P"], "R", "P", upper),
+                "thick": beam(ends["ground"]["S"], ends["ground"]["T"], "S", "T", lower),
+            },
+            "loads": {"press": {"kind": "force", "point": "P", "direction": [0.0, -1.0]}},
+            "contacts": {"touch": {"kind": "beam-beam", "between": ["thin", "thick"]}},
+            "stages": [{"name": "load", "steps": "press", "stations": [1e-3]}],
+            "probes": [{"of": "touch", "quantity": "force"}],
+        }
+    )
+    (station,) = answer(pressed, Settings(elements=20)).stations
+    assert station.values["touch.force"][0] == pytest.approx(1e-3, rel=0.2)
+    # The thick beam gives way by P a³ b³/(3 EI L³) < 1e-7 m.
+    assert station.touching["touch"][:, 1] == pytest.approx(0.5 * lower, abs=2e-7)
 
 
 def test_twice_the_elements_change_little(scene, solved):
