@@ -94,7 +94,7 @@ def family_scale(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[
         case "closing_load":
             return max(abs(station) for station in stage.stations)
         case "centre":
-            return length(scene.beams[scene.contacts[contact].between[0]].curve)
+            return length(scene.beams[scene.contacts[contact].beams[0]].curve)
         case _:
             return largest(quantity)
 

@@ -36,7 +36,7 @@ def _value(
                 else 0.0
             )
         case "force":
-            first = model.chain(scene.contacts[probe.of].between[0]).joints
+            first = model.chain(scene.contacts[probe.of].beams[0]).joints
             forces = contact_forces(problem, point, probe.of)
             return float(np.hypot(forces.fx[first].sum(), forces.fy[first].sum())) * model.unit_force
         case "centre":
