@@ -25,7 +25,7 @@ from numpy.polynomial import chebyshev
 from cprbm.contact import Rows
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
-from scene import BeamContact, Mistake, Scene, SceneError
+from scene import BeamContact, Mistake, PaperContact, Scene, SceneError
 from scene.answer import Array, Ints
 
 FEWEST_POINTS = 3
@@ -170,9 +170,9 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
     Raises:
         SceneError: the contact does not say what the paper's form must know, or has too few related joints.
     """
-    contact: BeamContact = scene.contacts[name]
-    hints = contact.paper
-    if hints is None:
+    contact = scene.contacts[name]
+    hints = contact.paper if isinstance(contact, BeamContact) else None
+    if hints is None or not isinstance(contact, BeamContact):
         raise SceneError(
             [
                 Mistake(
@@ -185,8 +185,8 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
         )
     other = next(beam for beam in contact.between if beam != hints.boundary)
     boundary, constrained = model.chain(hints.boundary), model.chain(other)
-    points = _related(scene, model, name, boundary)
-    joints = _related(scene, model, name, constrained)
+    points = _related(scene, model, name, hints, boundary)
+    joints = _related(scene, model, name, hints, constrained)
     line = boundary.line
     x_p, y_p = line.position(boundary.s[points] * model.unit_length)
     x_j, y_j = constrained.line.position(constrained.s[joints] * model.unit_length)
@@ -214,11 +214,10 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
     )
 
 
-def _related(scene: Scene, model: Model, name: str, chain: Chain) -> Ints:
+def _related(scene: Scene, model: Model, name: str, hints: PaperContact, chain: Chain) -> Ints:
     """The spring joints (1..N) of a beam that lie in its related range; the beam's ends are never among them."""
     inner = np.arange(1, chain.n + 1)
-    hints = scene.contacts[name].paper
-    related = hints.related.get(chain.name) if hints is not None else None
+    related = hints.related.get(chain.name)
     if related is not None:
         x, y = chain.line.position(chain.s[inner] * model.unit_length)
         low, high = related.x or related.y or (-np.inf, np.inf)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm import nearest
 from cprbm.equilibrium import Equilibrium, smallest_curvature
 from cprbm.forces import balances
 from cprbm.mechanism import Mechanism
@@ -97,6 +96,5 @@ def penetration_of(mechanism: Mechanism, found: Equilibrium) -> float:
     deepest = 0.0
     state, at = found.point.state, found.point.at
     for pair in mechanism.pairs.values():
-        scale = 0.5 * (pair.a.thickness + pair.b.thickness) if pair.offset > 0.0 else 1.0
-        deepest = max(deepest, nearest.deepest(pair, state, at) / scale)
+        deepest = max(deepest, pair.deepest(state, at) / pair.thickness)
     return deepest

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cprbm.boundary import FittedBoundary, fitted_boundary
+from cprbm.circle import Circle, circle_of
 from cprbm.closure import closure_of
 from cprbm.contact import Formulation, Rows, no_rows, together
 from cprbm.energy import dead_loads
@@ -13,7 +14,7 @@ from cprbm.kinematics import Positions, State
 from cprbm.model import build
 from cprbm.nearest import Pair, pair_of
 from cprbm.settings import Settings
-from scene import Scene
+from scene import BeamContact, Scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +28,7 @@ class Mechanism:
     """
 
     problem: Problem
-    pairs: dict[str, Pair]
+    pairs: dict[str, Pair | Circle]
     boundaries: dict[str, FittedBoundary]
 
     def without(self, contact: str) -> Problem:
@@ -62,7 +63,10 @@ def mechanism_of(scene: Scene, settings: Settings) -> Mechanism:
         SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
     """
     model = build(scene, settings)
-    pairs = {name: pair_of(scene, model, name) for name in scene.contacts}
+    pairs = {
+        name: pair_of(scene, model, name) if isinstance(contact, BeamContact) else circle_of(scene, model, name)
+        for name, contact in scene.contacts.items()
+    }
     boundaries = {}
     if settings.formulation == "paper":
         boundaries = {name: fitted_boundary(scene, model, name, settings.degree) for name in scene.contacts}

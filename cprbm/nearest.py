@@ -32,7 +32,7 @@ from cprbm import smooth
 from cprbm.contact import Rows, together
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.model import Chain, Model
-from scene import Scene
+from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
 
 FOOT_ITERATIONS = 8
@@ -77,6 +77,35 @@ class Pair:
     def exchanged(self) -> Pair:
         """The same contact with the parts of A and B exchanged."""
         return Pair(self.name, self.b, self.a, self.across, self.side, self.offset, self.unit_length)
+
+    @property
+    def thickness(self) -> float:
+        """What an overlap is measured by: the mean thickness, for lines the longest beam; units of length."""
+        return self.offset if self.offset > 0.0 else 1.0
+
+    def deepest(self, state: State, at: Positions) -> float:
+        """Largest overlap of the two beams anywhere along A, units of length; zero where they are apart."""
+        lines = self.lines(state, at)
+        places = closest_places(self, lines)
+        D, _, foot = distance_along(self, lines, np.concatenate((smooth.halves(self.a), places.s, places.held_s)))
+        return float(np.max(np.where(foot, self.offset - D, 0.0), initial=0.0))
+
+    def touching(self, state: State, at: Positions, s: Array) -> Array:
+        """Where the edges touch that touch at arc lengths ``s`` of A, (k, 2), units of length."""
+        lines = self.lines(state, at)
+        A, B = lines[0].at(s), lines[1].at(distance_along(self, lines, s)[1])
+        share = self.a.thickness / (self.a.thickness + self.b.thickness)
+        return np.stack((A.x + share * (B.x - A.x), A.y + share * (B.y - A.y)), axis=1)
+
+    def pressed(self, state: State, at: Positions, chain: Chain, s: Array) -> tuple[float, Array, Array] | None:
+        """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s`` of A."""
+        lines = self.lines(state, at)
+        if chain is self.a:
+            return 1.0, s, lines[0].at(s).psi
+        if chain is self.b:
+            sigma = distance_along(self, lines, s)[1]
+            return -1.0, sigma, lines[1].at(sigma).psi
+        return None
 
     def rows(self, state: State, at: Positions) -> Rows:
         """The constraints at a state, with exact derivatives."""
@@ -271,6 +300,7 @@ def _refined(pair: Pair, lines: Lines, s: Array, sigma: Array) -> tuple[Array, A
 def pair_of(scene: Scene, model: Model, name: str) -> Pair:
     """One of the scene's contacts, its sides read from the stress-free state."""
     contact = scene.contacts[name]
+    assert isinstance(contact, BeamContact)
     a, b = (model.chain(beam) for beam in contact.between)
     state = rest_state(model)
     at = positions(model, state)
@@ -287,11 +317,3 @@ def _side(pair: Pair, lines: Lines) -> float:
     if not np.isfinite(size.min()):
         size = np.abs(D)
     return 1.0 if D[int(np.argmin(size))] >= 0.0 else -1.0
-
-
-def deepest(pair: Pair, state: State, at: Positions) -> float:
-    """Largest overlap of the two beams anywhere along A, units of length; zero where they are apart."""
-    lines = pair.lines(state, at)
-    places = closest_places(pair, lines)
-    D, _, foot = distance_along(pair, lines, np.concatenate((smooth.halves(pair.a), places.s, places.held_s)))
-    return float(np.max(np.where(foot, pair.offset - D, 0.0), initial=0.0))

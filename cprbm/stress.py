@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm import nearest
 from cprbm.energy import spring_moments
 from cprbm.equilibrium import Point
 from cprbm.forces import contact_forces
@@ -52,23 +51,17 @@ def _kinks(mechanism: Mechanism, point: Point, chain: Chain) -> tuple[Array, Arr
         pressed = np.flatnonzero(normal)
         return chain.s[pressed], normal[pressed]
     rows = point.rows
+    p = len(rows.joints)
     for name, pair in mechanism.pairs.items():
-        if chain not in (pair.a, pair.b):
-            continue
         pressing = [r for r in range(rows.size) if rows.contact[r] == name and point.lam[r] > 0.0]
-        if not pressing:
+        found = pair.pressed(point.state, point.at, chain, rows.arc[pressing]) if pressing else None
+        if found is None:
             continue
-        lines = pair.lines(point.state, point.at)
-        s = rows.arc[pressing]
-        _, sigma, _ = nearest.distance_along(pair, lines, s)
+        sign, at, psi = found
         on_a = rows.joints - pair.a.first_joint
-        mine = (on_a >= 0) & (on_a < pair.a.n + 2)
-        p = len(rows.joints)
-        for r, s_a, s_b in zip(pressing, s, sigma, strict=True):
-            force = -point.lam[r] * np.array([rows.slopes[r, :p][mine].sum(), rows.slopes[r, p : 2 * p][mine].sum()])
-            on_this = force if chain is pair.a else -force
-            place, line = (s_a, lines[0]) if chain is pair.a else (s_b, lines[1])
-            psi = float(line.at(np.array([place])).psi[0])
-            places.append(float(place))
-            jumps.append(float(on_this[1] * np.cos(psi) - on_this[0] * np.sin(psi)))
+        mine = np.flatnonzero((on_a >= 0) & (on_a < pair.a.n + 2))
+        force = -sign * point.lam[pressing, None] * rows.slopes[pressing]
+        fx, fy = force[:, mine].sum(axis=1), force[:, p + mine].sum(axis=1)
+        places.extend(at)
+        jumps.extend(fy * np.cos(psi) - fx * np.sin(psi))
     return np.array(places), np.array(jumps)
