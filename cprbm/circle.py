@@ -34,6 +34,7 @@ from scene.answer import Array, Flags
 
 CLOSEST_ITERATIONS = 12
 LEAST_CURVATURE = 1e-3  # of D along the beam, 1/ℓ, below which its minimum has no place of its own
+STEPS = 3.0  # a minimum is less convex than this many steps of the curvature: it belongs to a zone
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 JOINT_REACH = 2.0  # joints farther than this many h²·(1/R + 1/ℓ) are none
 
@@ -127,7 +128,7 @@ class Circle:
         near = np.zeros(len(s), dtype=bool)
         near[::2] = D[::2] < JOINT_REACH * self.a.h**2 * (1.0 / self.radius + 1.0)
         padded = np.concatenate(([np.inf], D, [np.inf]))
-        lowest = (D <= padded[:-2]) & (D < padded[2:]) & (D < REACH)
+        lowest = (padded[:-2] >= D) & (padded[2:] > D) & (D < REACH)
         lowest[[0, -1]] = False
         places, convex = self._refined(line, s[lowest])
         held = s[near]
@@ -153,7 +154,8 @@ class Circle:
             if np.max(np.abs(step)) < 1e-13:
                 break
         ripple = self.a.h**2 * np.maximum(np.abs(A.bend), 1.0 / self.radius) ** 3
-        deep = D_ss > np.maximum(LEAST_CURVATURE, ripple)
+        steps = STEPS * smooth.curvature_step(line, A.link)
+        deep = D_ss > np.maximum(LEAST_CURVATURE, np.maximum(ripple, steps))
         return s, deep & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
 
     @property
