@@ -29,7 +29,7 @@ def certify(march: March) -> Certificate:
     floor = system.floor / system.scale
     violation = float(np.abs(system.residual[~free]).max())
     penetration = max((one.penetration / one.pair.scale for one in system.touches), default=0.0)
-    force, moment = _balance(model, march.values, system.z)
+    force, moment = _balance(model, march.values, system.z, 10.0 * system.floor)
     try:
         curvature = smallest_curvature(model, splu(system.tangent))
     except RuntimeError:
@@ -62,8 +62,9 @@ def certify(march: March) -> Certificate:
     )
 
 
-def _balance(model: Model, values: Array, z: Array) -> tuple[float, float]:
-    """|ΣF| and |ΣM| about the origin of loads and supports, each over the largest in it.
+def _balance(model: Model, values: Array, z: Array, least: float) -> tuple[float, float]:
+    """|ΣF| and |ΣM| about the origin of loads and supports, each over the largest in it, if that is more than
+    ``least``.
 
     A contact's two forces are opposite on one line: they cancel in both sums.
     """
@@ -87,6 +88,5 @@ def _balance(model: Model, values: Array, z: Array) -> tuple[float, float]:
     largest_moment = max(map(abs, moments), default=0.0)
     # Forces that vanish are judged by the moments, and these by them: lengths are of order one here.
     scale = max(largest_force, largest_moment)
-    if scale == 0.0:
-        return 0.0, 0.0
+    scale = scale if scale > least else 1.0
     return float(np.hypot(*sum(forces, np.zeros(2)))) / scale, abs(sum(moments)) / scale
