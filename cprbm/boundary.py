@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from cprbm.contact import Rows
+from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
 from scene import BeamContact, Mistake, PaperContact, Scene, SceneError
@@ -60,7 +60,7 @@ class FittedBoundary:
     arc: Array
     on_first: bool
 
-    def rows(self, state: State, at: Positions) -> Rows:
+    def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
         m, n = len(self.joints), len(self.points)
         tau = 0.5 * (state.theta[self.links[:-1]] + state.theta[self.links[1:]])
@@ -127,15 +127,18 @@ class FittedBoundary:
             local[k + i + 1, k + i] += turning
             return local
 
-        return Rows(
-            values=self.sense * (g - o),
-            joints=np.concatenate((self.joints, self.points)),
-            angles=self.links,
-            slopes=over_locals(slopes),
-            curvature=curvature,
-            keys=tuple((self.name, int(j)) for j in self.joints),
-            arc=self.arc if self.on_first else at_joints[0] @ q_B @ self.arc,
-            contact=(self.name,) * m,
+        joints = np.concatenate((self.joints, self.points))
+        return (
+            Group(
+                contact=self.name,
+                values=self.sense * (g - o),
+                joints=np.tile(joints, (m, 1)),
+                angles=np.tile(self.links, (m, 1)),
+                slopes=over_locals(slopes),
+                curvature=lambda lam: Blocks(joints[None], self.links[None], curvature(lam)[None]),
+                keys=tuple(int(j) for j in self.joints),
+                arc=self.arc if self.on_first else at_joints[0] @ q_B @ self.arc,
+            ),
         )
 
     def range_left(self, state: State, at: Positions) -> Array:

@@ -26,7 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm import smooth
-from cprbm.contact import Rows, no_rows
+from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
 from scene import CircleContact, Mistake, Scene, SceneError
@@ -67,14 +67,13 @@ class Circle:
         """D at some points of the beam."""
         return np.hypot(points.x - self.x, points.y - self.y) - self.radius
 
-    def rows(self, state: State, at: Positions) -> Rows:
+    def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
         line = self.line(state, at)
         s, free = self._places(line)
         if not s.size:
-            return no_rows()
+            return ()
         A = line.at(s)
-        m, k = len(s), smooth.LOCALS
         rx, ry = A.x - self.x, A.y - self.y
         rho = np.hypot(rx, ry)
         n = np.stack((rx / rho, ry / rho), axis=1)
@@ -91,29 +90,26 @@ class Circle:
         second -= moving[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
 
         link = A.link
-        own = np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n)), axis=1)
-        i = np.arange(m)
-        where = np.concatenate((np.stack((i, m + i), axis=1), 2 * m + 3 * i[:, None] + np.arange(3)), axis=1)
-        slopes = np.zeros((m, k * m))
-        slopes[i[:, None], where] = -D_z
+        joints = (self.a.first_joint + link)[:, None]
+        angles = self.a.first_link + np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n)), axis=1)
 
-        def curvature(multipliers: Array) -> Array:
-            total = np.zeros((k * m, k * m))
-            total[where[:, :, None], where[:, None, :]] = -multipliers[:, None, None] * second
-            return total
+        def curvature(multipliers: Array) -> Blocks:
+            pressing = np.flatnonzero(multipliers)
+            return Blocks(joints[pressing], angles[pressing], -multipliers[pressing, None, None] * second[pressing])
 
-        return Rows(
-            values=self.offset - (rho - self.radius),
-            joints=self.a.first_joint + link,
-            angles=(self.a.first_link + own).ravel(),
-            slopes=slopes,
-            curvature=curvature,
-            keys=tuple(
-                (self.name, -1) if is_free else (self.name, round(place / self.a.h + 0.5))
-                for place, is_free in zip(s, free, strict=True)
+        return (
+            Group(
+                contact=self.name,
+                values=self.offset - (rho - self.radius),
+                joints=joints,
+                angles=angles,
+                slopes=-D_z,
+                curvature=curvature,
+                keys=tuple(
+                    -1 if is_free else round(place / self.a.h + 0.5) for place, is_free in zip(s, free, strict=True)
+                ),
+                arc=s,
             ),
-            arc=s,
-            contact=(self.name,) * m,
         )
 
     def _convexity(self, A: smooth.Points, n: Array, q_s: Array, rho: Array) -> Array:
@@ -127,6 +123,9 @@ class Circle:
         D = self.distance(line.at(s)) - self.offset
         near = np.zeros(len(s), dtype=bool)
         near[::2] = D[::2] < JOINT_REACH * self.a.h**2 * (1.0 / self.radius + 1.0)
+        # an end that the ground holds cannot move: its gap is no unknown
+        near[0] &= self.a.start.body >= 0
+        near[-1] &= self.a.end is None or self.a.end.body >= 0
         padded = np.concatenate(([np.inf], D, [np.inf]))
         lowest = (padded[:-2] >= D) & (padded[2:] > D) & (D < REACH)
         lowest[[0, -1]] = False

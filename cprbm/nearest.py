@@ -29,7 +29,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from cprbm import smooth
-from cprbm.contact import Rows, together
+from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.model import Chain, Model
 from scene import BeamContact, Scene
@@ -42,6 +42,7 @@ LEAST_CURVATURE = 1e-3  # of D along A, 1/ℓ, below which its minimum has no pl
 REACH = 0.1  # gaps wider than this part of the longest beam are no constraints yet
 PARALLEL = 1e-3  # a foot whose perpendicular misses by more (sine) is an end, not a foot
 
+ORDER = np.array([0, 5, 1, 6, 2, 3, 4, 7, 8, 9])  # (x, y, θθθ of A, the same of B) to (x, x, y, y, θ of A, θ of B)
 
 Lines = tuple[smooth.SmoothLine, smooth.SmoothLine]
 
@@ -107,19 +108,21 @@ class Pair:
             return -1.0, sigma, lines[1].at(sigma).psi
         return None
 
-    def rows(self, state: State, at: Positions) -> Rows:
+    def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
         lines = self.lines(state, at)
         found = closest_places(self, lines)
-        parts = [self._rows_at(lines, found.s, found.sigma, free=True)] if found.s.size else []
+        groups = []
+        if found.s.size:
+            groups.append(self._rows_at(lines, found.s, found.sigma, free=True))
         if found.held_s.size:
-            parts.append(self._rows_at(lines, found.held_s, found.held_sigma, free=False))
+            groups.append(self._rows_at(lines, found.held_s, found.held_sigma, free=False))
         if found.across_s.size:
             rows = self.exchanged()._rows_at(lines[::-1], found.across_s, found.across_sigma, free=False)
-            parts.append(replace(rows, arc=found.across_sigma))
-        return together(parts)
+            groups.append(replace(rows, arc=found.across_sigma))
+        return tuple(groups)
 
-    def _rows_at(self, lines: Lines, s: Array, sigma: Array, *, free: bool) -> Rows:
+    def _rows_at(self, lines: Lines, s: Array, sigma: Array, *, free: bool) -> Group:
         """Rows at feet (s, σ); ``free`` where s moves with the minimum, else it is held."""
         A, B = lines[0].at(s), lines[1].at(sigma)
         m, k = len(s), smooth.LOCALS
@@ -156,36 +159,24 @@ class Pair:
         second += n_A[:, :, None] * s_z[:, None, :] - n_B[:, :, None] * sigma_z[:, None, :]
         second *= self.side
 
-        # each row has ten local numbers of its own: joints (A, B), then θ (three of A, three of B)
-        joints = np.concatenate((self.a.first_joint + A.link, self.b.first_joint + B.link))
-        angles = np.concatenate((_angles(self.a, A.link).ravel(), _angles(self.b, B.link).ravel()))
-        i = np.arange(m)
-        where = np.concatenate(
-            (
-                np.stack((i, 2 * m + i), axis=1),
-                4 * m + 3 * i[:, None] + np.arange(3),
-                np.stack((m + i, 3 * m + i), axis=1),
-                7 * m + 3 * i[:, None] + np.arange(3),
-            ),
-            axis=1,
-        )
-        slopes = np.zeros((m, 10 * m))
-        slopes[i[:, None], where] = -slope
+        # local numbers of a row: joints of A and B, then θ (three of A, three of B)
+        joints = np.stack((self.a.first_joint + A.link, self.b.first_joint + B.link), axis=1)
+        angles = np.concatenate((_angles(self.a, A.link), _angles(self.b, B.link)), axis=1)
 
-        def curvature(multipliers: Array) -> Array:
-            total = np.zeros((10 * m, 10 * m))
-            total[where[:, :, None], where[:, None, :]] = -multipliers[:, None, None] * second
-            return total
+        def curvature(multipliers: Array) -> Blocks:
+            pressing = np.flatnonzero(multipliers)
+            matrices = -multipliers[pressing, None, None] * second[pressing][:, ORDER[:, None], ORDER]
+            return Blocks(joints[pressing], angles[pressing], matrices)
 
-        return Rows(
+        return Group(
+            contact=self.name,
             values=self.offset - self.side * distance,
             joints=joints,
             angles=angles,
-            slopes=slopes,
+            slopes=-slope[:, ORDER],
             curvature=curvature,
-            keys=((self.name, 0),) * m,
+            keys=(-1,) * m,
             arc=np.asarray(A.s),
-            contact=(self.name,) * m,
         )
 
 

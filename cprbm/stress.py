@@ -50,18 +50,18 @@ def _kinks(mechanism: Mechanism, point: Point, chain: Chain) -> tuple[Array, Arr
         normal = forces.fy[chain.joints] * np.cos(tangent) - forces.fx[chain.joints] * np.sin(tangent)
         pressed = np.flatnonzero(normal)
         return chain.s[pressed], normal[pressed]
-    rows = point.rows
-    p = len(rows.joints)
-    for name, pair in mechanism.pairs.items():
-        pressing = [r for r in range(rows.size) if rows.contact[r] == name and point.lam[r] > 0.0]
-        found = pair.pressed(point.state, point.at, chain, rows.arc[pressing]) if pressing else None
+    for group, lam in point.rows.shares(point.lam):
+        pair = mechanism.pairs[group.contact]
+        pressing = np.flatnonzero(lam)
+        found = pair.pressed(point.state, point.at, chain, group.arc[pressing]) if pressing.size else None
         if found is None:
             continue
         sign, at, psi = found
-        on_a = rows.joints - pair.a.first_joint
-        mine = np.flatnonzero((on_a >= 0) & (on_a < pair.a.n + 2))
-        force = -sign * point.lam[pressing, None] * rows.slopes[pressing]
-        fx, fy = force[:, mine].sum(axis=1), force[:, p + mine].sum(axis=1)
+        p = group.joints.shape[1]
+        on_a = (group.joints >= pair.a.first_joint) & (group.joints < pair.a.first_joint + pair.a.n + 2)
+        weights = -sign * lam[:, None] * on_a
+        fx = np.sum(weights * group.slopes[:, :p], axis=1)[pressing]
+        fy = np.sum(weights * group.slopes[:, p : 2 * p], axis=1)[pressing]
         places.extend(at)
         jumps.extend(fy * np.cos(psi) - fx * np.sin(psi))
     return np.array(places), np.array(jumps)
