@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import brentq
+from threadpoolctl import threadpool_limits
 
 from cprbm.certifying import certify
 from cprbm.contact import NO_ROWS
@@ -38,9 +39,12 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
     """
     began = time.perf_counter()
     settings = settings or Settings()
-    mechanism = mechanism_of(scene, settings)
-    march = _March(scene, settings, mechanism)
-    ending, sentence = march.run()
+    # small matrices: more than one thread of BLAS costs more than it brings
+    with threadpool_limits(limits=1, user_api="blas"):
+        mechanism = mechanism_of(scene, settings)
+        march = _March(scene, settings, mechanism)
+        ending, sentence = march.run()
+        notes = march.notes()
     return Answer(
         solver="cprbm",
         scene=scene.name,
@@ -50,7 +54,7 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
         stations=tuple(march.reached),
         events=tuple(march.events),
         seconds=time.perf_counter() - began,
-        notes=tuple(march.notes()),
+        notes=tuple(notes),
     )
 
 

@@ -19,8 +19,6 @@ from math import atan2, hypot, tau
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
-from scipy.spatial import cKDTree
 
 from scene.statement import Arc, Curve
 
@@ -84,6 +82,8 @@ def closest_pair(
     The refined distance is exact to round-off where the nearest point is a smooth minimum or an end of the
     range; of places equally near it gives one.
     """
+    from scipy.spatial import cKDTree  # loaded when two curves are compared, not with every scene
+
     u1, u2 = np.linspace(*range1, _SAMPLES), np.linspace(*range2, _SAMPLES)
     p1 = points_on(first, u1)
     _, neighbour = cKDTree(points_on(second, u2)).query(p1)
@@ -108,6 +108,8 @@ def _refined(
     range2: tuple[float, float],
 ) -> ClosestPair:
     """The nearest points within a few sample widths of ``at``."""
+    from scipy.optimize import minimize
+
     widths = np.array([np.ptp(range1), np.ptp(range2)]) / _SAMPLES
     # distances over a sample's length: the minimiser sees numbers of order one
     scale = max(arc_length(first), arc_length(second)) / _SAMPLES
