@@ -20,7 +20,7 @@ from math import atan2, hypot, tau
 import numpy as np
 from numpy.typing import NDArray
 
-from scene.statement import Arc, Curve
+from scene.statement import Arc, Curve, Point
 
 Array = NDArray[np.float64]
 _SAMPLES = 1001  # per curve: 1e-3 of the length between neighbours, the rest is refinement
@@ -129,6 +129,21 @@ def _refined(
     return ClosestPair(distance=squared(best) ** 0.5 * scale, u1=float(u[0]), u2=float(u[1]))
 
 
+def distance_to(curve: Curve, point: Point) -> float:
+    """Distance of the neutral line's nearest point from ``point``, m."""
+    ends = min(_apart(curve.start, point), _apart(curve.end, point))
+    if isinstance(curve, Arc):
+        turn, towards = arc_angle(curve), _angle(curve, point)
+        beyond = (towards - _angle(curve, curve.start)) * (1.0 if turn > 0.0 else -1.0) % tau
+        if beyond > abs(turn):
+            return ends
+        return min(ends, abs(_apart(curve.center, point) - _radius(curve)))
+    length = arc_length(curve)
+    tx, ty = (curve.end[0] - curve.start[0]) / length, (curve.end[1] - curve.start[1]) / length
+    rx, ry = point[0] - curve.start[0], point[1] - curve.start[1]
+    return abs(tx * ry - ty * rx) if 0.0 < tx * rx + ty * ry < length else ends
+
+
 def tangents_on(curve: Curve, u: Array) -> Array:
     """Unit tangents (n, 2) at the fractions ``u`` (n,), from start to end."""
     if isinstance(curve, Arc):
@@ -148,7 +163,11 @@ def scaled(curve: Curve, size: float) -> Curve:
     return curve.model_copy(update=lengths)
 
 
-def _angle(arc: Arc, point: tuple[float, float]) -> float:
+def _apart(a: Point, b: Point) -> float:
+    return hypot(b[0] - a[0], b[1] - a[1])
+
+
+def _angle(arc: Arc, point: Point) -> float:
     return atan2(point[1] - arc.center[1], point[0] - arc.center[0])
 
 
