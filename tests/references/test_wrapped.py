@@ -20,8 +20,8 @@ WRAPPED = [
     replace(BEAM, pull=0.3, force=3e3),
     replace(SLIM, force=900.0),
     replace(SLIM, pull=0.8 * pi, force=900.0),
-    replace(SLIM, pull=1.2 * pi, force=900.0),  # wrapped round more than half of the circle
-    replace(SLIM, pull=1.5 * pi, force=2000.0),
+    replace(SLIM, pull=1.2 * pi, force=900.0),
+    replace(SLIM, pull=1.5 * pi, force=2000.0),  # wrapped round more than half of the circle
 ]
 FREE = [replace(BEAM, force=17.0), replace(BEAM, force=29.0), replace(BEAM, pull=0.4, force=20.0)]
 
