@@ -9,6 +9,7 @@ from fea_reference.curvature import smallest_curvature
 from fea_reference.march import March
 from fea_reference.model import Model
 from fea_reference.supports import support
+from fea_reference.touch import Circle, Touch
 from scene.answer import Array, Certificate
 
 _VIOLATION = 1e-9
@@ -29,7 +30,7 @@ def certify(march: March) -> Certificate:
     floor = system.floor / system.scale
     violation = float(np.abs(system.residual[~free]).max())
     penetration = max((one.penetration / one.pair.scale for one in system.touches), default=0.0)
-    force, moment = _balance(model, march.values, system.z)
+    force, moment = _balance(model, march.values, system.z, system.touches)
     try:
         curvature = smallest_curvature(model, splu(system.tangent))
     except RuntimeError:
@@ -62,10 +63,11 @@ def certify(march: March) -> Certificate:
     )
 
 
-def _balance(model: Model, values: Array, z: Array) -> tuple[float, float]:
+def _balance(model: Model, values: Array, z: Array, touches: tuple[Touch, ...]) -> tuple[float, float]:
     """|ΣF| and |ΣM| about the origin of loads and supports, each over the largest in it.
 
-    A contact's two forces are opposite on one line: they cancel in both sums.
+    A contact's two forces are opposite on one line: they cancel in both sums, unless one of them is on a circle
+    that is fixed to the ground, which makes the other a support's.
     """
     forces: list[Array] = []
     moments: list[float] = []
@@ -83,6 +85,10 @@ def _balance(model: Model, values: Array, z: Array) -> tuple[float, float]:
             forces.append(value * part.direction)
             at = model.carried(body, part.arm, z)
             moments.append(float(at[0] * forces[-1][1] - at[1] * forces[-1][0]))
+    for one in touches:
+        if isinstance(one.pair, Circle) and model.bodies[one.pair.body].dofs is None:
+            forces.append(one.force.sum(axis=1))
+            moments.append(float((one.x[0] * one.force[1] - one.x[1] * one.force[0]).sum()))
     largest_force = max((float(np.hypot(*force)) for force in forces), default=0.0)
     largest_moment = max(map(abs, moments), default=0.0)
     # Forces that vanish are judged by the moments, and these by them: lengths are of order one here.

@@ -2,19 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
-from fea_reference.contact import Pair, zones_of
-from fea_reference.crossing import cross
+from fea_reference.contacts import passed_through, zones_of
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.settings import Settings
 from fea_reference.system import System, assemble, load_direction
+from fea_reference.touch import Contact
 from scene.answer import Array, Ending
 
 _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
@@ -45,10 +44,10 @@ class March:
 
     model: Model
     settings: Settings
-    open: list[Pair]
+    open: list[Contact]
     values: Array
     system: System
-    penalties: dict[Pair, float] = field(default_factory=dict)
+    penalties: dict[Contact, float] = field(default_factory=dict)
     closing: dict[str, float] = field(default_factory=dict)
     iterations: int = 0
 
@@ -136,13 +135,10 @@ class March:
                 f"beyond {self._shown(load, start)} an element turns by {turned:.2f} rad: take more elements",
             )
         for pair in (*self.open, *self.penalties):
-            lines = [self.model.line(self.model.beams[i], system.z) for i in (pair.first, pair.second)]
-            # Lines without thickness cross by what the penalty lets through; that is held, and measured.
-            held = pair.distance == 0.0 and zones_of(self.model, pair, system.z).least < 0.0
-            if not held and cross(*lines):
+            if passed_through(self.model, pair, before, system.z):
                 return (
                     Ending.BEAMS_CROSSED,
-                    f"beyond {self._shown(load, start)} the beams of {pair.name} cross",
+                    f"beyond {self._shown(load, start)} what touches in {pair.name} passes through each other",
                 )
         self.values[load], self.system = value, system
         if touched:
@@ -205,7 +201,7 @@ class March:
             else:
                 most = max(most**0.4, 1.2)
 
-    def _depths(self) -> dict[Pair, float]:
+    def _depths(self) -> dict[Contact, float]:
         """The penetrations of the closed contacts; of those just closed, what they will be allowed."""
         allowed = self.settings.penetration
         return {
@@ -223,7 +219,7 @@ class March:
         return f"{part.name} = {value * part.unit:.6g}"
 
 
-def begin(model: Model, settings: Settings, contacts: Iterator[Pair] | tuple[Pair, ...]) -> March:
+def begin(model: Model, settings: Settings, contacts: tuple[Contact, ...]) -> March:
     """The undeformed mechanism, unloaded."""
     values = np.zeros(len(model.loads))
     system = assemble(model, {}, settings.quadrature, values, model.start)

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.linalg import splu
 
-from fea_reference.contact import Pair
 from fea_reference.model import Model
 from fea_reference.settings import Settings
 from fea_reference.system import System, assemble
+from fea_reference.touch import Contact
 from scene.answer import Array
 
 _TURN = 0.4  # rad, and the same in lengths of the longest beam: the most that one iteration may move anything
@@ -32,10 +32,10 @@ class Solved:
 def equilibrium(
     model: Model,
     settings: Settings,
-    penalties: Mapping[Pair, float],
+    penalties: Mapping[Contact, float],
     values: Array,
     z: Array,
-    depths: Mapping[Pair, float],
+    depths: Mapping[Contact, float],
 ) -> Solved:
     """Seek the equilibrium near ``z`` under load ``values``.
 

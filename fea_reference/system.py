@@ -14,14 +14,15 @@ from frozendict import frozendict
 from scipy.sparse import csc_matrix
 from skfem.assembly.form.coo_data import COOData
 
-from fea_reference.contact import Pair, Touch, touch
+from fea_reference.contacts import touch
 from fea_reference.element import ElementForces, forces
 from fea_reference.hermite import Index
 from fea_reference.model import Model, turned
+from fea_reference.touch import Contact, Touch
 from scene.answer import Array
 
 _ROUND_OFF = 3.0  # measured: one to two from 20 to 320 elements
-_NONE_HELD: Mapping[Pair, float] = frozendict()
+_NONE_HELD: Mapping[Contact, float] = frozendict()
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,11 +49,11 @@ class System:
 
 def assemble(
     model: Model,
-    penalties: Mapping[Pair, float],
+    penalties: Mapping[Contact, float],
     quadrature: int,
     values: Array,
     z: Array,
-    held: Mapping[Pair, float] = _NONE_HELD,
+    held: Mapping[Contact, float] = _NONE_HELD,
 ) -> System:
     """Sum everything up in state ``z``.
 
