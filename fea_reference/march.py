@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
+from fea_reference.advance import advance
 from fea_reference.contacts import passed_through, zones_of
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
@@ -107,7 +108,7 @@ class March:
     def _step(self, load: int, value: float, rate: Array) -> tuple[Ending, str] | None:
         """Try to step to ``value``, or to where a contact closes before; the trouble if neither can be."""
         before, start = self.system.z, float(self.values[load])
-        predicted = before + (value - start) * rate
+        predicted = advance(self.model, before, (value - start) * rate)
         system = self._solve(load, value, predicted)
         if system is None:
             return (
@@ -121,7 +122,7 @@ class March:
             )
         touched = [pair for pair in self.open if zones_of(self.model, pair, system.z).least < 0.0]
         if touched:
-            found = self._first_touch(load, start, value, before, system.z)
+            found = self._first_touch(load, start, value, rate, system)
             if found is None:
                 return (
                     Ending.STEP_TOO_SMALL,
@@ -146,25 +147,26 @@ class March:
         return None
 
     def _first_touch(
-        self, load: int, start: float, end: float, z_start: Array, z_end: Array
+        self, load: int, start: float, end: float, rate: Array, beyond: System
     ) -> tuple[float, System] | None:
         """The value at which the least gap of the open contacts is zero, on the equilibria without them."""
-        latest: dict[float, System] = {}
+        known = {start: self.system, end: beyond}
 
         def least_gap(value: float) -> float:
-            share = (value - start) / (end - start)
-            system = self._solve(load, value, z_start + share * (z_end - z_start))
-            if system is None:
-                raise ArithmeticError
-            latest[value] = system
-            return min(zones_of(self.model, pair, system.z).least for pair in self.open)
+            if value not in known:
+                guess = advance(self.model, self.system.z, (value - start) * rate)
+                system = self._solve(load, value, guess)
+                if system is None:
+                    raise ArithmeticError
+                known[value] = system
+            return min(zones_of(self.model, pair, known[value].z).least for pair in self.open)
 
         try:
             root = float(brentq(least_gap, start, end, xtol=1e-11 * abs(end), rtol=1e-11))
             least_gap(root)
         except (ArithmeticError, ValueError):
             return None
-        return root, latest[root]
+        return root, known[root]
 
     def _watch_what_touches(self, load: int) -> None:
         """Give a penalty to every open contact whose gap has vanished."""

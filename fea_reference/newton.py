@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.linalg import splu
 
+from fea_reference.advance import advance
 from fea_reference.model import Model
 from fea_reference.settings import Settings
 from fea_reference.system import System, assemble
@@ -58,7 +59,7 @@ def equilibrium(
         if not np.isfinite(step).all():
             return Solved(system, converged=False, iterations=iteration + 1)
         correction = float(np.abs(step[moving]).max())
-        z = z + min(1.0, _TURN / max(correction, _TURN)) * step
+        z = advance(model, z, min(1.0, _TURN / max(correction, _TURN)) * step)
         system = assemble(model, penalties, settings.quadrature, values, z, held)
         if held:
             for one in system.touches:

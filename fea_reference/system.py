@@ -22,6 +22,7 @@ from fea_reference.touch import Contact, Touch
 from scene.answer import Array
 
 _ROUND_OFF = 3.0  # measured: one to two from 20 to 320 elements
+_NOTHING = 10.0  # floors: a force below this is round-off itself
 _NONE_HELD: Mapping[Contact, float] = frozendict()
 
 
@@ -32,7 +33,7 @@ class System:
     Attributes:
         residual: unbalanced generalised forces and violations of rows, (size,).
         tangent: its derivative, sparse (size, size).
-        scale: the largest generalised force that balances.
+        scale: the largest generalised force that balances; where there is none but round-off, EI/length².
         floor: round-off of the residual: an element's end force is 12 EI/h³ times differences of positions
             and angles that are known to machine precision, and errors of n elements add up like a random
             walk: _ROUND_OFF eps EI h^-3.5.
@@ -85,7 +86,8 @@ def assemble(
     h = model.elements.length
     EI = np.repeat([beam.bending for beam in model.beams], [b.elements.stop - b.elements.start for b in model.beams])
     floor = float(_ROUND_OFF * np.finfo(float).eps * (EI / h**3.5).max())
-    return System(z, residual, tangent, elements, touches, max(largest, floor), floor)
+    scale = largest if largest > _NOTHING * floor else 1.0
+    return System(z, residual, tangent, elements, touches, scale, floor)
 
 
 def load_direction(model: Model, load: int, z: Array) -> Array:

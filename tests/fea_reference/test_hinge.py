@@ -143,3 +143,24 @@ def test_a_load_far_beyond_ends_by_name(scene, far):
     assert len(got.sentence) > 20
     assert [station.value for station in got.stations] == [0.335]
     assert all(np.isfinite(value).all() for value in got.stations[0].values.values())
+
+
+def test_there_and_back_again(scene, solved):
+    """Elastic and without friction: the way does not matter, and unloading opens the contact."""
+    got = answer(stepped(scene, 0.0, 0.67, 0.67, 0.134, 0.0))
+    assert got.ending is Ending.COMPLETED, got.sentence
+    rest, loaded, again, below, back = (station.values for station in got.stations)
+    for values in (rest, back):
+        assert values["B.displacement"] == pytest.approx([0.0, 0.0], abs=1e-11)
+        assert values["contact.force"][0] == 0.0
+    assert loaded["B.displacement"] == pytest.approx(solved.stations[-1].values["B.displacement"], rel=1e-5)
+    assert again["contact.force"] == pytest.approx(loaded["contact.force"], rel=1e-6)
+    assert below["B.displacement"] == pytest.approx(solved.stations[1].values["B.displacement"], rel=1e-9)
+
+
+@pytest.mark.parametrize("kinematics", ["bending", "stretch"])
+def test_fine_meshes_are_no_harder(scene, kinematics):
+    """Newton's method must not need more iterations because the elements are short."""
+    got = answer(stepped(scene, 0.2, 0.5), Settings(elements=320, kinematics=kinematics))
+    assert got.ending is Ending.COMPLETED, got.sentence
+    assert got.stations[0].certificate.iterations < 20
