@@ -83,11 +83,10 @@ class Runs:
 
     def everything(self) -> Iterator[tuple[str, Answer]]:
         """Every answer with a name that says what it is."""
-        for level, answer in zip(("", " finer"), self.cprbm, strict=True):
-            yield f"cprbm{level}", answer
-        for kinematics, answers in self.fea.items():
-            for level, answer in zip(("", " finer"), answers, strict=False):  # the split needs no finer run
-                yield f"fea {kinematics}{level}", answer
+        families = {"cprbm": self.cprbm, **{f"fea {kinematics}": fea for kinematics, fea in self.fea.items()}}
+        for name, answers in families.items():
+            for level, answer in enumerate(answers):
+                yield f"{name} finer" if level else name, answer
 
 
 def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1) -> Runs:

@@ -23,19 +23,28 @@ Index = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True)
 class NeutralLine:
-    """A beam of n elements as it lies: ``points`` (2, n+1), ``angles`` (n+1,), elements' ``lengths`` (n,)."""
+    """A beam of n elements as it lies.
+
+    ``points`` (2, n+1), ``angles`` (n+1,), elements' ``lengths`` (n,), ``tangents`` and ``normals`` (2, n+1),
+    and the coefficients ``cubic`` (4, 2, n) of 1, ξ, ξ², ξ³ of every element.
+    """
 
     points: Array
     angles: Array
     lengths: Array
     tangents: Array
     normals: Array
+    cubic: Array
 
     @classmethod
     def through(cls, points: Array, angles: Array, lengths: Array) -> NeutralLine:
         """The line through ``points`` (2, n+1)."""
         cos, sin = np.cos(angles), np.sin(angles)
-        return cls(points, angles, lengths, np.stack([cos, sin]), np.stack([-sin, cos]))
+        tangents = np.stack([cos, sin])
+        step = points[:, 1:] - points[:, :-1]
+        t1, t2 = lengths * tangents[:, :-1], lengths * tangents[:, 1:]
+        cubic = np.stack([points[:, :-1], t1, 3.0 * step - 2.0 * t1 - t2, t1 + t2 - 2.0 * step])
+        return cls(points, angles, lengths, tangents, np.stack([-sin, cos]), cubic)
 
     @property
     def n(self) -> int:
@@ -44,22 +53,16 @@ class NeutralLine:
 
     def locate(self, zeta: Array) -> tuple[Index, Array]:
         """Element and ξ of each place."""
-        element = np.clip(zeta.astype(np.int64), 0, self.n - 1)
+        element = np.minimum(zeta.astype(np.int64), self.n - 1)
         return element, zeta - element
 
     def at(self, zeta: Array) -> tuple[Array, Array, Array]:
         """Position, first and second derivative by ζ, each (2, k)."""
         e, xi = self.locate(zeta)
-        L = self.lengths[e]
-        p1, p2 = self.points[:, e], self.points[:, e + 1]
-        t1, t2 = L * self.tangents[:, e], L * self.tangents[:, e + 1]
-        # The cubic in ξ: p1 + t1 ξ + b ξ² + a ξ³
-        step = p2 - p1
-        a = t1 + t2 - 2.0 * step
-        b = 3.0 * step - 2.0 * t1 - t2
+        p, t, b, a = self.cubic[:, :, e]
         return (
-            p1 + xi * (t1 + xi * (b + xi * a)),
-            t1 + xi * (2.0 * b + xi * (3.0 * a)),
+            p + xi * (t + xi * (b + xi * a)),
+            t + xi * (2.0 * b + xi * (3.0 * a)),
             2.0 * b + xi * (6.0 * a),
         )
 

@@ -25,10 +25,10 @@ def project(line: NeutralLine, points: Array, zeta: Array) -> tuple[Array, NDArr
         speed = (x1 * x1).sum(axis=0)
         slope = speed - (r * x2).sum(axis=0)
         # Beyond the centre of curvature the distance has no minimum: go along the tangent instead.
-        step = np.clip(f / np.where(slope > 0.1 * speed, slope, speed), -1.0, 1.0)
+        step = np.maximum(np.minimum(f / np.where(slope > 0.1 * speed, slope, speed), 1.0), -1.0)
         if iteration > _ITERATIONS // 4:
             step *= 0.5  # a kink of the curvature between two elements can hold Newton's method in a cycle
-        moved = np.clip(zeta + step, 0.0, line.n)
+        moved = np.minimum(np.maximum(zeta + step, 0.0), line.n)
         # The step that was just made leaves an error of the order of its square.
         done = np.abs(moved - zeta).max(initial=0.0) < 1e-8
         zeta = moved

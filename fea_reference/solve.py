@@ -19,6 +19,10 @@ _DEFAULT = Settings()
 def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     """Solve a scene by finite elements.
 
+    The bending theory converges with the fourth power of the element's length, stretch and shear with the
+    second (a curved element's axial and shear force are taken along its chord), from errors a hundred times
+    smaller than what they add to bending.  An answer that ends early holds the stations reached before.
+
     Raises:
         SceneError: the settings do not fit the scene.
     """

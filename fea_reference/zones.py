@@ -34,6 +34,7 @@ from scene.answer import Array
 
 SAMPLES_PER_ELEMENT = 4
 _ITERATIONS = 60
+_END_ITERATIONS = 15
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +78,7 @@ def gap(first: NeutralLine, second: NeutralLine, side: float, T: float, zeta: Ar
 
 def side_of(first: NeutralLine, second: NeutralLine) -> float:
     """On which side of the second beam the first lies: +1 to the left of its direction, −1 to the right."""
-    zeta = _samples(first, second)
+    zeta = _samples(first, second, 0.0)
     near = KDTree(second.points.T).query(first.at(zeta)[0].T)[1].astype(float)
     there = gap(first, second, 1.0, 0.0, zeta, near)
     d = there.g[there.found]
@@ -90,11 +91,10 @@ def side_of(first: NeutralLine, second: NeutralLine) -> float:
 
 def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zones:
     """All intervals on which the first beam overlaps the second."""
-    zeta = _samples(first, second)
+    zeta = _samples(first, second, T)
     x = first.at(zeta)[0]
     distance, nearest = KDTree(second.points.T).query(x.T)
-    # Farther than this no sample, and nothing within a quarter of an element of one, can touch.
-    reach = 2.0 * T + 2.0 * second.lengths.max() + first.lengths.max()
+    reach = _reach(first, second, T)
     near = np.flatnonzero(distance < reach)
     least = float(distance.min()) - T
     if near.size == 0:
@@ -162,21 +162,32 @@ def negative(at: Callable[[Array, Array], Gap], zeta: Array, there: Gap, neighbo
     return Zones(np.stack([zeta[low], zeta[high]], axis=1), np.stack([zeta_m[low], zeta_m[high]], axis=1), least)
 
 
-def _samples(first: NeutralLine, second: NeutralLine) -> Array:
+def _reach(first: NeutralLine, second: NeutralLine, T: float) -> float:
+    """Where no node of the second beam is nearer than this, neither a place nor its neighbours can touch."""
+    return float(2.0 * T + 2.0 * second.lengths.max() + first.lengths.max())
+
+
+def _samples(first: NeutralLine, second: NeutralLine, T: float) -> Array:
     """Equal steps within every element, and the places straight across from the second beam's ends.
 
     Beyond an end there is no gap, and a zone that reaches up to one may be narrower than a step.
     """
     even = np.arange(SAMPLES_PER_ELEMENT * first.n + 1) / SAMPLES_PER_ELEMENT
     ends, tangents = second.points[:, [0, -1]], second.tangents[:, [0, -1]]
-    away = first.points[:, :, None] - ends[:, None, :]
-    zeta = np.argmin((away**2).sum(axis=0), axis=0).astype(float)
-    for _ in range(_ITERATIONS):
+    square = ((first.points[:, :, None] - ends[:, None, :]) ** 2).sum(axis=0)
+    near = square.min(axis=0) < _reach(first, second, T) ** 2
+    if not near.any():
+        return even
+    ends, tangents = ends[:, near], tangents[:, near]
+    zeta = np.argmin(square[:, near], axis=0).astype(float)
+    for _ in range(_END_ITERATIONS):
         x, x1, _ = first.at(zeta)
         ahead = (x1 * tangents).sum(axis=0)
         step = ((x - ends) * tangents).sum(axis=0) / np.where(ahead == 0.0, 1.0, ahead)
-        zeta = np.clip(zeta - np.clip(step, -1.0, 1.0), 0.0, first.n)
-        if np.abs(step).max() < 1e-12 * first.n:
+        moved = np.clip(zeta - np.clip(step, -1.0, 1.0), 0.0, first.n)
+        done = np.abs(moved - zeta).max() < 1e-8
+        zeta = moved
+        if done:
             break
     return np.unique(np.concatenate([even, zeta]))
 

@@ -174,6 +174,64 @@ def test_every_mistake_of_a_scene_is_in_the_paragraph(right, capsys, tmp_path):
         assert part in said
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("thickness = 0.002", "thicknes = 0.002", "beams.beam1.thicknes"),
+        ("thickness = 0.002", "thickness = -0.002", "beams.beam1.thickness"),
+        ("youngs_modulus = 2.3e9", "youngs_modulus = nan", "materials.abs.youngs_modulus"),
+        ('end = { joint = "weld", point = "B" }', 'end = { joint = "weld", point = "D" }', "beams.beam1.end"),
+        ("0.02625], direction", "0.02675], direction", "beams.beam1"),
+        ("[bodies.AC]", "[bodies.AC", "TOML"),
+        ('body = "BD"', 'body = "AC"', "loads.M.body"),
+        ('between = ["beam1", "beam2"]', 'between = ["beam1", "beam3"]', "contacts.contact.between"),
+    ],
+    ids=[
+        "misspelt",
+        "negative",
+        "not finite",
+        "end meets nothing",
+        "off the circle",
+        "no TOML",
+        "on ground",
+        "no beam",
+    ],
+)
+def test_every_kind_of_wrong_scene_is_a_paragraph_and_2(right, capsys, tmp_path, old, new, said):
+    text = HINGE.read_text("utf-8")
+    assert old in text
+    file = tmp_path / "wrong.toml"
+    file.write_text(text.replace(old, new, 1), "utf-8")
+    for command in ("solve", "compare"):
+        assert run([command, str(file)], right) == 2
+        captured = capsys.readouterr()
+        assert captured.out == ""
+        assert captured.err.count("\n") == 1
+        assert str(file) in captured.err
+        assert said in captured.err
+
+
+def test_beams_that_overlap_at_the_start_are_a_paragraph_and_2(right, capsys, tmp_path):
+    """The gap between the edges is 0.5 mm: edges 0.6 mm further out on either side leave no gap but an overlap."""
+    file = tmp_path / "wrong.toml"
+    file.write_text(HINGE.read_text("utf-8").replace("thickness = 0.002", "thickness = 0.0032"), "utf-8")
+    assert run(["compare", str(file)], right) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "contacts.contact" in said
+
+
+@pytest.mark.parametrize("content", [None, b'name = "\xff"'], ids=["not there", "no UTF-8"])
+def test_an_unreadable_file_is_a_paragraph_and_2(right, capsys, tmp_path, content):
+    file = tmp_path / "scene.toml"
+    if content is not None:
+        file.write_bytes(content)
+    assert run(["solve", str(file)], right) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert str(file) in said
+
+
 def test_a_later_scene_that_is_wrong_stops_the_first_from_being_solved(right, capsys, tmp_path):
     def never(scene, choices):
         pytest.fail("solved before every question was read")

@@ -1,5 +1,7 @@
 """Residual and tangent against differences, and what rigid motion must not do."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -14,7 +16,7 @@ from tests.fea_reference.cantilever import cantilever, force
 
 @pytest.fixture(scope="module")
 def hinge():
-    return read("comparisons/cases/hinge.toml")
+    return read(Path(__file__).parents[2] / "comparisons" / "cases" / "hinge.toml")
 
 
 def bent(model, seed=1, size=0.02):

@@ -1,12 +1,14 @@
 """The rotational hinge: what must hold of its answer whatever the numbers are."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from fea_reference import Settings, answer
 from scene import Ending, read
 
-CASE = "comparisons/cases/hinge.toml"
+CASE = Path(__file__).parents[2] / "comparisons" / "cases" / "hinge.toml"
 
 
 @pytest.fixture(scope="module")

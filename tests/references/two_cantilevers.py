@@ -77,9 +77,7 @@ def solve(pair: TwoCantilevers) -> TipContact:
         if not np.abs(_conditions(unknowns, pair, force)).max() < 1e-10:
             raise ValueError(f"the branch is lost at a force of {force}")
     if not (unknowns[2] > 0.0 and 0.0 < unknowns[3] <= pair.lower_length):
-        raise ValueError(
-            f"the tip is off the lower beam or pulls on it: P = {unknowns[2]}, σ = {unknowns[3]}"
-        )
+        raise ValueError(f"the tip is off the lower beam or pulls on it: P = {unknowns[2]}, σ = {unknowns[3]}")
     return _answer(unknowns, pair)
 
 
