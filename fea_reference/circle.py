@@ -31,6 +31,8 @@ from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative
 from scene.answer import Array
 from scene.statement import CircleContact, Scene
 
+_LAYERS = 32.0
+
 
 def circles(scene: Scene, model: Model) -> tuple[Circle, ...]:
     """The scene's contacts of a beam with a circle."""
@@ -45,16 +47,18 @@ def circles(scene: Scene, model: Model) -> tuple[Circle, ...]:
         at = (np.array(contact.center) - model.units.origin) / model.units.length
         x, y = at - model.bodies[body].centre
         half = 0.5 * beam.thickness
+        radius = contact.radius / model.units.length
+        layer = max(model.elements.length[beam.elements.start], half, min(beam.length / _LAYERS, radius))
         found.append(
             Circle(
                 name,
                 first,
                 body,
                 (float(x), float(y)),
-                contact.radius / model.units.length,
+                radius,
                 half if contact.thick else 0.0,
                 beam.thickness if contact.thick else 1.0,
-                beam.bending / max(model.elements.length[beam.elements.start], half) ** 4,
+                beam.bending / layer**4,
             )
         )
     return tuple(found)

@@ -14,7 +14,7 @@ from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.settings import Settings
 from fea_reference.system import System, assemble, load_direction
-from fea_reference.touch import Contact
+from fea_reference.touch import Circle, Contact, Pair
 from scene.answer import Array, Ending
 
 _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
@@ -60,6 +60,8 @@ class March:
         """
         self.iterations = 0
         self._watch_what_touches(load)
+        if self.values[load] != target:
+            self._loosen()
         stride, cuts = np.inf, 0
         reason = (Ending.STEP_TOO_SMALL, "")
         while self.values[load] != target:
@@ -177,6 +179,16 @@ class March:
                 self.closing[pair.name] = float(self.values[load]) * self.model.loads[load].unit
         self.system = assemble(self.model, self.penalties, self.settings.quadrature, self.values, self.system.z)
 
+    def _loosen(self) -> None:
+        """Go back to the circles' first penalties: the ends of a zone move by a layer's width per iteration."""
+        looser = {pair: pair.stiffness if isinstance(pair, Circle) else now for pair, now in self.penalties.items()}
+        if looser == self.penalties:
+            return
+        solved = equilibrium(self.model, self.settings, looser, self.values, self.system.z, self._depths())
+        self.iterations += solved.iterations
+        if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
+            self.system, self.penalties = solved.system, looser
+
     def _tighten(self) -> None:
         """Raise penalties, each time from the last equilibrium, until the penetration asked is kept.
 
@@ -194,7 +206,8 @@ class March:
                 if ratio > 1.0:
                     factor = min(_SLACK * ratio**1.5, most)
                     tighter[pair] *= factor
-                    depths[pair] *= factor ** (-2.0 / 3.0)
+                    if pair in depths:
+                        depths[pair] *= factor ** (-2.0 / 3.0)
             solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, depths)
             self.iterations += solved.iterations
             if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
@@ -204,12 +217,12 @@ class March:
                 most = max(most**0.4, 1.2)
 
     def _depths(self) -> dict[Contact, float]:
-        """The penetrations of the closed contacts; of those just closed, what they will be allowed."""
+        """The penetrations of the closed contacts of beams; of those just closed, what they will be allowed."""
         allowed = self.settings.penetration
         return {
             one.pair: max(one.penetration, allowed * one.pair.scale)
             for one in self.system.touches
-            if one.zones.least <= 1e-9 * one.pair.scale
+            if isinstance(one.pair, Pair) and one.zones.least <= 1e-9 * one.pair.scale
         }
 
     def _moved(self, system: System, z: Array) -> float:

@@ -41,7 +41,9 @@ class Circle:
         radius: of the circle.
         distance: T, of the neutral line from the circle when they touch.
         scale: what penetration is measured by: the thickness, or the longest beam for a line.
-        stiffness: the penalty to begin with, as of a :class:`Pair`.
+        stiffness: the penalty to begin with, EI over the fourth power of the width of the layer in which the
+            pressure builds up at a zone's end: a share of the beam's length (or the radius, if that is less), so
+            that finer elements make the search for the zone no harder.
     """
 
     name: str
