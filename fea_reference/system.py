@@ -36,7 +36,7 @@ class System:
         scale: the largest generalised force that balances; where there is none but round-off, EI/length².
         floor: round-off of the residual: an element's end force is 12 EI/h³ times differences of positions
             and angles that are known to machine precision, and errors of n elements add up like a random
-            walk: _ROUND_OFF eps EI h^-3.5.
+            walk: _ROUND_OFF eps EI h^-3.5.  A penalty adds what it makes of the gap's own round-off.
     """
 
     z: Array
@@ -86,8 +86,15 @@ def assemble(
     h = model.elements.length
     EI = np.repeat([beam.bending for beam in model.beams], [b.elements.stop - b.elements.start for b in model.beams])
     floor = float(_ROUND_OFF * np.finfo(float).eps * (EI / h**3.5).max())
+    floor += sum(_round_off(model, one, penalties[one.pair]) for one in touches)
     scale = largest if largest > _NOTHING * floor else 1.0
     return System(z, residual, tangent, elements, touches, scale, floor)
+
+
+def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
+    """Of a contact's force: its stiffness times machine precision, a random walk over the zone's intervals."""
+    h = model.elements.length[model.beams[touch.pair.first].elements.start]
+    return float(np.finfo(float).eps * stiffness * h * np.linalg.norm(np.diff(touch.zones.intervals, axis=1)))
 
 
 def load_direction(model: Model, load: int, z: Array) -> Array:

@@ -1,0 +1,210 @@
+"""A beam on a rigid circle: pressed at a point, and wrapped over a stretch, against exact answers."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from fea_reference import Settings, answer
+from fea_reference.circle import circles, passed, touch
+from fea_reference.model import build
+from scene import Ending, Scene
+
+T, WIDTH = 0.01, 0.05
+YOUNG = 12 / (WIDTH * T**3)  # so that EI = 1
+FORCE, RADIUS = 6.0, 0.5
+
+
+def wrapped(force, radius):
+    """Wrap length and tip of an inextensible cantilever, clamped tangent on top of a circle, EI = L = 1.
+
+    On the wrap the curvature is 1/R.  Beyond, θ'' = −F cos θ with θ the downward turning, from θ = c/R and
+    θ' = 1/R to a tip free of moment.  R is the radius of the neutral line.
+    """
+
+    def free(c):
+        def slope(_, v):
+            return [v[1], -force * np.cos(v[0]), np.cos(v[0]), -np.sin(v[0])]
+
+        return solve_ivp(slope, (0, 1 - c), [c / radius, 1 / radius, 0, 0], "DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+
+    c = brentq(lambda c: free(c)[1], 1e-9, min(1.0, radius * np.pi / 2) - 1e-9, xtol=1e-15)
+    angle, _, x, y = free(c)
+    lift = c / radius
+    # The first integral of the elastica, which the integration knows nothing of.
+    assert 1 / radius**2 == pytest.approx(2 * force * (np.sin(angle) - np.sin(lift)), rel=1e-9)
+    return c, np.array([radius * np.sin(lift) + x, radius * (np.cos(lift) - 1) + y]), -angle
+
+
+def resultant(force, radius, c):
+    """Of the line pressure F sin θc / R on the wrap and the point force F cos θc where it lifts off."""
+    lift = c / radius
+    pressure = force * np.sin(lift) * np.array([1 - np.cos(lift), np.sin(lift)])
+    return pressure + force * np.cos(lift) * np.array([np.sin(lift), np.cos(lift)])
+
+
+def on_circle(forces, radius=RADIUS, *, units=1.0, thick=True, body="ground", center=(0.0, None), circle=None):
+    """A cantilever from the origin along x, its tip pressed down; a circle below it."""
+    middle = (units * center[0], -units * radius if center[1] is None else units * center[1])
+    return Scene.model_validate(
+        {
+            "name": "circle",
+            "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
+            "bodies": {
+                "ground": {"motion": "fixed", "points": {"root": (0.0, 0.0)}},
+                "end": {"motion": "free", "points": {"tip": (units, 0.0)}},
+            },
+            "beams": {
+                "beam": {
+                    "curve": {"kind": "line", "start": (0.0, 0.0), "end": (units, 0.0)},
+                    "thickness": units * T,
+                    "width": units * WIDTH,
+                    "material": "m",
+                    "start": {"joint": "weld", "point": "root"},
+                    "end": {"joint": "weld", "point": "tip"},
+                }
+            },
+            "loads": {"P": {"kind": "force", "point": "tip", "direction": (0.0, -1.0)}},
+            "contacts": {
+                "contact": {
+                    "kind": "beam-circle",
+                    "beam": "beam",
+                    "body": body,
+                    "center": middle,
+                    "radius": units * (circle or radius - (T / 2 if thick else 0.0)),
+                    "thick": thick,
+                }
+            },
+            "stages": ({"name": "load", "steps": "P", "stations": tuple(units**2 * force for force in forces)},),
+            "probes": (
+                {"of": "tip", "quantity": "displacement"},
+                {"of": "end", "quantity": "rotation"},
+                {"of": "contact", "quantity": "force"},
+                {"of": "contact", "quantity": "centre"},
+                {"of": "contact", "quantity": "closing_load"},
+                {"of": "root", "quantity": "reaction"},
+                {"of": "root", "quantity": "reaction_moment"},
+            ),
+        }
+    )
+
+
+def solved(scene, **settings):
+    got = answer(scene, Settings(**{"kinematics": "bending", "elements": 80, **settings}))
+    assert got.ending is Ending.COMPLETED, got.sentence
+    return got
+
+
+@pytest.mark.parametrize(("force", "radius"), [(FORCE, RADIUS), (2.0, 0.8), (15.0, 0.5)])
+def test_a_beam_wraps_round_a_circle(force, radius):
+    c, tip, rotation = wrapped(force, radius)
+    got = solved(on_circle((0.5 * force, force), radius))
+    values = got.stations[-1].values
+    assert values["tip.displacement"] + (1.0, 0.0) == pytest.approx(tip, abs=2e-6)
+    assert values["end.rotation"][0] == pytest.approx(rotation, abs=2e-6)
+    assert values["root.reaction_moment"][0] == pytest.approx(1 / radius, rel=1e-3)
+    # What the penalty lets in takes the pressure off a layer beside the clamp, and gives it to the clamp.
+    pushed = resultant(force, radius, c)
+    assert values["contact.force"][0] == pytest.approx(np.hypot(*pushed), rel=2e-2)
+    assert values["root.reaction"] == pytest.approx(np.array([0.0, force]) - pushed, abs=2e-2 * force)
+    places = got.stations[-1].touching["contact"]
+    assert np.hypot(places[:, 0], places[:, 1] + radius) == pytest.approx(np.full(len(places), radius - T / 2), rel=1e-5)
+
+
+def test_the_clamp_takes_less_where_less_is_let_in():
+    """The layer's width, and with it the force the clamp takes over, falls with the penetration's cube root."""
+    c, _, _ = wrapped(FORCE, RADIUS)
+    exact = np.hypot(*resultant(FORCE, RADIUS, c))
+    missing = [
+        exact - solved(on_circle((FORCE,)), elements=160, penetration=p).stations[0].values["contact.force"][0]
+        for p in (1e-3, 1e-4, 1e-5)
+    ]
+    assert missing[0] > 1.5 * missing[1] > 2.25 * missing[2] > 0.0
+
+
+def test_the_search_for_the_zone_does_not_feel_the_mesh():
+    iterations = [
+        solved(on_circle((FORCE,)), elements=n).stations[0].certificate.iterations for n in (40, 160, 640)
+    ]
+    assert max(iterations) <= 1.2 * min(iterations)
+
+
+@pytest.mark.parametrize("thick", [True, False])
+def test_a_small_circle_props_a_cantilever(thick):
+    """Small loads on a line clamped at 0, touched at a, pressed by F at 1: R = F (3 − a)/(2 a) at rest on it."""
+    a, force = 0.4, 1e-3
+    below = -0.01 - (T / 2 if thick else 0.0)
+    scene = on_circle((force,), thick=thick, center=(a, below), circle=0.01)
+    values = solved(scene, penetration=1e-6 if thick else 1e-8).stations[0].values
+    prop = force * (3 - a) / (2 * a)
+    assert values["contact.force"][0] == pytest.approx(prop, rel=2e-3)
+    assert values["contact.centre"][0] == pytest.approx(a, rel=1e-2)
+    assert values["root.reaction"][1] == pytest.approx(force - prop, rel=1e-2)
+
+
+def test_it_closes_where_the_gap_does():
+    """A gap g under the point a closes at F = 6 g / (a² (3 − a)), EI = L = 1."""
+    a, gap = 0.5, 1e-4
+    closing = 6 * gap / (a**2 * (3 - a))
+    scene = on_circle((0.5 * closing, 2 * closing), center=(a, -0.001 - T / 2 - gap), circle=0.001)
+    below, above = (station.values for station in solved(scene).stations)
+    assert below["contact.force"][0] == 0.0
+    # At the first touch the slope is not zero: the circle of 1e-3 is met a little to the right.
+    assert above["contact.closing_load"][0] == pytest.approx(closing, rel=1e-3)
+
+
+def test_the_units_do_not_matter():
+    one, other = (solved(on_circle((FORCE,), units=units)).stations[0].values for units in (1.0, 1e-3))
+    assert other["tip.displacement"] * 1e3 == pytest.approx(one["tip.displacement"], rel=1e-9)
+    assert other["contact.force"] * 1e6 == pytest.approx(one["contact.force"], rel=1e-5)
+
+
+def test_doubling_the_rule_changes_nothing():
+    once, twice = (solved(on_circle((FORCE,)), quadrature=q).stations[0].values for q in (6, 12))
+    assert once["contact.force"] == pytest.approx(twice["contact.force"], rel=1e-6)
+    assert once["tip.displacement"] == pytest.approx(twice["tip.displacement"], rel=1e-9)
+
+
+@pytest.mark.parametrize("body", ["ground", "end"])
+@pytest.mark.parametrize("depth", [1e-5, 1e-3])
+def test_the_contacts_derivatives(body, depth):
+    """Gradient and tangent of ½ ε ∫ ⟨−g⟩² ds by differences, also over the motion of a free body."""
+    model = build(scene := on_circle((1.0,), body=body, center=(0.4, -0.2), circle=0.2 - T / 2 + depth), Settings(elements=9))
+    (circle,) = circles(scene, model)
+    rng = np.random.default_rng(5)
+    z = model.start + 0.02 * depth * rng.standard_normal(model.size)
+
+    def gathered(z):
+        one = touch(model, circle, 1.0, 12, z)
+        gradient, hessian = np.zeros(model.size), np.zeros((model.size, model.size))
+        for dofs, g, H in zip(one.dofs.T, one.gradient.T, one.hessian.T, strict=True):
+            gradient[dofs] += g
+            hessian[np.ix_(dofs, dofs)] += H
+        g = ((one.x - one.x_m) * one.normal).sum(axis=0) - circle.distance
+        return 0.5 * float(np.hypot(*one.force) @ -g), gradient, hessian
+
+    value, gradient, hessian = gathered(z)
+    assert value > 0.0
+    assert hessian == pytest.approx(hessian.T, abs=1e-12 * np.abs(hessian).max())
+    moving = np.concatenate([model.node_dofs.ravel(), model.bodies[1].dofs])
+    for _ in range(4):
+        v = np.zeros(model.size)
+        v[moving] = rng.standard_normal(moving.size)
+        h = 1e-4 * depth
+        ahead, behind = gathered(z + h * v), gathered(z - h * v)
+        assert gradient @ v == pytest.approx((ahead[0] - behind[0]) / (2 * h), rel=1e-5)
+        slope = (ahead[1] - behind[1]) / (2 * h)
+        assert hessian @ v == pytest.approx(slope, abs=1e-4 * np.abs(slope).max())
+
+
+def test_a_circle_is_not_stepped_over():
+    """A circle far smaller than the step of the tip, in its way."""
+    scene = on_circle((FORCE,), center=(0.9, -0.2), circle=0.002)
+    model = build(scene, Settings(elements=20))
+    (circle,) = circles(scene, model)
+    turned = model.start.copy()
+    turned[model.node_dofs[1]] = -turned[model.node_dofs[0]]
+    assert passed(model, circle, model.start, turned)
+    assert not passed(model, circle, model.start, model.start)
+    got = solved(scene, elements=40, kinematics="stretch")
+    assert got.stations[0].values["contact.force"][0] > 0.0
