@@ -31,7 +31,9 @@ from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative
 from scene.answer import Array
 from scene.statement import CircleContact, Scene
 
-_LAYERS = 32.0
+_LAYERS = 32.0  # of the first penalty, in a beam's length
+_RESOLVED = 4.2  # layers in an element: with more, its cubic cannot follow, and the force at a clamp suffers
+_THINNEST = 800.0  # layers in a beam's length: with more, the force is lost in round-off
 
 
 def circles(scene: Scene, model: Model) -> tuple[Circle, ...]:
@@ -48,7 +50,8 @@ def circles(scene: Scene, model: Model) -> tuple[Circle, ...]:
         x, y = at - model.bodies[body].centre
         half = 0.5 * beam.thickness
         radius = contact.radius / model.units.length
-        layer = max(model.elements.length[beam.elements.start], half, min(beam.length / _LAYERS, radius))
+        h = float(model.elements.length[beam.elements.start])
+        layer = max(h, half, min(beam.length / _LAYERS, radius))
         found.append(
             Circle(
                 name,
@@ -59,6 +62,7 @@ def circles(scene: Scene, model: Model) -> tuple[Circle, ...]:
                 half if contact.thick else 0.0,
                 beam.thickness if contact.thick else 1.0,
                 beam.bending / layer**4,
+                beam.bending / max(h / _RESOLVED, beam.length / _THINNEST) ** 4,
             )
         )
     return tuple(found)

@@ -13,7 +13,8 @@ from scene.statement import Scene
 
 def contacts(scene: Scene, model: Model) -> tuple[Contact, ...]:
     """What may touch, in the scene's order."""
-    found = {one.name: one for one in (*contact.pairs(scene, model), *circle.circles(scene, model))}
+    every: tuple[Contact, ...] = (*contact.pairs(scene, model), *circle.circles(scene, model))
+    found = {one.name: one for one in every}
     return tuple(found[name] for name in scene.contacts)
 
 

@@ -14,7 +14,7 @@ from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.settings import Settings
 from fea_reference.system import System, assemble, load_direction
-from fea_reference.touch import Circle, Contact, Pair
+from fea_reference.touch import Circle, Contact, Pair, Touch
 from scene.answer import Array, Ending
 
 _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
@@ -190,21 +190,16 @@ class March:
             self.system, self.penalties = solved.system, looser
 
     def _tighten(self) -> None:
-        """Raise penalties, each time from the last equilibrium, until the penetration asked is kept.
-
-        The penetration of a contact in a point falls with the penalty to the power −2/3, in an area with −1.
-        """
+        """Raise penalties, each time from the last equilibrium, until none is too soft."""
         most = _TIGHTEN
         for _ in range(_TIGHTENINGS):
-            excess = {
-                one.pair: one.penetration / (self.settings.penetration * one.pair.scale) for one in self.system.touches
-            }
-            if max(excess.values(), default=0.0) <= 1.0:
+            factors = {one.pair: self._too_soft(one) for one in self.system.touches}
+            if max(factors.values(), default=1.0) <= 1.0:
                 return
             tighter, depths = dict(self.penalties), self._depths()
-            for pair, ratio in excess.items():
-                if ratio > 1.0:
-                    factor = min(_SLACK * ratio**1.5, most)
+            for pair, wanted in factors.items():
+                if wanted > 1.0:
+                    factor = min(wanted, most)
                     tighter[pair] *= factor
                     if pair in depths:
                         depths[pair] *= factor ** (-2.0 / 3.0)
@@ -215,6 +210,17 @@ class March:
                 most = min(most**1.5, _TIGHTEN)
             else:
                 most = max(most**0.4, 1.2)
+
+    def _too_soft(self, one: Touch) -> float:
+        """The factor by which a penalty falls short of the penetration asked, or of what its circle wants.
+
+        The penetration of a contact in a point falls with the penalty to the power −2/3, in an area with −1.
+        """
+        ratio = one.penetration / (self.settings.penetration * one.pair.scale)
+        wanted = _SLACK * ratio**1.5 if ratio > 1.0 else 1.0
+        if isinstance(one.pair, Circle) and one.closed:
+            wanted = max(wanted, one.pair.stiffest / self.penalties[one.pair])
+        return wanted
 
     def _depths(self) -> dict[Contact, float]:
         """The penetrations of the closed contacts of beams; of those just closed, what they will be allowed."""

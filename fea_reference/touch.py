@@ -44,6 +44,9 @@ class Circle:
         stiffness: the penalty to begin with, EI over the fourth power of the width of the layer in which the
             pressure builds up at a zone's end: a share of the beam's length (or the radius, if that is less), so
             that finer elements make the search for the zone no harder.
+        stiffest: the penalty to end with, whatever the penetration: its layer is what an element resolves, so
+            that what the layer spoils (a share of the contact's force that the clamp beside it takes over)
+            vanishes with the element.
     """
 
     name: str
@@ -54,6 +57,7 @@ class Circle:
     distance: float
     scale: float
     stiffness: float
+    stiffest: float
 
 
 Contact = Pair | Circle

@@ -108,24 +108,38 @@ def test_a_beam_wraps_round_a_circle(force, radius):
     assert values["contact.force"][0] == pytest.approx(np.hypot(*pushed), rel=2e-2)
     assert values["root.reaction"] == pytest.approx(np.array([0.0, force]) - pushed, abs=2e-2 * force)
     places = got.stations[-1].touching["contact"]
-    assert np.hypot(places[:, 0], places[:, 1] + radius) == pytest.approx(np.full(len(places), radius - T / 2), rel=1e-5)
+    assert np.hypot(places[:, 0], places[:, 1] + radius) == pytest.approx(
+        np.full(len(places), radius - T / 2), rel=1e-5
+    )
 
 
-def test_the_clamp_takes_less_where_less_is_let_in():
-    """The layer's width, and with it the force the clamp takes over, falls with the penetration's cube root."""
-    c, _, _ = wrapped(FORCE, RADIUS)
+def test_the_clamp_takes_less_of_a_finer_mesh():
+    """What the layer beside the clamp loses is of the layer's width, and that of the element's: order one."""
+    c, tip, _ = wrapped(FORCE, RADIUS)
     exact = np.hypot(*resultant(FORCE, RADIUS, c))
-    missing = [
-        exact - solved(on_circle((FORCE,)), elements=160, penetration=p).stations[0].values["contact.force"][0]
-        for p in (1e-3, 1e-4, 1e-5)
-    ]
-    assert missing[0] > 1.5 * missing[1] > 2.25 * missing[2] > 0.0
+    found = [solved(on_circle((FORCE,)), elements=n).stations[0].values for n in (40, 80, 160)]
+    errors = np.array([exact - values["contact.force"][0] for values in found])
+    assert np.log2(errors[:-1] / errors[1:]) == pytest.approx([1.0, 1.0], abs=0.1)
+    assert all(np.abs(values["tip.displacement"] + (1.0, 0.0) - tip).max() < 1e-6 for values in found)
+
+
+def test_more_than_half_a_circle():
+    """Pulled round a small circle by a force that turns over: the beam's end hangs beside it, straight down."""
+    got = solved(on_circle((200.0, 2000.0), 0.2), elements=120)
+    c, tip, rotation = wrapped(2000.0, 0.2)
+    values = got.stations[-1].values
+    assert values["tip.displacement"] + (1.0, 0.0) == pytest.approx(tip, abs=1e-5)
+
+
+def test_unloading_is_the_way_back():
+    stations = [s.values for s in solved(on_circle((0.5 * FORCE, FORCE, 0.5 * FORCE))).stations]
+    there, _, back = stations
+    assert back["tip.displacement"] == pytest.approx(there["tip.displacement"], rel=1e-6)
+    assert back["contact.force"] == pytest.approx(there["contact.force"], rel=1e-4)
 
 
 def test_the_search_for_the_zone_does_not_feel_the_mesh():
-    iterations = [
-        solved(on_circle((FORCE,)), elements=n).stations[0].certificate.iterations for n in (40, 160, 640)
-    ]
+    iterations = [solved(on_circle((FORCE,)), elements=n).stations[0].certificate.iterations for n in (40, 160, 640)]
     assert max(iterations) <= 1.2 * min(iterations)
 
 
@@ -169,7 +183,9 @@ def test_doubling_the_rule_changes_nothing():
 @pytest.mark.parametrize("depth", [1e-5, 1e-3])
 def test_the_contacts_derivatives(body, depth):
     """Gradient and tangent of ½ ε ∫ ⟨−g⟩² ds by differences, also over the motion of a free body."""
-    model = build(scene := on_circle((1.0,), body=body, center=(0.4, -0.2), circle=0.2 - T / 2 + depth), Settings(elements=9))
+    model = build(
+        scene := on_circle((1.0,), body=body, center=(0.4, -0.2), circle=0.2 - T / 2 + depth), Settings(elements=9)
+    )
     (circle,) = circles(scene, model)
     rng = np.random.default_rng(5)
     z = model.start + 0.02 * depth * rng.standard_normal(model.size)
