@@ -20,8 +20,6 @@ as in :mod:`fea_reference.contact`: the pressure vanishes at their ends.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from fea_reference.hermite import NeutralLine, along, bending_along, shapes
@@ -92,19 +90,12 @@ def passed(model: Model, circle: Circle, before: Array, after: Array) -> bool:
     return bool(abs(winding) > np.pi)
 
 
-def touch(
-    model: Model, circle: Circle, stiffness: float, quadrature: int, z: Array, held: float | None = None
-) -> Touch:
-    """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval.
-
-    A contact ``held`` at a depth acts in tension too, as in :func:`fea_reference.contact.touch`.
-    """
+def touch(model: Model, circle: Circle, stiffness: float, quadrature: int, z: Array) -> Touch:
+    """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[circle.first], model.bodies[circle.body]
     line, c = model.line(beam, z), centre(model, circle, z)
     reach = circle.radius + circle.distance
     zones = _find(line, c, reach)
-    if held is not None:
-        zones = replace(_find(line, c, reach + zones.least + held), least=zones.least)
 
     points, weights = np.polynomial.legendre.leggauss(quadrature)
     width = zones.intervals[:, 1] - zones.intervals[:, 0]

@@ -24,10 +24,10 @@ def zones_of(model: Model, what: Contact, z: Array) -> Zones:
 
 
 def touch(model: Model, what: Contact, stiffness: float, quadrature: int, z: Array, held: float | None = None) -> Touch:
-    """The penalty's energy derivatives, see :func:`fea_reference.contact.touch`."""
+    """The penalty's energy derivatives, see :func:`fea_reference.contact.touch`; only beams are ever held."""
     if isinstance(what, Pair):
         return contact.touch(model, what, stiffness, quadrature, z, held)
-    return circle.touch(model, what, stiffness, quadrature, z, held)
+    return circle.touch(model, what, stiffness, quadrature, z)
 
 
 def passed_through(model: Model, what: Contact, before: Array, after: Array) -> bool:

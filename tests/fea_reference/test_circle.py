@@ -8,39 +8,44 @@ from scipy.optimize import brentq
 from fea_reference import Settings, answer
 from fea_reference.circle import circles, passed, touch
 from fea_reference.model import build
-from scene import Ending, Scene
+from scene import Ending, Scene, Stage
+from scene.statement import Force
 
 T, WIDTH = 0.01, 0.05
 YOUNG = 12 / (WIDTH * T**3)  # so that EI = 1
 FORCE, RADIUS = 6.0, 0.5
 
 
-def wrapped(force, radius):
-    """Wrap length and tip of an inextensible cantilever, clamped tangent on top of a circle, EI = L = 1.
+def wrapped(force, radius, direction=np.pi / 2):
+    """An inextensible cantilever clamped tangent on top of a circle of neutral radius R, EI = L = 1.
 
-    On the wrap the curvature is 1/R.  Beyond, θ'' = −F cos θ with θ the downward turning, from θ = c/R and
-    θ' = 1/R to a tip free of moment.  R is the radius of the neutral line.
+    θ is the downward turning, ``direction`` β that of the dead tip force: a right angle is straight down.
+    On the wrap the curvature is 1/R, so there is no shear and the tension T = F cos(β − θc) is constant.
+    Beyond, θ'' = −F sin(β − θ) from θ = c/R and θ' = 1/R to a tip free of moment.
+
+    Returns:
+        Tip (2,), its angle, and the circle's force on the beam (2,).
     """
 
     def free(c):
         def slope(_, v):
-            return [v[1], -force * np.cos(v[0]), np.cos(v[0]), -np.sin(v[0])]
+            return [v[1], -force * np.sin(direction - v[0]), np.cos(v[0]), -np.sin(v[0])]
 
         return solve_ivp(slope, (0, 1 - c), [c / radius, 1 / radius, 0, 0], "DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
 
-    c = brentq(lambda c: free(c)[1], 1e-9, min(1.0, radius * np.pi / 2) - 1e-9, xtol=1e-15)
+    # From the longest wrap, which an endless beam would have, down to the first that leaves the tip no moment.
+    longest = radius * (direction - np.arccos(1 - 1 / (2 * force * radius**2)))
+    shorter = next(c for c in longest * (1 - np.geomspace(1e-12, 0.9, 80)) if c < 1 and free(c)[1] < 0)
+    c = brentq(lambda c: free(c)[1], shorter, min(longest, 1.0), xtol=1e-15)
     angle, _, x, y = free(c)
     lift = c / radius
     # The first integral of the elastica, which the integration knows nothing of.
-    assert 1 / radius**2 == pytest.approx(2 * force * (np.sin(angle) - np.sin(lift)), rel=1e-9)
-    return c, np.array([radius * np.sin(lift) + x, radius * (np.cos(lift) - 1) + y]), -angle
-
-
-def resultant(force, radius, c):
-    """Of the line pressure F sin θc / R on the wrap and the point force F cos θc where it lifts off."""
-    lift = c / radius
-    pressure = force * np.sin(lift) * np.array([1 - np.cos(lift), np.sin(lift)])
-    return pressure + force * np.cos(lift) * np.array([np.sin(lift), np.cos(lift)])
+    energy = 2 * force * (np.cos(direction - angle) - np.cos(direction - lift))
+    assert 1 / radius**2 == pytest.approx(energy, rel=1e-9)
+    tip = np.array([radius * np.sin(lift) + x, radius * (np.cos(lift) - 1) + y])
+    # The clamp holds the tension, and nothing across.
+    clamp = np.array([-force * np.cos(direction - lift), 0.0])
+    return tip, -angle, -clamp - force * np.array([np.cos(direction), -np.sin(direction)])
 
 
 def on_circle(forces, radius=RADIUS, *, units=1.0, thick=True, body="ground", center=(0.0, None), circle=None):
@@ -97,14 +102,13 @@ def solved(scene, **settings):
 
 @pytest.mark.parametrize(("force", "radius"), [(FORCE, RADIUS), (2.0, 0.8), (15.0, 0.5)])
 def test_a_beam_wraps_round_a_circle(force, radius):
-    c, tip, rotation = wrapped(force, radius)
+    tip, rotation, pushed = wrapped(force, radius)
     got = solved(on_circle((0.5 * force, force), radius))
     values = got.stations[-1].values
     assert values["tip.displacement"] + (1.0, 0.0) == pytest.approx(tip, abs=2e-6)
     assert values["end.rotation"][0] == pytest.approx(rotation, abs=2e-6)
     assert values["root.reaction_moment"][0] == pytest.approx(1 / radius, rel=1e-3)
     # What the penalty lets in takes the pressure off a layer beside the clamp, and gives it to the clamp.
-    pushed = resultant(force, radius, c)
     assert values["contact.force"][0] == pytest.approx(np.hypot(*pushed), rel=2e-2)
     assert values["root.reaction"] == pytest.approx(np.array([0.0, force]) - pushed, abs=2e-2 * force)
     places = got.stations[-1].touching["contact"]
@@ -115,8 +119,8 @@ def test_a_beam_wraps_round_a_circle(force, radius):
 
 def test_the_clamp_takes_less_of_a_finer_mesh():
     """What the layer beside the clamp loses is of the layer's width, and that of the element's: order one."""
-    c, tip, _ = wrapped(FORCE, RADIUS)
-    exact = np.hypot(*resultant(FORCE, RADIUS, c))
+    tip, _, pushed = wrapped(FORCE, RADIUS)
+    exact = np.hypot(*pushed)
     found = [solved(on_circle((FORCE,)), elements=n).stations[0].values for n in (40, 80, 160)]
     errors = np.array([exact - values["contact.force"][0] for values in found])
     assert np.log2(errors[:-1] / errors[1:]) == pytest.approx([1.0, 1.0], abs=0.1)
@@ -124,11 +128,23 @@ def test_the_clamp_takes_less_of_a_finer_mesh():
 
 
 def test_more_than_half_a_circle():
-    """Pulled round a small circle by a force that turns over: the beam's end hangs beside it, straight down."""
-    got = solved(on_circle((200.0, 2000.0), 0.2), elements=120)
-    c, tip, rotation = wrapped(2000.0, 0.2)
+    """The tip is pulled down, then back below the circle, then up."""
+    radius, back, up = 0.15, 400.0, 150.0
+    scene = on_circle((200.0,), radius)
+    pull = Force(kind="force", point="tip", direction=(-1.0, 0.0))
+    stages = (
+        *scene.stages,
+        Stage(name="back", steps="Q", stations=(back,)),
+        Stage(name="up", steps="P", stations=(0.0, -up)),
+    )
+    got = solved(scene.model_copy(update={"loads": {**scene.loads, "Q": pull}, "stages": stages}), elements=160)
+    direction = np.pi + np.arctan2(up, back)
+    tip, rotation, pushed = wrapped(np.hypot(back, up), radius, direction)
+    assert rotation < -np.pi
     values = got.stations[-1].values
-    assert values["tip.displacement"] + (1.0, 0.0) == pytest.approx(tip, abs=1e-5)
+    assert values["tip.displacement"] + (1.0, 0.0) == pytest.approx(tip, abs=1e-4)
+    assert values["end.rotation"][0] == pytest.approx(rotation, abs=1e-4)
+    assert values["contact.force"][0] == pytest.approx(np.hypot(*pushed), rel=2e-2)
 
 
 def test_unloading_is_the_way_back():
