@@ -21,82 +21,26 @@ to either derivative, and what is integrated is smooth in between.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from fea_reference.hermite import Index, along, bending_along, shape_slopes, shapes
+from fea_reference.hermite import along, bending_along, shape_slopes, shapes
 from fea_reference.model import Model
 from fea_reference.projection import project
+from fea_reference.touch import Pair, Touch
 from fea_reference.zones import Zones, find, side_of
 from scene.answer import Array
-from scene.statement import Scene
-
-
-@dataclass(frozen=True, slots=True)
-class Pair:
-    """Two beams that may touch.
-
-    Attributes:
-        first, second: their numbers; the first carries the integral.
-        side: of the second on which the first lies.
-        distance: T, of the neutral lines when they touch.
-        scale: what penetration is measured by: the mean thickness, or the longest beam for lines.
-        stiffness: the penalty to begin with, the softer beam's EI over its element's length (or half of the
-            mean thickness, if that is more) to the fourth.
-    """
-
-    name: str
-    first: int
-    second: int
-    side: float
-    distance: float
-    scale: float
-    stiffness: float
-
-
-@dataclass(frozen=True, slots=True)
-class Touch:
-    """A pair's contact at its k Gauss points.
-
-    ``dofs`` (12, k) of the element of the first beam and that of the second, ``gradient`` (12, k) and
-    ``hessian`` (12, 12, k) of Π_c; places ``zeta``, ``zeta_m`` (k,), points ``x``, ``x_m`` (2, k), the forces
-    ``force`` on the first beam (2, k), the ``normal`` away from the second (2, k).
-    """
-
-    pair: Pair
-    zones: Zones
-    dofs: Index
-    gradient: Array
-    hessian: Array
-    zeta: Array
-    zeta_m: Array
-    x: Array
-    x_m: Array
-    force: Array
-    normal: Array
-
-    @property
-    def penetration(self) -> float:
-        """Largest depth of overlap."""
-        return max(0.0, -self.zones.least)
-
-    @property
-    def push(self) -> float:
-        """The resultant with its sign: negative while a held contact pulls."""
-        return float((self.force * self.normal).sum())
-
-    @property
-    def closed(self) -> bool:
-        """Whether the beams touch anywhere."""
-        return self.zeta.size > 0
+from scene.statement import BeamContact, Scene
 
 
 def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
-    """The scene's contacts, their sides seen in the undeformed state."""
+    """The scene's contacts of beams, their sides seen in the undeformed state."""
     found = []
     number = {beam.name: i for i, beam in enumerate(model.beams)}
     for name, contact in scene.contacts.items():
+        if not isinstance(contact, BeamContact):
+            continue
         i, j = (number[beam] for beam in contact.between)
         first, second = model.beams[i], model.beams[j]
         mean = 0.5 * (first.thickness + second.thickness)

@@ -7,7 +7,7 @@ import time
 from threadpoolctl import threadpool_limits
 
 from fea_reference.certificates import certify
-from fea_reference.contact import pairs
+from fea_reference.contacts import contacts
 from fea_reference.march import March, StoppedError, begin
 from fea_reference.model import build
 from fea_reference.probes import probed, shapes, touching
@@ -30,7 +30,7 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     """
     began = time.perf_counter()
     model = build(scene, settings)
-    march = begin(model, settings, pairs(scene, model))
+    march = begin(model, settings, contacts(scene, model))
     stations: list[StationAnswer] = []
     events: list[Event] = []
     ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
