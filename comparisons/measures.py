@@ -8,7 +8,7 @@ v_f, V_f    the finite elements' value at n and at 2n elements (with a quarter o
             chosen theory
 v_b, V_b    the same in the theory ``bending``, the CPRBM's own
 v_s         at n in the theory ``stretch``
-p           order of convergence that the error estimate assumes, 2
+p           order of convergence that the error estimate assumes, 2; see :mod:`comparisons.order`
 S           safety factor of the error estimate, 1.25
 d           v_c − v_f, the difference
 u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (or n)
@@ -41,6 +41,7 @@ from itertools import pairwise
 import numpy as np
 
 from comparisons.geometry import length
+from comparisons.order import order_of, richardson
 from comparisons.pairing import Runs
 from comparisons.scales import denominator, family_scale, norm, probe_scale
 from comparisons.spots import clear_of_spots
@@ -48,9 +49,7 @@ from scene import Answer, Probe, Scene, Stage, StationAnswer
 from scene.answer import Array
 from scene.statement import Moment, Quantity
 
-ORDER = 2
 SAFETY = 1.25
-RICHARDSON = 2**ORDER / (2**ORDER - 1)
 
 UNITS: Mapping[Quantity, str] = {
     "displacement": "m",
@@ -198,10 +197,11 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float) -> 
 
     floor = max(max(s.certificate.residual, s.certificate.residual_floor) for s in stations.values())
     family = family_scale(scene, probe.quantity, stage, compared, contact=probe.of)
+    factor = SAFETY * richardson(order_of(scene, probe))
     bounds = Bounds(
-        cprbm=SAFETY * RICHARDSON * size(v_c - values["cprbm finer"]),
-        fea=SAFETY * RICHARDSON * size(v_f - values[f"{chosen} finer"]),
-        bending=SAFETY * RICHARDSON * size(v_b - values["fea bending finer"]),
+        cprbm=factor * size(v_c - values["cprbm finer"]),
+        fea=factor * size(v_f - values[f"{chosen} finer"]),
+        bending=factor * size(v_b - values["fea bending finer"]),
         theory=size(v_b - v_f),
         round_off=floor * family,
     )
