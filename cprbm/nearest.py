@@ -238,8 +238,13 @@ def closest_places(pair: Pair, lines: Lines) -> Places:
         np.stack((A.x, A.y), axis=1), distance_upper_bound=limit
     )
     close = np.flatnonzero(np.isfinite(rough))
+    across_s = across_sigma = none
+    for end in (0, -1):
+        if np.min((A.x - G.x[end]) ** 2 + (A.y - G.y[end]) ** 2) < limit * limit:
+            at_end, foot_of_end = _facing_end(pair, lines, grid[[end]], reach)
+            across_s, across_sigma = np.append(across_s, at_end), np.append(across_sigma, foot_of_end)
     if not close.size:
-        return Places(none, none, none, none, none, none)
+        return Places(none, none, none, none, across_s, across_sigma)
     D, sigma = np.full(len(s), np.inf), np.zeros(len(s))
     distance, sigma[close], foot = _feet(pair, lines[1], lines[0].at(s[close]), grid[nearest[close]])
     D[close] = np.where(foot, distance, np.inf)
@@ -254,11 +259,14 @@ def closest_places(pair: Pair, lines: Lines) -> Places:
         held_s = np.concatenate((held_s, s[inner][~minimum]))
         held_sigma = np.concatenate((held_sigma, sigma[inner][~minimum]))
         free_s, free_sigma = free_s[minimum], free_sigma[minimum]
-    ends = np.array([0.0, pair.b.s[-1]])
-    E, foot_s, has_foot = distance_along(pair.exchanged(), lines[::-1], ends)
-    inside = (foot_s > 0.0) & (foot_s < pair.a.s[-1])
-    facing = has_foot & inside & (reach > E)
-    return Places(free_s, free_sigma, held_s, held_sigma, ends[facing], foot_s[facing])
+    return Places(free_s, free_sigma, held_s, held_sigma, across_s, across_sigma)
+
+
+def _facing_end(pair: Pair, lines: Lines, end: Array, reach: float) -> tuple[Array, Array]:
+    """An end of B (1,) and its foot within A, or nothing where it faces no part of A."""
+    E, foot, has_foot = distance_along(pair.exchanged(), lines[::-1], end)
+    facing = has_foot & (foot > 0.0) & (foot < pair.a.s[-1]) & (reach > E)
+    return end[facing], foot[facing]
 
 
 def _refined(pair: Pair, lines: Lines, s: Array, sigma: Array) -> tuple[Array, Array, Flags]:
