@@ -140,6 +140,11 @@ def contact_rows(model: Model, point: Point) -> Array:
     """∂c over q, (m, n_links + 3B)."""
     parts = [np.zeros((0, model.n_links + 3 * len(model.free_bodies)))]
     for group in point.rows.groups:
+        if np.all(group.joints == group.joints[0]) and np.all(group.angles == group.angles[0]):
+            # rows of one boundary share their local numbers
+            J = local_rows(model, point.state, point.at, group.joints[:1], group.angles[:1])
+            parts.append(group.slopes @ J[0])
+            continue
         J = local_rows(model, point.state, point.at, group.joints, group.angles)
         parts.append(np.einsum("mk,mkn->mn", group.slopes, J))
     return np.concatenate(parts)
@@ -309,6 +314,11 @@ def _convex_system(problem: Problem, point: Point) -> System:
     raise np.linalg.LinAlgError("the energy cannot be made convex")
 
 
+def _many(rows: Rows) -> bool:
+    """Whether the contacts are many and each is local: the rows of a fitted boundary are not."""
+    return rows.size > MANY and all(group.joints.shape[1] <= 2 for group in rows.groups)
+
+
 def _local_system(problem: Problem, point: Point) -> LocalSystem:
     return local_system(
         problem.model,
@@ -330,7 +340,7 @@ def newton_step(problem: Problem, point: Point) -> tuple[Array, Array, Array]:
     Raises:
         np.linalg.LinAlgError: the linearised problem has no solution.
     """
-    if point.rows.size > MANY:
+    if _many(point.rows):
         return local_step(_local_system(problem, point), point.lam > 0.0)
     found = _convex_system(problem, point)
     f = -point.gradient.copy()
@@ -403,7 +413,7 @@ def smallest_curvature(problem: Problem, point: Point) -> float:
     root = np.sqrt(problem.model.lengths)
     root[problem.closure.fixed] = 0.0
     try:
-        if point.rows.size > MANY:
+        if _many(point.rows):
             inverse, lowest = _local_inverse(problem, point, root), None
         else:
             inverse, lowest = _bordered_inverse(problem, point, root)
