@@ -4,7 +4,7 @@
 symbol      meaning
 ==========  ===========================================================================================
 v_c, V_c    the CPRBM's value at N and at 2N links
-v_f, V_f    the finite elements' value at n and at 2n elements (with a quarter of the penetration), in the
+v_f, V_f    the finite elements' value at n and at 2n elements (with a 16th of the penetration), in the
             chosen theory
 v_b, V_b    the same in the theory ``bending``, the CPRBM's own
 v_s         at n in the theory ``stretch``
