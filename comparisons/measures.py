@@ -4,7 +4,7 @@
 symbol      meaning
 ==========  ===========================================================================================
 v_c, V_c    the CPRBM's value at N and at 2N links
-v_f, V_f    the finite elements' value at n and at 2n elements (with a quarter of the penetration), in the
+v_f, V_f    the finite elements' value at n and at 2n elements (with a 16th of the penetration), in the
             chosen theory
 v_b, V_b    the same in the theory ``bending``, the CPRBM's own
 v_s         at n in the theory ``stretch``
@@ -27,8 +27,10 @@ and the share of each in it is its component along d.
 
 Round-off: a certificate states the relative residual that is left and the floor below which none can be
 asked.
-Numbers that differ by no more than the larger of the two, times the scale of the probe's family, differ by
-nothing that the solvers have settled.
+The larger of the two, times the largest value of the probe's family at that station, is a force (or what a
+force does) that the solver has left open.  It hardly depends on the load, so the largest over all stations
+counts at each; it is at least 1e-12 of the family's natural scale, for what round-off does to the numbers
+themselves.  A contact that is open in every run has no force, and nothing is left open there.
 """
 
 from __future__ import annotations
@@ -43,13 +45,14 @@ import numpy as np
 from comparisons.geometry import length
 from comparisons.order import order_of, richardson
 from comparisons.pairing import Runs
-from comparisons.scales import denominator, family_scale, norm, probe_scale
+from comparisons.scales import denominator, family_size, natural_scale, norm, probe_scale
 from comparisons.spots import clear_of_spots
 from scene import Answer, Probe, Scene, Stage, StationAnswer
 from scene.answer import Array
 from scene.statement import Moment, Quantity
 
 SAFETY = 1.25
+ROUND_OFF = 1e-12
 
 UNITS: Mapping[Quantity, str] = {
     "displacement": "m",
@@ -144,8 +147,9 @@ def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
     Raises:
         KeyError: an answer lacks a station or a probe.
     """
+    unsettled = {probe.name: _round_off(scene, runs, probe) for probe in scene.probes}
     return tuple(
-        _row(scene, runs, probe, stage, value)
+        _row(scene, runs, probe, stage, value, unsettled[probe.name])
         for stage in scene.stages
         for value in stage.stations
         for probe in scene.probes
@@ -164,7 +168,24 @@ def station_of(answer: Answer, stage: str, value: float) -> StationAnswer:
     raise KeyError(f"{answer.solver} has no station {stage} {value:g}")
 
 
-def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float) -> Row:
+def _round_off(scene: Scene, runs: Runs, probe: Probe) -> float:
+    """What the certificates of all stations leave unsettled of a probe, in its unit."""
+    largest = 0.0
+    for stage in scene.stages:
+        largest = max(largest, ROUND_OFF * natural_scale(scene, probe.quantity, stage, contact=probe.of))
+        for value in stage.stations:
+            everyone = [station_of(answer, stage.name, value) for _, answer in runs.everything()]
+            floor = max(max(s.certificate.residual, s.certificate.residual_floor) for s in everyone)
+            here = stage.model_copy(update={"stations": (value,)})
+            alone = tuple(
+                replace(answer, stations=(station_of(answer, stage.name, value),))
+                for answer in (runs.cprbm[0], runs.reference)
+            )
+            largest = max(largest, floor * family_size(scene, probe.quantity, here, alone, contact=probe.of))
+    return largest
+
+
+def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, unsettled: float) -> Row:
     compared = (runs.cprbm[0], runs.reference)
     scale = probe_scale(scene, probe, stage, compared)
     stations = {name: station_of(answer, stage.name, value) for name, answer in runs.everything()}
@@ -195,15 +216,14 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float) -> 
     def size(difference: Array) -> float:
         return norm(probe.quantity, difference[counts])
 
-    floor = max(max(s.certificate.residual, s.certificate.residual_floor) for s in stations.values())
-    family = family_scale(scene, probe.quantity, stage, compared, contact=probe.of)
+    open_everywhere = probe.quantity == "force" and not any(found.any() for found in values.values())
     factor = SAFETY * richardson(order_of(scene, probe))
     bounds = Bounds(
         cprbm=factor * size(v_c - values["cprbm finer"]),
         fea=factor * size(v_f - values[f"{chosen} finer"]),
         bending=factor * size(v_b - values["fea bending finer"]),
         theory=size(v_b - v_f),
-        round_off=floor * family,
+        round_off=0.0 if open_everywhere else unsettled,
     )
     ladder = [v_c, *(values[f"fea {kinematics}"] for kinematics in runs.fea)]
     return replace(

@@ -10,12 +10,13 @@ from fea_reference.march import March
 from fea_reference.model import Model
 from fea_reference.supports import support
 from fea_reference.system import System
-from fea_reference.touch import Circle
+from fea_reference.touch import Circle, Pair
 from scene.answer import Array, Certificate
 
 _VIOLATION = 1e-9
 _BALANCE = 1e-8
 _NOTHING = 10.0  # floors: forces below this are round-off themselves
+_MISSING = 1e-3  # of a contact's resultant
 
 
 def certify(march: March) -> Certificate:
@@ -49,6 +50,13 @@ def certify(march: March) -> Certificate:
         failures.append(f"the forces of loads and supports leave {force:.1e} of the largest")
     if not moment <= max(_BALANCE, floor):
         failures.append(f"the moments of loads and supports leave {moment:.1e} of the largest")
+    for one in system.touches:
+        if isinstance(one.pair, Pair) and one.missing > _MISSING * float(np.hypot(*one.force.sum(axis=1))):
+            end, side = model.beams[one.pair.second].name, model.beams[one.pair.first].name
+            failures.append(
+                f"in {one.pair.name} an end of {end} presses on the side of {side}, and a force of "
+                f"{one.missing * model.units.force:.1e} N along {end} is left out"
+            )
     if not curvature > 0.0:
         failures.append(f"the smallest curvature of the potential energy is {curvature:.1e}: no minimum")
     return Certificate(

@@ -137,6 +137,7 @@ def touch(model: Model, circle: Circle, stiffness: float, quadrature: int, z: Ar
         x_m=c[:, None] + circle.radius * n,
         force=-weight * g * n,
         normal=n,
+        missing=0.0,
     )
 
 

@@ -80,10 +80,15 @@ def _touch(march: March, name: str) -> Touch | None:
 
 
 def _centre(march: March, touch: Touch) -> float:
-    """Arc length on the first beam of the pressure's centre."""
+    """Arc length of the pressure's centre on the beam that the scene names first."""
     weight = np.hypot(*touch.force)
-    line = march.model.line(march.model.beams[touch.pair.first], march.system.z)
-    e, xi = line.locate(touch.zeta)
+    pair = touch.pair
+    if isinstance(pair, Pair) and pair.turned:
+        number, zeta = pair.second, touch.zeta_m
+    else:
+        number, zeta = pair.first, touch.zeta
+    line = march.model.line(march.model.beams[number], march.system.z)
+    e, xi = line.locate(zeta)
     start = np.concatenate([[0.0], np.cumsum(line.lengths)])
     return float(weight @ (start[e] + xi * line.lengths[e]) / weight.sum())
 

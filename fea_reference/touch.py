@@ -15,6 +15,7 @@ class Pair:
 
     Attributes:
         first, second: their numbers; the first carries the integral.
+        turned: whether the first is the scene's second.
         side: of the second on which the first lies.
         distance: T, of the neutral lines when they touch.
         scale: what penetration is measured by: the mean thickness, or the longest beam for lines.
@@ -25,6 +26,7 @@ class Pair:
     name: str
     first: int
     second: int
+    turned: bool
     side: float
     distance: float
     scale: float
@@ -72,6 +74,7 @@ class Touch:
     Places ``zeta`` (k,) on the first beam and ``zeta_m`` on the second (empty for a circle), points ``x`` of the
     first beam's neutral line and ``x_m`` of the second's or of the circle's edge (2, k), the forces ``force`` on
     the first beam (2, k), the ``normal`` (2, k) away from what it touches.
+    ``missing`` is the force that ends of the second beam leave out.
     """
 
     pair: Contact
@@ -85,6 +88,7 @@ class Touch:
     x_m: Array
     force: Array
     normal: Array
+    missing: float
 
     @property
     def penetration(self) -> float:

@@ -35,6 +35,7 @@ from scene.answer import Array
 SAMPLES_PER_ELEMENT = 4
 _ITERATIONS = 60
 _END_ITERATIONS = 15
+_INSIDE = 1e-6  # elements
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +88,14 @@ def side_of(first: NeutralLine, second: NeutralLine) -> float:
     nearest = d[np.argmin(np.abs(d))]
     # Lines that touch at the start show their side elsewhere.
     return float(np.sign(nearest if abs(nearest) > 1e-9 else d.sum())) or 1.0
+
+
+def ends_over(first: NeutralLine, second: NeutralLine) -> bool:
+    """Whether an end of the first beam has its closest point in the inside of the second."""
+    ends = first.points[:, [0, -1]]
+    near = KDTree(second.points.T).query(ends.T)[1].astype(float)
+    zeta, found = project(second, ends, near)
+    return bool((found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)).any())
 
 
 def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zones:
