@@ -58,7 +58,7 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
         ask(
             not np.any(pressing & (beyond > 0.0)),
             Ending.LEFT_BOUNDARY,
-            f"a touching joint of contact '{name}' lies beyond the ends of its fitted boundary",
+            f"in contact '{name}'",
         )
     force_balance, moment_balance = balances(problem, point)
     balance_asked = max(BALANCE, 100.0 * measure.floor)
