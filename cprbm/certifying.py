@@ -12,6 +12,7 @@ from scene import Certificate, Ending
 
 LARGEST_BEND = 1.0  # rad: change of angle of one spring beyond which a chord no longer stands for its element
 BALANCE = 1e-8
+COMPLEMENTARITY = 1e-8  # gap times force, over the largest generalised force
 # Of the mean thickness. Where rows stand nothing overlaps (the violation says so); between the joints of a zone
 # the line dips by a part of h², which is an error of the discretisation and not a failure.
 OVERLAP_AUTO = 0.05
@@ -23,7 +24,7 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
     problem, point, measure = mechanism.problem, found.point, found.measure
     failures: list[tuple[Ending, str]] = []
 
-    def ask(holds: bool, ending: Ending, sentence: str) -> None:  # noqa: FBT001
+    def ask(holds: bool, ending: Ending, sentence: str) -> None:  # noqa: FBT001 - it reads as a sentence
         if not holds:
             failures.append((ending, sentence))
 
@@ -38,6 +39,11 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
         measure.violation <= violation_asked,
         Ending.NOT_CERTIFIED,
         f"the closures are open by {measure.violation:.1e} of the longest beam, asked {violation_asked:.1e}",
+    )
+    ask(
+        measure.complementarity <= COMPLEMENTARITY,
+        Ending.NOT_CERTIFIED,
+        f"a contact presses across a gap: gap times force is {measure.complementarity:.1e}",
     )
     bend = float(np.max(np.abs(np.diff(point.state.theta) - problem.model.rest_turns) * (problem.model.couplings > 0)))
     ask(

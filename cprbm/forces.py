@@ -81,7 +81,12 @@ def contact_imbalance(problem: Problem, point: Point) -> float:
 
 
 def balances(problem: Problem, point: Point) -> tuple[float, float]:
-    """ΣF and ΣM of supports, loads and contacts, each over the largest part in it."""
+    """ΣF and ΣM about the origin of supports, loads and contacts, without units.
+
+    Each over its largest part; where forces are small beside moments over ℓ, ΣF is measured by these, and the
+    other way round.  A beam's own ΣF vanishes by construction, for the force at its start is what balances it:
+    ΣF says whether the free bodies are in equilibrium, ΣM whether the beams are too.
+    """
     model = problem.model
     parts: list[tuple[Array, Array, float]] = [
         (support.place, support.force, support.moment) for support in supports(problem, point)

@@ -95,7 +95,7 @@ def overlaps(scene: Scene) -> Iterator[Mistake]:
             continue
         if not (is_beam(first) and is_beam(second)):
             continue
-        found = _overlap(first, second, contact.thick)
+        found = _overlap(first, second, thick=contact.thick)
         if found is not None:
             beams = f"{contact.between[0]!r} and {contact.between[1]!r}"
             yield Mistake(f"contacts.{name}", f"{beams} {found[0]}", found[1])
@@ -172,7 +172,7 @@ def _wrong_paper(key: str, contact: BeamContact) -> Iterator[Mistake]:
                 yield Mistake(f"{where}.{axis}", str(list(span)), "a range from the smaller to the larger value")
 
 
-def _overlap(first: Beam, second: Beam, thick: bool) -> tuple[str, str] | None:  # noqa: FBT001
+def _overlap(first: Beam, second: Beam, *, thick: bool) -> tuple[str, str] | None:
     """What is wrong between two beams, and what is allowed; None where nothing is."""
     size = max(_largest_coordinate(first.curve), _largest_coordinate(second.curve))
     curve1, curve2 = scaled(first.curve, size), scaled(second.curve, size)

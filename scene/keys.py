@@ -37,7 +37,7 @@ def _below(place: Any, part: int | str) -> Any:  # noqa: ANN401 - annotations ar
     return next(each for each in reversed(get_args(place)) if each is not ...)
 
 
-def _bare(place: Any) -> Any:  # noqa: ANN401
+def _bare(place: Any) -> Any:  # noqa: ANN401 - annotations are whatever they are
     """An annotation without its metadata and without None."""
     while get_origin(place) is Annotated:
         place = get_args(place)[0]

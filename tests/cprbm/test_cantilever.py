@@ -85,10 +85,11 @@ def test_a_straight_column_is_certified_only_below_eulers_load(share, completed)
         assert not answer.stations
 
 
-def test_the_smallest_curvature_is_the_columns():
+@pytest.mark.parametrize("links", [40, 200])
+def test_the_smallest_curvature_is_the_columns(links):
     # reference: eigenvalue of −θ'' − Pθ with θ(0)=0, θ'(1)=0: π²/4 − P
     P = 1.3
-    answer = cprbm.answer(cantilever(force(-1.0, 0.0), [P * RIGIDITY / LENGTH**2]), cprbm.Settings(links=200))
+    answer = cprbm.answer(cantilever(force(-1.0, 0.0), [P * RIGIDITY / LENGTH**2]), cprbm.Settings(links=links))
     assert answer.stations[-1].certificate.smallest_curvature == pytest.approx(np.pi**2 / 4.0 - P, rel=1e-3)
 
 
@@ -142,3 +143,21 @@ def test_a_load_no_element_can_carry_ends_by_name():
     assert answer.ending is Ending.TURNED_TOO_FAR
     assert [station.value for station in answer.stations] == [RIGIDITY / LENGTH]
     assert "last good value" in answer.sentence
+
+
+def test_a_force_on_a_lever():
+    # reference: a force and a moment at the tip, PL³/3EI + ML²/2EI and PL²/2EI + ML/EI, and Clapeyron's theorem
+    a, b = 0.37 * LENGTH, 0.23 * LENGTH
+    data = cantilever_data({"kind": "force", "point": "F", "direction": [-3.0, 4.0]}, [1e-5 * RIGIDITY / LENGTH**2])
+    data["bodies"]["tip"]["points"]["F"] = [LENGTH + a, b]
+    data["probes"].append({"of": "F", "quantity": "displacement"})
+    (P,) = data["stages"][0]["stations"]
+    values = cprbm.answer(scene_from(data), cprbm.Settings(links=200)).stations[-1].values
+    force_across, moment = 0.8 * P, 0.8 * P * a + 0.6 * P * b
+    deflection = force_across * LENGTH**3 / (3.0 * RIGIDITY) + moment * LENGTH**2 / (2.0 * RIGIDITY)
+    slope = force_across * LENGTH**2 / (2.0 * RIGIDITY) + moment * LENGTH / RIGIDITY
+    moved = np.array([-b * slope, deflection + a * slope])
+    assert values["F.displacement"] == pytest.approx(moved, rel=1e-4)
+    assert values["tip.rotation"][0] == pytest.approx(slope, rel=1e-4)
+    work = P * (-0.6 * moved[0] + 0.8 * moved[1])
+    assert values["scene.potential_energy"][0] == pytest.approx(-0.5 * work, rel=1e-4)
