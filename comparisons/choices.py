@@ -34,16 +34,17 @@ class Choices:
     penetration: float = 1e-4
 
     def finer(self) -> Choices:
-        """The same with twice the links, twice the elements and a quarter of the penetration.
+        """The same with twice the links, twice the elements and a sixteenth of the penetration.
 
         The error that a penalty leaves is proportional to the penetration.  Were that kept, the two runs
-        would share it and their change would not show it; quartered, it falls as an error of second order.
+        would share it and their change would not show it.  To fall as an error of second order it need only be
+        quartered, but a solver may leave less than it was allowed, and down to a quarter of that is provided for.
         """
         return replace(
             self,
             links=_twice(self.links),
             elements=_twice(self.elements),
-            penetration=self.penetration / 4.0,
+            penetration=self.penetration / 16.0,
         )
 
     def within(self, kinematics: Kinematics) -> Choices:

@@ -4,11 +4,12 @@
 symbol      meaning
 ==========  ===========================================================================================
 v_c, V_c    the CPRBM's value at N and at 2N links
-v_f, V_f    the finite elements' value at n and at 2n elements (with a quarter of the penetration), in the
+v_a         at N links in the formulation ``auto``, where that was not chosen anyway; V_c is always in ``auto``
+v_f, V_f    the finite elements' value at n and at 2n elements (with a 16th of the penetration), in the
             chosen theory
 v_b, V_b    the same in the theory ``bending``, the CPRBM's own
 v_s         at n in the theory ``stretch``
-p           order of convergence that the error estimate assumes, 2
+p           order of convergence that the error estimate assumes, 2; see :mod:`comparisons.order`
 S           safety factor of the error estimate, 1.25
 d           v_c − v_f, the difference
 u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (or n)
@@ -19,6 +20,10 @@ The error of v is C/N^p and that of V a quarter of it (p = 2), so v − V is thr
 the factor 4/3 (Richardson; Roache, *Verification and Validation in Computational Science*, whose safety
 factor for a known order is 1.25).  Where finite elements converge faster, p = 2 only makes u larger.
 
+The formulation ``paper`` holds joints apart and not what lies between them, so that its error depends on where
+a contact falls between joints and no two N tell it. There u_c = |v_c − v_a| + S·4/3·|v_a − V_c|: its distance from the
+formulation whose error is even in N, and that one's own.
+
 The theory term is |v_b − v_f|, computed and never typed in.  The difference is the sum of three steps,
 
     v_c − v_f = (v_c − v_b) + (v_b − v_s) + (v_s − v_f),
@@ -27,8 +32,10 @@ and the share of each in it is its component along d.
 
 Round-off: a certificate states the relative residual that is left and the floor below which none can be
 asked.
-Numbers that differ by no more than the larger of the two, times the scale of the probe's family, differ by
-nothing that the solvers have settled.
+The larger of the two, times the largest value of the probe's family at that station, is a force (or what a
+force does) that the solver has left open.  It hardly depends on the load, so the largest over all stations
+counts at each; it is at least 1e-12 of the family's natural scale, for what round-off does to the numbers
+themselves.  A contact that is open in every run has no force, and nothing is left open there.
 """
 
 from __future__ import annotations
@@ -41,16 +48,16 @@ from itertools import pairwise
 import numpy as np
 
 from comparisons.geometry import length
+from comparisons.order import order_of, richardson
 from comparisons.pairing import Runs
-from comparisons.scales import denominator, family_scale, norm, probe_scale
+from comparisons.scales import denominator, family_size, natural_scale, norm, probe_scale
 from comparisons.spots import clear_of_spots
 from scene import Answer, Probe, Scene, Stage, StationAnswer
 from scene.answer import Array
 from scene.statement import Moment, Quantity
 
-ORDER = 2
 SAFETY = 1.25
-RICHARDSON = 2**ORDER / (2**ORDER - 1)
+ROUND_OFF = 1e-12
 
 UNITS: Mapping[Quantity, str] = {
     "displacement": "m",
@@ -145,8 +152,9 @@ def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
     Raises:
         KeyError: an answer lacks a station or a probe.
     """
+    unsettled = {probe.name: _round_off(scene, runs, probe) for probe in scene.probes}
     return tuple(
-        _row(scene, runs, probe, stage, value)
+        _row(scene, runs, probe, stage, value, unsettled[probe.name])
         for stage in scene.stages
         for value in stage.stations
         for probe in scene.probes
@@ -165,7 +173,24 @@ def station_of(answer: Answer, stage: str, value: float) -> StationAnswer:
     raise KeyError(f"{answer.solver} has no station {stage} {value:g}")
 
 
-def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float) -> Row:
+def _round_off(scene: Scene, runs: Runs, probe: Probe) -> float:
+    """What the certificates of all stations leave unsettled of a probe, in its unit."""
+    largest = 0.0
+    for stage in scene.stages:
+        largest = max(largest, ROUND_OFF * natural_scale(scene, probe.quantity, stage, contact=probe.of))
+        for value in stage.stations:
+            everyone = [station_of(answer, stage.name, value) for _, answer in runs.everything()]
+            floor = max(max(s.certificate.residual, s.certificate.residual_floor) for s in everyone)
+            here = stage.model_copy(update={"stations": (value,)})
+            alone = tuple(
+                replace(answer, stations=(station_of(answer, stage.name, value),))
+                for answer in (runs.cprbm[0], runs.reference)
+            )
+            largest = max(largest, floor * family_size(scene, probe.quantity, here, alone, contact=probe.of))
+    return largest
+
+
+def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, unsettled: float) -> Row:
     compared = (runs.cprbm[0], runs.reference)
     scale = probe_scale(scene, probe, stage, compared)
     stations = {name: station_of(answer, stage.name, value) for name, answer in runs.everything()}
@@ -196,14 +221,16 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float) -> 
     def size(difference: Array) -> float:
         return norm(probe.quantity, difference[counts])
 
-    floor = max(max(s.certificate.residual, s.certificate.residual_floor) for s in stations.values())
-    family = family_scale(scene, probe.quantity, stage, compared, contact=probe.of)
+    open_everywhere = probe.quantity == "force" and not any(found.any() for found in values.values())
+    factor = SAFETY * richardson(order_of(scene, probe))
+    even = values.get("cprbm auto", v_c)
+    own = size(v_c - even) + factor * size(even - values["cprbm finer"])
     bounds = Bounds(
-        cprbm=SAFETY * RICHARDSON * size(v_c - values["cprbm finer"]),
-        fea=SAFETY * RICHARDSON * size(v_f - values[f"{chosen} finer"]),
-        bending=SAFETY * RICHARDSON * size(v_b - values["fea bending finer"]),
+        cprbm=own,
+        fea=factor * size(v_f - values[f"{chosen} finer"]),
+        bending=factor * size(v_b - values["fea bending finer"]),
         theory=size(v_b - v_f),
-        round_off=floor * family,
+        round_off=0.0 if open_everywhere else unsettled,
     )
     ladder = [v_c, *(values[f"fea {kinematics}"] for kinematics in runs.fea)]
     return replace(

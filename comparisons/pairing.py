@@ -1,6 +1,7 @@
 """One scene to both solvers: the only module that knows them, and it imports each where it is used.
 
-What is run for a comparison: the CPRBM at N and 2N links; the finite elements at n and 2n in the theory that
+What is run for a comparison: the CPRBM at N and 2N links (in the formulation ``paper``, whose error is uneven in
+N, at N in ``paper``, and at N and 2N in ``auto``); the finite elements at n and 2n in the theory that
 was chosen and in ``bending``, the CPRBM's own; and at n in the theory between the two, if there is one, so
 that the step from one theory to the next can be split.
 """
@@ -12,7 +13,7 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing import get_context
 
 from frozendict import frozendict
@@ -68,13 +69,15 @@ class Runs:
 
     Attributes:
         kinematics: the beam theory that was chosen for the reference.
-        cprbm: at N and 2N links.
+        cprbm: at N and 2N links; the second always in the formulation ``auto``.
         fea: by theory, from ``bending`` up to the chosen one: at n and, for these two, at 2n elements.
+        auto: the CPRBM at N links in the formulation ``auto``, if another was chosen.
     """
 
     kinematics: Kinematics
     cprbm: tuple[Answer, Answer]
     fea: Mapping[Kinematics, tuple[Answer, ...]]
+    auto: Answer | None = None
 
     @property
     def reference(self) -> Answer:
@@ -87,6 +90,8 @@ class Runs:
         for name, answers in families.items():
             for level, answer in enumerate(answers):
                 yield f"{name} finer" if level else name, answer
+        if self.auto is not None:
+            yield "cprbm auto", self.auto
 
 
 def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1) -> Runs:
@@ -102,7 +107,10 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1
         SceneError: a solver refuses the question.
     """
     check(choices, scene)
-    jobs = [(solvers.cprbm, choices), (solvers.cprbm, choices.finer())]
+    even = replace(choices, formulation="auto")
+    extra = [] if even == choices else [(solvers.cprbm, even)]
+    jobs = [(solvers.cprbm, choices), (solvers.cprbm, even.finer()), *extra]
+    first = len(jobs)
     places: list[tuple[Kinematics, int]] = []
     for kinematics in KINEMATICS[: KINEMATICS.index(choices.kinematics) + 1]:
         variant = choices.within(kinematics)
@@ -112,9 +120,9 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1
             jobs.append((solvers.fea, settings))
     answers = _in_order(scene, jobs, min(workers, len(jobs)))
     fea: dict[Kinematics, tuple[Answer, ...]] = {}
-    for (kinematics, _), answer in zip(places, answers[2:], strict=True):
+    for (kinematics, _), answer in zip(places, answers[first:], strict=True):
         fea[kinematics] = (*fea.get(kinematics, ()), answer)
-    return Runs(choices.kinematics, (answers[0], answers[1]), frozendict(fea))
+    return Runs(choices.kinematics, (answers[0], answers[1]), frozendict(fea), answers[2] if extra else None)
 
 
 def _in_order(scene: Scene, jobs: list[tuple[Solver, Choices]], workers: int) -> list[Answer]:

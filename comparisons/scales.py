@@ -22,6 +22,12 @@ other supports' moments, and may be small by accident of that point.  Its scale 
 moment of the balance that it closes, of the supports' and the stepped one's.
 
 The length is the longest beam's.
+
+Where hardly anything happens (a station at zero load), the family's largest value is round-off as well.  No
+family's scale is therefore less than 1e-7 of its *natural* scale, what the stiffest beam would show that is
+bent by about a radian along the longest beam's length ℓ:
+
+    displacement ℓ,  rotation 1,  moment and energy S = EI/ℓ,  force S/ℓ,  stress E·t/(2ℓ).
 """
 
 from __future__ import annotations
@@ -38,6 +44,9 @@ from scene.statement import Moment, Quantity
 SMALLEST_SHARE = 1e-3
 """Least scale of a probe as a share of its family's."""
 
+SMALLEST_EVENT = 1e-7
+"""Least scale of a family as a share of its natural scale."""
+
 VANISHING = 1e-2
 """A reference below this share of its probe's scale counts as one that may vanish."""
 
@@ -53,7 +62,7 @@ def norm(quantity: Quantity, values: Array) -> float:
 
 
 def probe_scale(scene: Scene, probe: Probe, stage: Stage, answers: tuple[Answer, ...]) -> float:
-    """The scale of a probe in a stage, in the probe's unit; 0 only where its whole family vanishes."""
+    """The scale of a probe in a stage, in the probe's unit; never 0."""
     family = family_scale(scene, probe.quantity, stage, answers, contact=probe.of)
     if probe.quantity == "centre":
         return family
@@ -66,12 +75,40 @@ def probe_scale(scene: Scene, probe: Probe, stage: Stage, answers: tuple[Answer,
 
 def family_scale(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[Answer, ...], *, contact: str) -> float:
     """The scale of a quantity's family in a stage; ``contact`` is the contact of a ``centre``."""
+    natural = natural_scale(scene, quantity, stage, contact=contact)
+    return max(family_size(scene, quantity, stage, answers, contact=contact), SMALLEST_EVENT * natural)
+
+
+def natural_scale(scene: Scene, quantity: Quantity, stage: Stage, *, contact: str) -> float:
+    """What a quantity amounts to where beams bend by about a radian, in its unit."""
+    lever = _lever(scene)
+    beams = [(beam, scene.materials[beam.material].youngs_modulus) for beam in scene.beams.values()]
+    S = max(E * beam.width * beam.thickness**3 / 12.0 for beam, E in beams) / lever
+    match quantity:
+        case "displacement":
+            return lever
+        case "rotation":
+            return 1.0
+        case "force" | "reaction":
+            return S / lever
+        case "closing_load":
+            return S if isinstance(scene.loads[stage.steps], Moment) else S / lever
+        case "bending_stress":
+            return max(E * beam.thickness for beam, E in beams) / (2.0 * lever)
+        case "centre":
+            return length(scene.beams[scene.contacts[contact].beams[0]].curve)
+        case _:
+            return S
+
+
+def family_size(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[Answer, ...], *, contact: str) -> float:
+    """The largest value in a quantity's family in a stage, as the table says; it may be round-off."""
 
     def largest(*kinds: Quantity) -> float:
         probes = tuple(probe for probe in scene.probes if probe.quantity in kinds)
         return _largest(probes, stage, answers)
 
-    lever = max(length(beam.curve) for beam in scene.beams.values())
+    lever = _lever(scene)
     match quantity:
         case "displacement":
             return max(largest("displacement"), lever * largest("rotation"))
@@ -94,7 +131,7 @@ def family_scale(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[
         case "closing_load":
             return max(abs(station) for station in stage.stations)
         case "centre":
-            return length(scene.beams[scene.contacts[contact].between[0]].curve)
+            return length(scene.beams[scene.contacts[contact].beams[0]].curve)
         case _:
             return largest(quantity)
 
@@ -103,6 +140,10 @@ def denominator(probe: Probe, reference: Array, scale: float) -> float:
     """What a row's difference is divided by: the reference's norm, or the scale where that may vanish."""
     own = norm(probe.quantity, reference)
     return own if probe.quantity in _OWN_NORM and own >= VANISHING * scale else scale
+
+
+def _lever(scene: Scene) -> float:
+    return max(length(beam.curve) for beam in scene.beams.values())
 
 
 def _largest(probes: tuple[Probe, ...], stage: Stage, answers: tuple[Answer, ...]) -> float:

@@ -35,7 +35,7 @@ def clear_of_spots(
         spots.append(length(record.curve))
     for station in stations:
         for contact, places in station.touching.items():
-            if beam in scene.contacts[contact].between:
+            if beam in scene.contacts[contact].beams:
                 spots.extend(nearest(station.shapes[beam], place) for place in places)
     if not spots:
         return np.ones(arc_length.shape, dtype=bool)

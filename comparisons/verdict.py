@@ -69,13 +69,15 @@ def compared(scene: Scene, runs: Runs) -> Comparison:
 
     Rows stand only if every run gave a whole answer.
     """
-    found = [
-        f"{name} gave no whole answer: {what[0]}" + (f" (and {len(what) - 1} more)" if len(what) > 1 else "")
-        for name, answer in runs.everything()
-        if (what := complaints(scene, answer))
-    ]
+    found: dict[str, list[str]] = {}
+    for name, answer in runs.everything():
+        what = complaints(scene, answer)
+        if what:
+            more = f" (and {len(what) - 1} more)" if len(what) > 1 else ""
+            found.setdefault(f"{what[0]}{more}", []).append(name)
     if found:
-        return Comparison(scene, runs, (), Verdict(Word.UNDECIDED, "; ".join(found) + ".", (), completed=False))
+        sentence = "; ".join(f"{', '.join(names)} gave no whole answer: {what}" for what, names in found.items())
+        return Comparison(scene, runs, (), Verdict(Word.UNDECIDED, sentence + ".", (), completed=False))
     rows = rows_of(scene, runs)
     return Comparison(scene, runs, rows, judged(scene, rows))
 

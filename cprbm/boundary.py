@@ -22,10 +22,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from cprbm.contact import Rows
+from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
-from scene import BeamContact, Mistake, Scene, SceneError
+from scene import BeamContact, Mistake, PaperContact, Scene, SceneError
 from scene.answer import Array, Ints
 
 FEWEST_POINTS = 3
@@ -60,7 +60,7 @@ class FittedBoundary:
     arc: Array
     on_first: bool
 
-    def rows(self, state: State, at: Positions) -> Rows:
+    def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
         m, n = len(self.joints), len(self.points)
         tau = 0.5 * (state.theta[self.links[:-1]] + state.theta[self.links[1:]])
@@ -127,15 +127,18 @@ class FittedBoundary:
             local[k + i + 1, k + i] += turning
             return local
 
-        return Rows(
-            values=self.sense * (g - o),
-            joints=np.concatenate((self.joints, self.points)),
-            angles=self.links,
-            slopes=over_locals(slopes),
-            curvature=curvature,
-            keys=tuple((self.name, int(j)) for j in self.joints),
-            arc=self.arc if self.on_first else at_joints[0] @ q_B @ self.arc,
-            contact=(self.name,) * m,
+        joints = np.concatenate((self.joints, self.points))
+        return (
+            Group(
+                contact=self.name,
+                values=self.sense * (g - o),
+                joints=np.tile(joints, (m, 1)),
+                angles=np.tile(self.links, (m, 1)),
+                slopes=over_locals(slopes),
+                curvature=lambda lam: Blocks(joints[None], self.links[None], curvature(lam)[None]),
+                keys=tuple(int(j) for j in self.joints),
+                arc=self.arc if self.on_first else at_joints[0] @ q_B @ self.arc,
+            ),
         )
 
     def range_left(self, state: State, at: Positions) -> Array:
@@ -170,9 +173,9 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
     Raises:
         SceneError: the contact does not say what the paper's form must know, or has too few related joints.
     """
-    contact: BeamContact = scene.contacts[name]
-    hints = contact.paper
-    if hints is None:
+    contact = scene.contacts[name]
+    hints = contact.paper if isinstance(contact, BeamContact) else None
+    if hints is None or not isinstance(contact, BeamContact):
         raise SceneError(
             [
                 Mistake(
@@ -185,8 +188,8 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
         )
     other = next(beam for beam in contact.between if beam != hints.boundary)
     boundary, constrained = model.chain(hints.boundary), model.chain(other)
-    points = _related(scene, model, name, boundary)
-    joints = _related(scene, model, name, constrained)
+    points = _related(scene, model, name, hints, boundary)
+    joints = _related(scene, model, name, hints, constrained)
     line = boundary.line
     x_p, y_p = line.position(boundary.s[points] * model.unit_length)
     x_j, y_j = constrained.line.position(constrained.s[joints] * model.unit_length)
@@ -214,11 +217,10 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
     )
 
 
-def _related(scene: Scene, model: Model, name: str, chain: Chain) -> Ints:
+def _related(scene: Scene, model: Model, name: str, hints: PaperContact, chain: Chain) -> Ints:
     """The spring joints (1..N) of a beam that lie in its related range; the beam's ends are never among them."""
     inner = np.arange(1, chain.n + 1)
-    hints = scene.contacts[name].paper
-    related = hints.related.get(chain.name) if hints is not None else None
+    related = hints.related.get(chain.name)
     if related is not None:
         x, y = chain.line.position(chain.s[inner] * model.unit_length)
         low, high = related.x or related.y or (-np.inf, np.inf)

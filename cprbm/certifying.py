@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm import nearest
 from cprbm.equilibrium import Equilibrium, smallest_curvature
 from cprbm.forces import balances
 from cprbm.mechanism import Mechanism
@@ -14,7 +13,9 @@ from scene import Certificate, Ending
 LARGEST_BEND = 1.0  # rad: change of angle of one spring beyond which a chord no longer stands for its element
 BALANCE = 1e-8
 COMPLEMENTARITY = 1e-8  # gap times force, over the largest generalised force
-OVERLAP_AUTO = 1e-4  # of the mean thickness
+# Of the mean thickness. Where rows stand nothing overlaps (the violation says so); between the joints of a zone
+# the line dips by a part of h², which is an error of the discretisation and not a failure.
+OVERLAP_AUTO = 0.05
 OVERLAP_PAPER = 0.5  # joints of 'paper' may dip between each other; beyond this the beams have crossed
 
 
@@ -63,7 +64,7 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
         ask(
             not np.any(pressing & (beyond > 0.0)),
             Ending.LEFT_BOUNDARY,
-            f"a touching joint of contact '{name}' lies beyond the ends of its fitted boundary",
+            f"in contact '{name}'",
         )
     force_balance, moment_balance = balances(problem, point)
     balance_asked = max(BALANCE, 100.0 * measure.floor)
@@ -103,6 +104,5 @@ def penetration_of(mechanism: Mechanism, found: Equilibrium) -> float:
     deepest = 0.0
     state, at = found.point.state, found.point.at
     for pair in mechanism.pairs.values():
-        scale = 0.5 * (pair.a.thickness + pair.b.thickness) if pair.offset > 0.0 else 1.0
-        deepest = max(deepest, nearest.deepest(pair, state, at) / scale)
+        deepest = max(deepest, pair.deepest(state, at) / pair.thickness)
     return deepest

@@ -1,15 +1,15 @@
 """What a contact formulation hands to the equilibrium solver.
 
-A gap depends on a few local numbers: positions of some joints and angles of
-some links.  With these as z, a formulation states its constraints c(z) ≤ 0,
-their first derivatives, and the second derivative of λ·c; how z depends on the
-unknowns is the same for all and lives in :mod:`cprbm.kinematics`.
+A gap depends on a few local numbers z: positions of some joints and angles of some links.  A formulation
+states its constraints c(z) ≤ 0, their first derivatives, and the second derivative of λ·c; how z depends
+on the unknowns is the same for all and lives in :mod:`cprbm.kinematics`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -18,82 +18,91 @@ from scene.answer import Array, Ints
 
 
 @dataclass(frozen=True, slots=True)
-class Rows:
-    """Contact constraints at one state.
+class Blocks:
+    """Second derivatives as g small matrices over local numbers of their own.
 
     Attributes:
-        values: c (m,), units of length, feasible where ≤ 0.
-        joints: joints whose x and y enter (p,); angles: links whose θ enters (a,).
-        slopes: ∂c over z = (x of joints, y of joints, θ of angles), (m, 2p + a).
-        curvature: λ ↦ ∂²(λ·c)/∂z², (2p + a, 2p + a).
-        keys: what each row is, to recognise it again in the next iteration.
-        arc: arc length on the contact's first beam where each row acts (m,).
-        contact: name of each row's contact.
+        joints: whose x and y enter (g, p); angles: links whose θ enters (g, a).
+        matrices: (g, 2p + a, 2p + a), over x of the joints, y of the joints, θ of the links.
     """
 
+    joints: Ints
+    angles: Ints
+    matrices: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Constraints of one kind at one state.
+
+    Attributes:
+        contact: name of the contact.
+        values: c (m,), units of length, feasible where ≤ 0.
+        joints, angles: what enters each row, (m, p) and (m, a).
+        slopes: ∂c over (x of joints, y of joints, θ of angles), (m, 2p + a).
+        curvature: λ (m,) ↦ blocks of ∂²(λ·c)/∂z².
+        keys: what each row is, to recognise it again in the next iteration; −1 for a place that moves.
+        arc: arc length on the contact's first beam where each row acts (m,).
+    """
+
+    contact: str
     values: Array
     joints: Ints
     angles: Ints
     slopes: Array
-    curvature: Callable[[Array], Array]
-    keys: tuple[tuple[str, int], ...]
+    curvature: Callable[[Array], Blocks]
+    keys: tuple[int, ...]
     arc: Array
-    contact: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Rows:
+    """All constraints at one state, group behind group."""
+
+    groups: tuple[Group, ...]
+
+    @cached_property
+    def values(self) -> Array:
+        """c (m,)."""
+        return np.concatenate([group.values for group in self.groups]) if self.groups else np.zeros(0)
+
+    @cached_property
+    def arc(self) -> Array:
+        """Arc length on each contact's first beam (m,)."""
+        return np.concatenate([group.arc for group in self.groups]) if self.groups else np.zeros(0)
+
+    @cached_property
+    def keys(self) -> tuple[tuple[str, int], ...]:
+        """What each row is: its contact and its key there."""
+        return tuple((group.contact, key) for group in self.groups for key in group.keys)
+
+    @cached_property
+    def contact(self) -> tuple[str, ...]:
+        """Name of each row's contact."""
+        return tuple(group.contact for group in self.groups for _ in group.keys)
 
     @property
     def size(self) -> int:
-        """Number of constraints."""
+        """Number of constraints m."""
         return len(self.values)
+
+    def shares(self, multipliers: Array) -> list[tuple[Group, Array]]:
+        """Every group with its part of the multipliers (m,)."""
+        ends = np.cumsum([len(group.values) for group in self.groups])
+        return list(zip(self.groups, np.split(multipliers, ends[:-1]), strict=True)) if self.groups else []
+
+    def forces(self, multipliers: Array, n_joints: int, n_links: int) -> tuple[Array, Array, Array]:
+        """∂(λ·c) over x and y of all joints (n_joints,) and θ of all links (n_links,)."""
+        fx, fy, moments = np.zeros(n_joints), np.zeros(n_joints), np.zeros(n_links)
+        for group, lam in self.shares(multipliers):
+            p = group.joints.shape[1]
+            local = lam[:, None] * group.slopes
+            np.add.at(fx, group.joints, local[:, :p])
+            np.add.at(fy, group.joints, local[:, p : 2 * p])
+            np.add.at(moments, group.angles, local[:, 2 * p :])
+        return fx, fy, moments
 
 
 Formulation = Callable[[State, Positions], Rows]
 
-
-def no_rows() -> Rows:
-    """The constraints of a scene in which nothing touches."""
-    none = np.zeros(0, dtype=np.intp)
-    return Rows(np.zeros(0), none, none, np.zeros((0, 0)), lambda _: np.zeros((0, 0)), (), np.zeros(0), ())
-
-
-def together(parts: list[Rows]) -> Rows:
-    """The constraints of several contacts as one set, each with local numbers of its own."""
-    parts = [part for part in parts if part.size]
-    if len(parts) <= 1:
-        return parts[0] if parts else no_rows()
-    p = sum(len(part.joints) for part in parts)
-    a = sum(len(part.angles) for part in parts)
-    m = sum(part.size for part in parts)
-    slopes = np.zeros((m, 2 * p + a))
-    columns: list[Ints] = []
-    row = first_p = first_a = 0
-    for part in parts:
-        np_, na = len(part.joints), len(part.angles)
-        where = np.concatenate(
-            (
-                first_p + np.arange(np_),
-                p + first_p + np.arange(np_),
-                2 * p + first_a + np.arange(na),
-            )
-        )
-        slopes[row : row + part.size, where] = part.slopes
-        columns.append(where)
-        row, first_p, first_a = row + part.size, first_p + np_, first_a + na
-
-    def curvature(multipliers: Array) -> Array:
-        total = np.zeros((2 * p + a, 2 * p + a))
-        start = 0
-        for part, where in zip(parts, columns, strict=True):
-            total[np.ix_(where, where)] = part.curvature(multipliers[start : start + part.size])
-            start += part.size
-        return total
-
-    return Rows(
-        values=np.concatenate([part.values for part in parts]),
-        joints=np.concatenate([part.joints for part in parts]),
-        angles=np.concatenate([part.angles for part in parts]),
-        slopes=slopes,
-        curvature=curvature,
-        keys=tuple(key for part in parts for key in part.keys),
-        arc=np.concatenate([part.arc for part in parts]),
-        contact=tuple(name for part in parts for name in part.contact),
-    )
+NO_ROWS = Rows(())

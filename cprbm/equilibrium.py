@@ -19,6 +19,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import eigvalsh_tridiagonal
 
 from cprbm.bordered import Bordered, bordered
 from cprbm.closure import Closure, closure_forces, closure_rows, closure_second, closure_values
@@ -34,12 +35,16 @@ from cprbm.energy import (
     strain_hessian,
 )
 from cprbm.kinematics import Positions, State, position_rows, positions, pulled_back
+from cprbm.local import LocalSystem, local_step, local_system
 from cprbm.model import Model
 from scene.answer import Array, Flags, Ints
 
 LONGEST_TURN = 0.5  # of any link in one iteration, rad
 CONTACT_STIFFNESS = 1e4  # of pressing contacts while the energy alone is not convex, S/ℓ²
+MANY = 40  # contact rows beyond which the system is solved with the joints' positions as unknowns
 DENSE = 120  # unknowns up to which all curvatures are computed at once
+LANCZOS = 40  # steps
+SMALL = 1e-9  # of the largest compliance: negative ones below it are round-off
 NOTHING = 1e-12  # S: moments below it are no load at all
 EPS = float(np.finfo(float).eps)
 
@@ -63,8 +68,7 @@ class Point:
         mu, lam: multipliers of the equalities and of the contact rows.
         Z, rows: equalities (mE,) and contact constraints.
         gradient: of the potential energy (n,).
-        A_E, A_I: derivatives of Z and c over q.
-        J: derivatives of the contact's local numbers over q.
+        A_E: derivatives of Z over q.
         work: of the loads.
     """
 
@@ -76,8 +80,6 @@ class Point:
     rows: Rows
     gradient: Array
     A_E: Array
-    A_I: Array
-    J: Array
     work: LoadWork
 
 
@@ -110,8 +112,6 @@ def point_at(problem: Problem, values: dict[str, float], state: State, mu: Array
     work = load_work(model, problem.loads, values, state)
     gradient = np.concatenate((strain_gradient(model, state), -work.gradient))
     A_E = closure_rows(model, problem.closure, state, at)
-    J = _local_rows(model, state, at, rows)
-    A_I = rows.slopes @ J if rows.size else np.zeros((0, len(gradient)))
     return Point(
         state=state,
         at=at,
@@ -121,18 +121,40 @@ def point_at(problem: Problem, values: dict[str, float], state: State, mu: Array
         rows=rows,
         gradient=gradient,
         A_E=A_E,
-        A_I=A_I,
-        J=J,
         work=work,
     )
 
 
-def _local_rows(model: Model, state: State, at: Positions, rows: Rows) -> Array:
-    """J, derivatives of the local numbers over q."""
-    rows_x, rows_y = position_rows(model, state, at, rows.joints)
-    angles = np.zeros((len(rows.angles), rows_x.shape[1]))
-    angles[np.arange(len(rows.angles)), rows.angles] = 1.0
-    return np.concatenate((rows_x, rows_y, angles))
+def local_rows(model: Model, state: State, at: Positions, joints: Ints, angles: Ints) -> Array:
+    """Derivatives of local numbers over q: for joints (g, p) and links (g, a), (g, 2p + a, n_links + 3B)."""
+    (g, p), a = joints.shape, angles.shape[1]
+    rows_x, rows_y = position_rows(model, state, at, joints.ravel())
+    width = rows_x.shape[1]
+    rows = np.zeros((g, 2 * p + a, width))
+    rows[:, :p], rows[:, p : 2 * p] = rows_x.reshape(g, p, width), rows_y.reshape(g, p, width)
+    rows[np.arange(g)[:, None], 2 * p + np.arange(a), angles] = 1.0
+    return rows
+
+
+def contact_rows(model: Model, point: Point) -> Array:
+    """∂c over q, (m, n_links + 3B)."""
+    parts = [np.zeros((0, model.n_links + 3 * len(model.free_bodies)))]
+    for group in point.rows.groups:
+        if np.all(group.joints == group.joints[0]) and np.all(group.angles == group.angles[0]):
+            # rows of one boundary share their local numbers
+            J = local_rows(model, point.state, point.at, group.joints[:1], group.angles[:1])
+            parts.append(group.slopes @ J[0])
+            continue
+        J = local_rows(model, point.state, point.at, group.joints, group.angles)
+        parts.append(np.einsum("mk,mkn->mn", group.slopes, J))
+    return np.concatenate(parts)
+
+
+def contact_gradient(model: Model, point: Point) -> Array:
+    """∂(λ·c) over q (n_links + 3B,), without forming ∂c."""
+    fx, fy, moments = point.rows.forces(point.lam, model.n_joints, model.n_links)
+    over_theta, over_bodies, _, _ = pulled_back(model, point.state, point.at, fx, fy)
+    return np.concatenate((over_theta + moments, over_bodies))
 
 
 def carried(before: Rows, lam: Array, rows: Rows, model: Model) -> Array:
@@ -159,10 +181,11 @@ def measure(problem: Problem, point: Point) -> Measure:
     model = problem.model
     free = np.ones(len(point.gradient), dtype=bool)
     free[problem.closure.fixed] = False
-    terms = np.abs(point.gradient) + np.abs(point.A_E.T) @ np.abs(point.mu) + np.abs(point.A_I.T) @ point.lam
+    parts = (point.gradient, point.A_E.T @ point.mu, contact_gradient(model, point))
+    terms = sum(np.abs(part) for part in parts)
     moments = np.abs(spring_moments(model, point.state))
     scale = max(float(np.max(terms, initial=0.0)), float(np.max(moments, initial=0.0)), NOTHING)
-    residual = point.gradient + point.A_E.T @ point.mu + point.A_I.T @ point.lam
+    residual = parts[0] + parts[1] + parts[2]
     largest = float(np.max(np.abs(residual[free]), initial=0.0))
     # an angle is known to eps·|θ|, a spring's moment to the stiffness times that
     turned = max(1.0, float(np.max(np.abs(point.state.theta))))
@@ -206,25 +229,30 @@ def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System
         np.linalg.LinAlgError: the tridiagonal part is exactly singular.
     """
     model, closure, rows = problem.model, problem.closure, point.rows
-    n, n_bodies, p = model.n_links, 3 * len(model.free_bodies), len(rows.joints)
+    n, n_bodies = model.n_links, 3 * len(model.free_bodies)
+    A_I = contact_rows(model, point)
     fx, fy = closure_forces(model, closure, point.mu)
-    if rows.size:
-        np.add.at(fx, rows.joints, point.lam @ rows.slopes[:, :p])
-        np.add.at(fy, rows.joints, point.lam @ rows.slopes[:, p : 2 * p])
+    cx, cy, _ = rows.forces(point.lam, model.n_joints, n)
+    fx, fy = fx + cx, fy + cy
     _, _, second, second_bodies = pulled_back(model, point.state, point.at, fx, fy)
     diagonal, off = strain_hessian(model)
     diagonal = diagonal + second + shift * model.lengths
     over_phi = second_bodies + closure_second(model, closure, point.state, point.mu) - point.work.second
 
     columns, curvatures, known = [], [], []
-    if np.any(point.lam > 0.0):
-        sigma, V = np.linalg.eigh(rows.curvature(point.lam))
-        real = np.abs(sigma) > 1e-13 * np.max(np.abs(sigma), initial=0.0)
-        columns.append(point.J.T @ V[:, real])
-        curvatures.append(sigma[real])
+    for group, lam in rows.shares(point.lam):
+        if not np.any(lam > 0.0):
+            continue
+        blocks = group.curvature(lam)
+        sigma, V = np.linalg.eigh(blocks.matrices)
+        J = local_rows(model, point.state, point.at, blocks.joints, blocks.angles)
+        along = np.einsum("gkj,gkn->gjn", V, J).reshape(sigma.size, -1)
+        real = np.abs(sigma).ravel() > 1e-13 * np.max(np.abs(sigma), initial=0.0)
+        columns.append(along[real].T)
+        curvatures.append(sigma.ravel()[real])
         known.append(np.zeros(int(np.sum(real))))
     if np.any(stiff):
-        columns.append(point.A_I[stiff].T)
+        columns.append(A_I[stiff].T)
         curvatures.append(np.full(int(np.sum(stiff)), CONTACT_STIFFNESS))
         known.append(-rows.values[stiff])
     low_rank = np.concatenate(columns, axis=1) if columns else np.zeros((n + n_bodies, 0))
@@ -235,7 +263,7 @@ def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System
     first = n_bodies + k
     size = first + r + m_E + m_I
     border, corner = np.zeros((n, size)), np.zeros((size, size))
-    wide = np.concatenate((low_rank, point.A_E.T, point.A_I.T), axis=1)
+    wide = np.concatenate((low_rank, point.A_E.T, A_I.T), axis=1)
     border[:, first:] = wide[:n]
     corner[:n_bodies, first:] = wide[n:]
     corner[2:n_bodies:3, 2:n_bodies:3] = np.diag(over_phi)
@@ -286,12 +314,34 @@ def _convex_system(problem: Problem, point: Point) -> System:
     raise np.linalg.LinAlgError("the energy cannot be made convex")
 
 
+def _many(rows: Rows) -> bool:
+    """Whether the contacts are many and each is local: the rows of a fitted boundary are not."""
+    return rows.size > MANY and all(group.joints.shape[1] <= 2 for group in rows.groups)
+
+
+def _local_system(problem: Problem, point: Point) -> LocalSystem:
+    return local_system(
+        problem.model,
+        problem.closure,
+        point.state,
+        point.at,
+        point.mu,
+        point.lam,
+        point.Z,
+        point.rows,
+        point.gradient,
+        point.work,
+    )
+
+
 def newton_step(problem: Problem, point: Point) -> tuple[Array, Array, Array]:
     """Change of q and the new multipliers μ, λ.
 
     Raises:
         np.linalg.LinAlgError: the linearised problem has no solution.
     """
+    if _many(point.rows):
+        return local_step(_local_system(problem, point), point.lam > 0.0)
     found = _convex_system(problem, point)
     f = -point.gradient.copy()
     f[problem.closure.fixed] = 0.0
@@ -306,7 +356,9 @@ def newton_step(problem: Problem, point: Point) -> tuple[Array, Array, Array]:
         S, base, contacts = found.factors.schur, found.base, found.contacts
         across = S[np.ix_(base, contacts)]
         G = -(S[np.ix_(contacts, contacts)] - across.T @ np.linalg.solve(S[np.ix_(base, base)], across))
-        lam, active = pressing(0.5 * (G + G.T), point.rows.values + point.A_I @ change, point.lam > 0.0)
+        lam, active = pressing(
+            0.5 * (G + G.T), point.rows.values + contact_rows(problem.model, point) @ change, point.lam > 0.0
+        )
         if np.any(active):
             keep = np.concatenate((base, contacts[active]))
             change, b = found.step(keep, np.concatenate((right, -point.rows.values[active])), f)
@@ -356,41 +408,89 @@ def _settled(now: Measure, longest: float, tolerance: float) -> bool:
 def smallest_curvature(problem: Problem, point: Point) -> float:
     """Smallest curvature of PE on the directions that keep the equalities and the pressing contacts.
 
-    Over EI/ℓ² of the stiffest beam, in the metric ∫ dθ² ds.  Not finite where the system is singular.
+    Over EI/ℓ² of the stiffest beam, in the metric ∫ dθ² ds.  Minus infinity where the system is singular.
     """
-    none = np.zeros(point.rows.size, dtype=bool)
+    root = np.sqrt(problem.model.lengths)
+    root[problem.closure.fixed] = 0.0
     try:
-        found = system(problem, point, none, 0.0)
-        keep = np.concatenate((found.base, found.contacts[point.lam > 0.0]))
-        root = np.sqrt(problem.model.lengths)
-        root[problem.closure.fixed] = 0.0
-        n = found.n_links
-        n_bodies = 3 * len(problem.model.free_bodies)
-
-        def inverse(x: Array) -> Array:
-            columns = (root * x.reshape(n, -1).T).T
-            right = np.zeros((len(keep), columns.shape[1]))
-            right[n_bodies : n_bodies + len(found.anchors)] = columns[found.anchors]
-            columns[found.anchors] = 0.0
-            a, b = found.factors.solve(columns, right, keep)
-            a[found.anchors] = b[n_bodies : n_bodies + len(found.anchors)]
-            return np.asarray((root * a.T).T)
-
-        negative = found.factors.negative(keep) - found.expected - int(np.sum(point.lam > 0.0))
-        value = _extreme(inverse, n, lowest=negative > 0)
-    except np.linalg.LinAlgError:
+        if _many(point.rows):
+            inverse, lowest = _local_inverse(problem, point, root), None
+        else:
+            inverse, lowest = _bordered_inverse(problem, point, root)
+        value = _extreme(inverse, problem.model.n_links, lowest=lowest)
+    except (np.linalg.LinAlgError, RuntimeError):
         return float("-inf")
     return 1.0 / value if value != 0.0 else float("inf")
 
 
-def _extreme(inverse: Callable[[Array], Array], n: int, *, lowest: bool) -> float:
-    """The lowest or highest eigenvalue of a symmetric operator on R^n."""
+def _bordered_inverse(problem: Problem, point: Point, root: Array) -> tuple[Callable[[Array], Array], bool]:
+    """√M K⁻¹ √M on columns over θ, and whether it has a negative eigenvalue."""
+    found = system(problem, point, np.zeros(point.rows.size, dtype=bool), 0.0)
+    keep = np.concatenate((found.base, found.contacts[point.lam > 0.0]))
+    n, n_bodies = found.n_links, 3 * len(problem.model.free_bodies)
+    place = slice(n_bodies, n_bodies + len(found.anchors))
+
+    def inverse(x: Array) -> Array:
+        columns = root[:, None] * x
+        right = np.zeros((len(keep), columns.shape[1]))
+        right[place] = columns[found.anchors]
+        columns[found.anchors] = 0.0
+        a, b = found.factors.solve(columns, right, keep)
+        a[found.anchors] = b[place]
+        return np.asarray(root[:, None] * a[:n])
+
+    return inverse, found.factors.negative(keep) > found.expected + int(np.sum(point.lam > 0.0))
+
+
+def _local_inverse(problem: Problem, point: Point, root: Array) -> Callable[[Array], Array]:
+    """√M K⁻¹ √M on columns over θ, through the system with the joints' positions."""
+    found = _local_system(problem, point)
+    active = point.lam > 0.0
+    factors = found.factorised(active)
+    size, n = found.size + int(np.sum(active)), found.n_links
+
+    def inverse(x: Array) -> Array:
+        right = np.zeros((size, x.shape[1]))
+        right[:n] = root[:, None] * x
+        return np.asarray(root[:, None] * factors.solve(right)[:n])
+
+    return inverse
+
+
+def _extreme(inverse: Callable[[Array], Array], n: int, *, lowest: bool | None) -> float:
+    """The lowest or highest eigenvalue of a symmetric operator on R^n; unknown which, the lowest if negative."""
     if n <= DENSE:
         full = inverse(np.eye(n))
         values = np.linalg.eigvalsh(0.5 * (full + full.T))
+        if lowest is None:
+            lowest = bool(values[0] < -SMALL * values[-1])
         return float(values[0] if lowest else values[-1])
-    from scipy.sparse.linalg import LinearOperator, eigsh
+    lowest_ritz, highest_ritz = _ritz(inverse, n)
+    if lowest is None:
+        lowest = lowest_ritz < -SMALL * abs(highest_ritz)
+    return lowest_ritz if lowest else highest_ritz
 
-    operator = LinearOperator((n, n), matvec=lambda x: inverse(x).ravel(), dtype=float)
-    start = np.cos(np.arange(n) * 0.7) + 1.5
-    return float(eigsh(operator, k=1, which="SA" if lowest else "LA", v0=start, tol=1e-6, return_eigenvectors=False)[0])
+
+def _ritz(inverse: Callable[[Array], Array], n: int) -> tuple[float, float]:
+    """Extreme eigenvalues by Lanczos' method with full reorthogonalisation, from a start with no symmetry.
+
+    The compliances of a beam fall with the fourth power of their number, so that a few steps settle the ends.
+    """
+    vector = np.cos(0.7 * np.arange(n)) + 1.5
+    basis = np.zeros((n, LANCZOS))
+    diagonal, off = np.zeros(LANCZOS), np.zeros(LANCZOS)
+    vector /= np.linalg.norm(vector)
+    steps = LANCZOS
+    for k in range(LANCZOS):
+        basis[:, k] = vector
+        image = inverse(vector[:, None])[:, 0]
+        diagonal[k] = vector @ image
+        for _ in range(2):
+            image = image - basis[:, : k + 1] @ (basis[:, : k + 1].T @ image)
+        off[k] = np.linalg.norm(image)
+        if off[k] <= 1e-13 * np.max(np.abs(diagonal)):
+            steps = k + 1
+            break
+        vector = image / off[k]
+    values = eigvalsh_tridiagonal(diagonal[:steps], off[: steps - 1])
+    return float(values[0]), float(values[-1])

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from cprbm.closure import closure_forces
-from cprbm.equilibrium import Point, Problem
+from cprbm.equilibrium import Point, Problem, contact_gradient
 from scene.answer import Array
 
 
@@ -41,14 +41,8 @@ class ContactForces:
 def contact_forces(problem: Problem, point: Point, only: str | None = None) -> ContactForces:
     """Forces that all contacts (or ``only`` one) exert on the chains."""
     model, rows = problem.model, point.rows
-    fx, fy, moments = np.zeros(model.n_joints), np.zeros(model.n_joints), np.zeros(model.n_links)
-    if rows.size:
-        p = len(rows.joints)
-        mine = np.array([only is None or name == only for name in rows.contact])
-        local = -np.where(mine, point.lam, 0.0) @ rows.slopes
-        np.add.at(fx, rows.joints, local[:p])
-        np.add.at(fy, rows.joints, local[p : 2 * p])
-        np.add.at(moments, rows.angles, local[2 * p :])
+    mine = np.array([only is None or name == only for name in rows.contact], dtype=bool)
+    fx, fy, moments = rows.forces(-np.where(mine, point.lam, 0.0), model.n_joints, model.n_links)
     return ContactForces(fx, fy, moments)
 
 
@@ -58,7 +52,7 @@ def supports(problem: Problem, point: Point) -> tuple[Support, ...]:
     fx, fy = closure_forces(model, closure, point.mu)
     contact = contact_forces(problem, point)
     # ∂L/∂θ of the whole, whose entry at a link that does not turn is the moment that holds it
-    held = point.gradient + point.A_E.T @ point.mu + point.A_I.T @ point.lam
+    held = point.gradient + point.A_E.T @ point.mu + contact_gradient(problem.model, point)
     found = []
     for chain in model.chains:
         if chain.start.body < 0:

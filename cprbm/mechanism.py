@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from cprbm.boundary import FittedBoundary, fitted_boundary
+from cprbm.circle import Circle, circle_of
 from cprbm.closure import closure_of
-from cprbm.contact import Formulation, Rows, no_rows, together
+from cprbm.contact import Formulation, Group, Rows
 from cprbm.energy import dead_loads
 from cprbm.equilibrium import Problem
 from cprbm.kinematics import Positions, State
 from cprbm.model import build
 from cprbm.nearest import Pair, pair_of
 from cprbm.settings import Settings
-from scene import Scene
+from scene import BeamContact, Scene
+
+Groups = Callable[[State, Positions], tuple[Group, ...]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +31,7 @@ class Mechanism:
     """
 
     problem: Problem
-    pairs: dict[str, Pair]
+    pairs: dict[str, Pair | Circle]
     boundaries: dict[str, FittedBoundary]
 
     def without(self, contact: str) -> Problem:
@@ -36,21 +40,21 @@ class Mechanism:
             self.problem.model,
             self.problem.closure,
             self.problem.loads,
-            _formulation({name: self._rows(name) for name in self.pairs if name != contact}),
+            _formulation({name: self._groups(name) for name in self.pairs if name != contact}),
         )
 
     def overlap(self, contact: str, state: State, at: Positions) -> float:
         """Largest constraint value of ``contact``, units of length: positive where it is violated."""
-        rows = self._rows(contact)(state, at)
-        return float(rows.values.max()) if rows.size else float("-inf")
+        groups = self._groups(contact)(state, at)
+        return max((float(group.values.max()) for group in groups), default=float("-inf"))
 
-    def _rows(self, contact: str) -> Formulation:
-        return self.boundaries[contact].rows if self.boundaries else self.pairs[contact].rows
+    def _groups(self, contact: str) -> Groups:
+        return self.boundaries[contact].groups if self.boundaries else self.pairs[contact].groups
 
 
-def _formulation(parts: dict[str, Formulation]) -> Formulation:
+def _formulation(parts: dict[str, Groups]) -> Formulation:
     def rows(state: State, at: Positions) -> Rows:
-        return together([part(state, at) for part in parts.values()]) if parts else no_rows()
+        return Rows(tuple(group for part in parts.values() for group in part(state, at)))
 
     return rows
 
@@ -62,12 +66,15 @@ def mechanism_of(scene: Scene, settings: Settings) -> Mechanism:
         SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
     """
     model = build(scene, settings)
-    pairs = {name: pair_of(scene, model, name) for name in scene.contacts}
+    pairs = {
+        name: pair_of(scene, model, name) if isinstance(contact, BeamContact) else circle_of(scene, model, name)
+        for name, contact in scene.contacts.items()
+    }
     boundaries = {}
     if settings.formulation == "paper":
         boundaries = {name: fitted_boundary(scene, model, name, settings.degree) for name in scene.contacts}
-    parts: dict[str, Formulation] = {
-        name: boundaries[name].rows if boundaries else pair.rows for name, pair in pairs.items()
+    parts: dict[str, Groups] = {
+        name: boundaries[name].groups if boundaries else pair.groups for name, pair in pairs.items()
     }
     problem = Problem(model, closure_of(model), dead_loads(scene, model), _formulation(parts))
     return Mechanism(problem, pairs, boundaries)

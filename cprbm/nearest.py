@@ -29,10 +29,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from cprbm import smooth
-from cprbm.contact import Rows, together
+from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.model import Chain, Model
-from scene import Scene
+from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
 
 FOOT_ITERATIONS = 8
@@ -42,6 +42,7 @@ LEAST_CURVATURE = 1e-3  # of D along A, 1/ℓ, below which its minimum has no pl
 REACH = 0.1  # gaps wider than this part of the longest beam are no constraints yet
 PARALLEL = 1e-3  # a foot whose perpendicular misses by more (sine) is an end, not a foot
 
+ORDER = np.array([0, 5, 1, 6, 2, 3, 4, 7, 8, 9])  # (x, y, θθθ of A, the same of B) to (x, x, y, y, θ of A, θ of B)
 
 Lines = tuple[smooth.SmoothLine, smooth.SmoothLine]
 
@@ -78,19 +79,50 @@ class Pair:
         """The same contact with the parts of A and B exchanged."""
         return Pair(self.name, self.b, self.a, self.across, self.side, self.offset, self.unit_length)
 
-    def rows(self, state: State, at: Positions) -> Rows:
+    @property
+    def thickness(self) -> float:
+        """What an overlap is measured by: the mean thickness, for lines the longest beam; units of length."""
+        return self.offset if self.offset > 0.0 else 1.0
+
+    def deepest(self, state: State, at: Positions) -> float:
+        """Largest overlap of the two beams anywhere along A, units of length; zero where they are apart."""
+        lines = self.lines(state, at)
+        places = closest_places(self, lines)
+        D, _, foot = distance_along(self, lines, np.concatenate((smooth.halves(self.a), places.s, places.held_s)))
+        return float(np.max(np.where(foot, self.offset - D, 0.0), initial=0.0))
+
+    def touching(self, state: State, at: Positions, s: Array) -> Array:
+        """Where the edges touch that touch at arc lengths ``s`` of A, (k, 2), units of length."""
+        lines = self.lines(state, at)
+        A, B = lines[0].at(s), lines[1].at(distance_along(self, lines, s)[1])
+        share = self.a.thickness / (self.a.thickness + self.b.thickness)
+        return np.stack((A.x + share * (B.x - A.x), A.y + share * (B.y - A.y)), axis=1)
+
+    def pressed(self, state: State, at: Positions, chain: Chain, s: Array) -> tuple[float, Array, Array] | None:
+        """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s`` of A."""
+        lines = self.lines(state, at)
+        if chain is self.a:
+            return 1.0, s, lines[0].at(s).psi
+        if chain is self.b:
+            sigma = distance_along(self, lines, s)[1]
+            return -1.0, sigma, lines[1].at(sigma).psi
+        return None
+
+    def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
         lines = self.lines(state, at)
         found = closest_places(self, lines)
-        parts = [self._rows_at(lines, found.s, found.sigma, free=True)] if found.s.size else []
+        groups = []
+        if found.s.size:
+            groups.append(self._rows_at(lines, found.s, found.sigma, free=True))
         if found.held_s.size:
-            parts.append(self._rows_at(lines, found.held_s, found.held_sigma, free=False))
+            groups.append(self._rows_at(lines, found.held_s, found.held_sigma, free=False))
         if found.across_s.size:
             rows = self.exchanged()._rows_at(lines[::-1], found.across_s, found.across_sigma, free=False)
-            parts.append(replace(rows, arc=found.across_sigma))
-        return together(parts)
+            groups.append(replace(rows, arc=found.across_sigma))
+        return tuple(groups)
 
-    def _rows_at(self, lines: Lines, s: Array, sigma: Array, *, free: bool) -> Rows:
+    def _rows_at(self, lines: Lines, s: Array, sigma: Array, *, free: bool) -> Group:
         """Rows at feet (s, σ); ``free`` where s moves with the minimum, else it is held."""
         A, B = lines[0].at(s), lines[1].at(sigma)
         m, k = len(s), smooth.LOCALS
@@ -127,36 +159,24 @@ class Pair:
         second += n_A[:, :, None] * s_z[:, None, :] - n_B[:, :, None] * sigma_z[:, None, :]
         second *= self.side
 
-        # each row has ten local numbers of its own: joints (A, B), then θ (three of A, three of B)
-        joints = np.concatenate((self.a.first_joint + A.link, self.b.first_joint + B.link))
-        angles = np.concatenate((_angles(self.a, A.link).ravel(), _angles(self.b, B.link).ravel()))
-        i = np.arange(m)
-        where = np.concatenate(
-            (
-                np.stack((i, 2 * m + i), axis=1),
-                4 * m + 3 * i[:, None] + np.arange(3),
-                np.stack((m + i, 3 * m + i), axis=1),
-                7 * m + 3 * i[:, None] + np.arange(3),
-            ),
-            axis=1,
-        )
-        slopes = np.zeros((m, 10 * m))
-        slopes[i[:, None], where] = -slope
+        # local numbers of a row: joints of A and B, then θ (three of A, three of B)
+        joints = np.stack((self.a.first_joint + A.link, self.b.first_joint + B.link), axis=1)
+        angles = np.concatenate((_angles(self.a, A.link), _angles(self.b, B.link)), axis=1)
 
-        def curvature(multipliers: Array) -> Array:
-            total = np.zeros((10 * m, 10 * m))
-            total[where[:, :, None], where[:, None, :]] = -multipliers[:, None, None] * second
-            return total
+        def curvature(multipliers: Array) -> Blocks:
+            pressing = np.flatnonzero(multipliers)
+            matrices = -multipliers[pressing, None, None] * second[pressing][:, ORDER[:, None], ORDER]
+            return Blocks(joints[pressing], angles[pressing], matrices)
 
-        return Rows(
+        return Group(
+            contact=self.name,
             values=self.offset - self.side * distance,
             joints=joints,
             angles=angles,
-            slopes=slopes,
+            slopes=-slope[:, ORDER],
             curvature=curvature,
-            keys=((self.name, 0),) * m,
+            keys=(-1,) * m,
             arc=np.asarray(A.s),
-            contact=(self.name,) * m,
         )
 
 
@@ -218,8 +238,13 @@ def closest_places(pair: Pair, lines: Lines) -> Places:
         np.stack((A.x, A.y), axis=1), distance_upper_bound=limit
     )
     close = np.flatnonzero(np.isfinite(rough))
+    across_s = across_sigma = none
+    for end in (0, -1):
+        if np.min((A.x - G.x[end]) ** 2 + (A.y - G.y[end]) ** 2) < limit * limit:
+            at_end, foot_of_end = _facing_end(pair, lines, grid[[end]], reach)
+            across_s, across_sigma = np.append(across_s, at_end), np.append(across_sigma, foot_of_end)
     if not close.size:
-        return Places(none, none, none, none, none, none)
+        return Places(none, none, none, none, across_s, across_sigma)
     D, sigma = np.full(len(s), np.inf), np.zeros(len(s))
     distance, sigma[close], foot = _feet(pair, lines[1], lines[0].at(s[close]), grid[nearest[close]])
     D[close] = np.where(foot, distance, np.inf)
@@ -234,11 +259,14 @@ def closest_places(pair: Pair, lines: Lines) -> Places:
         held_s = np.concatenate((held_s, s[inner][~minimum]))
         held_sigma = np.concatenate((held_sigma, sigma[inner][~minimum]))
         free_s, free_sigma = free_s[minimum], free_sigma[minimum]
-    ends = np.array([0.0, pair.b.s[-1]])
-    E, foot_s, has_foot = distance_along(pair.exchanged(), lines[::-1], ends)
-    inside = (foot_s > 0.0) & (foot_s < pair.a.s[-1])
-    facing = has_foot & inside & (reach > E)
-    return Places(free_s, free_sigma, held_s, held_sigma, ends[facing], foot_s[facing])
+    return Places(free_s, free_sigma, held_s, held_sigma, across_s, across_sigma)
+
+
+def _facing_end(pair: Pair, lines: Lines, end: Array, reach: float) -> tuple[Array, Array]:
+    """An end of B (1,) and its foot within A, or nothing where it faces no part of A."""
+    E, foot, has_foot = distance_along(pair.exchanged(), lines[::-1], end)
+    facing = has_foot & (foot > 0.0) & (foot < pair.a.s[-1]) & (reach > E)
+    return end[facing], foot[facing]
 
 
 def _refined(pair: Pair, lines: Lines, s: Array, sigma: Array) -> tuple[Array, Array, Flags]:
@@ -271,6 +299,7 @@ def _refined(pair: Pair, lines: Lines, s: Array, sigma: Array) -> tuple[Array, A
 def pair_of(scene: Scene, model: Model, name: str) -> Pair:
     """One of the scene's contacts, its sides read from the stress-free state."""
     contact = scene.contacts[name]
+    assert isinstance(contact, BeamContact)
     a, b = (model.chain(beam) for beam in contact.between)
     state = rest_state(model)
     at = positions(model, state)
@@ -287,11 +316,3 @@ def _side(pair: Pair, lines: Lines) -> float:
     if not np.isfinite(size.min()):
         size = np.abs(D)
     return 1.0 if D[int(np.argmin(size))] >= 0.0 else -1.0
-
-
-def deepest(pair: Pair, state: State, at: Positions) -> float:
-    """Largest overlap of the two beams anywhere along A, units of length; zero where they are apart."""
-    lines = pair.lines(state, at)
-    places = closest_places(pair, lines)
-    D, _, foot = distance_along(pair, lines, np.concatenate((smooth.halves(pair.a), places.s, places.held_s)))
-    return float(np.max(np.where(foot, pair.offset - D, 0.0), initial=0.0))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm import nearest, smooth
+from cprbm import smooth
 from cprbm.equilibrium import Point, Problem, potential_energy
 from cprbm.forces import contact_forces, supports
 from cprbm.mechanism import Mechanism
@@ -36,7 +36,7 @@ def _value(
                 else 0.0
             )
         case "force":
-            first = model.chain(scene.contacts[probe.of].between[0]).joints
+            first = model.chain(scene.contacts[probe.of].beams[0]).joints
             forces = contact_forces(problem, point, probe.of)
             return float(np.hypot(forces.fx[first].sum(), forces.fy[first].sum())) * model.unit_force
         case "centre":
@@ -107,11 +107,5 @@ def touching(mechanism: Mechanism, point: Point) -> dict[str, Array]:
         ]
         if not pressing:
             continue
-        s = np.array(pressing)
-        lines = pair.lines(point.state, point.at)
-        _, sigma, _ = nearest.distance_along(pair, lines, s)
-        A, B = lines[0].at(s), lines[1].at(sigma)
-        share = pair.a.thickness / (pair.a.thickness + pair.b.thickness)
-        xy = np.stack((A.x + share * (B.x - A.x), A.y + share * (B.y - A.y)), axis=1)
-        found[name] = frozen_array(xy * model.unit_length)
+        found[name] = frozen_array(pair.touching(point.state, point.at, np.array(pressing)) * model.unit_length)
     return found

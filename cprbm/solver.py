@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import brentq
+from threadpoolctl import threadpool_limits
 
 from cprbm.certifying import certify
-from cprbm.contact import no_rows
+from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import Equilibrium, Point, equilibrium, point_at
 from cprbm.forces import contact_imbalance
 from cprbm.kinematics import rest_state
@@ -38,9 +39,12 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
     """
     began = time.perf_counter()
     settings = settings or Settings()
-    mechanism = mechanism_of(scene, settings)
-    march = _March(scene, settings, mechanism)
-    ending, sentence = march.run()
+    # small matrices: more than one thread of BLAS costs more than it brings
+    with threadpool_limits(limits=1, user_api="blas"):
+        mechanism = mechanism_of(scene, settings)
+        march = _March(scene, settings, mechanism)
+        ending, sentence = march.run()
+        notes = march.notes()
     return Answer(
         solver="cprbm",
         scene=scene.name,
@@ -50,7 +54,7 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
         stations=tuple(march.reached),
         events=tuple(march.events),
         seconds=time.perf_counter() - began,
-        notes=tuple(march.notes()),
+        notes=tuple(notes),
     )
 
 
@@ -63,7 +67,7 @@ class _March:
         problem = mechanism.problem
         state = rest_state(problem.model)
         closed = np.zeros(problem.closure.rows)
-        self.point = point_at(problem, {}, state, closed, np.zeros(0), no_rows())
+        self.point = point_at(problem, {}, state, closed, np.zeros(0), NO_ROWS)
         self.reached: list[StationAnswer] = []
         self.events: list[Event] = []
         self.closed_at: dict[str, float] = {}
@@ -154,7 +158,7 @@ class _March:
         """The load at which the gap of an open contact becomes zero, the contact itself left out."""
         problem = self.mechanism.without(name)
         begin = self.values.get(load, 0.0)
-        near = point_at(problem, self.values, self.point.state, self.point.mu, np.zeros(0), no_rows())
+        near = point_at(problem, self.values, self.point.state, self.point.mu, np.zeros(0), NO_ROWS)
 
         def overlap(value: float) -> float:
             nonlocal near

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm import nearest
 from cprbm.energy import spring_moments
 from cprbm.equilibrium import Point
 from cprbm.forces import contact_forces
@@ -51,24 +50,18 @@ def _kinks(mechanism: Mechanism, point: Point, chain: Chain) -> tuple[Array, Arr
         normal = forces.fy[chain.joints] * np.cos(tangent) - forces.fx[chain.joints] * np.sin(tangent)
         pressed = np.flatnonzero(normal)
         return chain.s[pressed], normal[pressed]
-    rows = point.rows
-    for name, pair in mechanism.pairs.items():
-        if chain not in (pair.a, pair.b):
+    for group, lam in point.rows.shares(point.lam):
+        pair = mechanism.pairs[group.contact]
+        pressing = np.flatnonzero(lam)
+        found = pair.pressed(point.state, point.at, chain, group.arc[pressing]) if pressing.size else None
+        if found is None:
             continue
-        pressing = [r for r in range(rows.size) if rows.contact[r] == name and point.lam[r] > 0.0]
-        if not pressing:
-            continue
-        lines = pair.lines(point.state, point.at)
-        s = rows.arc[pressing]
-        _, sigma, _ = nearest.distance_along(pair, lines, s)
-        on_a = rows.joints - pair.a.first_joint
-        mine = (on_a >= 0) & (on_a < pair.a.n + 2)
-        p = len(rows.joints)
-        for r, s_a, s_b in zip(pressing, s, sigma, strict=True):
-            force = -point.lam[r] * np.array([rows.slopes[r, :p][mine].sum(), rows.slopes[r, p : 2 * p][mine].sum()])
-            on_this = force if chain is pair.a else -force
-            place, line = (s_a, lines[0]) if chain is pair.a else (s_b, lines[1])
-            psi = float(line.at(np.array([place])).psi[0])
-            places.append(float(place))
-            jumps.append(float(on_this[1] * np.cos(psi) - on_this[0] * np.sin(psi)))
+        sign, at, psi = found
+        p = group.joints.shape[1]
+        on_a = (group.joints >= pair.a.first_joint) & (group.joints < pair.a.first_joint + pair.a.n + 2)
+        weights = -sign * lam[:, None] * on_a
+        fx = np.sum(weights * group.slopes[:, :p], axis=1)[pressing]
+        fy = np.sum(weights * group.slopes[:, p : 2 * p], axis=1)[pressing]
+        places.extend(at)
+        jumps.extend(fy * np.cos(psi) - fx * np.sin(psi))
     return np.array(places), np.array(jumps)

@@ -9,10 +9,14 @@ from fea_reference.curvature import smallest_curvature
 from fea_reference.march import March
 from fea_reference.model import Model
 from fea_reference.supports import support
+from fea_reference.system import System
+from fea_reference.touch import Circle, Pair
 from scene.answer import Array, Certificate
 
 _VIOLATION = 1e-9
 _BALANCE = 1e-8
+_NOTHING = 10.0  # floors: forces below this are round-off themselves
+_MISSING = 1e-3  # of a contact's resultant
 
 
 def certify(march: March) -> Certificate:
@@ -29,7 +33,7 @@ def certify(march: March) -> Certificate:
     floor = system.floor / system.scale
     violation = float(np.abs(system.residual[~free]).max())
     penetration = max((one.penetration / one.pair.scale for one in system.touches), default=0.0)
-    force, moment = _balance(model, march.values, system.z, 10.0 * system.floor)
+    force, moment = _balance(model, march.values, system)
     try:
         curvature = smallest_curvature(model, splu(system.tangent))
     except RuntimeError:
@@ -46,6 +50,13 @@ def certify(march: March) -> Certificate:
         failures.append(f"the forces of loads and supports leave {force:.1e} of the largest")
     if not moment <= max(_BALANCE, floor):
         failures.append(f"the moments of loads and supports leave {moment:.1e} of the largest")
+    for one in system.touches:
+        if isinstance(one.pair, Pair) and one.missing > _MISSING * float(np.hypot(*one.force.sum(axis=1))):
+            end, side = model.beams[one.pair.second].name, model.beams[one.pair.first].name
+            failures.append(
+                f"in {one.pair.name} an end of {end} presses on the side of {side}, and a force of "
+                f"{one.missing * model.units.force:.1e} N along {end} is left out"
+            )
     if not curvature > 0.0:
         failures.append(f"the smallest curvature of the potential energy is {curvature:.1e}: no minimum")
     return Certificate(
@@ -62,12 +73,13 @@ def certify(march: March) -> Certificate:
     )
 
 
-def _balance(model: Model, values: Array, z: Array, least: float) -> tuple[float, float]:
-    """|ΣF| and |ΣM| about the origin of loads and supports, each over the largest in it, if that is more than
-    ``least``.
+def _balance(model: Model, values: Array, system: System) -> tuple[float, float]:
+    """|ΣF| and |ΣM| about the origin of loads and supports, each over the largest in it if that is no round-off.
 
-    A contact's two forces are opposite on one line: they cancel in both sums.
+    A contact's two forces are opposite on one line: they cancel in both sums, unless one of them is on a circle
+    that is fixed to the ground, which makes the other a support's.
     """
+    z = system.z
     forces: list[Array] = []
     moments: list[float] = []
     for joint in model.joints:
@@ -84,9 +96,13 @@ def _balance(model: Model, values: Array, z: Array, least: float) -> tuple[float
             forces.append(value * part.direction)
             at = model.carried(body, part.arm, z)
             moments.append(float(at[0] * forces[-1][1] - at[1] * forces[-1][0]))
+    for one in system.touches:
+        if isinstance(one.pair, Circle) and model.bodies[one.pair.body].dofs is None:
+            forces.append(one.force.sum(axis=1))
+            moments.append(float((one.x[0] * one.force[1] - one.x[1] * one.force[0]).sum()))
     largest_force = max((float(np.hypot(*force)) for force in forces), default=0.0)
     largest_moment = max(map(abs, moments), default=0.0)
     # Forces that vanish are judged by the moments, and these by them: lengths are of order one here.
     scale = max(largest_force, largest_moment)
-    scale = scale if scale > least else 1.0
+    scale = scale if scale > _NOTHING * system.floor else 1.0
     return float(np.hypot(*sum(forces, np.zeros(2)))) / scale, abs(sum(moments)) / scale

@@ -16,95 +16,48 @@ Energy Π_c = ∫ ½ ε ⟨−g⟩² ds over the first beam's undeformed arc len
 
 (Konyukhov and Schweizerhof, Computational Contact Mechanics, ch. 5, in the plane).  The integral runs over
 the exact intervals on which g < 0, so the pressure vanishes at their moving ends, which therefore add nothing
-to either derivative, and what is integrated is smooth in between.
+to either derivative, and what is integrated is smooth in between.  It does not vanish where an interval ends
+because the second beam does; there ½ ε g²/|x'·τ| along τ is missing, x' by arc length.  So a beam whose end
+lies over the inside of the other is the first, and what is missing all the same is measured.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from fea_reference.hermite import Index, along, bending_along, shape_slopes, shapes
+from fea_reference.hermite import NeutralLine, along, bending_along, shape_slopes, shapes
 from fea_reference.model import Model
 from fea_reference.projection import project
-from fea_reference.zones import Zones, find, side_of
+from fea_reference.touch import Pair, Touch
+from fea_reference.zones import Zones, ends_over, find, side_of
 from scene.answer import Array
-from scene.statement import Scene
+from scene.statement import BeamContact, Scene
 
-
-@dataclass(frozen=True, slots=True)
-class Pair:
-    """Two beams that may touch.
-
-    Attributes:
-        first, second: their numbers; the first carries the integral.
-        side: of the second on which the first lies.
-        distance: T, of the neutral lines when they touch.
-        scale: what penetration is measured by: the mean thickness, or the longest beam for lines.
-        stiffness: the penalty to begin with, the softer beam's EI over its element's length (or half of the
-            mean thickness, if that is more) to the fourth.
-    """
-
-    name: str
-    first: int
-    second: int
-    side: float
-    distance: float
-    scale: float
-    stiffness: float
-
-
-@dataclass(frozen=True, slots=True)
-class Touch:
-    """A pair's contact at its k Gauss points.
-
-    ``dofs`` (12, k) of the element of the first beam and that of the second, ``gradient`` (12, k) and
-    ``hessian`` (12, 12, k) of Π_c; places ``zeta``, ``zeta_m`` (k,), points ``x``, ``x_m`` (2, k), the forces
-    ``force`` on the first beam (2, k), the ``normal`` away from the second (2, k).
-    """
-
-    pair: Pair
-    zones: Zones
-    dofs: Index
-    gradient: Array
-    hessian: Array
-    zeta: Array
-    zeta_m: Array
-    x: Array
-    x_m: Array
-    force: Array
-    normal: Array
-
-    @property
-    def penetration(self) -> float:
-        """Largest depth of overlap."""
-        return max(0.0, -self.zones.least)
-
-    @property
-    def push(self) -> float:
-        """The resultant with its sign: negative while a held contact pulls."""
-        return float((self.force * self.normal).sum())
-
-    @property
-    def closed(self) -> bool:
-        """Whether the beams touch anywhere."""
-        return self.zeta.size > 0
+_AT_END = 1e-6  # elements
 
 
 def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
-    """The scene's contacts, their sides seen in the undeformed state."""
+    """The scene's contacts of beams, their sides seen in the undeformed state."""
     found = []
     number = {beam.name: i for i, beam in enumerate(model.beams)}
     for name, contact in scene.contacts.items():
+        if not isinstance(contact, BeamContact):
+            continue
         i, j = (number[beam] for beam in contact.between)
+        lines = [model.line(model.beams[one], model.start) for one in (i, j)]
+        turned = ends_over(lines[1], lines[0]) and not ends_over(lines[0], lines[1])
+        if turned:
+            i, j = j, i
         first, second = model.beams[i], model.beams[j]
         mean = 0.5 * (first.thickness + second.thickness)
         side = side_of(model.line(first, model.start), model.line(second, model.start))
         stiffness = min(
             beam.bending / max(model.elements.length[beam.elements.start], 0.5 * mean) ** 4 for beam in (first, second)
         )
-        found.append(Pair(name, i, j, side, mean if contact.thick else 0.0, mean if contact.thick else 1.0, stiffness))
+        distance, scale = (mean, mean) if contact.thick else (0.0, 1.0)
+        found.append(Pair(name, i, j, turned, side, distance, scale, stiffness))
     return tuple(found)
 
 
@@ -176,4 +129,19 @@ def touch(model: Model, pair: Pair, stiffness: float, quadrature: int, z: Array,
         x_m=x_m,
         force=-weight * g * normal,
         normal=normal,
+        missing=_missing(line, line_m, pair, stiffness, zones),
     )
+
+
+def _missing(first: NeutralLine, second: NeutralLine, pair: Pair, stiffness: float, zones: Zones) -> float:
+    """½ ε g²/|x'·τ|, summed over the intervals' ends that are across from an end of the second beam."""
+    zeta, zeta_m = zones.intervals.ravel(), zones.zeta_m.ravel()
+    across = np.minimum(zeta_m, second.n - zeta_m) <= _AT_END
+    zeta, zeta_m = zeta[across], zeta_m[across]
+    x, x1, _ = first.at(zeta)
+    x_m, x_m1, _ = second.at(zeta_m)
+    tau = x_m1 / np.hypot(x_m1[0], x_m1[1])
+    n = np.stack([-tau[1], tau[0]])
+    g = np.minimum(pair.side * (n * (x - x_m)).sum(axis=0) - pair.distance, 0.0)
+    ahead = np.abs((x1 * tau).sum(axis=0)) / first.lengths[first.locate(zeta)[0]]
+    return float((0.5 * stiffness * g**2 / np.maximum(ahead, 1e-3)).sum())

@@ -11,7 +11,8 @@ M       lumped mass: arc length for the nodes, one for the bodies
 
 Forces outside of the joints' rows move the mechanism along feasible directions only, so S is the inverse of
 the energy's second derivative on them and zero across, and M^½ S M^½ has the eigenvalues 1/μ.  Lanczos'
-method finds the outermost of them first; a Ritz value below zero proves a direction of negative curvature.
+method finds the outermost of them first; a Ritz value below zero proves a direction of negative curvature,
+unless it is round-off, which a solution with K makes grow with the third power of the number of elements.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from scene.answer import Array
 
 _STEPS = 40
 _SEED = 20200103
-_NOISE = 1e-9  # of the largest 1/μ: eigenvalues at zero belong to infeasible directions
+_NOISE = 1e-9  # of the largest 1/μ, or what round-off makes of it: eigenvalues at zero are infeasible directions
 
 
 def smallest_curvature(model: Model, factors: SuperLU) -> float:
@@ -62,4 +63,5 @@ def smallest_curvature(model: Model, factors: SuperLU) -> float:
         v = w / beta
     ritz = eigvalsh_tridiagonal(np.array(diagonal), np.array(beside[: len(diagonal) - 1]))
     low, high = float(ritz[0]), float(ritz[-1])
-    return 1.0 / (low if low < -_NOISE * max(abs(low), abs(high)) else high)
+    noise = max(_NOISE, float(np.finfo(float).eps) * float(h.size) ** 3)
+    return 1.0 / (low if low < -noise * max(abs(low), abs(high)) else high)

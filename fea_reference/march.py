@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,12 +9,12 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
 from fea_reference.advance import advance
-from fea_reference.contact import Pair, zones_of
-from fea_reference.crossing import cross
+from fea_reference.contacts import passed_through, zones_of
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.settings import Settings
 from fea_reference.system import System, assemble, load_direction
+from fea_reference.touch import Circle, Contact, Pair, Touch
 from scene.answer import Array, Ending
 
 _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
@@ -46,10 +45,10 @@ class March:
 
     model: Model
     settings: Settings
-    open: list[Pair]
+    open: list[Contact]
     values: Array
     system: System
-    penalties: dict[Pair, float] = field(default_factory=dict)
+    penalties: dict[Contact, float] = field(default_factory=dict)
     closing: dict[str, float] = field(default_factory=dict)
     iterations: int = 0
 
@@ -61,6 +60,8 @@ class March:
         """
         self.iterations = 0
         self._watch_what_touches(load)
+        if self.values[load] != target:
+            self._loosen()
         stride, cuts = np.inf, 0
         reason = (Ending.STEP_TOO_SMALL, "")
         while self.values[load] != target:
@@ -137,13 +138,10 @@ class March:
                 f"beyond {self._shown(load, start)} an element turns by {turned:.2f} rad: take more elements",
             )
         for pair in (*self.open, *self.penalties):
-            lines = [self.model.line(self.model.beams[i], system.z) for i in (pair.first, pair.second)]
-            # Lines without thickness cross by what the penalty lets through; that is held, and measured.
-            held = pair.distance == 0.0 and zones_of(self.model, pair, system.z).least < 0.0
-            if not held and cross(*lines):
+            if passed_through(self.model, pair, before, system.z):
                 return (
                     Ending.BEAMS_CROSSED,
-                    f"beyond {self._shown(load, start)} the beams of {pair.name} cross",
+                    f"beyond {self._shown(load, start)} what touches in {pair.name} passes through each other",
                 )
         self.values[load], self.system = value, system
         if touched:
@@ -181,24 +179,30 @@ class March:
                 self.closing[pair.name] = float(self.values[load]) * self.model.loads[load].unit
         self.system = assemble(self.model, self.penalties, self.settings.quadrature, self.values, self.system.z)
 
-    def _tighten(self) -> None:
-        """Raise penalties, each time from the last equilibrium, until the penetration asked is kept.
+    def _loosen(self) -> None:
+        """Go back to the circles' first penalties: the ends of a zone move by a layer's width per iteration."""
+        looser = {pair: pair.stiffness if isinstance(pair, Circle) else now for pair, now in self.penalties.items()}
+        if looser == self.penalties:
+            return
+        solved = equilibrium(self.model, self.settings, looser, self.values, self.system.z, self._depths())
+        self.iterations += solved.iterations
+        if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
+            self.system, self.penalties = solved.system, looser
 
-        The penetration of a contact in a point falls with the penalty to the power −2/3, in an area with −1.
-        """
+    def _tighten(self) -> None:
+        """Raise penalties, each time from the last equilibrium, until none is too soft."""
         most = _TIGHTEN
         for _ in range(_TIGHTENINGS):
-            excess = {
-                one.pair: one.penetration / (self.settings.penetration * one.pair.scale) for one in self.system.touches
-            }
-            if max(excess.values(), default=0.0) <= 1.0:
+            factors = {one.pair: self._too_soft(one) for one in self.system.touches}
+            if max(factors.values(), default=1.0) <= 1.0:
                 return
             tighter, depths = dict(self.penalties), self._depths()
-            for pair, ratio in excess.items():
-                if ratio > 1.0:
-                    factor = min(_SLACK * ratio**1.5, most)
+            for pair, wanted in factors.items():
+                if wanted > 1.0:
+                    factor = min(wanted, most)
                     tighter[pair] *= factor
-                    depths[pair] *= factor ** (-2.0 / 3.0)
+                    if pair in depths:
+                        depths[pair] *= factor ** (-2.0 / 3.0)
             solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, depths)
             self.iterations += solved.iterations
             if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
@@ -207,13 +211,24 @@ class March:
             else:
                 most = max(most**0.4, 1.2)
 
-    def _depths(self) -> dict[Pair, float]:
-        """The penetrations of the closed contacts; of those just closed, what they will be allowed."""
+    def _too_soft(self, one: Touch) -> float:
+        """The factor by which a penalty falls short of the penetration asked, or of what its circle wants.
+
+        The penetration of a contact in a point falls with the penalty to the power −2/3, in an area with −1.
+        """
+        ratio = one.penetration / (self.settings.penetration * one.pair.scale)
+        wanted = _SLACK * ratio**1.5 if ratio > 1.0 else 1.0
+        if isinstance(one.pair, Circle) and one.closed:
+            wanted = max(wanted, one.pair.stiffest / self.penalties[one.pair])
+        return wanted
+
+    def _depths(self) -> dict[Contact, float]:
+        """The penetrations of the closed contacts of beams; of those just closed, what they will be allowed."""
         allowed = self.settings.penetration
         return {
             one.pair: max(one.penetration, allowed * one.pair.scale)
             for one in self.system.touches
-            if one.zones.least <= 1e-9 * one.pair.scale
+            if isinstance(one.pair, Pair) and one.zones.least <= 1e-9 * one.pair.scale
         }
 
     def _moved(self, system: System, z: Array) -> float:
@@ -225,7 +240,7 @@ class March:
         return f"{part.name} = {value * part.unit:.6g}"
 
 
-def begin(model: Model, settings: Settings, contacts: Iterator[Pair] | tuple[Pair, ...]) -> March:
+def begin(model: Model, settings: Settings, contacts: tuple[Contact, ...]) -> March:
     """The undeformed mechanism, unloaded."""
     values = np.zeros(len(model.loads))
     system = assemble(model, {}, settings.quadrature, values, model.start)

@@ -9,10 +9,12 @@ import numpy as np
 from scipy.sparse.linalg import splu
 
 from fea_reference.advance import advance
-from fea_reference.contact import Pair
+from fea_reference.hermite import Index
+from fea_reference.linesearch import searched
 from fea_reference.model import Model
 from fea_reference.settings import Settings
 from fea_reference.system import System, assemble
+from fea_reference.touch import Contact
 from scene.answer import Array
 
 _TURN = 0.4  # rad, and the same in lengths of the longest beam: the most that one iteration may move anything
@@ -33,10 +35,10 @@ class Solved:
 def equilibrium(
     model: Model,
     settings: Settings,
-    penalties: Mapping[Pair, float],
+    penalties: Mapping[Contact, float],
     values: Array,
     z: Array,
-    depths: Mapping[Pair, float],
+    depths: Mapping[Contact, float],
 ) -> Solved:
     """Seek the equilibrium near ``z`` under load ``values``.
 
@@ -59,8 +61,13 @@ def equilibrium(
         if not np.isfinite(step).all():
             return Solved(system, converged=False, iterations=iteration + 1)
         correction = float(np.abs(step[moving]).max())
-        z = advance(model, z, min(1.0, _TURN / max(correction, _TURN)) * step)
-        system = assemble(model, penalties, settings.quadrature, values, z, held)
+        step *= min(1.0, _TURN / max(correction, _TURN))
+        if penalties and not held and unbalanced > accepted:
+            system = _along(model, settings, penalties, values, system, step, moving)
+            z = system.z
+        else:
+            z = advance(model, z, step)
+            system = assemble(model, penalties, settings.quadrature, values, z, held)
         if held:
             for one in system.touches:
                 depth = held.get(one.pair)
@@ -72,3 +79,27 @@ def equilibrium(
                     del held[one.pair]
             system = assemble(model, penalties, settings.quadrature, values, z, held)
     return Solved(system, converged=False, iterations=settings.newton_limit)
+
+
+def _along(
+    model: Model,
+    settings: Settings,
+    penalties: Mapping[Contact, float],
+    values: Array,
+    system: System,
+    step: Array,
+    moving: Index,
+) -> System:
+    """The system after as much of ``step`` as lowers the energy; forces take all of theirs."""
+    forces = step.copy()
+    forces[moving] = 0.0
+    motions = step - forces
+
+    def after(fraction: float) -> System:
+        z = advance(model, system.z, forces + fraction * motions)
+        return assemble(model, penalties, settings.quadrature, values, z)
+
+    def slope(there: System) -> float:
+        return float(motions @ there.residual)
+
+    return searched(after, slope, float(motions @ (system.residual + system.tangent @ forces)))

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea_reference.contact import Touch
 from fea_reference.march import March
 from fea_reference.recovery import bending_moment
 from fea_reference.supports import support
+from fea_reference.touch import Pair, Touch
 from scene.answer import Array, Shape, frozen_array
 from scene.statement import Probe, Scene
 
@@ -64,10 +64,12 @@ def touching(march: March) -> dict[str, Array]:
     model, places = march.model, {}
     for one in march.system.touches:
         if one.closed:
-            first, second = model.beams[one.pair.first], model.beams[one.pair.second]
+            own = model.beams[one.pair.first].thickness
+            # A circle's points are on its surface already.
+            other = model.beams[one.pair.second].thickness if isinstance(one.pair, Pair) else 0.0
             # From each neutral line to its own surface; lines have none.
-            share = one.pair.distance / (first.thickness + second.thickness)
-            middle = 0.5 * (one.x + one.x_m + share * (second.thickness - first.thickness) * one.normal)
+            share = one.pair.distance / (own + other)
+            middle = 0.5 * (one.x + one.x_m + share * (other - own) * one.normal)
             places[one.pair.name] = frozen_array((middle * model.units.length + model.units.origin[:, None]).T)
     return places
 
@@ -78,10 +80,15 @@ def _touch(march: March, name: str) -> Touch | None:
 
 
 def _centre(march: March, touch: Touch) -> float:
-    """Arc length on the first beam of the pressure's centre."""
+    """Arc length of the pressure's centre on the beam that the scene names first."""
     weight = np.hypot(*touch.force)
-    line = march.model.line(march.model.beams[touch.pair.first], march.system.z)
-    e, xi = line.locate(touch.zeta)
+    pair = touch.pair
+    if isinstance(pair, Pair) and pair.turned:
+        number, zeta = pair.second, touch.zeta_m
+    else:
+        number, zeta = pair.first, touch.zeta
+    line = march.model.line(march.model.beams[number], march.system.z)
+    e, xi = line.locate(zeta)
     start = np.concatenate([[0.0], np.cumsum(line.lengths)])
     return float(weight @ (start[e] + xi * line.lengths[e]) / weight.sum())
 

@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea_reference.contact import Touch
 from fea_reference.model import BeamPart, Model
 from fea_reference.system import System
+from fea_reference.touch import Pair, Touch
 from scene.answer import Array
 
 _NOTHING = (np.empty(0), np.empty((2, 0)), np.empty((2, 0)), np.empty((3, 0)))
@@ -46,6 +46,6 @@ def _on_beam(touch: Touch, number: int) -> tuple[Array, Array, Array, Array]:
     """Places, points, forces and the gradient at the element's first node, of one contact on one beam."""
     if touch.pair.first == number:
         return touch.zeta, touch.x, touch.force, touch.gradient[:3]
-    if touch.pair.second == number:
+    if isinstance(touch.pair, Pair) and touch.pair.second == number:
         return touch.zeta_m, touch.x_m, -touch.force, touch.gradient[6:9]
     return _NOTHING

@@ -42,7 +42,7 @@ class Settings:
     residual: float = 1e-10
     correction: float = 1e-8
     newton_limit: int = 25
-    iteration_limit: int = 500
+    iteration_limit: int = 300
 
     def __post_init__(self) -> None:
         mistakes = []

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import time
 
+from threadpoolctl import threadpool_limits
+
 from fea_reference.certificates import certify
-from fea_reference.contact import pairs
+from fea_reference.contacts import contacts
 from fea_reference.march import March, StoppedError, begin
 from fea_reference.model import build
 from fea_reference.probes import probed, shapes, touching
@@ -28,24 +30,26 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     """
     began = time.perf_counter()
     model = build(scene, settings)
-    march = begin(model, settings, pairs(scene, model))
+    march = begin(model, settings, contacts(scene, model))
     stations: list[StationAnswer] = []
     events: list[Event] = []
     ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
-    try:
-        for stage in scene.stages:
-            load = list(scene.loads).index(stage.steps)
-            for station in stage.stations:
-                known = set(march.closing)
-                march.reach(load, station / model.loads[load].unit)
-                events += [
-                    Event(stage.name, name, "closes", closing)
-                    for name, closing in march.closing.items()
-                    if name not in known
-                ]
-                stations.append(_certified(scene, march, stage, station))
-    except StoppedError as stopped:
-        ending, sentence = stopped.ending, stopped.sentence
+    # small blocks: more than one thread of BLAS costs more than it brings
+    with threadpool_limits(limits=1, user_api="blas"):
+        try:
+            for stage in scene.stages:
+                load = list(scene.loads).index(stage.steps)
+                for station in stage.stations:
+                    known = set(march.closing)
+                    march.reach(load, station / model.loads[load].unit)
+                    events += [
+                        Event(stage.name, name, "closes", closing)
+                        for name, closing in march.closing.items()
+                        if name not in known
+                    ]
+                    stations.append(_certified(scene, march, stage, station))
+        except StoppedError as stopped:
+            ending, sentence = stopped.ending, stopped.sentence
     closed = {name: f"closed at {value:.6g}" for name, value in march.closing.items()}
     tested = [f"{name}: {closed.get(name, 'stayed open')}" for name in scene.contacts]
     return Answer(

@@ -14,15 +14,16 @@ from frozendict import frozendict
 from scipy.sparse import csc_matrix
 from skfem.assembly.form.coo_data import COOData
 
-from fea_reference.contact import Pair, Touch, touch
+from fea_reference.contacts import touch
 from fea_reference.element import ElementForces, forces
 from fea_reference.hermite import Index
 from fea_reference.model import Model, turned
+from fea_reference.touch import Contact, Touch
 from scene.answer import Array
 
 _ROUND_OFF = 3.0  # measured: one to two from 20 to 320 elements
 _NOTHING = 10.0  # floors: a force below this is round-off itself
-_NONE_HELD: Mapping[Pair, float] = frozendict()
+_NONE_HELD: Mapping[Contact, float] = frozendict()
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +36,7 @@ class System:
         scale: the largest generalised force that balances; where there is none but round-off, EI/length².
         floor: round-off of the residual: an element's end force is 12 EI/h³ times differences of positions
             and angles that are known to machine precision, and errors of n elements add up like a random
-            walk: _ROUND_OFF eps EI h^-3.5.
+            walk: _ROUND_OFF eps EI h^-3.5.  A penalty adds what it makes of the gap's own round-off.
     """
 
     z: Array
@@ -49,11 +50,11 @@ class System:
 
 def assemble(
     model: Model,
-    penalties: Mapping[Pair, float],
+    penalties: Mapping[Contact, float],
     quadrature: int,
     values: Array,
     z: Array,
-    held: Mapping[Pair, float] = _NONE_HELD,
+    held: Mapping[Contact, float] = _NONE_HELD,
 ) -> System:
     """Sum everything up in state ``z``.
 
@@ -85,8 +86,15 @@ def assemble(
     h = model.elements.length
     EI = np.repeat([beam.bending for beam in model.beams], [b.elements.stop - b.elements.start for b in model.beams])
     floor = float(_ROUND_OFF * np.finfo(float).eps * (EI / h**3.5).max())
+    floor += sum(_round_off(model, one, penalties[one.pair]) for one in touches)
     scale = largest if largest > _NOTHING * floor else 1.0
     return System(z, residual, tangent, elements, touches, scale, floor)
+
+
+def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
+    """Of a contact's force: its stiffness times machine precision, a random walk over the zone's intervals."""
+    h = model.elements.length[model.beams[touch.pair.first].elements.start]
+    return float(np.finfo(float).eps * stiffness * h * np.linalg.norm(np.diff(touch.zones.intervals, axis=1)))
 
 
 def load_direction(model: Model, load: int, z: Array) -> Array:

@@ -35,6 +35,7 @@ from scene.answer import Array
 SAMPLES_PER_ELEMENT = 4
 _ITERATIONS = 60
 _END_ITERATIONS = 15
+_INSIDE = 1e-6  # elements
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,6 +90,14 @@ def side_of(first: NeutralLine, second: NeutralLine) -> float:
     return float(np.sign(nearest if abs(nearest) > 1e-9 else d.sum())) or 1.0
 
 
+def ends_over(first: NeutralLine, second: NeutralLine) -> bool:
+    """Whether an end of the first beam has its closest point in the inside of the second."""
+    ends = first.points[:, [0, -1]]
+    near = KDTree(second.points.T).query(ends.T)[1].astype(float)
+    zeta, found = project(second, ends, near)
+    return bool((found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)).any())
+
+
 def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zones:
     """All intervals on which the first beam overlaps the second."""
     zeta = _samples(first, second, T)
@@ -98,49 +107,68 @@ def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zone
     near = np.flatnonzero(distance < reach)
     least = float(distance.min()) - T
     if near.size == 0:
-        return _none(least)
+        return none(least)
     there = gap(first, second, side, T, zeta[near], nearest[near].astype(float))
     # A point that sees the far side of a strongly bent second beam is no overlap.
     usable = there.found & (there.g > -T - reach)
-    near, zeta = near[usable], zeta[near][usable]
-    g, slope, curvature = there.g[usable], there.slope[usable], there.curvature[usable]
-    zeta_m = there.zeta_m[usable]
+    near = near[usable]
     if near.size == 0:
-        return _none(least)
+        return none(least)
+    there = Gap(
+        there.g[usable], there.slope[usable], there.curvature[usable], there.zeta_m[usable], there.found[usable]
+    )
+
+    def at(where: Array, guess: Array) -> Gap:
+        return gap(first, second, side, T, where, guess)
+
+    inside = negative(at, zeta[near], there, np.diff(near) == 1)
+    return Zones(*_split_at_nodes(first, second, inside.intervals, inside.zeta_m), inside.least)
+
+
+def negative(at: Callable[[Array, Array], Gap], zeta: Array, there: Gap, neighbours: NDArray[np.bool_]) -> Zones:
+    """The intervals on which a gap is negative, each as long as its element lets it be.
+
+    Args:
+        at: the gap at places ζ (k,), the closest points sought from ζ_m (k,).
+        zeta: places (k,) in order, all nodes that matter among them; ``there`` is the gap at them.
+        neighbours: whether the gap is known between a place and the next (k−1,).
+    """
+    g, slope, curvature, zeta_m = there.g, there.slope, there.curvature, there.zeta_m
 
     def slope_at(where: Array, guess: Array) -> tuple[Array, Array, Array]:
-        at = gap(first, second, side, T, where, guess)
-        return at.slope, at.curvature, at.zeta_m
+        one = at(where, guess)
+        return one.slope, one.curvature, one.zeta_m
 
     def gap_at(where: Array, guess: Array) -> tuple[Array, Array, Array]:
-        at = gap(first, second, side, T, where, guess)
-        return at.g, at.slope, at.zeta_m
+        one = at(where, guess)
+        return one.g, one.slope, one.zeta_m
 
-    neighbours = np.diff(near) == 1
     turning = np.flatnonzero(neighbours & (slope[:-1] * slope[1:] < 0.0))
     if turning.size:
         share = slope[turning] / (slope[turning] - slope[turning + 1])
         where, guess = _roots(slope_at, zeta, slope, zeta_m, turning, share)
-        least_there = gap(first, second, side, T, where, guess)
-        at = turning + 1
-        zeta, zeta_m = np.insert(zeta, at, where), np.insert(zeta_m, at, least_there.zeta_m)
-        g, slope = np.insert(g, at, least_there.g), np.insert(slope, at, least_there.slope)
-        curvature = np.insert(curvature, at, least_there.curvature)
+        least_there = at(where, guess)
+        after = turning + 1
+        zeta, zeta_m = np.insert(zeta, after, where), np.insert(zeta_m, after, least_there.zeta_m)
+        g, slope = np.insert(g, after, least_there.g), np.insert(slope, after, least_there.slope)
+        curvature = np.insert(curvature, after, least_there.curvature)
         neighbours = np.insert(neighbours, turning, True)
     least = float(g.min())
     if least >= 0.0:
-        return _none(least)
+        return none(least)
 
     ends = np.flatnonzero(neighbours & (g[:-1] * g[1:] < 0.0))
     if ends.size:
         where, guess = _roots(gap_at, zeta, g, zeta_m, ends, _parabola(zeta, g, slope, curvature, ends))
-        at = ends + 1
-        zeta, g, zeta_m = np.insert(zeta, at, where), np.insert(g, at, 0.0), np.insert(zeta_m, at, guess)
+        after = ends + 1
+        zeta, g, zeta_m = np.insert(zeta, after, where), np.insert(g, after, 0.0), np.insert(zeta_m, after, guess)
         neighbours = np.insert(neighbours, ends, True)
     inside = np.flatnonzero(neighbours & (g[:-1] <= 0.0) & (g[1:] <= 0.0) & (g[:-1] + g[1:] < 0.0))
-    intervals = np.stack([zeta[inside], zeta[inside + 1]], axis=1)
-    closest = np.stack([zeta_m[inside], zeta_m[inside + 1]], axis=1)
-    return Zones(*_split_at_nodes(first, second, intervals, closest), least)
+    # What follows on within one element is one interval: the gap is smooth there.
+    begins = np.flatnonzero((np.diff(inside, prepend=-2) > 1) | (zeta[inside] == np.floor(zeta[inside])))
+    last = np.append(begins[1:], inside.size)[: begins.size] - 1
+    low, high = inside[begins], inside[last] + 1
+    return Zones(np.stack([zeta[low], zeta[high]], axis=1), np.stack([zeta_m[low], zeta_m[high]], axis=1), least)
 
 
 def _reach(first: NeutralLine, second: NeutralLine, T: float) -> float:
@@ -173,7 +201,8 @@ def _samples(first: NeutralLine, second: NeutralLine, T: float) -> Array:
     return np.unique(np.concatenate([even, zeta]))
 
 
-def _none(least: float) -> Zones:
+def none(least: float) -> Zones:
+    """No interval at all."""
     return Zones(np.empty((0, 2)), np.empty((0, 2)), least)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from scene.mistakes import Mistake, unknown_name
-from scene.statement import FreeEnd, Moment, Scene
+from scene.statement import CircleContact, FreeEnd, Moment, Scene
 
 RESERVED = "scene"
 
@@ -50,9 +50,13 @@ def unknown_names(scene: Scene) -> Iterator[Mistake]:
         elif load.point not in points:
             yield unknown_name(f"loads.{name}.point", load.point, "point", points)
     for name, contact in scene.contacts.items():
-        for i, beam_name in enumerate(contact.between):
+        circle = isinstance(contact, CircleContact)
+        for i, beam_name in enumerate(contact.beams):
             if beam_name not in scene.beams:
-                yield unknown_name(f"contacts.{name}.between[{i}]", beam_name, "beam", scene.beams)
+                key = "beam" if circle else f"between[{i}]"
+                yield unknown_name(f"contacts.{name}.{key}", beam_name, "beam", scene.beams)
+        if isinstance(contact, CircleContact) and contact.body not in scene.bodies:
+            yield unknown_name(f"contacts.{name}.body", contact.body, "body", scene.bodies)
     for i, stage in enumerate(scene.stages):
         if stage.steps not in scene.loads:
             yield unknown_name(f"stages[{i}].steps", stage.steps, "load", scene.loads)

@@ -69,6 +69,8 @@ def wrong_contacts(scene: Scene) -> Iterator[Mistake]:
     """Contacts of a beam with itself, pairs named twice, and paper entries that do not belong to the pair."""
     seen: dict[frozenset[str], str] = {}
     for name, contact in scene.contacts.items():
+        if not isinstance(contact, BeamContact):
+            continue
         key = f"contacts.{name}"
         pair = frozenset(contact.between)
         if len(pair) == 1:
@@ -86,15 +88,22 @@ def overlaps(scene: Scene) -> Iterator[Mistake]:
     beside the shared end is left out of the check.
     """
     for name, contact in scene.contacts.items():
+        if not isinstance(contact, BeamContact):
+            continue
         first, second = (scene.beams.get(beam) for beam in contact.between)
         if first is None or second is None or contact.between[0] == contact.between[1]:
             continue
-        if any(not _has_shape(beam.curve) or _wrong_section(name, beam) is not None for beam in (first, second)):
+        if not (is_beam(first) and is_beam(second)):
             continue
         found = _overlap(first, second, thick=contact.thick)
         if found is not None:
             beams = f"{contact.between[0]!r} and {contact.between[1]!r}"
             yield Mistake(f"contacts.{name}", f"{beams} {found[0]}", found[1])
+
+
+def is_beam(beam: Beam) -> bool:
+    """Whether a beam's curve exists and its thickness is in proportion to it."""
+    return _has_shape(beam.curve) and _wrong_section("", beam) is None
 
 
 def _wrong_curve(key: str, curve: Curve) -> Mistake | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from scene.check_circles import circle_overlaps, wrong_circles
 from scene.check_motion import wrong_loads, wrong_stages, wrong_supports
 from scene.check_names import repeated_names, unknown_names
 from scene.check_questions import wrong_claims, wrong_probes
@@ -21,6 +22,8 @@ _CHECKS = (
     wrong_loads,
     wrong_contacts,
     overlaps,
+    wrong_circles,
+    circle_overlaps,
     wrong_stages,
     wrong_probes,
     wrong_claims,

@@ -19,10 +19,8 @@ from math import atan2, hypot, tau
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
-from scipy.spatial import cKDTree
 
-from scene.statement import Arc, Curve
+from scene.statement import Arc, Curve, Point
 
 Array = NDArray[np.float64]
 _SAMPLES = 1001  # per curve: 1e-3 of the length between neighbours, the rest is refinement
@@ -84,6 +82,8 @@ def closest_pair(
     The refined distance is exact to round-off where the nearest point is a smooth minimum or an end of the
     range; of places equally near it gives one.
     """
+    from scipy.spatial import cKDTree  # loaded when two curves are compared, not with every scene
+
     u1, u2 = np.linspace(*range1, _SAMPLES), np.linspace(*range2, _SAMPLES)
     p1 = points_on(first, u1)
     _, neighbour = cKDTree(points_on(second, u2)).query(p1)
@@ -108,6 +108,8 @@ def _refined(
     range2: tuple[float, float],
 ) -> ClosestPair:
     """The nearest points within a few sample widths of ``at``."""
+    from scipy.optimize import minimize
+
     widths = np.array([np.ptp(range1), np.ptp(range2)]) / _SAMPLES
     # distances over a sample's length: the minimiser sees numbers of order one
     scale = max(arc_length(first), arc_length(second)) / _SAMPLES
@@ -125,6 +127,21 @@ def _refined(
     best = min((np.zeros(2), found.x), key=squared)
     u = np.clip(at + widths * best, [range1[0], range2[0]], [range1[1], range2[1]])
     return ClosestPair(distance=squared(best) ** 0.5 * scale, u1=float(u[0]), u2=float(u[1]))
+
+
+def distance_to(curve: Curve, point: Point) -> float:
+    """Distance of the neutral line's nearest point from ``point``, m."""
+    ends = min(_apart(curve.start, point), _apart(curve.end, point))
+    if isinstance(curve, Arc):
+        turn, towards = arc_angle(curve), _angle(curve, point)
+        beyond = (towards - _angle(curve, curve.start)) * (1.0 if turn > 0.0 else -1.0) % tau
+        if beyond > abs(turn):
+            return ends
+        return min(ends, abs(_apart(curve.center, point) - _radius(curve)))
+    length = arc_length(curve)
+    tx, ty = (curve.end[0] - curve.start[0]) / length, (curve.end[1] - curve.start[1]) / length
+    rx, ry = point[0] - curve.start[0], point[1] - curve.start[1]
+    return abs(tx * ry - ty * rx) if 0.0 < tx * rx + ty * ry < length else ends
 
 
 def tangents_on(curve: Curve, u: Array) -> Array:
@@ -146,7 +163,11 @@ def scaled(curve: Curve, size: float) -> Curve:
     return curve.model_copy(update=lengths)
 
 
-def _angle(arc: Arc, point: tuple[float, float]) -> float:
+def _apart(a: Point, b: Point) -> float:
+    return hypot(b[0] - a[0], b[1] - a[1])
+
+
+def _angle(arc: Arc, point: Point) -> float:
     return atan2(point[1] - arc.center[1], point[0] - arc.center[0])
 
 

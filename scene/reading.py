@@ -167,8 +167,10 @@ def _key_path(loc: tuple[int | str, ...]) -> str:
 
 
 def _is_tag(loc: tuple[int | str, ...], depth: int) -> bool:
-    """Whether pydantic put the tag of a union there: below a load, and below a beam's curve and ends."""
+    """Whether pydantic put the tag of a union there: below a load, a contact, a beam's curve and ends."""
     if loc[0] == "loads":
         return depth == 2 and loc[2] in {"moment", "force"}
+    if loc[0] == "contacts":
+        return depth == 2 and loc[2] in {"beam-beam", "beam-circle"}
     in_beam = loc[0] == "beams" and depth == 3
     return in_beam and loc[2] in {"curve", "start", "end"} and loc[3] in {"line", "arc", "weld", "pin", "free"}

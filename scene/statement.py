@@ -160,8 +160,33 @@ class BeamContact(Record):
     thick: bool = True
     paper: PaperContact | None = None
 
+    @property
+    def beams(self) -> tuple[str, ...]:
+        """The beams that may touch, the first of which places are measured along."""
+        return self.between
 
-Contact = BeamContact
+
+class CircleContact(Record):
+    """A beam that may touch a rigid circle from outside, without friction.
+
+    The circle of ``radius`` about ``center`` (metres, initial position) is fixed to ``body``;
+    a ``thick`` beam touches by its edge, any other as a line.
+    """
+
+    kind: Literal["beam-circle"]
+    beam: Name
+    body: Name
+    center: Point
+    radius: Positive
+    thick: bool = True
+
+    @property
+    def beams(self) -> tuple[str, ...]:
+        """The beam that may touch."""
+        return (self.beam,)
+
+
+Contact = Annotated[BeamContact | CircleContact, Field(discriminator="kind")]
 
 
 class Stage(Record):

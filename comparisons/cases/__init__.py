@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from importlib.resources import as_file, files
 
 from scene import Mistake, Scene, SceneError, read
@@ -11,6 +12,15 @@ def names() -> tuple[str, ...]:
     """Names of the built-in cases, in alphabetical order."""
     found = (entry.name for entry in files(__name__).iterdir())
     return tuple(sorted(name.removesuffix(".toml") for name in found if name.endswith(".toml")))
+
+
+def described() -> tuple[tuple[str, str, str], ...]:
+    """Name, title and source of every built-in case, read without checking the scenes."""
+    found = []
+    for name in names():
+        data = tomllib.loads((files(__name__) / f"{name}.toml").read_text(encoding="utf-8"))
+        found.append((name, str(data.get("title", "")), str(data.get("source", ""))))
+    return tuple(found)
 
 
 def opened(case: str) -> Scene:

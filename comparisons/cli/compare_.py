@@ -58,6 +58,7 @@ def command(
         out = Path("report")
     if out is not None:
         out.mkdir(parents=True, exist_ok=True)
+    showing.room_for(json_file)
     printing = str(json_file) != "-"
     finished: list[Comparison] = []
     chapters: tuple[report.Chapter, ...] = ()

@@ -10,6 +10,5 @@ def command() -> None:
     """Show the built-in cases, one line each."""
     from comparisons import cases
 
-    for name in cases.names():
-        scene = cases.opened(name)
-        click.echo(f"{name:<16} {scene.title}" + (f" ({scene.source})" if scene.source else ""))
+    for name, title, source in cases.described():
+        click.echo(f"{name:<16} {title}" + (f" ({source})" if source else ""))

@@ -32,13 +32,13 @@ def count(ctx: click.Context, param: click.Parameter, value: str) -> int | dict[
 
 
 def _whole(text: str) -> int:
-    if not (text.isascii() and text.isdigit() and len(text) <= 6 and int(text) >= 1):
-        raise click.BadParameter(f"found {text!r}; allowed: a whole number from 1 to 999999")
+    if not (text.isascii() and text.isdigit() and len(text) <= 4 and int(text) >= 1):
+        raise click.BadParameter(f"found {text!r}; allowed: a whole number from 1 to 9999")
     return int(text)
 
 
 def fraction(ctx: click.Context, param: click.Parameter, value: str) -> float:
-    """A positive number that is at most 1.
+    """A positive number that is less than 1.
 
     Raises:
         click.BadParameter: the text is none.
@@ -47,8 +47,8 @@ def fraction(ctx: click.Context, param: click.Parameter, value: str) -> float:
         number = float(value)
     except ValueError:
         number = math.nan
-    if not 0.0 < number <= 1.0:
-        raise click.BadParameter(f"found {value!r}; allowed: a number greater than 0 and at most 1")
+    if not 0.0 < number < 1.0:
+        raise click.BadParameter(f"found {value!r}; allowed: a number greater than 0 and less than 1")
     return number
 
 

@@ -42,6 +42,16 @@ def json(file: Path, data: Plain) -> None:
     write(file, text(data))
 
 
+def room_for(file: Path | None) -> None:
+    """See before anything is solved that JSON has a folder to go to.
+
+    Raises:
+        OSError: the folder cannot be made.
+    """
+    if file is not None and str(file) != "-":
+        file.parent.mkdir(parents=True, exist_ok=True)
+
+
 def progress(items: Sequence[T], *, shown: bool) -> Iterator[T]:
     """The items, with a bar on standard error if that is a terminal and the bar is wanted."""
     if not shown or not sys.stderr.isatty():

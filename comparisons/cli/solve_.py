@@ -42,6 +42,7 @@ def command(
     scene = cases.opened(case)
     choices = Choices(links, formulation, elements, kinematics, penetration)
     check(choices, scene)
+    showing.room_for(json_file)
     answer = (solvers.cprbm if solver == "cprbm" else solvers.fea)(scene, choices)
     if json_file is not None:
         showing.json(json_file, {"cases": [documents.solution(scene, answer)]})

@@ -130,7 +130,7 @@ def test_kinematics_reach_the_table(right, capsys):
         (["solve", "hinge", "-n", "-3"], "found '-3'"),
         (["solve", "hinge", "-n", "forty"], "found 'forty'"),
         (["solve", "hinge", "-n", "4.5"], "found '4.5'"),
-        (["solve", "hinge", "-n", "99999999999999999999"], "found '99999999999999999999'"),
+        (["solve", "hinge", "-n", "10000"], "from 1 to 9999"),
         (["solve", "hinge", "-n", "beam1=0,beam2=3"], "found '0'"),
         (["solve", "hinge", "-n", "beam1=3,beam1=4"], "once for each beam"),
         (["solve", "hinge", "-n", "beam1=3,"], "once for each beam"),
@@ -253,6 +253,22 @@ def test_a_place_that_cannot_be_written_is_a_sentence(right, capsys, tmp_path):
     said = capsys.readouterr().err
     assert said.count("\n") == 2
     assert "Cannot write" in said
+
+
+@pytest.mark.parametrize("command", ["solve", "compare"])
+def test_a_place_for_json_is_seen_to_before_anything_is_solved(capsys, tmp_path, command):
+    def unasked(scene, choices):
+        raise AssertionError("solved before the place was known to be wrong")
+
+    (tmp_path / "file").write_text("")
+    code = run([command, "hinge", "--json", str(tmp_path / "file" / "numbers.json")], Solvers(unasked, unasked))
+    assert code == 2
+    assert "Cannot write" in capsys.readouterr().err
+
+
+def test_runs_with_one_trouble_are_named_in_one_sentence(right, capsys):
+    run(["compare", "hinge", "--quiet"], Solvers(ended(right.cprbm), right.fea))
+    assert "cprbm, cprbm finer gave no whole answer: it ended early" in capsys.readouterr().out
 
 
 def test_an_interruption_leaves_what_is_finished(right, capsys, tmp_path):

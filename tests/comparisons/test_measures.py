@@ -12,7 +12,8 @@ from comparisons.measures import rows_of, station_of
 from comparisons.pairing import Runs, Solvers, paired
 from comparisons.scales import SMALLEST_SHARE, probe_scale
 from comparisons.spots import clear_of_spots
-from scene import Probe
+from comparisons.verdict import Word, judged
+from scene import Probe, Stage
 from scene.answer import frozen_array
 from tests.comparisons.made_up import CLOSES, MadeUp, with_value
 
@@ -181,8 +182,37 @@ def test_a_stress_differs_by_its_worst_place(hinge, right):
 def test_round_off_is_read_off_the_certificates(hinge, right):
     runs = paired(hinge, Choices(), right)
     row = rows_by_name(hinge, runs)["contact.force"]
+    S = 2.3e9 * 0.008 * 0.002**3 / 12.0 / (math.pi * 0.025)
     assert row.bounds is not None
-    assert row.bounds.round_off == pytest.approx(1e-13 * row.scale, rel=1e-6)
+    assert row.bounds.round_off == pytest.approx(1e-12 * S / (math.pi * 0.025), rel=1e-6, abs=0.0)
+    # the stated 1e-6 of the largest force of all, which is the load over the length (a force is 9.5, that is 8.5)
+    unsettled = replace(runs.cprbm[0].stations[-1].certificate, residual_floor=1e-6)
+    stations = (*runs.cprbm[0].stations[:-1], replace(runs.cprbm[0].stations[-1], certificate=unsettled))
+    less = Runs(runs.kinematics, (replace(runs.cprbm[0], stations=stations), runs.cprbm[1]), runs.fea)
+    first = next(row for row in rows_of(hinge, less) if row.probe.name == "BD.rotation")
+    assert first.bounds is not None
+    assert first.station == 0.067
+    assert first.bounds.round_off == pytest.approx(1e-6 * rows_by_name(hinge, less)["BD.rotation"].scale, rel=1e-6)
+
+
+def test_an_open_contact_leaves_nothing_open(hinge, right):
+    rows = rows_of(hinge, paired(hinge, Choices(), right))
+    first = next(row for row in rows if row.probe.name == "contact.force")
+    assert first.bounds is not None
+    assert first.bounds.total == 0.0
+
+
+def test_two_answers_that_differ_by_round_off_at_zero_load_agree(hinge, right):
+    still = hinge.model_copy(update={"stages": (Stage(name="load", steps="M", stations=(0.0,)),), "claims": ()})
+    runs = paired(still, Choices(), right)
+    spoilt = with_value("BD.rotation", [3e-16])
+    trembling = replace(runs.cprbm[0], stations=(spoilt(runs.cprbm[0].stations[0]),))
+    rows = rows_of(still, Runs(runs.kinematics, (trembling, runs.cprbm[1]), runs.fea))
+    assert judged(still, rows).word is Word.AGREE
+    off = with_value("BD.rotation", [1e-9])
+    wrong = replace(runs.cprbm[0], stations=(off(runs.cprbm[0].stations[0]),))
+    rows = rows_of(still, Runs(runs.kinematics, (wrong, replace(wrong)), runs.fea))
+    assert judged(still, rows).word is Word.DIFFER
 
 
 def test_the_closing_load_is_the_planted_one(hinge, right):

@@ -27,10 +27,10 @@ def test_every_run_is_asked_for_once(hinge, right):
         (choices.kinematics, choices.elements, choices.penetration) for name, choices in asked if name == "fea"
     ] == [
         ("bending", 80, 1e-4),
-        ("bending", 160, 2.5e-5),
+        ("bending", 160, 6.25e-6),
         ("stretch", 80, 1e-4),
         ("shear", 80, 1e-4),
-        ("shear", 160, 2.5e-5),
+        ("shear", 160, 6.25e-6),
     ]
 
 

@@ -7,7 +7,7 @@ import pytest
 
 import cprbm
 from cprbm.certifying import certify
-from cprbm.contact import no_rows
+from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import equilibrium, point_at
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of
@@ -19,7 +19,7 @@ SETTINGS = cprbm.Settings(links=37)
 
 
 def solved(problem):
-    rest = point_at(problem, {}, rest_state(problem.model), np.zeros(problem.closure.rows), np.zeros(0), no_rows())
+    rest = point_at(problem, {}, rest_state(problem.model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
     found = equilibrium(problem, {"M": MOMENT}, rest, SETTINGS.tolerance, SETTINGS.iterations)
     assert found.converged
     return found

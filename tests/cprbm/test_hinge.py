@@ -215,7 +215,7 @@ def test_beams_may_have_links_of_their_own(truth):
 
 
 def test_action_is_reaction_where_the_gap_is_a_distance_and_nearly_so_at_a_fitted_boundary():
-    from cprbm.contact import no_rows
+    from cprbm.contact import NO_ROWS
     from cprbm.equilibrium import equilibrium, point_at
     from cprbm.forces import contact_imbalance
     from cprbm.kinematics import rest_state
@@ -224,7 +224,7 @@ def test_action_is_reaction_where_the_gap_is_a_distance_and_nearly_so_at_a_fitte
     left = {}
     for formulation in ("auto", "paper"):
         problem = mechanism_of(hinge(), cprbm.Settings(formulation=formulation)).problem
-        rest = point_at(problem, {}, rest_state(problem.model), np.zeros(problem.closure.rows), np.zeros(0), no_rows())
+        rest = point_at(problem, {}, rest_state(problem.model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
         found = equilibrium(problem, {"M": 0.67}, rest, 1e-11, 30)
         left[formulation] = contact_imbalance(problem, found.point)
     assert left["auto"] < 1e-12

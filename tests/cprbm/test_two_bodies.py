@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm.contact import no_rows
+from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import point_at, potential_energy
 from cprbm.kinematics import State
 from cprbm.mechanism import mechanism_of
@@ -75,7 +75,7 @@ def test_the_gradient_is_that_of_the_energy_and_the_closures():
 
     def at(q):
         state = State(q[: model.n_links], q[model.n_links :].reshape(-1, 3))
-        return point_at(problem, LOADS, state, mu, np.zeros(0), no_rows())
+        return point_at(problem, LOADS, state, mu, np.zeros(0), NO_ROWS)
 
     here = at(q)
     gradient = here.gradient + here.A_E.T @ mu

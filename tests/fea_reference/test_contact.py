@@ -151,3 +151,47 @@ def test_crossing_is_seen():
     assert cross(level, straight((0.3, -1), (0.7, 0.5)))
     assert not cross(level, straight((0.3, 0.1), (0.7, 0.5)))
     assert not cross(level, straight((2.1, -1), (2.2, 0.5)))
+
+
+C, DROP = 0.08, 0.005
+CLOSING = DROP * 6 * EI / (C**2 * (3 * A - C))  # by small deflections
+
+
+def end_under_side(order):
+    """The lower beam is the shorter one, DROP below, and ends under the upper's inside."""
+    base = two_cantilevers(*order, (1.02 * CLOSING,), thick=False)
+    lower = base.beams["lower"]
+    line = lower.curve.model_copy(update={"start": (0.0, GAP - DROP), "end": (C, GAP - DROP)})
+    points = {"U": (0.0, GAP), "V": (0.0, GAP - DROP)}
+    ground = base.bodies["ground"].model_copy(update={"points": points})
+    return base.model_copy(
+        update={
+            "beams": {**base.beams, "lower": lower.model_copy(update={"curve": line})},
+            "bodies": {**base.bodies, "ground": ground},
+        }
+    )
+
+
+@pytest.mark.parametrize("order", [("upper", "lower"), ("lower", "upper")])
+def test_a_beams_end_presses_along_the_others_normal(order):
+    """The lower's free end under the upper's side: without friction the force is normal to the upper there.
+
+    The upper is as at first touch, clamped and under a force P at its tip, x = A: its slope at x = C is
+    P (A C − C²/2)/EI, and ∫ ½ w'² dx longer than C is its arc to there.  The lower's own normal is along y.
+    """
+    k = CLOSING / EI
+    got = answer(end_under_side(order), Settings(elements=30, penetration=1e-6))
+    assert got.ending is Ending.COMPLETED, got.sentence
+    values = got.stations[0].values
+    reaction = values["V.reaction"]
+    assert np.hypot(*reaction) == pytest.approx(values["touch.force"][0], rel=1e-9)
+    assert reaction[0] / reaction[1] == pytest.approx(k * (A * C - C**2 / 2), rel=0.05)
+    longer = 0.5 * k**2 * (A**2 * C**3 / 3 - A * C**4 / 4 + C**5 / 20)
+    assert values["touch.centre"][0] == pytest.approx(C + longer * (order[0] == "upper"), rel=2e-4)
+
+
+def test_an_integral_along_the_wrong_beam_is_not_certified(monkeypatch):
+    monkeypatch.setattr("fea_reference.contact.ends_over", lambda first, second: False)
+    got = answer(end_under_side(("upper", "lower")), Settings(elements=30, penetration=1e-6))
+    assert got.ending is Ending.NOT_CERTIFIED
+    assert "an end of lower presses on the side of upper" in got.sentence

@@ -223,3 +223,12 @@ def test_fine_meshes_are_no_harder(scene, kinematics):
     got = answer(stepped(scene, 0.2, 0.5), Settings(elements=320, kinematics=kinematics))
     assert got.ending is Ending.COMPLETED, got.sentence
     assert got.stations[0].certificate.iterations < 20
+
+
+def test_round_off_of_very_many_elements_is_no_negative_curvature(scene):
+    """The curvature belongs to the mechanism: the number of elements has no part in it."""
+    got = answer(stepped(scene, 0.067), Settings(elements=2560, kinematics="bending"))
+    assert got.ending is Ending.COMPLETED, got.sentence
+    coarse = answer(stepped(scene, 0.067), Settings(elements=80, kinematics="bending"))
+    expected = coarse.stations[0].certificate.smallest_curvature
+    assert got.stations[0].certificate.smallest_curvature == pytest.approx(expected, rel=1e-3)

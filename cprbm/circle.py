@@ -1,0 +1,199 @@
+"""Contact of a beam with a rigid circle from outside: the formulation ``auto``.
+
+==========  ===================================================================================
+C           smooth neutral line of the beam, :mod:`cprbm.smooth`; ψ its tangent angle
+o, R        centre and radius of the circle
+ρ, n        |C − o| and (C − o)/ρ
+D           ρ − R, distance of the neutral line from the circle; constraint c = t/2 − D ≤ 0
+z           local numbers of the beam (5)
+P           (I − n nᵀ)/ρ, derivative of n over C
+==========  ===================================================================================
+
+A row stands at every joint that is close, and where D has a minimum between joints that is deeper than
+the ripple with which the smooth line follows a circle. There s moves with the minimum, D_s = 0:
+
+    D_z = n·C_z,     D_zz = n·C_zz + C_zᵀ P C_z − D_zs D_sz / D_ss     (last term only where s moves)
+    D_s = n·C_s,     D_sz = n·C_sz + C_sᵀ P C_z,     D_ss = n·C_ss + C_sᵀ P C_s
+
+Forces on joints can take any share of a line pressure; between two joints of a zone no further row is
+needed, since the line is bent like the circle there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cprbm import smooth
+from cprbm.contact import Blocks, Group
+from cprbm.kinematics import Positions, State
+from cprbm.model import Chain, Model
+from scene import CircleContact, Mistake, Scene, SceneError
+from scene.answer import Array, Flags
+
+CLOSEST_ITERATIONS = 12
+LEAST_CURVATURE = 1e-3  # of D along the beam, 1/ℓ, below which its minimum has no place of its own
+STEPS = 3.0  # a minimum is less convex than this many steps of the curvature: it belongs to a zone
+REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
+JOINT_REACH = 2.0  # joints farther than this many h²·(1/R + 1/ℓ) are none
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """A beam and a circle that stands still.
+
+    Attributes:
+        name: of the contact.
+        a: the beam's chain.
+        x, y, radius: of the circle, units of length.
+        offset: half the thickness, zero for a line; units of length.
+        unit_length: ℓ, m.
+    """
+
+    name: str
+    a: Chain
+    x: float
+    y: float
+    radius: float
+    offset: float
+    unit_length: float
+
+    def line(self, state: State, at: Positions) -> smooth.SmoothLine:
+        """The beam's smooth line in a state."""
+        return smooth.smooth_line(self.a, self.unit_length, state, at)
+
+    def distance(self, points: smooth.Points) -> Array:
+        """D at some points of the beam."""
+        return np.hypot(points.x - self.x, points.y - self.y) - self.radius
+
+    def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
+        """The constraints at a state, with exact derivatives."""
+        line = self.line(state, at)
+        s, free = self._places(line)
+        if not s.size:
+            return ()
+        A = line.at(s)
+        rx, ry = A.x - self.x, A.y - self.y
+        rho = np.hypot(rx, ry)
+        n = np.stack((rx / rho, ry / rho), axis=1)
+        across = np.stack((-n[:, 1], n[:, 0]), axis=1)
+        C_z, C_sz = smooth.position_slopes(A), smooth.tangent_slopes(A)
+        D_z = np.einsum("mi,mik->mk", n, C_z)
+        q_z = np.einsum("mi,mik->mk", across, C_z)
+        second = smooth.position_curvature(A, n) + q_z[:, :, None] * q_z[:, None, :] / rho[:, None, None]
+        C_s = A.speed[:, None] * np.stack((np.cos(A.psi), np.sin(A.psi)), axis=1)
+        q_s = np.sum(across * C_s, axis=1)
+        D_sz = np.einsum("mi,mik->mk", n, C_sz) + (q_s / rho)[:, None] * q_z
+        D_ss = self._convexity(A, n, q_s, rho)
+        moving = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
+        second -= moving[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
+
+        link = A.link
+        joints = (self.a.first_joint + link)[:, None]
+        angles = self.a.first_link + np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n)), axis=1)
+
+        def curvature(multipliers: Array) -> Blocks:
+            pressing = np.flatnonzero(multipliers)
+            return Blocks(joints[pressing], angles[pressing], -multipliers[pressing, None, None] * second[pressing])
+
+        return (
+            Group(
+                contact=self.name,
+                values=self.offset - (rho - self.radius),
+                joints=joints,
+                angles=angles,
+                slopes=-D_z,
+                curvature=curvature,
+                keys=tuple(
+                    -1 if is_free else round(place / self.a.h + 0.5) for place, is_free in zip(s, free, strict=True)
+                ),
+                arc=s,
+            ),
+        )
+
+    def _convexity(self, A: smooth.Points, n: Array, q_s: Array, rho: Array) -> Array:
+        """D_ss where the beam is parallel to the circle."""
+        facing = n[:, 1] * np.cos(A.psi) - n[:, 0] * np.sin(A.psi)
+        return np.asarray(facing * A.speed * A.bend + q_s**2 / rho)
+
+    def _places(self, line: smooth.SmoothLine) -> tuple[Array, Flags]:
+        """Arc lengths of the rows, and which of them move with a minimum."""
+        s = smooth.halves(self.a)
+        D = self.distance(line.at(s)) - self.offset
+        near = np.zeros(len(s), dtype=bool)
+        near[::2] = D[::2] < JOINT_REACH * self.a.h**2 * (1.0 / self.radius + 1.0)
+        # an end that the ground holds cannot move: its gap is no unknown
+        near[0] &= self.a.start.body >= 0
+        near[-1] &= self.a.end is None or self.a.end.body >= 0
+        padded = np.concatenate(([np.inf], D, [np.inf]))
+        lowest = (padded[:-2] >= D) & (padded[2:] > D) & (D < REACH)
+        lowest[[0, -1]] = False
+        places, convex = self._refined(line, s[lowest])
+        held = s[near]
+        free = places[convex]
+        # an end beyond reach of the joints' rule may still be the closest place of all
+        return np.concatenate((held, free)), np.concatenate((np.zeros(len(held), bool), np.ones(len(free), bool)))
+
+    def _refined(self, line: smooth.SmoothLine, s: Array) -> tuple[Array, Flags]:
+        """Newton's method on D_s = 0; the flags say where it found a minimum nearby that is no ripple."""
+        start = s
+        if not s.size:
+            return s, np.zeros(0, dtype=bool)
+        for _ in range(CLOSEST_ITERATIONS):
+            A = line.at(s)
+            rx, ry = A.x - self.x, A.y - self.y
+            rho = np.hypot(rx, ry)
+            n = np.stack((rx / rho, ry / rho), axis=1)
+            q_s = A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi))
+            slope = A.speed * (n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi))
+            D_ss = self._convexity(A, n, q_s, rho)
+            step = -slope / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
+            s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
+            if np.max(np.abs(step)) < 1e-13:
+                break
+        ripple = self.a.h**2 * np.maximum(np.abs(A.bend), 1.0 / self.radius) ** 3
+        steps = STEPS * smooth.curvature_step(line, A.link)
+        deep = D_ss > np.maximum(LEAST_CURVATURE, np.maximum(ripple, steps))
+        return s, deep & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
+
+    @property
+    def thickness(self) -> float:
+        """What an overlap is measured by: the thickness, for a line the longest beam; units of length."""
+        return 2.0 * self.offset if self.offset > 0.0 else 1.0
+
+    def touching(self, state: State, at: Positions, s: Array) -> Array:
+        """Where the edge touches that touches at arc lengths ``s``, (k, 2), units of length."""
+        A = self.line(state, at).at(s)
+        rx, ry = A.x - self.x, A.y - self.y
+        share = self.radius / np.hypot(rx, ry)
+        return np.stack((self.x + share * rx, self.y + share * ry), axis=1)
+
+    def pressed(self, state: State, at: Positions, chain: Chain, s: Array) -> tuple[float, Array, Array] | None:
+        """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s``."""
+        return (1.0, s, self.line(state, at).at(s).psi) if chain is self.a else None
+
+    def deepest(self, state: State, at: Positions) -> float:
+        """Largest overlap anywhere along the beam, units of length; zero where it is apart."""
+        line = self.line(state, at)
+        s, _ = self._places(line)
+        D = self.distance(line.at(np.concatenate((smooth.halves(self.a), s))))
+        return float(np.max(self.offset - D, initial=0.0))
+
+
+def circle_of(scene: Scene, model: Model, name: str) -> Circle:
+    """One of the scene's contacts with a circle.
+
+    Raises:
+        SceneError: the circle is fixed to a body that moves.
+    """
+    contact = scene.contacts[name]
+    assert isinstance(contact, CircleContact)
+    if scene.bodies[contact.body].motion != "fixed":
+        raise SceneError(
+            [Mistake(f"contacts.{name}.body", f"the moving body {contact.body!r}", "a fixed body", scene.file)]
+        )
+    chain = model.chain(contact.beam)
+    unit = model.unit_length
+    offset = 0.5 * chain.thickness if contact.thick else 0.0
+    return Circle(name, chain, contact.center[0] / unit, contact.center[1] / unit, contact.radius / unit, offset, unit)

@@ -1,0 +1,157 @@
+"""Frictionless contact of a beam with a rigid circle by a penalty along the beam's neutral line.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+x, c    point of the neutral line, centre of the circle: X + R(φ) arm from its body's own
+r, n    distance |x − c| and its direction (x − c)/r;  τ is n turned clockwise
+R, T    radius; half of the beam's thickness, zero for a line
+g       gap r − R − T
+ε       penalty stiffness per unit length of the beam
+======  =====================================================================================
+
+Energy Π_c = ∫ ½ ε ⟨−g⟩² ds over the beam's undeformed arc length, where
+
+    δg = n·(δx − δc),     δ²g = n·(δ²x − δ²c) + (τ·(δx − δc))²/r,
+
+and by ζ alone g' = n·x', g'' = n·x'' + (τ·x')²/r.  The integral runs over the exact intervals on which g < 0,
+as in :mod:`fea_reference.contact`: the pressure vanishes at their ends.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea_reference.hermite import NeutralLine, along, bending_along, shapes
+from fea_reference.model import Model, turned
+from fea_reference.touch import Circle, Touch
+from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative
+from scene.answer import Array
+from scene.statement import CircleContact, Scene
+
+_LAYERS = 32.0  # of the first penalty, in a beam's length
+_RESOLVED = 4.2  # layers in an element: with more, its cubic cannot follow, and the force at a clamp suffers
+_THINNEST = 800.0  # layers in a beam's length: with more, the force is lost in round-off
+
+
+def circles(scene: Scene, model: Model) -> tuple[Circle, ...]:
+    """The scene's contacts of a beam with a circle."""
+    found = []
+    beams = [beam.name for beam in model.beams]
+    bodies = [body.name for body in model.bodies]
+    for name, contact in scene.contacts.items():
+        if not isinstance(contact, CircleContact):
+            continue
+        first, body = beams.index(contact.beam), bodies.index(contact.body)
+        beam = model.beams[first]
+        at = (np.array(contact.center) - model.units.origin) / model.units.length
+        x, y = at - model.bodies[body].centre
+        half = 0.5 * beam.thickness
+        radius = contact.radius / model.units.length
+        h = float(model.elements.length[beam.elements.start])
+        layer = max(h, half, min(beam.length / _LAYERS, radius))
+        found.append(
+            Circle(
+                name,
+                first,
+                body,
+                (float(x), float(y)),
+                radius,
+                half if contact.thick else 0.0,
+                beam.thickness if contact.thick else 1.0,
+                beam.bending / layer**4,
+                beam.bending / max(h / _RESOLVED, beam.length / _THINNEST) ** 4,
+            )
+        )
+    return tuple(found)
+
+
+def zones_of(model: Model, circle: Circle, z: Array) -> Zones:
+    """Where the beam overlaps the circle in state ``z``."""
+    return _find(model.line(model.beams[circle.first], z), centre(model, circle, z), circle.radius + circle.distance)
+
+
+def centre(model: Model, circle: Circle, z: Array) -> Array:
+    """Where the circle's centre is, (2,)."""
+    return model.carried(model.bodies[circle.body], np.array(circle.arm), z)
+
+
+def passed(model: Model, circle: Circle, before: Array, after: Array) -> bool:
+    """Whether a beam that goes straight from one state to another sweeps over the circle's centre.
+
+    It does if the loop of its old place, its end's way, its new place backwards and its start's way winds
+    round the centre.
+    """
+    beam = model.beams[circle.first]
+    old, new = (model.line(beam, z).points - centre(model, circle, z)[:, None] for z in (before, after))
+    loop = np.concatenate([old, new[:, ::-1], old[:, :1]], axis=1)
+    a, b = loop[:, :-1], loop[:, 1:]
+    winding = np.arctan2(a[0] * b[1] - a[1] * b[0], (a * b).sum(axis=0)).sum()
+    return bool(abs(winding) > np.pi)
+
+
+def touch(model: Model, circle: Circle, stiffness: float, quadrature: int, z: Array) -> Touch:
+    """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
+    beam, body = model.beams[circle.first], model.bodies[circle.body]
+    line, c = model.line(beam, z), centre(model, circle, z)
+    reach = circle.radius + circle.distance
+    zones = _find(line, c, reach)
+
+    points, weights = np.polynomial.legendre.leggauss(quadrature)
+    width = zones.intervals[:, 1] - zones.intervals[:, 0]
+    zeta = (zones.intervals[:, :1] + width[:, None] * 0.5 * (points + 1.0)).ravel()
+    e, xi = line.locate(zeta)
+    ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
+
+    x = line.at(zeta)[0]
+    r = np.hypot(*(x - c[:, None]))
+    n = (x - c[:, None]) / r
+    tau = np.stack([n[1], -n[0]])
+    g = r - reach
+
+    H = shapes(xi, line.lengths[e])
+    g_q, p = along(n, H, line, e), along(tau, H, line, e)
+    dofs = model.element_dofs[:6, e + beam.elements.start]
+    bent = dict(zip((2, 5), bending_along(n, H, line, e), strict=True))
+    if body.dofs is not None:
+        arm = turned(np.array(circle.arm), z[body.dofs[2]])
+        across = np.array([-arm[1], arm[0]])  # ∂(R arm)/∂φ; its derivative is −R arm
+        g_q = np.concatenate([g_q, -n, -across[None] @ n])
+        p = np.concatenate([p, -tau, -across[None] @ tau])
+        dofs = np.concatenate([dofs, np.repeat(body.dofs[:, None], zeta.size, axis=1)])
+        bent[8] = arm @ n
+    g_qq = p[:, None] * p[None, :] / r
+    for i, value in bent.items():
+        g_qq[i, i] += value
+
+    weight = stiffness * ds
+    return Touch(
+        pair=circle,
+        zones=zones,
+        dofs=dofs,
+        gradient=weight * g * g_q,
+        hessian=weight * (g_q[:, None] * g_q[None, :] + g * g_qq),
+        zeta=zeta,
+        zeta_m=np.empty(0),
+        x=x,
+        x_m=c[:, None] + circle.radius * n,
+        force=-weight * g * n,
+        normal=n,
+        missing=0.0,
+    )
+
+
+def _find(line: NeutralLine, c: Array, reach: float) -> Zones:
+    """All intervals on which the neutral line is nearer to ``c`` than ``reach``."""
+
+    def at(zeta: Array, none: Array) -> Gap:
+        x, x1, x2 = line.at(zeta)
+        away = x - c[:, None]
+        r = np.hypot(*away)
+        n = away / r
+        along_circle = n[1] * x1[0] - n[0] * x1[1]
+        slope, curvature = (n * x1).sum(axis=0), (n * x2).sum(axis=0) + along_circle**2 / r
+        return Gap(r - reach, slope, curvature, none, np.ones(zeta.shape, dtype=bool))
+
+    zeta = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
+    return negative(at, zeta, at(zeta, np.zeros_like(zeta)), np.ones(zeta.size - 1, dtype=bool))

@@ -1,0 +1,39 @@
+"""All of a scene's contacts, of whichever kind."""
+
+from __future__ import annotations
+
+from fea_reference import circle, contact
+from fea_reference.crossing import cross
+from fea_reference.model import Model
+from fea_reference.touch import Contact, Pair, Touch
+from fea_reference.zones import Zones
+from scene.answer import Array
+from scene.statement import Scene
+
+
+def contacts(scene: Scene, model: Model) -> tuple[Contact, ...]:
+    """What may touch, in the scene's order."""
+    every: tuple[Contact, ...] = (*contact.pairs(scene, model), *circle.circles(scene, model))
+    found = {one.name: one for one in every}
+    return tuple(found[name] for name in scene.contacts)
+
+
+def zones_of(model: Model, what: Contact, z: Array) -> Zones:
+    """Where there is overlap in state ``z``."""
+    return contact.zones_of(model, what, z) if isinstance(what, Pair) else circle.zones_of(model, what, z)
+
+
+def touch(model: Model, what: Contact, stiffness: float, quadrature: int, z: Array, held: float | None = None) -> Touch:
+    """The penalty's energy derivatives, see :func:`fea_reference.contact.touch`; only beams are ever held."""
+    if isinstance(what, Pair):
+        return contact.touch(model, what, stiffness, quadrature, z, held)
+    return circle.touch(model, what, stiffness, quadrature, z)
+
+
+def passed_through(model: Model, what: Contact, before: Array, after: Array) -> bool:
+    """Whether what may touch has passed through each other on the way from one state to another."""
+    if not isinstance(what, Pair):
+        return circle.passed(model, what, before, after)
+    # Lines without thickness cross by what the penalty lets through; that is held, and measured.
+    held = what.distance == 0.0 and contact.zones_of(model, what, after).least < 0.0
+    return not held and cross(*(model.line(model.beams[i], after) for i in (what.first, what.second)))

@@ -1,0 +1,106 @@
+"""What may touch, and what a contact is in one state: records that the kinds of contact share."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from fea_reference.hermite import Index
+from fea_reference.zones import Zones
+from scene.answer import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Two beams that may touch.
+
+    Attributes:
+        first, second: their numbers; the first carries the integral.
+        turned: whether the first is the scene's second.
+        side: of the second on which the first lies.
+        distance: T, of the neutral lines when they touch.
+        scale: what penetration is measured by: the mean thickness, or the longest beam for lines.
+        stiffness: the penalty to begin with, the softer beam's EI over its element's length (or half of the
+            mean thickness, if that is more) to the fourth.
+    """
+
+    name: str
+    first: int
+    second: int
+    turned: bool
+    side: float
+    distance: float
+    scale: float
+    stiffness: float
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """A beam and a rigid circle that may touch.
+
+    Attributes:
+        first: number of the beam.
+        body: number of the body that the circle is fixed to, at ``arm`` from its reference centre.
+        radius: of the circle.
+        distance: T, of the neutral line from the circle when they touch.
+        scale: what penetration is measured by: the thickness, or the longest beam for a line.
+        stiffness: the penalty to begin with, EI over the fourth power of the width of the layer in which the
+            pressure builds up at a zone's end: a share of the beam's length (or the radius, if that is less), so
+            that finer elements make the search for the zone no harder.
+        stiffest: the penalty to end with, whatever the penetration: its layer is what an element resolves, so
+            that what the layer spoils (a share of the contact's force that the clamp beside it takes over)
+            vanishes with the element.
+    """
+
+    name: str
+    first: int
+    body: int
+    arm: tuple[float, float]
+    radius: float
+    distance: float
+    scale: float
+    stiffness: float
+    stiffest: float
+
+
+Contact = Pair | Circle
+
+
+@dataclass(frozen=True, slots=True)
+class Touch:
+    """A contact at its k Gauss points.
+
+    ``gradient`` (m, k) and ``hessian`` (m, m, k) of the penalty's energy by the unknowns ``dofs`` (m, k): those
+    of the element of the first beam, then those of the second's or of the circle's body, if that is free.
+    Places ``zeta`` (k,) on the first beam and ``zeta_m`` on the second (empty for a circle), points ``x`` of the
+    first beam's neutral line and ``x_m`` of the second's or of the circle's edge (2, k), the forces ``force`` on
+    the first beam (2, k), the ``normal`` (2, k) away from what it touches.
+    ``missing`` is the force that ends of the second beam leave out.
+    """
+
+    pair: Contact
+    zones: Zones
+    dofs: Index
+    gradient: Array
+    hessian: Array
+    zeta: Array
+    zeta_m: Array
+    x: Array
+    x_m: Array
+    force: Array
+    normal: Array
+    missing: float
+
+    @property
+    def penetration(self) -> float:
+        """Largest depth of overlap."""
+        return max(0.0, -self.zones.least)
+
+    @property
+    def push(self) -> float:
+        """The resultant with its sign: negative while a held contact pulls."""
+        return float((self.force * self.normal).sum())
+
+    @property
+    def closed(self) -> bool:
+        """Whether the beams touch anywhere."""
+        return self.zeta.size > 0

@@ -1,0 +1,25 @@
+"""Which probes converge with the first order only; shown by tests/cprbm/test_circle.py and tests/fea_reference."""
+
+import pytest
+
+from comparisons.order import order_of, richardson
+from tests.cprbm.test_circle import scene_of
+
+
+@pytest.mark.parametrize(
+    ("probe", "order"),
+    [("circle.force", 1), ("circle.centre", 1), ("R.reaction", 1), ("R.reaction_moment", 2), ("T.displacement", 2)],
+)
+def test_the_share_of_a_clamp_beside_a_circle_is_of_first_order(probe, order):
+    scene = scene_of([1.0])
+    assert order_of(scene, next(p for p in scene.probes if p.name == probe)) == order
+
+
+def test_everything_of_the_hinge_is_of_second_order(hinge):
+    assert {order_of(hinge, probe) for probe in hinge.probes} == {2}
+
+
+def test_the_factor_of_a_known_order():
+    # reference: an error C/N^p, of which the change from N to 2N leaves 1 − 2^−p
+    assert richardson(1) == 2.0
+    assert richardson(2) == pytest.approx(4.0 / 3.0)

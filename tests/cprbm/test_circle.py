@@ -1,0 +1,197 @@
+"""A cantilever pressed round a rigid circle, against its closed form, and contact at one point of a circle."""
+
+import numpy as np
+import pytest
+
+import cprbm
+from cprbm import equilibrium as newton
+from cprbm.contact import NO_ROWS
+from cprbm.equilibrium import contact_gradient, contact_rows, equilibrium, point_at, system
+from cprbm.kinematics import State, rest_state
+from cprbm.mechanism import mechanism_of
+from scene import SceneError
+from scene.reading import scene_from
+from tests.cprbm.scenes import cantilever_data, force
+from tests.references.wrapped import Wrapped
+
+BEAM = {"length": 0.0973, "thickness": 0.00103, "width": 0.0087, "youngs_modulus": 2.03e11}
+RADIUS = 0.0711
+STEP = 1e-6
+
+
+def scene_of(stations, radius=RADIUS, center=None, angle=-np.pi / 2.0, **changes):
+    length = BEAM["length"]
+    data = cantilever_data(force(np.cos(angle), np.sin(angle)), stations)
+    data["materials"]["m"]["youngs_modulus"] = BEAM["youngs_modulus"]
+    data["bodies"]["tip"]["points"]["T"] = [length, 0.0]
+    beam = data["beams"]["beam"]
+    beam["curve"]["end"] = [length, 0.0]
+    beam["thickness"], beam["width"] = BEAM["thickness"], BEAM["width"]
+    center = center or [0.0, -radius - BEAM["thickness"] / 2.0]
+    data["contacts"] = {
+        "circle": {"kind": "beam-circle", "beam": "beam", "body": "wall", "center": center, "radius": radius}
+    }
+    data["probes"] += [{"of": "circle", "quantity": "force"}, {"of": "circle", "quantity": "centre"}]
+    return scene_from({**data, **changes})
+
+
+def solved(load, links, **changes):
+    answer = cprbm.answer(scene_of([load], **changes), cprbm.Settings(links=links))
+    assert answer.completed, answer.sentence
+    return answer.stations[-1]
+
+
+@pytest.fixture(scope="module")
+def truth():
+    return Wrapped(**BEAM, radius=RADIUS, force=191.0)
+
+
+def errors_of(links, truth):
+    values = solved(truth.force, links).values
+    return np.array(
+        [
+            np.hypot(*(values["T.displacement"] - truth.displacement)) / BEAM["length"],
+            abs(values["tip.rotation"][0] - truth.rotation),
+            abs(values["scene.potential_energy"][0] / truth.potential_energy - 1.0),
+            abs(values["R.reaction_moment"][0] / truth.reaction_moment - 1.0),
+        ]
+    )
+
+
+def test_a_wrap_over_most_of_the_beam_converges_from_a_cold_start(truth):
+    # reference: tests.references.wrapped, c/L = 0.705
+    errors = {n: errors_of(n, truth) for n in (10, 20, 40, 80, 160)}
+    for coarse, fine in ((10, 20), (20, 40), (40, 80), (80, 160)):
+        displacement, _, energy, moment = errors[coarse] / errors[fine]
+        assert displacement > 2.5
+        assert 3.8 < energy < 4.2
+        assert 3.9 < moment < 4.1
+    # the rotation's part that depends on where in its element the beam lifts off is of the same order as the rest
+    for n, error in errors.items():
+        assert error[1] < 0.6 / n**2
+    assert np.all(errors[40] < [4e-4, 4e-4, 5e-4, 3e-3])
+
+
+def test_the_force_beside_the_clamp_is_shared_with_it_over_one_element(truth):
+    # reference: tests.references.wrapped. The sum of clamp and contact is right; what the first element's
+    # pressure leaves to the clamp falls with the first power of the element, and so does the place
+    def errors(links):
+        values = solved(truth.force, links).values
+        return np.array(
+            [
+                abs(values["circle.force"][0] / np.hypot(*truth.contact_force) - 1.0),
+                abs(values["circle.centre"][0] - truth.contact_centre) / BEAM["length"],
+                np.hypot(*(values["R.reaction"] - truth.reaction)) / truth.force,
+            ]
+        )
+
+    coarse, fine = errors(40), errors(80)
+    assert np.all(coarse < 0.05)
+    assert np.all(coarse / fine > 1.8)
+
+
+def test_one_point_of_a_circle_under_the_beams_middle():
+    # reference: with w'' = M/EI, a rigid point that lifts nothing at a distance a carries R = F(3L − a)/2a of a
+    # cantilever's tip force F, to the square of the slopes (1e-5 here)
+    length = BEAM["length"]
+    a, small = 0.43 * length, 0.003
+    center = [a, -small - BEAM["thickness"] / 2.0]
+    rigidity = BEAM["youngs_modulus"] * BEAM["width"] * BEAM["thickness"] ** 3 / 12.0
+    load = 3e-3 * rigidity / length**2
+    values = solved(load, 60, radius=small, center=center).values
+    assert values["circle.force"][0] == pytest.approx(load * (3.0 * length - a) / (2.0 * a), rel=2e-3)
+    assert values["circle.centre"][0] == pytest.approx(a, abs=1e-4 * length)
+
+
+def test_both_forms_of_newtons_system_give_one_answer(monkeypatch, truth):
+    few = solved(truth.force, 40)
+    monkeypatch.setattr(newton, "MANY", 0)
+    many = solved(truth.force, 40)
+    for name, value in few.values.items():
+        assert many.values[name] == pytest.approx(value, rel=1e-8, abs=1e-8 * np.max(np.abs(value)))
+    assert many.certificate.smallest_curvature == pytest.approx(few.certificate.smallest_curvature, rel=1e-6)
+
+
+def test_nothing_presses_below_the_closing_load_and_the_circle_does_above(truth):
+    below, above = solved(0.9 * truth.closing_load, 80), solved(1.2 * truth.closing_load, 80)
+    assert below.values["circle.force"][0] < 1e-9
+    assert above.values["circle.force"][0] > 0.0
+
+
+def test_a_force_that_pulls_backwards_wraps_more_than_half_a_circle():
+    # reference: tests.references.wrapped; down first, then backwards, then up, or the beam would bend away
+    reference = Wrapped(**BEAM, radius=0.0181, force=2500.0, pull=np.radians(230.0))
+    assert reference.wrap_length / reference.neutral_radius > 1.1 * np.pi
+    back, up = -reference.force * np.cos(reference.pull), -reference.force * np.sin(reference.pull)
+    scene = scene_of(
+        [2000.0],
+        radius=0.0181,
+        loads={"down": force(0.0, -1.0), "back": force(-1.0, 0.0)},
+        stages=[
+            {"name": "first", "steps": "down", "stations": [2000.0]},
+            {"name": "second", "steps": "back", "stations": [back]},
+            {"name": "third", "steps": "down", "stations": [0.0, -up]},
+        ],
+    )
+    answer = cprbm.answer(scene, cprbm.Settings(links=120))
+    assert answer.completed, answer.sentence
+    values = answer.stations[-1].values
+    assert values["tip.rotation"][0] == pytest.approx(reference.rotation, rel=1e-3)
+    assert values["T.displacement"] == pytest.approx(reference.displacement, abs=1e-3 * BEAM["length"])
+
+
+@pytest.fixture
+def bent():
+    mechanism = mechanism_of(scene_of([60.0]), cprbm.Settings(links=23))
+    problem = mechanism.problem
+    model = problem.model
+    start = point_at(problem, {}, rest_state(model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
+    point = equilibrium(problem, {"P": 60.0}, start, 1e-11, 30).point
+    random = np.random.default_rng(99)
+    state = State(point.state.theta + 0.001 * random.standard_normal(model.n_links), point.state.bodies)
+    mu = random.standard_normal(problem.closure.rows)
+    moved = point_at(problem, {"P": 60.0}, state, mu, np.zeros(0), NO_ROWS)
+    lam = 0.5 + random.random(moved.rows.size)
+    return problem, point_at(problem, {"P": 60.0}, state, mu, lam, moved.rows)
+
+
+def test_derivatives_of_gaps_and_of_the_lagrangian(bent):
+    problem, point = bent
+    n = problem.model.n_links
+    q = np.concatenate((point.state.theta, point.state.bodies.ravel()))
+
+    def at(values):
+        state = State(values[:n], values[n:].reshape(-1, 3))
+        there = point_at(problem, {"P": 60.0}, state, point.mu, point.lam, point.rows)
+        assert there.rows.size == point.rows.size
+        return there.gradient + there.A_E.T @ point.mu + contact_gradient(problem.model, there), there
+
+    random = np.random.default_rng(5)
+    found = system(problem, point, np.zeros(point.rows.size, dtype=bool), 0.0)
+    model = problem.model
+    for _ in range(3):
+        d = random.standard_normal(len(q))
+        d[problem.closure.fixed] = 0.0
+        (plus, ahead), (minus, behind) = at(q + STEP * d), at(q - STEP * d)
+        gaps = (ahead.rows.values - behind.rows.values) / (2 * STEP)
+        assert gaps == pytest.approx(contact_rows(model, point) @ d, rel=1e-6, abs=1e-7)
+        product = (plus - minus) / (2 * STEP)
+        product[problem.closure.fixed] = 0.0
+        r = len(found.base) - problem.closure.rows - 3
+        low = slice(3, 3 + r)
+        border, corner = found.factors.border, found.factors.corner
+        s = -np.linalg.solve(corner[low, low], border[:, low].T @ d[:n] + corner[low, :3] @ d[n:])
+        upper = found.factors.tridiagonal.times(d[:n, None])[:, 0] + border[:, :3] @ d[n:] + border[:, low] @ s
+        lower = border[:, :3].T @ d[:n] + corner[:3, :3] @ d[n:] + corner[:3, low] @ s
+        assert np.concatenate((upper, lower)) == pytest.approx(product, rel=1e-5, abs=1e-5 * np.max(np.abs(product)))
+
+
+def test_a_circle_on_a_body_that_moves_is_refused():
+    data_contact = {"kind": "beam-circle", "beam": "beam", "body": "tip", "center": [0.05, -0.08], "radius": 0.05}
+    with pytest.raises(SceneError, match=r"contacts\.circle\.body"):
+        cprbm.answer(scene_of([1.0], contacts={"circle": data_contact}))
+
+
+def test_the_papers_formulation_says_that_it_has_no_circle():
+    with pytest.raises(SceneError, match=r"contacts\.circle\.paper"):
+        cprbm.answer(scene_of([1.0]), cprbm.Settings(formulation="paper"))

@@ -1,0 +1,95 @@
+"""What each solver derives from a scene for itself, beside the other's, at random places.
+
+The duplication is deliberate: a fault in a shared helper would fool both solvers alike. Here the two derivations
+of geometry, stiffness and gap are held against each other, and against a third where a textbook has one.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import cprbm
+import fea_reference
+from cprbm.curves import neutral_line
+from cprbm.kinematics import positions, rest_state
+from cprbm.mechanism import mechanism_of
+from cprbm.nearest import distance_along
+from fea_reference import curves
+from fea_reference.model import build
+from fea_reference.projection import project
+from scene import Arc, Line
+from tests.cprbm.scenes import hinge, hinge_data
+
+RANDOM = np.random.default_rng(20261121)
+
+
+def random_curves():
+    for _ in range(12):
+        center, radius = RANDOM.normal(size=2), RANDOM.uniform(0.01, 3.0)
+        angles = RANDOM.uniform(-np.pi, np.pi, 2)
+        ends = [tuple(map(float, center + radius * np.array([np.cos(a), np.sin(a)]))) for a in angles]
+        for direction in ("counterclockwise", "clockwise"):
+            yield Arc(kind="arc", center=tuple(map(float, center)), start=ends[0], end=ends[1], direction=direction)
+        yield Line(kind="line", start=ends[0], end=ends[1])
+
+
+@pytest.mark.parametrize("curve", list(random_curves()))
+def test_curves(curve):
+    ours, fractions = neutral_line(curve), RANDOM.uniform(0.0, 1.0, 17)
+    s = fractions * ours.length
+    theirs, angle = curves.sample(curve, fractions)
+    assert curves.length(curve) == pytest.approx(ours.length, rel=1e-13)
+    scale = ours.length + np.hypot(*curve.start)
+    assert np.stack(ours.position(s), axis=1) == pytest.approx(theirs, abs=1e-13 * scale)
+    turned = ours.angle(s) - angle
+    assert turned / (2.0 * np.pi) == pytest.approx(np.round(turned / (2.0 * np.pi)), abs=1e-13)
+    # a third derivation: chords of many small steps
+    fine = np.linspace(0.0, ours.length, 20_001)
+    x, y = ours.position(fine)
+    assert np.sum(np.hypot(np.diff(x), np.diff(y))) == pytest.approx(ours.length, rel=1e-7)
+    assert (x[-1], y[-1]) == pytest.approx(curve.end, abs=1e-12 * scale)
+
+
+def test_bending_stiffness():
+    for _ in range(10):
+        modulus, thickness, width = RANDOM.uniform(1e8, 3e11), RANDOM.uniform(5e-4, 2.3e-3), RANDOM.uniform(1e-3, 0.02)
+        data = hinge_data()
+        data["materials"] = {"abs": {"youngs_modulus": modulus, "poisson_ratio": 0.3}}
+        beams = {name: {**beam, "thickness": thickness, "width": width} for name, beam in data["beams"].items()}
+        scene = hinge(materials=data["materials"], beams=beams)
+        chain = mechanism_of(scene, cprbm.Settings(links=7)).problem.model
+        ours = chain.chains[0].stiffness * chain.unit_moment * chain.chains[0].h * chain.unit_length
+        model = build(scene, fea_reference.Settings(elements=5))
+        theirs = model.beams[0].bending * model.units.bending
+        textbook = modulus * width * thickness**3 / 12.0  # second moment of a rectangle
+        assert ours == pytest.approx(textbook, rel=1e-12)
+        assert theirs == pytest.approx(textbook, rel=1e-12)
+
+
+def test_gaps_between_the_undeformed_beams():
+    scene = hinge()
+    mechanism = mechanism_of(scene, cprbm.Settings(links=160))
+    pair, model = mechanism.pairs["contact"], mechanism.problem.model
+    state = rest_state(model)
+    lines = pair.lines(state, positions(model, state))
+    s = RANDOM.uniform(0.15, 0.85, 31) * pair.a.s[-1]
+    ours, _, foot = distance_along(pair, lines, s)
+    assert np.all(foot)
+
+    reference = build(scene, fea_reference.Settings(elements=160))
+    first, second = (reference.line(beam, reference.start) for beam in reference.beams)
+    points = first.at(s / pair.a.s[-1] * first.n)[0]
+    grid = np.linspace(0.0, second.n, 400)
+    places = second.at(grid)[0]
+    nearest = np.argmin(((points[:, :, None] - places[:, None, :]) ** 2).sum(axis=0), axis=1)
+    zeta, found = project(second, points, grid[nearest])
+    assert np.all(found)
+    theirs = np.hypot(*(points - second.at(zeta)[0])) * reference.units.length
+
+    # a third derivation: the distance of a point from a circle
+    center, radius = np.array(scene.beams["beam2"].curve.center), 0.025
+    x, y = pair.a.line.position(s * model.unit_length)
+    exact = np.hypot(x - center[0], y - center[1]) - radius
+    assert ours * model.unit_length == pytest.approx(exact, abs=1e-10)
+    assert theirs == pytest.approx(exact, abs=1e-10)
