@@ -96,8 +96,6 @@ def load_work(model: Model, loads: dict[str, DeadLoad], values: dict[str, float]
     second = np.zeros(len(model.free_bodies))
     for name, load in loads.items():
         value = values.get(name, 0.0)
-        if value == 0.0:
-            continue
         u, v, phi = state.bodies[load.body]
         fx, fy = value * load.force[0], value * load.force[1]
         px, py = load.point

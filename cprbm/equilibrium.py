@@ -349,7 +349,6 @@ def newton_step(problem: Problem, point: Point) -> tuple[Array, Array, Array]:
     right = found.right.copy()
     right[:n_bodies] += f[n:]
     right[n_bodies : n_bodies + len(found.anchors)] += f[found.anchors]
-    f[found.anchors] = 0.0
     change, b = found.step(found.base, right, f)
     lam = np.zeros(point.rows.size)
     if point.rows.size:
@@ -434,7 +433,6 @@ def _bordered_inverse(problem: Problem, point: Point, root: Array) -> tuple[Call
         columns = root[:, None] * x
         right = np.zeros((len(keep), columns.shape[1]))
         right[place] = columns[found.anchors]
-        columns[found.anchors] = 0.0
         a, b = found.factors.solve(columns, right, keep)
         a[found.anchors] = b[place]
         return np.asarray(root[:, None] * a[:n])

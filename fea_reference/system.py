@@ -152,8 +152,6 @@ def _rigid(model: Model, values: Array, z: Array) -> tuple[Array, list[int], lis
                 residual[body.dofs[2]] -= multiplier
                 couple(row, int(body.dofs[2]), -1.0)
     for i, (part, value) in enumerate(zip(model.loads, values, strict=True)):
-        if value == 0.0:
-            continue
         residual -= value * load_direction(model, i, z)
         dofs = model.bodies[part.body].dofs
         if part.direction is not None and dofs is not None:

@@ -1,0 +1,119 @@
+"""Contacts by other means: a minimiser that knows no feet, and statics by hand."""
+
+import numpy as np
+import pytest
+from scipy.optimize import minimize
+
+import cprbm
+from cprbm import nearest, smooth
+from cprbm.contact import NO_ROWS
+from cprbm.equilibrium import LONGEST_TURN, equilibrium, point_at
+from cprbm.kinematics import State, positions, rest_state
+from cprbm.mechanism import mechanism_of
+from scene.reading import scene_from
+from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH, hinge
+
+
+def start(problem):
+    return point_at(problem, {}, rest_state(problem.model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
+
+
+def smallest_distance(lines, s, sigma):
+    """Of two smooth lines near (s, σ), by a minimiser without derivatives."""
+
+    def squared(z):
+        A, B = lines[0].at(z[:1]), lines[1].at(z[1:])
+        return float(((A.x - B.x) ** 2 + (A.y - B.y) ** 2)[0])
+
+    found = minimize(squared, [s, sigma], method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-16})
+    return np.sqrt(found.fun)
+
+
+@pytest.mark.parametrize(("seed", "links"), [(31, {"beam1": 46, "beam2": 31}), (37, {"beam1": 23, "beam2": 37})])
+def test_the_constraint_stands_at_the_smallest_distance_and_not_at_a_sample(seed, links):
+    # reference: Nelder and Mead on the squared distance, in states bent at random
+    mechanism = mechanism_of(hinge(), cprbm.Settings(links=links))
+    pair, model = mechanism.pairs["contact"], mechanism.problem.model
+    apart = mechanism.without("contact")
+    bent = equilibrium(apart, {"M": 0.3}, start(apart), 1e-11, 30).point.state
+    random = np.random.default_rng(seed)
+    for _ in range(5):
+        theta = bent.theta.copy()
+        for chain in model.chains:
+            x = np.linspace(0.0, np.pi, chain.n + 1)
+            theta[chain.links] += 0.03 * random.standard_normal(2) @ (np.sin(x), np.sin(2.0 * x))
+        state = State(theta, bent.bodies)
+        at = positions(model, state)
+        places = nearest.closest_places(pair, pair.lines(state, at))
+        (s,), (sigma,) = places.s, places.sigma
+        assert np.min(np.abs(s - smooth.halves(pair.a))) > 1e-3 * pair.a.h
+        smallest = smallest_distance(pair.lines(state, at), s + 0.01, sigma - 0.013)
+        (row,) = (group.values[0] for group in pair.groups(state, at))
+        assert row == pytest.approx(pair.offset - smallest, abs=1e-10)
+        assert pair.deepest(state, at) == pytest.approx(max(row, 0.0), abs=1e-10)
+
+
+def test_no_iteration_turns_a_link_by_more_than_is_allowed():
+    problem = mechanism_of(hinge(), cprbm.Settings(links=19)).problem
+    rest = start(problem)
+    found = equilibrium(problem, {"M": 40.0}, rest, 1e-11, 1)
+    assert not found.converged
+    assert np.max(np.abs(found.point.state.theta - rest.state.theta)) == pytest.approx(LONGEST_TURN, rel=1e-12)
+
+
+@pytest.mark.parametrize("order", [("upper", "lower"), ("lower", "upper")])
+@pytest.mark.parametrize("links", [7, 16])
+def test_a_tip_pressed_on_another_beam(order, links):
+    """Small deflections: (P − R) a³/3EI − R a³/3EI = gap; the lower's moment falls linearly up to the contact.
+
+    The upper's tip slopes more than the lower beam there, so that it is its end that touches.
+    """
+    gap = 1e-6 * LENGTH
+    closing = 3.0 * RIGIDITY * gap / LENGTH**3
+    y, longer = THICKNESS + gap, 1.37 * LENGTH
+
+    def beam(height, length, point, end):
+        return {
+            "curve": {"kind": "line", "start": [0.0, height], "end": [length, height]},
+            "thickness": THICKNESS,
+            "width": WIDTH,
+            "material": "m",
+            "start": {"joint": "weld", "point": point},
+            "end": end,
+        }
+
+    probes = [("touch", "force"), ("touch", "centre"), ("touch", "closing_load"), ("V", "reaction")]
+    scene = scene_from(
+        {
+            "name": "two",
+            "materials": {"m": {"youngs_modulus": MODULUS, "poisson_ratio": 0.31}},
+            "bodies": {
+                "ground": {"motion": "fixed", "points": {"U": [0.0, y], "V": [0.0, 0.0]}},
+                "block": {"motion": "free", "points": {"T": [LENGTH, y]}},
+            },
+            "beams": {
+                "upper": beam(y, LENGTH, "U", {"joint": "weld", "point": "T"}),
+                "lower": beam(0.0, longer, "V", {"joint": "free"}),
+            },
+            "loads": {"P": {"kind": "force", "point": "T", "direction": [0.0, -1.0]}},
+            "contacts": {"touch": {"kind": "beam-beam", "between": list(order)}},
+            "stages": [{"name": "load", "steps": "P", "stations": [0.5 * closing, 3.0 * closing]}],
+            "probes": [
+                *({"of": of, "quantity": quantity} for of, quantity in probes),
+                {"of": "lower", "quantity": "bending_stress", "points": 28},
+            ],
+        }
+    )
+    answer = cprbm.answer(scene, cprbm.Settings(links=links))
+    assert answer.completed, answer.sentence
+    apart, values = (station.values for station in answer.stations)
+    assert apart["touch.force"][0] == 0.0
+    # a chain is softer by 1/(2N²) of itself: a³/3EI becomes (1 + 1/(2N²)) of that, in both beams alike
+    assert values["touch.closing_load"][0] == pytest.approx(closing, rel=1.0 / links**2)
+    R = values["touch.force"][0]
+    assert pytest.approx(closing, rel=1.5 / links) == R
+    assert values["touch.centre"][0] == pytest.approx(LENGTH, rel=1e-5)
+    assert values["V.reaction"][1] == pytest.approx(R, rel=1e-6)
+    s = np.linspace(0.0, longer, 28)
+    moment = values["lower.bending_stress"] * WIDTH * THICKNESS**2 / 6.0
+    assert moment == pytest.approx(-R * np.maximum(LENGTH - s, 0.0), abs=1e-4 * R * LENGTH)
