@@ -40,6 +40,7 @@ def _station_complaints(scene: Scene, station: StationAnswer) -> list[str]:
         station.certificate.residual_floor,
         station.certificate.violation,
         station.certificate.penetration,
+        station.certificate.complementarity,
         station.certificate.force_balance,
         station.certificate.moment_balance,
     )

@@ -125,16 +125,18 @@ def test_beams_of_unlike_thickness_touch_between_their_surfaces():
                 "block": {"motion": "free", "points": ends["tip"]},
             },
             "beams": {
-                "thin": beam(ends["ground"]["R"], ends["tip"]["P"], "R", "P", upper),
+                "thin": beam(ends["tip"]["P"], ends["ground"]["R"], "P", "R", upper),
                 "thick": beam(ends["ground"]["S"], ends["ground"]["T"], "S", "T", lower),
             },
             "loads": {"press": {"kind": "force", "point": "P", "direction": [0.0, -1.0]}},
             "contacts": {"touch": {"kind": "beam-beam", "between": ["thin", "thick"]}},
             "stages": [{"name": "load", "steps": "press", "stations": [1e-3]}],
-            "probes": [{"of": "touch", "quantity": "force"}],
+            "probes": [{"of": "touch", "quantity": "force"}, {"of": "touch", "quantity": "centre"}],
         }
     )
     (station,) = answer(pressed, Settings(elements=20)).stations
+    # The thin beam is drawn from its tip, which is what presses: within the first element.
+    assert 0.0 <= station.values["touch.centre"][0] < 0.17 / 20
     assert station.values["touch.force"][0] == pytest.approx(1e-3, rel=0.2)
     # The thick beam gives way by P a³ b³/(3 EI L³) < 1e-7 m.
     assert station.touching["touch"][:, 1] == pytest.approx(0.5 * lower, abs=2e-7)
