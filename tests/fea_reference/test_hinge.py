@@ -140,6 +140,7 @@ def test_beams_of_unlike_thickness_touch_between_their_surfaces():
     assert station.values["touch.force"][0] == pytest.approx(1e-3, rel=0.2)
     # The thick beam gives way by P a³ b³/(3 EI L³) < 1e-7 m.
     assert station.touching["touch"][:, 1] == pytest.approx(0.5 * lower, abs=2e-7)
+    assert station.touching["touch"][:, 0] == pytest.approx(0.17, abs=0.17 / 20)
 
 
 def test_twice_the_elements_change_little(scene, solved):
