@@ -132,7 +132,6 @@ class Circle:
         places, convex = self._refined(line, s[lowest])
         held = s[near]
         free = places[convex]
-        # an end beyond reach of the joints' rule may still be the closest place of all
         return np.concatenate((held, free)), np.concatenate((np.zeros(len(held), bool), np.ones(len(free), bool)))
 
     def _refined(self, line: smooth.SmoothLine, s: Array) -> tuple[Array, Flags]:

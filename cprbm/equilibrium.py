@@ -190,11 +190,10 @@ def measure(problem: Problem, point: Point) -> Measure:
     # an angle is known to eps·|θ|, a spring's moment to the stiffness times that
     turned = max(1.0, float(np.max(np.abs(point.state.theta))))
     floor = 4.0 * EPS * float(np.max(model.couplings)) * turned + 4.0 * EPS * np.sqrt(model.n_links) * scale
-    lengths = float(np.max(model.lengths)) * np.sqrt(model.n_links)
     return Measure(
         residual=largest / scale,
         floor=float(floor / scale),
-        violation=float(np.max(np.abs(point.Z), initial=0.0)) / max(1.0, lengths),
+        violation=float(np.max(np.abs(point.Z), initial=0.0)),
         overlap=float(np.max(point.rows.values, initial=0.0)),
         complementarity=float(np.max(np.abs(point.lam * point.rows.values), initial=0.0)) / scale,
     )

@@ -211,19 +211,22 @@ def _feet(pair: Pair, line: smooth.SmoothLine, A: smooth.Points, sigma: Array) -
     """D, σ and whether there is a foot, by Newton's method on (i) from the guess ``sigma``."""
     for _ in range(FOOT_ITERATIONS):
         B = line.at(sigma)
-        rx, ry = A.x - B.x, A.y - B.y
-        cos, sin = np.cos(B.psi), np.sin(B.psi)
-        along, across = cos * rx + sin * ry, cos * ry - sin * rx
+        along, across = _seen_from(B, A)
         step = along / (B.speed * np.maximum(1.0 - B.bend * across, 0.2))
         sigma = np.minimum(np.maximum(sigma + np.minimum(np.maximum(step, -pair.b.h), pair.b.h), 0.0), pair.b.s[-1])
         if np.max(np.abs(along)) < FOOT_TOLERANCE:
             break
     B = line.at(sigma)
-    rx, ry = A.x - B.x, A.y - B.y
-    cos, sin = np.cos(B.psi), np.sin(B.psi)
-    along, across = cos * rx + sin * ry, cos * ry - sin * rx
+    along, across = _seen_from(B, A)
     foot = np.abs(along) <= PARALLEL * np.maximum(np.abs(across), pair.b.h)
     return pair.side * across, sigma, foot
+
+
+def _seen_from(B: smooth.Points, A: smooth.Points) -> tuple[Array, Array]:
+    """t·r and n·r of points of A in the frames of points of B, (k,) each."""
+    rx, ry = A.x - B.x, A.y - B.y
+    cos, sin = np.cos(B.psi), np.sin(B.psi)
+    return cos * rx + sin * ry, cos * ry - sin * rx
 
 
 def closest_places(pair: Pair, lines: Lines) -> Places:
@@ -274,9 +277,7 @@ def _refined(pair: Pair, lines: Lines, s: Array, sigma: Array) -> tuple[Array, A
     s0, reach = s, pair.a.h
     for _ in range(CLOSEST_ITERATIONS):
         A, B = lines[0].at(s), lines[1].at(sigma)
-        rx, ry = A.x - B.x, A.y - B.y
-        cos, sin = np.cos(B.psi), np.sin(B.psi)
-        along, across = cos * rx + sin * ry, cos * ry - sin * rx
+        along, across = _seen_from(B, A)
         facing = np.cos(A.psi - B.psi)
         crossing = np.sin(A.psi - B.psi) * facing  # zero where the tangents are parallel, either way
         of_foot = -B.speed + across * B.bend
