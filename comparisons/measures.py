@@ -64,6 +64,7 @@ UNITS: Mapping[Quantity, str] = {
     "rotation": "rad",
     "force": "N",
     "centre": "m",
+    "ends": "m",
     "bending_stress": "Pa",
     "reaction": "N",
     "reaction_moment": "N·m",

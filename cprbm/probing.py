@@ -45,6 +45,13 @@ def _value(
             if not np.any(pressing > 0.0):
                 return []
             return float(pressing @ point.rows.arc[mine] / pressing.sum()) * model.unit_length
+        case "ends":
+            pressing = [
+                float(arc)
+                for arc, lam, contact in zip(point.rows.arc, point.lam, point.rows.contact, strict=True)
+                if contact == probe.of and lam > 0.0
+            ]
+            return [min(pressing) * model.unit_length, max(pressing) * model.unit_length] if pressing else []
         case "closing_load":
             return [closed_at[probe.of]] if probe.of in closed_at else []
         case "bending_stress":

@@ -67,6 +67,7 @@ class MadeUp:
             "rotation": np.array([0.9 * reach - 0.1 * push]),
             "force": np.array([20.0 * abs(push)]),
             "centre": np.array([0.5 * total + 0.001 * push]) if closed else np.empty(0),
+            "ends": np.array([0.4 * total, 0.6 * total + 0.001 * push]) if closed else np.empty(0),
             "closing_load": np.array([CLOSES / factor]) if closed else np.empty(0),
             "reaction": np.array([3.0 * load, 1.0 * load + 5.0 * push]),
             "reaction_moment": np.array([0.3 * load + 0.02 * push]),

@@ -225,3 +225,13 @@ def test_a_station_that_is_missing_is_an_error_here(hinge, right):
     runs = paired(hinge, Choices(), right)
     with pytest.raises(KeyError, match="no station"):
         station_of(runs.reference, "load", 0.7)
+
+
+def test_the_ends_of_a_contact_are_two_places_on_its_first_beam(hinge, right):
+    asked = hinge.model_copy(update={"probes": (*hinge.probes, Probe(of="contact", quantity="ends"))})
+    runs = paired(asked, Choices(), right)
+    row = rows_by_name(asked, runs)["contact.ends"]
+    assert row.cprbm.shape == row.fea.shape == (2,)
+    assert row.unit == "m"
+    assert row.scale == row.denominator == pytest.approx(math.pi * 0.025)
+    assert rows_by_name(asked, runs, station=0.067)["contact.ends"].bounds is None
