@@ -60,14 +60,15 @@ class MadeUp:
         reach = load * factor
         closed = self.contact and reach > CLOSES
         push = self.sign * (reach - CLOSES) if closed else 0.0
-        beam1 = scene.beams["beam1"]
-        total = length(beam1.curve)
+        first = next(iter(scene.beams))
+        total = length(scene.beams[first].curve)
+        shift = 0.01 * total * push / (1.0 + abs(push))
         laws: dict[str, Array] = {
             "displacement": np.array([0.01 * reach, 0.02 * reach - 0.005 * push]),
             "rotation": np.array([0.9 * reach - 0.1 * push]),
             "force": np.array([20.0 * abs(push)]),
-            "centre": np.array([0.5 * total + 0.001 * push]) if closed else np.empty(0),
-            "ends": np.array([0.4 * total, 0.6 * total + 0.001 * push]) if closed else np.empty(0),
+            "centre": np.array([0.5 * total + shift]) if closed else np.empty(0),
+            "ends": np.array([0.4 * total, 0.6 * total + shift]) if closed else np.empty(0),
             "closing_load": np.array([CLOSES / factor]) if closed else np.empty(0),
             "reaction": np.array([3.0 * load, 1.0 * load + 5.0 * push]),
             "reaction_moment": np.array([0.3 * load + 0.02 * push]),
@@ -87,7 +88,7 @@ class MadeUp:
             x, y = points(beam.curve, s).T + 0.01 * reach * np.outer([1.0, 1.5], (s / s[-1]) ** 2)
             shapes[name] = Shape(frozen_array(s), frozen_array(x), frozen_array(y))
         if closed:
-            touching["contact"] = frozen_array([[shapes["beam1"].x[20], shapes["beam1"].y[20] - 0.001]])
+            touching["contact"] = frozen_array([[shapes[first].x[20], shapes[first].y[20] - 0.001]])
         return StationAnswer(stage, load, frozendict(values), frozendict(shapes), frozendict(touching), CERTIFICATE)
 
 
