@@ -165,10 +165,12 @@ def _row(scene: Scene, row: Row) -> Plain:
         "steps": None
         if steps is None
         else {
+            "contact": row.fraction(steps.contact),
             "own": row.fraction(steps.own),
             "stretch": row.fraction(steps.stretch),
             "shear": row.fraction(steps.shear),
         },
+        "contact_model": None if row.contact_model is None else row.fraction(row.contact_model),
         "difference_largest": None if row.largest is None else row.fraction(row.largest),
         "scale": row.scale,
         "denominator": row.denominator,

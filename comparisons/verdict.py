@@ -19,7 +19,7 @@ other) decides, and the row itself is undecided only if the scene does not ask f
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from comparisons.formats import percent
@@ -78,7 +78,9 @@ def compared(scene: Scene, runs: Runs) -> Comparison:
     if found:
         sentence = "; ".join(f"{', '.join(names)} gave no whole answer: {what}" for what, names in found.items())
         return Comparison(scene, runs, (), Verdict(Word.UNDECIDED, sentence + ".", (), completed=False))
-    rows = rows_of(scene, runs)
+    # nothing rests on the formulation that stands beside, so that its failure leaves no more than a gap
+    beside = runs.paper is not None and not complaints(scene, runs.paper)
+    rows = rows_of(scene, runs if beside else replace(runs, paper=None))
     return Comparison(scene, runs, rows, judged(scene, rows))
 
 
