@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from comparisons.benchmark import FIT_FROM, Benchmark, trend
 from comparisons.documents import claim_met, claim_of, worst
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.geometry import radius
@@ -38,6 +39,60 @@ def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
 def of_answer(scene: Scene, answer: Answer) -> tuple[Sheet, ...]:
     """All tables of one solver's answer."""
     return tuple(sheet for sheet in (_answered(scene, answer), _events(answer)) if sheet.rows)
+
+
+def of_benchmark(measured: Benchmark) -> tuple[Sheet, ...]:
+    """The timings of a benchmark, and how they go with N."""
+    return _timings(measured), _trends(measured)
+
+
+def _timings(measured: Benchmark) -> Sheet:
+    body = tuple(
+        (
+            measured.label(timing.method),
+            str(timing.n),
+            number(timing.median),
+            number(timing.spread, 2),
+            str(len(timing.seconds)),
+            str(timing.total_iterations),
+            number(timing.iterations_per_station),
+            timing.ending.name,
+        )
+        for timing in measured.timings
+    )
+    return Sheet(
+        f"{measured.scene.title or measured.scene.name}: time against N",
+        ("method", "N", "seconds", "spread", "repeats", "iterations", "per station", "ended"),
+        body,
+        "Seconds of a whole answer, set-up included: median, and distance of the quartiles. N is the number of links "
+        "or elements per beam.",
+    )
+
+
+def _trends(measured: Benchmark) -> Sheet:
+    body = []
+    for method in measured.plan.sizes:
+        found = trend(measured, method)
+        left_out = measured.left_out[method]
+        body.append(
+            (
+                measured.label(method),
+                f"{found.sizes[0]} to {found.sizes[-1]}" if found.sizes else "–",
+                number(found.exponent),
+                number(found.iterations),
+                ", ".join(str(n) for n in left_out) or "none",
+            )
+        )
+    machine = measured.machine
+    return Sheet(
+        "How it grows",
+        ("method", "N", "exponent of time", "iterations, last to first", "sizes not begun"),
+        tuple(body),
+        f"The exponent e of seconds = a·N^e by least squares of the logarithms, over the runs with N of {FIT_FROM} or "
+        "more that completed. Sizes are not begun once a solve took more than "
+        f"{measured.plan.at_most:g} s. {machine['cpu']}, {machine['cores']} cores, BLAS on one thread; Python "
+        f"{machine['python']}, NumPy {machine['numpy']}, SciPy {machine['scipy']}, scikit-fem {machine['scikit-fem']}.",
+    )
 
 
 def last_rows(compared: Comparison) -> tuple[Row, ...]:
