@@ -200,6 +200,12 @@ class Circle:
         deep = D_ss > np.maximum(LEAST_CURVATURE, np.maximum(ripple, steps))
         return s, deep & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
 
+    def parting(self, state: State, at: Positions, s: Array) -> Array:
+        """D_ss at arc lengths ``s`` if the beam touched there along the circle: the curvature with which it parts."""
+        A = self.line(state, at).at(s)
+        outward = (A.y - self.y) * np.cos(A.psi) - (A.x - self.x) * np.sin(A.psi)
+        return np.asarray(np.sign(outward) * A.bend + 1.0 / (self.radius + self.offset))
+
     @property
     def thickness(self) -> float:
         """What an overlap is measured by: the thickness, for a line the longest beam; units of length."""
