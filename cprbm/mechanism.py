@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from cprbm.boundary import FittedBoundary, fitted_boundary
@@ -12,10 +12,11 @@ from cprbm.contact import Formulation, Group, Rows
 from cprbm.energy import dead_loads
 from cprbm.equilibrium import Problem
 from cprbm.kinematics import Positions, State
-from cprbm.model import build
+from cprbm.model import EVEN, build
 from cprbm.nearest import Pair, pair_of
 from cprbm.settings import Settings
 from scene import BeamContact, Scene
+from scene.answer import Array
 
 Groups = Callable[[State, Positions], tuple[Group, ...]]
 
@@ -59,13 +60,13 @@ def _formulation(parts: dict[str, Groups]) -> Formulation:
     return rows
 
 
-def mechanism_of(scene: Scene, settings: Settings) -> Mechanism:
-    """Make a scene ready.
+def mechanism_of(scene: Scene, settings: Settings, borders: Mapping[str, Array] = EVEN) -> Mechanism:
+    """Make a scene ready, with elements that end at ``borders`` on the beams that have some, else with even ones.
 
     Raises:
         SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
     """
-    model = build(scene, settings)
+    model = build(scene, settings, borders)
     pairs = {
         name: pair_of(scene, model, name) if isinstance(contact, BeamContact) else circle_of(scene, model, name)
         for name, contact in scene.contacts.items()

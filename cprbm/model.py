@@ -138,10 +138,10 @@ class Model:
         return next(chain for chain in self.chains if chain.name == name)
 
 
-NO_BORDERS: Mapping[str, Array] = frozendict()
+EVEN: Mapping[str, Array] = frozendict()
 
 
-def build(scene: Scene, settings: Settings, borders: Mapping[str, Array] = NO_BORDERS) -> Model:
+def build(scene: Scene, settings: Settings, borders: Mapping[str, Array] = EVEN) -> Model:
     """Cut every beam into elements, eqs. (2)-(3), and leave the units behind.
 
     Args:
