@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from cprbm.boundary import FittedBoundary, fitted_boundary
@@ -12,11 +12,10 @@ from cprbm.contact import Formulation, Group, Rows
 from cprbm.energy import dead_loads
 from cprbm.equilibrium import Problem
 from cprbm.kinematics import Positions, State
-from cprbm.model import EVEN, build
+from cprbm.model import EVEN, Fit, build
 from cprbm.nearest import Pair, pair_of
 from cprbm.settings import Settings
 from scene import BeamContact, Scene
-from scene.answer import Array
 
 Groups = Callable[[State, Positions], tuple[Group, ...]]
 
@@ -60,15 +59,15 @@ def _formulation(parts: dict[str, Groups]) -> Formulation:
     return rows
 
 
-def mechanism_of(scene: Scene, settings: Settings, borders: Mapping[str, Array] = EVEN) -> Mechanism:
-    """Make a scene ready, with elements that end at ``borders`` on the beams that have some, else with even ones.
+def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism:
+    """Make a scene ready on even elements or those of a ``fit``.
 
     Raises:
         SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
     """
-    model = build(scene, settings, borders)
+    model = build(scene, settings, fit)
     pairs = {
-        name: pair_of(scene, model, name) if isinstance(contact, BeamContact) else circle_of(scene, model, name)
+        name: pair_of(scene, model, name) if isinstance(contact, BeamContact) else circle_of(scene, model, name, fit)
         for name, contact in scene.contacts.items()
     }
     boundaries = {}

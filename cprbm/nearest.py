@@ -84,6 +84,11 @@ class Pair:
         """Whether the beam's start and end are clamped in touch with the other: not told."""
         return (False, False)
 
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Arc lengths of A at which zones end on this mesh: meshes are not fitted to them."""
+        return ()
+
     def parting(self, state: State, at: Positions, s: Array) -> Array:
         """Curvature D″ with which A parts from B, at arc lengths ``s``."""
         lines = self.lines(state, at)

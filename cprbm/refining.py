@@ -9,7 +9,7 @@ c_i         arc lengths at which the zones of a contact begin and end, :mod:`cpr
 A set of pressing joints that starts wrong by half a beam is put right only by a few joints at a time; a coarse
 mesh has few joints, and says where the zone ends on the next.  And a force at a zone's end that must be shared by
 the two joints beside it bends the beam by a part of h² that depends on where between them the end falls.
-With a border at every end of a zone, and the elements between even, it always falls in the middle.
+With a border at every end of a zone and a row there, and the elements between even, it is shared by none.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from cprbm.contact import Rows
 from cprbm.equilibrium import Point, point_at
 from cprbm.kinematics import State, positions
 from cprbm.mechanism import Mechanism
-from cprbm.model import Chain
+from cprbm.model import Chain, Fit
 from cprbm.settings import Settings
 from cprbm.zones import Zone, zones_of
 from scene.answer import Array
 
-COARSEST = 160  # links that need no coarser mesh to start from
+COARSEST = 80  # links that need no coarser mesh to start from
 FACTOR = 4
 FEWEST = 8  # links of a beam in a coarser mesh
 BESIDE = 0.6  # elements beyond a zone's end up to which a joint presses
@@ -65,35 +65,39 @@ def all_zones(mechanism: Mechanism, point: Point) -> dict[str, tuple[Zone, ...]]
     return {name: zones for name, zones in found.items() if zones}
 
 
-def ends_on_beams(mechanism: Mechanism, zones: Mapping[str, tuple[Zone, ...]]) -> dict[str, Array]:
-    """For every beam with a zone, the ends c_i within it, as shares of its length, ascending."""
-    ends: dict[str, list[float]] = {}
+def ends_of(mechanism: Mechanism, zones: Mapping[str, tuple[Zone, ...]]) -> dict[str, Array]:
+    """For every contact with a zone, its ends c_i within the first beam, as shares of the length, ascending."""
+    ends = {}
     for name, found in zones.items():
-        chain = mechanism.pairs[name].a
-        inner = [end / chain.s[-1] for zone in found for end in (zone.begin, zone.end)]
-        ends.setdefault(chain.name, []).extend(end for end in inner if 0.0 < end < 1.0)
-    return {beam: np.unique(found) for beam, found in ends.items() if found}
+        length = mechanism.pairs[name].a.s[-1]
+        inner = {end / length for zone in found for end in (zone.begin, zone.end) if 0.0 < end < length}
+        if inner:
+            ends[name] = np.array(sorted(inner))
+    return ends
 
 
-def borders_at(ends: Mapping[str, Array], settings: Settings) -> dict[str, Array]:
-    """Element borders, shares of the length, of the beams whose elements are fitted to ``ends``."""
-    fitted = {}
-    for beam, places in ends.items():
+def fitted(mechanism: Mechanism, ends: Mapping[str, Array], settings: Settings) -> Fit:
+    """Elements that end where contacts do, even between; where ends are closer than an element, even ones."""
+    contacts: dict[str, list[str]] = {}
+    for name in ends:
+        contacts.setdefault(mechanism.pairs[name].a.name, []).append(name)
+    borders: dict[str, Array] = {}
+    kept: dict[str, Array] = {}
+    for beam, names in contacts.items():
         n = settings.links_of(beam)
-        numbers = np.clip(np.round(places * n), 1, n - 1)
-        known = np.concatenate(([0.0], numbers, [float(n)]))
-        # zones closer together than an element are left to even elements
-        if np.all(np.diff(known) >= 1.0):
-            fitted[beam] = np.interp(np.arange(n + 1), known, np.concatenate(([0.0], places, [1.0])))
-    return fitted
+        places = np.unique(np.concatenate([ends[name] for name in names]))
+        numbers = np.concatenate(([0.0], np.clip(np.round(places * n), 1, n - 1), [float(n)]))
+        if np.all(np.diff(numbers) >= 1.0):
+            borders[beam] = np.interp(np.arange(n + 1), numbers, np.concatenate(([0.0], places, [1.0])))
+            kept |= {name: ends[name] for name in names}
+    return Fit(borders, kept)
 
 
-def fits(mechanism: Mechanism, ends: Mapping[str, Array]) -> bool:
-    """Whether every end lies on a border of the mechanism's mesh."""
-    for beam, places in ends.items():
-        chain = mechanism.problem.model.chain(beam)
-        away = np.min(np.abs(chain.borders[:, None] - places * chain.s[-1]), axis=0)
-        if np.any(away > MOVED * chain.h):
+def fits(mechanism: Mechanism, fit: Fit) -> bool:
+    """Whether the mechanism's mesh was made for (nearly) the same ends."""
+    for name, pair in mechanism.pairs.items():
+        wanted = fit.ends.get(name, np.zeros(0)) * pair.a.s[-1]
+        if len(wanted) != len(pair.ends) or np.any(np.abs(wanted - pair.ends) > MOVED * pair.a.h):
             return False
     return True
 

@@ -20,7 +20,7 @@ from cprbm.forces import contact_imbalance
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.probing import probed, shapes, touching
-from cprbm.refining import all_zones, borders_at, carried_over, coarser, ends_on_beams, fits
+from cprbm.refining import all_zones, carried_over, coarser, ends_of, fits, fitted
 from cprbm.settings import Settings
 from scene import Answer, Certificate, Ending, Event, Scene, StationAnswer
 
@@ -125,10 +125,10 @@ class _March:
         for settings in self.family:
             solved, passes = settings is self.settings, 0
             while passes < (FITS if settings is self.family[-1] else 1):
-                ends = ends_on_beams(mechanism, all_zones(mechanism, point))
-                if solved and (fits(mechanism, ends) or settings is not self.family[-1]):
+                fit = fitted(mechanism, ends_of(mechanism, all_zones(mechanism, point)), settings)
+                if solved and (fits(mechanism, fit) or settings is not self.family[-1]):
                     break
-                target = mechanism_of(self.scene, settings, borders_at(ends, settings))
+                target = mechanism_of(self.scene, settings, fit)
                 start = carried_over(mechanism, point, target, self.values)
                 found = equilibrium(target.problem, self.values, start, settings.tolerance, settings.iterations)
                 turned = float(np.max(np.abs(found.point.state.theta - start.state.theta)))

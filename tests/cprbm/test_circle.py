@@ -70,23 +70,24 @@ def test_a_wrap_over_most_of_the_beam_converges_with_order_two_in_everything(tru
     # reference: tests.references.wrapped, c/L = 0.705
     errors = {n: errors_of(n, truth) for n in (20, 40, 80, 160)}
     for coarse, fine in ((20, 40), (40, 80), (80, 160)):
-        ratios = errors[coarse] / errors[fine]
-        assert np.all(ratios[:7] > 3.0), ratios
-        assert np.all(ratios[:7] < 5.0), ratios
-    assert np.all(errors[40] < [2e-4, 1e-4, 2e-4, 6e-4, 2e-4, 1e-4, 1e-4, 2e-4])
+        ratios = errors[coarse][:4] / errors[fine][:4]
+        assert np.all((ratios > 3.3) & (ratios < 5.0)), ratios
+    for n, found in errors.items():  # of forces and places hardly any error is left
+        assert np.all(found[4:] < 0.2 / n**2)
 
 
 def test_where_the_beam_lifts_off_between_two_joints_does_not_matter(truth):
-    # reference: tests.references.wrapped. Over these N the lift-off passes through an element several times
-    scaled = np.array([errors_of(n, truth)[:6] * n**2 for n in range(40, 50)])
-    assert np.all(scaled.max(axis=0) < 1.4 * scaled.min(axis=0))
+    # reference: tests.references.wrapped. Over these N the lift-off passes through an element seven times
+    scaled = np.array([errors_of(n, truth)[:4] * n**2 for n in range(40, 50)])
+    assert np.all(scaled.max(axis=0) < 1.1 * scaled.min(axis=0))
 
 
-@pytest.mark.parametrize("load", [67.0, 97.0, 137.0])
-def test_forces_and_ends_at_other_loads(load):
-    # reference: tests.references.wrapped, c/L from 0.43 to 0.64
-    errors = errors_of(40, Wrapped(**BEAM, radius=RADIUS, force=load))
-    assert np.all(errors < 6e-4)
+@pytest.mark.parametrize("load", [43.0, 67.0, 97.0, 137.0])
+@pytest.mark.parametrize("links", [21, 40])
+def test_forces_and_ends_at_other_loads(load, links):
+    # reference: tests.references.wrapped, c/L from 0.23 to 0.64
+    errors = errors_of(links, Wrapped(**BEAM, radius=RADIUS, force=load))
+    assert np.all(errors < 1.0 / links**2)
 
 
 def test_iterations_hardly_grow_with_the_links():
