@@ -256,7 +256,7 @@ def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:
     ends = circle.line(state, positions(model, state)).at(chain.s[[0, -1]])
     towards = (ends.x - circle.x) * np.cos(ends.psi) + (ends.y - circle.y) * np.sin(ends.psi)
     on_it = (np.abs(circle.distance(ends) - offset) <= ON_IT) & (np.abs(towards) <= ON_IT)
-    start, end = (attached is not None and attached.body < 0 and attached.welded for attached in (chain.start, chain.end))
+    start, end = (held is not None and held.body < 0 and held.welded for held in (chain.start, chain.end))
     return replace(
         circle,
         clamped=(start and bool(on_it[0]), end and bool(on_it[1])),

@@ -48,7 +48,7 @@ def contact_forces(problem: Problem, point: Point, only: str | None = None) -> C
 
 
 def contact_pressure(point: Point, contact: str, chain: Chain) -> tuple[Array, Array]:
-    """Of the rows of one contact that press: arc length on its first beam, ``chain``, and the force on it, (k,) each."""
+    """Of the rows of a contact that press: arc length on its first beam, ``chain``, and the force there, (k,) each."""
     arcs, forces = [np.zeros(0)], [np.zeros(0)]
     for group, lam in point.rows.shares(point.lam):
         if group.contact != contact:
