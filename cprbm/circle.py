@@ -226,6 +226,21 @@ class Circle:
         deep = D_ss > np.maximum(LEAST_CURVATURE, np.maximum(ripple, steps))
         return s, deep & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
 
+    def passed(self, before: Positions, after: Positions) -> bool:
+        """Whether the beam has swept over the circle's centre between two states.
+
+        Seen from the centre, the beam's ends turn by as much more or less as the angle that it spans changes;
+        a beam that went across leaves a whole turn between the two.
+        """
+        angles = []
+        for at in (before, after):
+            here = self.placed(at)
+            angles.append(np.arctan2(at.y[self.a.joints] - here.y, at.x[self.a.joints] - here.x))
+        old, new = angles
+        spanned = np.sum(_turned(np.diff(new))) - np.sum(_turned(np.diff(old)))
+        ends = _turned(new[[0, -1]] - old[[0, -1]])
+        return bool(abs(spanned - (ends[1] - ends[0])) > np.pi)
+
     def parting(self, state: State, at: Positions, s: Array) -> Array:
         """D_ss at arc lengths ``s`` if the beam touched there along the circle: the curvature with which it parts."""
         A, here = self.line(state, at).at(s), self.placed(at)
@@ -254,6 +269,11 @@ class Circle:
         s, _ = here._places(line)
         D = here.distance(line.at(np.concatenate((smooth.halves(self.a), s))))
         return float(np.max(self.offset - D, initial=0.0))
+
+
+def _turned(angle: Array) -> Array:
+    """Angles in [−π, π)."""
+    return np.asarray((angle + np.pi) % (2.0 * np.pi) - np.pi)
 
 
 def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:

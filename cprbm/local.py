@@ -157,8 +157,8 @@ def local_system(
         lever = arm(chain.start, state.bodies)
         _tie(entries, place_row, n + joint_0, n + J + joint_0, first_body, chain.start.body, lever)
     for m, mark in enumerate(model.marks.values()):
-        row, number = first_rho + 2 * (n + len(model.chains) + m), model.first_mark + m
-        _tie(entries, row, n + number, n + J + number, first_body, mark.body, arm(mark, state.bodies))
+        mark_row, number = first_rho + 2 * (n + len(model.chains) + m), model.first_mark + m
+        _tie(entries, mark_row, n + number, n + J + number, first_body, mark.body, arm(mark, state.bodies))
     for r, (b, last) in enumerate(zip(closure.ends, closure.end_joints, strict=True)):
         end = model.chains[b].end
         assert end is not None

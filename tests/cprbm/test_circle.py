@@ -253,3 +253,16 @@ def test_a_circle_that_moves_with_the_body_that_the_beam_is_clamped_to(links):
 def test_the_papers_formulation_says_that_it_has_no_circle():
     with pytest.raises(SceneError, match=r"contacts\.circle\.paper"):
         cprbm.answer(scene_of([1.0]), cprbm.Settings(formulation="paper"))
+
+
+def test_a_beam_never_passes_over_a_circle_whatever_the_step():
+    # a thin pin under the middle of the beam, far smaller than what one load step moves the beam by; it stands
+    # in the way on the beam's whole path, so that an answer without force is on the wrong side of it
+    length = BEAM["length"]
+    pin = {"radius": 0.0005, "center": [0.5 * length, -0.012]}
+    answer = cprbm.answer(scene_of([400.0], **pin), cprbm.Settings(links=30))
+    for station in answer.stations:
+        assert station.values["circle.force"][0] > 10.0
+    free = cprbm.answer(scene_of([400.0], radius=0.0005, center=[-0.5, 0.5]), cprbm.Settings(links=30))
+    shape = free.stations[0].shapes["beam"]
+    assert np.interp(0.5 * length, shape.x, shape.y) < -0.012
