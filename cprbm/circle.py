@@ -9,8 +9,8 @@ z           local numbers of the beam (5), and the centre's place where it moves
 P           (I − n nᵀ)/ρ, derivative of n over r = C − o
 ==========  ===================================================================================
 
-A row stands at every joint that is close, and where D has a minimum between joints that is deeper than
-the ripple with which the smooth line follows a circle. There s moves with the minimum, D_s = 0:
+A row stands at every joint that is close, and where D has a minimum between joints that is more convex than
+what the steps of the curvature between elements make of a zone. There s moves with the minimum, D_s = 0:
 
     D_z = n·r_z,     D_zz = n·C_zz + r_zᵀ P r_z − D_zs D_sz / D_ss     (last term only where s moves)
     D_s = n·C_s,     D_sz = n·C_sz + C_sᵀ P r_z,     D_ss = n·C_ss + C_sᵀ P C_s
@@ -205,7 +205,7 @@ class Circle:
         return np.concatenate((held, free)), np.concatenate((np.zeros(len(held), bool), np.ones(len(free), bool)))
 
     def _refined(self, line: smooth.SmoothLine, s: Array) -> tuple[Array, Flags]:
-        """Newton's method on D_s = 0; the flags say where it found a minimum nearby that is no ripple."""
+        """Newton's method on D_s = 0; the flags say where it found a minimum nearby that is no part of a zone."""
         start = s
         if not s.size:
             return s, np.zeros(0, dtype=bool)
@@ -221,9 +221,7 @@ class Circle:
             s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
             if np.max(np.abs(step)) < 1e-13:
                 break
-        ripple = self.a.h**2 * np.maximum(np.abs(A.bend), 1.0 / self.radius) ** 3
-        steps = STEPS * smooth.curvature_step(line, A.link)
-        deep = D_ss > np.maximum(LEAST_CURVATURE, np.maximum(ripple, steps))
+        deep = D_ss > np.maximum(LEAST_CURVATURE, STEPS * smooth.curvature_step(line, A.link))
         return s, deep & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
 
     def passed(self, before: Positions, after: Positions) -> bool:

@@ -266,3 +266,13 @@ def test_a_beam_never_passes_over_a_circle_whatever_the_step():
     free = cprbm.answer(scene_of([400.0], radius=0.0005, center=[-0.5, 0.5]), cprbm.Settings(links=30))
     shape = free.stations[0].shapes["beam"]
     assert np.interp(0.5 * length, shape.x, shape.y) < -0.012
+
+
+@pytest.mark.parametrize("load", [20.0, 100.0, 400.0, 1500.0])
+def test_a_pin_as_thin_as_the_beam_presses_at_one_place_however_coarse_the_elements(load):
+    # reference: the chain itself with many links; the force on a pin is no matter of the elements' length
+    pin = {"radius": 0.0005, "center": [0.5 * BEAM["length"], -0.012]}
+    coarse, fine = solved(load, 20, **pin), solved(load, 320, **pin)
+    assert coarse.values["circle.force"] == pytest.approx(fine.values["circle.force"], rel=0.03)
+    assert coarse.values["circle.ends"] == pytest.approx(fine.values["circle.ends"], abs=2e-3 * BEAM["length"])
+    assert np.ptp(coarse.values["circle.ends"]) == 0.0
