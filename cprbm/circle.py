@@ -33,7 +33,7 @@ import numpy as np
 from cprbm import smooth
 from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State, positions, rest_state
-from cprbm.model import Chain, Model
+from cprbm.model import EVEN, Chain, Fit, Model
 from scene import CircleContact, Mistake, Scene, SceneError
 from scene.answer import Array, Flags, Ints
 
@@ -56,6 +56,7 @@ class Circle:
         offset: half the thickness, zero for a line; units of length.
         unit_length: ℓ, m.
         clamped: whether the beam's start and end are clamped in touch with the circle and tangent to it.
+        ends: arc lengths at which zones end on this mesh, where element borders are; rows stand there too.
     """
 
     name: str
@@ -66,6 +67,7 @@ class Circle:
     offset: float
     unit_length: float
     clamped: tuple[bool, bool] = (False, False)
+    ends: tuple[float, ...] = ()
 
     def line(self, state: State, at: Positions) -> smooth.SmoothLine:
         """The beam's smooth line in a state."""
@@ -102,6 +104,8 @@ class Circle:
         joints = (self.a.first_joint + link)[:, None]
         angles = self.a.first_link + np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n)), axis=1)
         keys = np.where(free, -1, np.searchsorted(self.a.s, s))
+        at_ends = np.isin(s, self.ends)
+        keys[at_ends] = self.a.n + 2 + np.arange(np.sum(at_ends))
         every, alone = (joints, angles, second), np.ones(len(s), dtype=bool)
         groups = []
         for two in self._beside_clamps(keys):
@@ -174,7 +178,7 @@ class Circle:
         lowest = (padded[:-2] >= D) & (padded[2:] > D) & (D < REACH)
         lowest[[0, -1]] = False
         places, convex = self._refined(line, s[lowest])
-        held = s[near]
+        held = np.concatenate((s[near], self.ends))
         free = places[convex]
         return np.concatenate((held, free)), np.concatenate((np.zeros(len(held), bool), np.ones(len(free), bool)))
 
@@ -230,7 +234,7 @@ class Circle:
         return float(np.max(self.offset - D, initial=0.0))
 
 
-def circle_of(scene: Scene, model: Model, name: str) -> Circle:
+def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:
     """One of the scene's contacts with a circle.
 
     Raises:
@@ -253,4 +257,8 @@ def circle_of(scene: Scene, model: Model, name: str) -> Circle:
     towards = (ends.x - circle.x) * np.cos(ends.psi) + (ends.y - circle.y) * np.sin(ends.psi)
     on_it = (np.abs(circle.distance(ends) - offset) <= ON_IT) & (np.abs(towards) <= ON_IT)
     start, end = (attached is not None and attached.body < 0 and attached.welded for attached in (chain.start, chain.end))
-    return replace(circle, clamped=(start and bool(on_it[0]), end and bool(on_it[1])))
+    return replace(
+        circle,
+        clamped=(start and bool(on_it[0]), end and bool(on_it[1])),
+        ends=tuple(chain.s[-1] * fit.ends[name]) if name in fit.ends else (),
+    )

@@ -138,16 +138,29 @@ class Model:
         return next(chain for chain in self.chains if chain.name == name)
 
 
-NO_BORDERS: Mapping[str, Array] = frozendict()
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """A mesh that is fitted to contact over a length.
+
+    Attributes:
+        borders: for beams whose elements are not even, where they end, (N+1,) from 0 to 1 of the length.
+        ends: for contacts on them, where they begin and end within the first beam, (k,) shares of its length.
+    """
+
+    borders: Mapping[str, Array]
+    ends: Mapping[str, Array]
 
 
-def build(scene: Scene, settings: Settings, borders: Mapping[str, Array] = NO_BORDERS) -> Model:
+EVEN = Fit(frozendict(), frozendict())
+
+
+def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
     """Cut every beam into elements, eqs. (2)-(3), and leave the units behind.
 
     Args:
         scene: the question.
         settings: how many elements.
-        borders: for beams whose elements are not equal, where they end, (N+1,) from 0 to 1 of the length.
+        fit: where the elements end.
 
     Raises:
         SceneError: the numbers of links do not fit the scene's beams.
@@ -180,7 +193,7 @@ def build(scene: Scene, settings: Settings, borders: Mapping[str, Array] = NO_BO
     first_link = first_joint = 0
     for name, beam in scene.beams.items():
         line, n = lines[name], settings.links_of(name)
-        edges = line.length * borders.get(name, np.arange(n + 1) / n)
+        edges = line.length * fit.borders.get(name, np.arange(n + 1) / n)
         s = np.concatenate(([0.0], 0.5 * (edges[1:] + edges[:-1]), [line.length]))
         x, y = line.position(s)
         dx, dy = np.diff(x), np.diff(y)

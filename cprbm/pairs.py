@@ -22,6 +22,14 @@ class Touching(Protocol):
         """The first beam."""
 
     @property
+    def clamped(self) -> tuple[bool, bool]:
+        """Whether the beam's start and end are clamped in touch with the other."""
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Arc lengths of the first beam at which zones end on this mesh."""
+
+    @property
     def thickness(self) -> float:
         """What an overlap is measured by."""
 

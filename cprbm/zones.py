@@ -40,17 +40,22 @@ def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     chain = pair.a
     rows = [(group.arc, lam, group.values) for group, lam in point.rows.shares(point.lam) if group.contact == pair.name]
     arcs, forces, overlaps = (np.concatenate([np.zeros(0), *part]) for part in (zip(*rows, strict=True) if rows else ((),) * 3))
+    if not np.any(forces > 0.0):
+        return ()
+    largest = forces.max()
+    # ends that are clamped in touch: no force is needed there
+    clamped = chain.s[[0, -1]][list(pair.clamped)]
+    arcs, forces = np.append(arcs, clamped), np.append(forces, np.full(len(clamped), largest))
+    overlaps = np.append(overlaps, np.zeros(len(clamped)))
     order = np.argsort(arcs)
     arcs, forces, overlaps = arcs[order], forces[order], overlaps[order]
     pressed = np.flatnonzero(forces > 0.0)
-    if not pressed.size:
-        return ()
     h = float(chain.sizes.max())
     # one zone goes on where each joint has a row, and the beam arches by no more than one force can bend an element
-    arched = -overlaps > forces.max() * h**3 / chain.rigidity
+    arched = -overlaps > largest * h**3 / chain.rigidity
     breaks = np.concatenate(([0], np.cumsum((np.diff(arcs) > CLOSE * h) | arched[1:] | arched[:-1])))
     runs = np.split(arcs[pressed], np.flatnonzero(np.diff(breaks[pressed])) + 1)
-    return tuple(_zone(pair, point, chain, run, h) for run in runs)
+    return tuple(_zone(pair, point, chain, run, h) for run in runs if len(run) > 1 or run[0] not in clamped)
 
 
 def _zone(pair: Touching, point: Point, chain: Chain, run: Array, h: float) -> Zone:
