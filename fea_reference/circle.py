@@ -24,6 +24,7 @@ import numpy as np
 
 from fea_reference.hermite import NeutralLine, along, bending_along, shapes
 from fea_reference.model import Model, turned
+from fea_reference.state import State, squared, summed
 from fea_reference.touch import Circle, Touch
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative
 from scene.answer import Array
@@ -66,17 +67,17 @@ def circles(scene: Scene, model: Model) -> tuple[Circle, ...]:
     return tuple(found)
 
 
-def zones_of(model: Model, circle: Circle, z: Array) -> Zones:
+def zones_of(model: Model, circle: Circle, z: State) -> Zones:
     """Where the beam overlaps the circle in state ``z``."""
     return _find(model.line(model.beams[circle.first], z), centre(model, circle, z), circle.radius + circle.distance)
 
 
-def centre(model: Model, circle: Circle, z: Array) -> Array:
+def centre(model: Model, circle: Circle, z: State) -> Array:
     """Where the circle's centre is, (2,)."""
     return model.carried(model.bodies[circle.body], np.array(circle.arm), z)
 
 
-def passed(model: Model, circle: Circle, before: Array, after: Array) -> bool:
+def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
     """Whether a beam that goes straight from one state to another sweeps over the circle's centre.
 
     It does if the loop of its old place, its end's way, its new place backwards and its start's way winds
@@ -90,7 +91,7 @@ def passed(model: Model, circle: Circle, before: Array, after: Array) -> bool:
     return bool(abs(winding) > np.pi)
 
 
-def touch(model: Model, circle: Circle, stiffness: float, quadrature: int, z: Array) -> Touch:
+def touch(model: Model, circle: Circle, stiffness: float, quadrature: int, z: State) -> Touch:
     """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[circle.first], model.bodies[circle.body]
     line, c = model.line(beam, z), centre(model, circle, z)
@@ -104,10 +105,8 @@ def touch(model: Model, circle: Circle, stiffness: float, quadrature: int, z: Ar
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
     x = line.at(zeta)[0]
-    r = np.hypot(*(x - c[:, None]))
-    n = (x - c[:, None]) / r
+    r, n, g = _clearance(line, c, reach, zeta)
     tau = np.stack([n[1], -n[0]])
-    g = r - reach
 
     H = shapes(xi, line.lengths[e])
     g_q, p = along(n, H, line, e), along(tau, H, line, e)
@@ -141,17 +140,36 @@ def touch(model: Model, circle: Circle, stiffness: float, quadrature: int, z: Ar
     )
 
 
+def _clearance(line: NeutralLine, c: Array, reach: float, zeta: Array) -> tuple[Array, Array, Array]:
+    """r (k,), n (2, k) and g (k,) at places ``zeta`` (k,): g by (r² − (R + T)²)/(r + R + T).
+
+    At an element's first node the numerator has all its digits; from there on it changes by no more than the
+    element is long, and so does its round-off.
+    """
+    e, _ = line.locate(zeta)
+    q, error = summed(line.points, -c[:, None] * np.ones_like(line.points))
+    q_rest = error + line.rest
+    square, lost = squared(q)
+    total, lost_in_sum = summed(square[0], square[1])
+    circle, lost_of_circle = squared(np.full_like(total, reach))
+    over, lost_in_difference = summed(total, -circle)
+    at_node = over + (lost_in_difference + lost_in_sum - lost_of_circle + (lost + 2.0 * q * q_rest).sum(axis=0))
+    d = line.from_node(zeta)
+    away = q[:, e] + d
+    r = np.hypot(away[0], away[1])
+    g = (at_node[e] + ((2.0 * q[:, e] + d) * d).sum(axis=0)) / (r + reach)
+    return r, away / r, g
+
+
 def _find(line: NeutralLine, c: Array, reach: float) -> Zones:
     """All intervals on which the neutral line is nearer to ``c`` than ``reach``."""
 
     def at(zeta: Array, none: Array) -> Gap:
-        x, x1, x2 = line.at(zeta)
-        away = x - c[:, None]
-        r = np.hypot(*away)
-        n = away / r
+        _, x1, x2 = line.at(zeta)
+        r, n, g = _clearance(line, c, reach, zeta)
         along_circle = n[1] * x1[0] - n[0] * x1[1]
         slope, curvature = (n * x1).sum(axis=0), (n * x2).sum(axis=0) + along_circle**2 / r
-        return Gap(r - reach, slope, curvature, none, np.ones(zeta.shape, dtype=bool))
+        return Gap(g, slope, curvature, none, np.ones(zeta.shape, dtype=bool))
 
     zeta = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
     return negative(at, zeta, at(zeta, np.zeros_like(zeta)), np.ones(zeta.size - 1, dtype=bool))

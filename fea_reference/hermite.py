@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from fea_reference.state import summed
 from scene.answer import Array
 
 Index = NDArray[np.int64]
@@ -25,11 +26,13 @@ Index = NDArray[np.int64]
 class NeutralLine:
     """A beam of n elements as it lies.
 
-    ``points`` (2, n+1), ``angles`` (n+1,), elements' ``lengths`` (n,), ``tangents`` and ``normals`` (2, n+1),
-    and the coefficients ``cubic`` (4, 2, n) of 1, ξ, ξ², ξ³ of every element.
+    ``points`` (2, n+1) and what their rounding left, ``rest`` (2, n+1); ``angles`` (n+1,), elements' ``lengths``
+    (n,), ``tangents`` and ``normals`` (2, n+1), and the coefficients ``cubic`` (3, 2, n) of ξ, ξ², ξ³ of every
+    element, from its first node.
     """
 
     points: Array
+    rest: Array
     angles: Array
     lengths: Array
     tangents: Array
@@ -37,14 +40,15 @@ class NeutralLine:
     cubic: Array
 
     @classmethod
-    def through(cls, points: Array, angles: Array, lengths: Array) -> NeutralLine:
-        """The line through ``points`` (2, n+1)."""
+    def through(cls, points: Array, angles: Array, lengths: Array, rest: Array) -> NeutralLine:
+        """The line through ``points`` + ``rest`` (2, n+1)."""
         cos, sin = np.cos(angles), np.sin(angles)
         tangents = np.stack([cos, sin])
-        step = points[:, 1:] - points[:, :-1]
+        step, error = summed(points[:, 1:], -points[:, :-1])
+        step = step + (error + np.diff(rest, axis=1))
         t1, t2 = lengths * tangents[:, :-1], lengths * tangents[:, 1:]
-        cubic = np.stack([points[:, :-1], t1, 3.0 * step - 2.0 * t1 - t2, t1 + t2 - 2.0 * step])
-        return cls(points, angles, lengths, tangents, np.stack([-sin, cos]), cubic)
+        cubic = np.stack([t1, 3.0 * step - 2.0 * t1 - t2, t1 + t2 - 2.0 * step])
+        return cls(points, rest, angles, lengths, tangents, np.stack([-sin, cos]), cubic)
 
     @property
     def n(self) -> int:
@@ -56,15 +60,29 @@ class NeutralLine:
         element = np.minimum(zeta.astype(np.int64), self.n - 1)
         return element, zeta - element
 
+    def from_node(self, zeta: Array) -> Array:
+        """From the first node of each place's element to the place, (2, k)."""
+        e, xi = self.locate(zeta)
+        t, b, a = self.cubic[:, :, e]
+        return np.asarray(xi * (t + xi * (b + xi * a)))
+
     def at(self, zeta: Array) -> tuple[Array, Array, Array]:
         """Position, first and second derivative by ζ, each (2, k)."""
         e, xi = self.locate(zeta)
-        p, t, b, a = self.cubic[:, :, e]
+        t, b, a = self.cubic[:, :, e]
         return (
-            p + xi * (t + xi * (b + xi * a)),
+            self.points[:, e] + xi * (t + xi * (b + xi * a)),
             t + xi * (2.0 * b + xi * (3.0 * a)),
             2.0 * b + xi * (6.0 * a),
         )
+
+
+def apart(first: NeutralLine, zeta: Array, second: NeutralLine, zeta_m: Array) -> Array:
+    """From places ``zeta_m`` (k,) of the second line to ``zeta`` (k,) of the first, (2, k), with all digits."""
+    e, e_m = first.locate(zeta)[0], second.locate(zeta_m)[0]
+    value, error = summed(first.points[:, e], -second.points[:, e_m])
+    nodes = value + (error + (first.rest[:, e] - second.rest[:, e_m]))
+    return np.asarray(nodes + (first.from_node(zeta) - second.from_node(zeta_m)))
 
 
 def shapes(xi: Array, L: Array) -> Array:

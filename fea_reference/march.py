@@ -13,6 +13,7 @@ from fea_reference.contacts import passed_through, zones_of
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.settings import Settings
+from fea_reference.state import State
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import Circle, Contact, Pair, Touch
 from scene.answer import Array, Ending
@@ -96,10 +97,10 @@ class March:
         try:
             rate = splu(self.system.tangent).solve(load_direction(self.model, load, self.system.z))
         except RuntimeError:
-            return np.zeros_like(self.system.z)
-        return rate if np.isfinite(rate).all() else np.zeros_like(self.system.z)
+            return np.zeros(self.model.size)
+        return rate if np.isfinite(rate).all() else np.zeros(self.model.size)
 
-    def _solve(self, load: int, value: float, z: Array) -> System | None:
+    def _solve(self, load: int, value: float, z: State) -> System | None:
         """Equilibrium at ``value`` near ``z``; None if there is none to be found."""
         values = self.values.copy()
         values[load] = value
@@ -231,9 +232,9 @@ class March:
             if isinstance(one.pair, Pair) and one.zones.least <= 1e-9 * one.pair.scale
         }
 
-    def _moved(self, system: System, z: Array) -> float:
+    def _moved(self, system: System, z: State) -> float:
         """The most by which anything differs."""
-        return float(np.abs((system.z - z)[self._moving]).max())
+        return float(np.abs((system.z.values - z.values)[self._moving]).max())
 
     def _shown(self, load: int, value: float) -> str:
         part = self.model.loads[load]

@@ -13,6 +13,7 @@ from fea_reference.hermite import Index
 from fea_reference.linesearch import searched
 from fea_reference.model import Model
 from fea_reference.settings import Settings
+from fea_reference.state import State
 from fea_reference.system import System, assemble
 from fea_reference.touch import Contact
 from scene.answer import Array
@@ -37,7 +38,7 @@ def equilibrium(
     settings: Settings,
     penalties: Mapping[Contact, float],
     values: Array,
-    z: Array,
+    z: State,
     depths: Mapping[Contact, float],
 ) -> Solved:
     """Seek the equilibrium near ``z`` under load ``values``.

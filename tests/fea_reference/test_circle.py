@@ -8,6 +8,7 @@ from scipy.optimize import brentq
 from fea_reference import Settings, answer
 from fea_reference.circle import circles, passed, touch
 from fea_reference.model import build
+from fea_reference.state import State
 from scene import Ending, Scene, Stage
 from scene.statement import Force
 
@@ -229,10 +230,10 @@ def test_the_contacts_derivatives(body, depth):
     )
     (circle,) = circles(scene, model)
     rng = np.random.default_rng(5)
-    z = model.start + 0.02 * depth * rng.standard_normal(model.size)
+    z = model.start.values + 0.02 * depth * rng.standard_normal(model.size)
 
     def gathered(z):
-        one = touch(model, circle, 1.0, 12, z)
+        one = touch(model, circle, 1.0, 12, State.of(z))
         gradient, hessian = np.zeros(model.size), np.zeros((model.size, model.size))
         for dofs, g, H in zip(one.dofs.T, one.gradient.T, one.hessian.T, strict=True):
             gradient[dofs] += g
@@ -259,9 +260,9 @@ def test_a_circle_is_not_stepped_over():
     scene = on_circle((FORCE,), center=(0.9, -0.2), circle=0.002)
     model = build(scene, Settings(elements=20))
     (circle,) = circles(scene, model)
-    turned = model.start.copy()
+    turned = model.start.values.copy()
     turned[model.node_dofs[1]] = -turned[model.node_dofs[0]]
-    assert passed(model, circle, model.start, turned)
+    assert passed(model, circle, model.start, State.of(turned))
     assert not passed(model, circle, model.start, model.start)
     got = solved(scene, elements=40, kinematics="stretch")
     assert got.stations[0].values["contact.force"][0] > 0.0
