@@ -8,31 +8,43 @@ r, n    distance |x − c| and its direction (x − c)/r;  τ is n turned clockw
 R, T    radius; half of the beam's thickness, zero for a line
 g       gap r − R − T
 ε       penalty stiffness per unit length of the beam
+δ       lead: the gap at which the pressure begins
+N       axial force of the beam
 ======  =====================================================================================
 
-Energy Π_c = ∫ ½ ε ⟨−g⟩² ds over the beam's undeformed arc length, where
+Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the beam's undeformed arc length, where
 
     δg = n·(δx − δc),     δ²g = n·(δ²x − δ²c) + (τ·(δx − δc))²/r,
 
-and by ζ alone g' = n·x', g'' = n·x'' + (τ·x')²/r.  The integral runs over the exact intervals on which g < 0,
+and by ζ alone g' = n·x', g'' = n·x'' + (τ·x')²/r.  The integral runs over the exact intervals on which g < δ,
 as in :mod:`fea_reference.contact`: the pressure vanishes at their ends.
+
+A beam that lies on a circle has the circle's curvature, so it has no shear force, so its tension is constant and
+presses it on with N/(R + T) (Landau and Lifshitz, Theory of Elasticity, §19).  Without a lead, the beam sinks in by
+that over ε, and beside a clamp, which does not, a layer of width (4 EI/ε)^¼ leaves its pressure to the clamp: an
+error of first order in the layer's width in the contact's force.  With δ = N/((R + T) ε) there is no such layer, and
+what is left, at the end of the zone, is of second order.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
 from fea_reference.hermite import NeutralLine, along, bending_along, shapes
 from fea_reference.model import Model, turned
 from fea_reference.state import State, squared, summed
-from fea_reference.touch import Circle, Touch
+from fea_reference.touch import Circle, Penalty, Touch
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative
 from scene.answer import Array
 from scene.statement import CircleContact, Scene
 
 _LAYERS = 32.0  # of the first penalty, in a beam's length
-_RESOLVED = 4.2  # layers in an element: with more, its cubic cannot follow, and the force at a clamp suffers
-_THINNEST = 800.0  # layers in a beam's length: with more, the force is lost in round-off
+# Layers in an element: its cubic leaves the circle by a share of h⁴, which a clamp's own element does not make up for.
+_RESOLVED = 3.0
+# Layers in a beam's length: what they leave, of second order, is below 1e-6, and more of them only cost iterations.
+_THINNEST = 800.0
 
 
 def circles(scene: Scene, model: Model) -> tuple[Circle, ...]:
@@ -91,12 +103,13 @@ def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
     return bool(abs(winding) > np.pi)
 
 
-def touch(model: Model, circle: Circle, stiffness: float, quadrature: int, z: State) -> Touch:
+def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: State) -> Touch:
     """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[circle.first], model.bodies[circle.body]
     line, c = model.line(beam, z), centre(model, circle, z)
     reach = circle.radius + circle.distance
-    zones = _find(line, c, reach)
+    ahead = _find(line, c, reach + penalty.lead)
+    zones = replace(ahead, least=ahead.least + penalty.lead)
 
     points, weights = np.polynomial.legendre.leggauss(quadrature)
     width = zones.intervals[:, 1] - zones.intervals[:, 0]
@@ -123,7 +136,8 @@ def touch(model: Model, circle: Circle, stiffness: float, quadrature: int, z: St
     for i, value in bent.items():
         g_qq[i, i] += value
 
-    weight = stiffness * ds
+    g = g - penalty.lead
+    weight = penalty.stiffness * ds
     return Touch(
         pair=circle,
         zones=zones,
@@ -138,6 +152,17 @@ def touch(model: Model, circle: Circle, stiffness: float, quadrature: int, z: St
         normal=n,
         missing=0.0,
     )
+
+
+def resting_pressure(model: Model, touch: Touch, circle: Circle, z: State) -> float:
+    """N/(R + T), of the mean tension along the zone; zero where the beam is pushed along instead."""
+    if not touch.closed:
+        return 0.0
+    beam = model.beams[circle.first]
+    low, high = touch.zones.intervals.T
+    e, _ = model.line(beam, z).locate(0.5 * (low + high))
+    axial = z[model.element_dofs[6, e + beam.elements.start]]
+    return max(0.0, float(axial @ (high - low) / (high - low).sum())) / (circle.radius + circle.distance)
 
 
 def _clearance(line: NeutralLine, c: Array, reach: float, zeta: Array) -> tuple[Array, Array, Array]:

@@ -6,7 +6,7 @@ from fea_reference import circle, contact
 from fea_reference.crossing import cross
 from fea_reference.model import Model
 from fea_reference.state import State
-from fea_reference.touch import Contact, Pair, Touch
+from fea_reference.touch import Contact, Pair, Penalty, Touch
 from fea_reference.zones import Zones
 from scene.statement import Scene
 
@@ -23,11 +23,11 @@ def zones_of(model: Model, what: Contact, z: State) -> Zones:
     return contact.zones_of(model, what, z) if isinstance(what, Pair) else circle.zones_of(model, what, z)
 
 
-def touch(model: Model, what: Contact, stiffness: float, quadrature: int, z: State, held: float | None = None) -> Touch:
+def touch(model: Model, what: Contact, penalty: Penalty, quadrature: int, z: State, held: float | None = None) -> Touch:
     """The penalty's energy derivatives, see :func:`fea_reference.contact.touch`; only beams are ever held."""
     if isinstance(what, Pair):
-        return contact.touch(model, what, stiffness, quadrature, z, held)
-    return circle.touch(model, what, stiffness, quadrature, z)
+        return contact.touch(model, what, penalty.stiffness, quadrature, z, held)
+    return circle.touch(model, what, penalty, quadrature, z)
 
 
 def passed_through(model: Model, what: Contact, before: State, after: State) -> bool:

@@ -19,7 +19,7 @@ from fea_reference.element import ElementForces, forces
 from fea_reference.hermite import Index
 from fea_reference.model import Model, turned
 from fea_reference.state import State
-from fea_reference.touch import Contact, Pair, Touch
+from fea_reference.touch import Contact, Pair, Penalty, Touch
 from scene.answer import Array
 
 _ROUND_OFF = 3.0  # measured: up to two from 20 to 1280 elements, of both of its parts
@@ -51,7 +51,7 @@ class System:
 
 def assemble(
     model: Model,
-    penalties: Mapping[Contact, float],
+    penalties: Mapping[Contact, Penalty],
     quadrature: int,
     values: Array,
     z: State,
@@ -61,16 +61,14 @@ def assemble(
 
     Args:
         model: the mechanism.
-        penalties: the contacts that are watched, with their stiffness.
+        penalties: the contacts that are watched, with what presses them apart.
         quadrature: Gauss points per interval of a contact zone.
         values: of the loads (number of loads,), without units.
         z: the unknowns.
         held: the contacts that are held at a depth, see :func:`~fea_reference.contact.touch`.
     """
     elements = forces(model.elements, model.element_dofs, z)
-    touches = tuple(
-        touch(model, pair, stiffness, quadrature, z, held.get(pair)) for pair, stiffness in penalties.items()
-    )
+    touches = tuple(touch(model, pair, penalty, quadrature, z, held.get(pair)) for pair, penalty in penalties.items())
     vectors = [_vector(model.element_dofs, elements.gradient, model.size)]
     matrices = [_matrix(model.element_dofs, elements.hessian, model.size)]
     for one in touches:
@@ -87,7 +85,7 @@ def assemble(
     angle = max(1.0, float(np.abs(z[model.node_dofs[2]]).max()))
     stiffest = max(12.0 * beam.bending / model.elements.length[beam.elements.start] ** 2 for beam in model.beams)
     floor = _ROUND_OFF * stiffest * float(np.spacing(angle))
-    floor += sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair]) for one in touches)
+    floor += sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
     scale = largest if largest > _NOTHING * floor else 1.0
     return System(z, residual, tangent, elements, touches, scale, floor)
 
