@@ -32,7 +32,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea_reference.hermite import NeutralLine, along, bending_along, shapes
+from fea_reference.hermite import NeutralLine, along, shapes, twice_along
 from fea_reference.model import Model, turned
 from fea_reference.state import State, squared, summed
 from fea_reference.touch import Circle, Penalty, Touch
@@ -121,20 +121,20 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
     r, n, g = _clearance(line, c, reach, zeta)
     tau = np.stack([n[1], -n[0]])
 
-    H = shapes(xi, line.lengths[e])
+    H = shapes(xi)
     g_q, p = along(n, H, line, e), along(tau, H, line, e)
-    dofs = model.element_dofs[:6, e + beam.elements.start]
-    bent = dict(zip((2, 5), bending_along(n, H, line, e), strict=True))
+    dofs = model.element_dofs[:, e + beam.elements.start]
+    own = twice_along(n, H, line, e)
     if body.dofs is not None:
         arm = turned(np.array(circle.arm), z[body.dofs[2]])
         across = np.array([-arm[1], arm[0]])  # ∂(R arm)/∂φ; its derivative is −R arm
         g_q = np.concatenate([g_q, -n, -across[None] @ n])
         p = np.concatenate([p, -tau, -across[None] @ tau])
         dofs = np.concatenate([dofs, np.repeat(body.dofs[:, None], zeta.size, axis=1)])
-        bent[8] = arm @ n
     g_qq = p[:, None] * p[None, :] / r
-    for i, value in bent.items():
-        g_qq[i, i] += value
+    g_qq[:7, :7] += own
+    if body.dofs is not None:
+        g_qq[9, 9] += turned(np.array(circle.arm), z[body.dofs[2]]) @ n
 
     g = g - penalty.lead
     weight = penalty.stiffness * ds

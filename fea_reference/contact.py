@@ -27,7 +27,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea_reference.hermite import NeutralLine, along, apart, bending_along, shape_slopes, shapes
+from fea_reference.hermite import NeutralLine, along, apart, shape_slopes, shapes, twice_along
 from fea_reference.model import Model
 from fea_reference.projection import project
 from fea_reference.state import State
@@ -101,20 +101,18 @@ def touch(model: Model, pair: Pair, stiffness: float, quadrature: int, z: State,
     Z = J**2 - d * a
     g = pair.side * d - pair.distance
 
-    H = shapes(xi, line.lengths[e])
-    H_m, H_m1 = shapes(xi_m, line_m.lengths[e_m]), shape_slopes(xi_m, line_m.lengths[e_m])
+    H, H_m, H_m1 = shapes(xi), shapes(xi_m), shape_slopes(xi_m)
     d_q = np.concatenate([along(n, H, line, e), -along(n, H_m, line_m, e_m)])
     p = np.concatenate([along(tau, H, line, e), -along(tau, H_m, line_m, e_m)])
-    k = np.concatenate([np.zeros_like(d_q[:6]), along(n, H_m1, line_m, e_m)])
+    k = np.concatenate([np.zeros_like(d_q[:7]), along(n, H_m1, line_m, e_m)])
     pk = p[:, None] * k[None, :]
     d_qq = -(a * p[:, None] * p[None, :] + d * k[:, None] * k[None, :] + J * (pk + pk.transpose(1, 0, 2))) / Z
-    bent, bent_m = bending_along(n, H, line, e), bending_along(n, H_m, line_m, e_m)
-    for i, value in zip((2, 5, 8, 11), (*bent, *-bent_m), strict=True):
-        d_qq[i, i] += value
+    d_qq[:7, :7] += twice_along(n, H, line, e)
+    d_qq[7:, 7:] -= twice_along(n, H_m, line_m, e_m)
 
     weight = stiffness * ds
     dofs = np.concatenate(
-        [model.element_dofs[:6, e + beam.elements.start], model.element_dofs[:6, e_m + beam_m.elements.start]]
+        [model.element_dofs[:, e + beam.elements.start], model.element_dofs[:, e_m + beam_m.elements.start]]
     )
     normal = pair.side * n
     return Touch(

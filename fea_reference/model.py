@@ -115,8 +115,14 @@ class Model:
     def line(self, beam: BeamPart, z: State) -> NeutralLine:
         """A beam's neutral line in state ``z``."""
         dofs = self.node_dofs[:, beam.nodes]
-        lengths = self.elements.length[beam.elements]
-        return NeutralLine.through(z[dofs[:2]], z[dofs[2]], lengths, z.rest[dofs[:2]])
+        return NeutralLine.through(
+            z[dofs[:2]],
+            z[dofs[2]],
+            self.elements.length[beam.elements],
+            z.rest[dofs[:2]],
+            self.elements.compliance[beam.elements],
+            z[self.element_dofs[6, beam.elements]],
+        )
 
     def body_state(self, body: BodyPart, z: State) -> Array:
         """(X, Y, φ) of a body, zero for the ground."""
