@@ -46,6 +46,9 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
         case "centre":
             touch = _touch(march, probe.of)
             return frozen_array([] if touch is None else _centre(march, touch) * units.length)
+        case "ends":
+            touch = _touch(march, probe.of)
+            return frozen_array([] if touch is None else _ends(march, touch) * units.length)
 
 
 def shapes(march: March) -> dict[str, Shape]:
@@ -82,15 +85,30 @@ def _touch(march: March, name: str) -> Touch | None:
 def _centre(march: March, touch: Touch) -> float:
     """Arc length of the pressure's centre on the beam that the scene names first."""
     weight = np.hypot(*touch.force)
+    zeta = touch.zeta_m if _turned(touch) else touch.zeta
+    return float(weight @ _arc_lengths(march, touch, zeta) / weight.sum())
+
+
+def _ends(march: March, touch: Touch) -> Array:
+    """Arc lengths (2,) on the beam that the scene names first where the overlap begins and ends."""
+    zones = touch.zones
+    s = _arc_lengths(march, touch, (zones.zeta_m if _turned(touch) else zones.intervals).ravel())
+    return np.array([s.min(), s.max()])
+
+
+def _turned(touch: Touch) -> bool:
+    """Whether the beam that the scene names first is the pair's second."""
+    return isinstance(touch.pair, Pair) and touch.pair.turned
+
+
+def _arc_lengths(march: March, touch: Touch, zeta: Array) -> Array:
+    """Arc lengths (k,) of places ``zeta`` (k,) on the beam that the scene names first."""
     pair = touch.pair
-    if isinstance(pair, Pair) and pair.turned:
-        number, zeta = pair.second, touch.zeta_m
-    else:
-        number, zeta = pair.first, touch.zeta
+    number = pair.second if isinstance(pair, Pair) and pair.turned else pair.first
     line = march.model.line(march.model.beams[number], march.system.z)
     e, xi = line.locate(zeta)
     start = np.concatenate([[0.0], np.cumsum(line.lengths)])
-    return float(weight @ (start[e] + xi * line.lengths[e]) / weight.sum())
+    return np.asarray(start[e] + xi * line.lengths[e])
 
 
 def _potential_energy(march: March) -> float:

@@ -19,7 +19,7 @@ from scene import SceneError
 if TYPE_CHECKING:
     from comparisons.pairing import Solvers
 
-_COMMANDS = ("list", "solve", "compare", "regress")
+_COMMANDS = ("list", "solve", "compare", "bench", "regress")
 
 WRONG_QUESTION = 2
 INTERRUPTED = 130
@@ -41,6 +41,8 @@ class _Commands(click.Group):
                 from comparisons.cli.solve_ import command
             case "compare":
                 from comparisons.cli.compare_ import command
+            case "bench":
+                from comparisons.cli.bench_ import command
             case "regress":
                 from comparisons.cli.regress_ import command
             case _:

@@ -297,7 +297,7 @@ def test_help_and_version_are_no_mistakes(capsys):
 
 def test_regress_accepts_compares_and_reports(right, capsys, tmp_path):
     where = ["--folder", str(tmp_path)]
-    assert run(["regress", "hinge", "--accept", "first", "--date", "2025-01-31", *where], right) == 0
+    assert run(["regress", "all", "--accept", "first", "--date", "2025-01-31", *where], right) == 0
     assert run(["regress", "hinge", *where], right) == 0
     assert run(["regress", "all", *where], Solvers(MadeUp("cprbm", 4e-3), right.fea)) == 1
     assert "the file says" in capsys.readouterr().out

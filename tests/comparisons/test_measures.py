@@ -49,11 +49,27 @@ def test_the_uncertainty_of_a_second_order_error_is_a_quarter_above_it(hinge, ri
     assert row.bounds.cprbm / (0.9 * 0.067 * 2e-3) == pytest.approx(1.25, rel=1e-9)
 
 
-def test_the_steps_add_up_to_the_difference(hinge, right):
-    for row in rows_of(hinge, paired(hinge, Choices(), right)):
+@pytest.mark.parametrize("formulation", ["auto", "paper"])
+def test_the_steps_add_up_to_the_difference(hinge, formulation):
+    solvers = Solvers(MadeUp("cprbm", 2e-3, paper=3e-3), MadeUp("fea", -5e-4))
+    for row in rows_of(hinge, paired(hinge, Choices(formulation=formulation), solvers)):
         if row.steps is not None:
-            total = row.steps.own + row.steps.stretch + row.steps.shear
+            total = row.steps.contact + row.steps.own + row.steps.stretch + row.steps.shear
             assert total == pytest.approx(row.difference, rel=1e-9)
+
+
+@pytest.mark.parametrize(("formulation", "step"), [("auto", 0.0), ("paper", -1e-3)])
+def test_the_contact_model_is_the_distance_of_paper_from_auto(hinge, formulation, step):
+    """Rotation 0.9·m·f before contact: f is 1.002 in ``auto``, 1.003 in ``paper`` and 1.005 for the FEA above."""
+    rotation = 0.9 * 0.067
+    solvers = Solvers(MadeUp("cprbm", 2e-3, paper=1e-3), MadeUp("fea", 0.0))
+    runs = paired(hinge, Choices(formulation=formulation), solvers)
+    row = rows_by_name(hinge, runs, station=0.067)["BD.rotation"]
+    assert row.contact_model == pytest.approx(1e-3 * rotation, rel=1e-9)
+    assert row.steps is not None
+    assert row.steps.contact == pytest.approx(step * rotation, rel=1e-9)
+    assert row.steps.own == pytest.approx(-2e-3 * rotation, rel=1e-9)  # against the way to the FEA
+    assert row.steps.stretch + row.steps.shear == pytest.approx(5e-3 * rotation, rel=1e-9)
 
 
 @pytest.mark.parametrize(("kinematics", "theories"), [("bending", 1), ("stretch", 2), ("shear", 3)])
@@ -225,3 +241,13 @@ def test_a_station_that_is_missing_is_an_error_here(hinge, right):
     runs = paired(hinge, Choices(), right)
     with pytest.raises(KeyError, match="no station"):
         station_of(runs.reference, "load", 0.7)
+
+
+def test_the_ends_of_a_contact_are_two_places_on_its_first_beam(hinge, right):
+    asked = hinge.model_copy(update={"probes": (*hinge.probes, Probe(of="contact", quantity="ends"))})
+    runs = paired(asked, Choices(), right)
+    row = rows_by_name(asked, runs)["contact.ends"]
+    assert row.cprbm.shape == row.fea.shape == (2,)
+    assert row.unit == "m"
+    assert row.scale == row.denominator == pytest.approx(math.pi * 0.025)
+    assert rows_by_name(asked, runs, station=0.067)["contact.ends"].bounds is None

@@ -94,6 +94,12 @@ def test_an_answer_of_another_shape_is_undecided(hinge):
     assert "A.reaction has the shape (3,)" in verdict(hinge, wrong, RIGHT[1]).sentence
 
 
+def test_ends_that_descend_are_undecided(hinge):
+    asked = hinge.model_copy(update={"probes": (*hinge.probes, Probe(of="contact", quantity="ends"))})
+    wrong = replace(RIGHT[1], spoilt=with_value("contact.ends", [0.05, 0.02]))
+    assert "contact.ends are not ascending" in verdict(asked, RIGHT[0], wrong).sentence
+
+
 def test_a_missing_probe_is_undecided(hinge):
     def spoilt(station):
         return replace(station, values={k: v for k, v in station.values.items() if k != "BD.rotation"})
@@ -174,11 +180,10 @@ def test_a_centre_in_one_answer_only_is_left_to_the_force(hinge):
     assert "contact.force" in said.sentence or "displacement" in said.sentence or "reaction" in said.sentence
 
 
-def test_without_a_force_probe_a_centre_in_one_answer_only_is_undecided(hinge):
-    centre_only = hinge.model_copy(
-        update={"probes": tuple(probe for probe in hinge.probes if probe.quantity == "centre"), "claims": ()}
-    )
-    assert verdict(centre_only, replace(RIGHT[0], contact=False), RIGHT[1]).word is Word.UNDECIDED
+@pytest.mark.parametrize("quantity", ["centre", "ends", "closing_load"])
+def test_without_a_force_probe_a_place_in_one_answer_only_is_undecided(hinge, quantity):
+    place_only = hinge.model_copy(update={"probes": (Probe(of="contact", quantity=quantity),), "claims": ()})
+    assert verdict(place_only, replace(RIGHT[0], contact=False), RIGHT[1]).word is Word.UNDECIDED
 
 
 def test_the_sentence_names_the_row_that_decided(hinge):
