@@ -1,8 +1,9 @@
-"""Loop closures and welds: the equalities Z(θ) = 0 of eq. (1).
+"""Loop closures, welds, slides and drives: the equalities Z(θ) = 0 of eq. (1).
 
 ==========  =======================================================================
 Z_x, Z_y    beam's last joint less the point of the body it is joined to
 Z_w         angle of the first or last link, less its stress-free one, less φ
+Z_h         of slides and drives, :mod:`cprbm.holding`
 μ           multipliers: force and moment of the beam on what its end is joined to
 ==========  =======================================================================
 
@@ -16,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm.holding import Hold
 from cprbm.kinematics import Positions, State, arm, place, position_rows
 from cprbm.model import Model
 from scene.answer import Array, Ints
@@ -23,27 +25,34 @@ from scene.answer import Array, Ints
 
 @dataclass(frozen=True, slots=True)
 class Closure:
-    """Which equalities a mechanism has, in the order of their rows: closures x, y by beam, then welds.
+    """Which equalities a mechanism has, in the order of their rows: closures x, y by beam, welds, slides, drives.
 
     Attributes:
         ends: index of each beam whose end is joined to a point.
         end_joints: the last joints of those beams.
         welds: (link, body) of every welded link that is an unknown; body −1 is the ground.
         fixed: links that do not turn (ground welds at a beam's start).
+        holds: slides and drives.
     """
 
     ends: tuple[int, ...]
     end_joints: Ints
     welds: tuple[tuple[int, int], ...]
     fixed: Ints
+    holds: tuple[Hold, ...]
 
     @property
     def rows(self) -> int:
         """Number of equalities."""
+        return self.first_hold + len(self.holds)
+
+    @property
+    def first_hold(self) -> int:
+        """Row of the first slide or drive."""
         return 2 * len(self.ends) + len(self.welds)
 
 
-def closure_of(model: Model) -> Closure:
+def closure_of(model: Model, holds: tuple[Hold, ...]) -> Closure:
     """The equalities of a mechanism."""
     ends, welds, fixed = [], [], []
     for c, chain in enumerate(model.chains):
@@ -58,11 +67,11 @@ def closure_of(model: Model) -> Closure:
             if end.welded:
                 welds.append((chain.first_link + chain.n, end.body))
     last = [model.chains[c].first_joint + model.chains[c].n + 1 for c in ends]
-    return Closure(tuple(ends), np.array(last, dtype=np.intp), tuple(welds), np.array(fixed, dtype=np.intp))
+    return Closure(tuple(ends), np.array(last, dtype=np.intp), tuple(welds), np.array(fixed, dtype=np.intp), holds)
 
 
-def closure_values(model: Model, closure: Closure, state: State, at: Positions) -> Array:
-    """Z (rows,)."""
+def closure_values(model: Model, closure: Closure, state: State, at: Positions, drives: dict[str, float]) -> Array:
+    """Z (rows,) with the ``drives``' values (SI); those without one are at zero."""
     values = []
     for c, joint in zip(closure.ends, closure.end_joints, strict=True):
         end = model.chains[c].end
@@ -72,6 +81,7 @@ def closure_values(model: Model, closure: Closure, state: State, at: Positions) 
     for link, body in closure.welds:
         turned = state.bodies[body, 2] if body >= 0 else 0.0
         values.append(state.theta[link] - model.rest[link] - turned)
+    values += [hold.value(state, drives) for hold in closure.holds]
     return np.array(values, dtype=float)
 
 
@@ -96,6 +106,9 @@ def closure_rows(model: Model, closure: Closure, state: State, at: Positions) ->
         rows[r, link] = 1.0
         if body >= 0:
             rows[r, n + 3 * body + 2] = -1.0
+    for r, hold in enumerate(closure.holds, start=closure.first_hold):
+        b = n + 3 * hold.at.body
+        rows[r, b : b + 3] = hold.row(state)
     return rows
 
 
@@ -109,7 +122,7 @@ def closure_forces(model: Model, closure: Closure, multipliers: Array) -> tuple[
 
 
 def closure_second(model: Model, closure: Closure, state: State, multipliers: Array) -> Array:
-    """Second derivative over φ of each body (B,) of Σ μ·Z, the part of the bodies' points."""
+    """Second derivative over φ of each body (B,) of Σ μ·Z, the part of the bodies' own points."""
     second = np.zeros(len(model.free_bodies))
     for r, c in enumerate(closure.ends):
         end = model.chains[c].end
@@ -117,4 +130,6 @@ def closure_second(model: Model, closure: Closure, state: State, multipliers: Ar
         if end.body >= 0:
             rx, ry = arm(end, state.bodies)
             second[end.body] += multipliers[2 * r] * rx + multipliers[2 * r + 1] * ry
+    for mu, hold in zip(multipliers[closure.first_hold :], closure.holds, strict=True):
+        second[hold.at.body] += mu * hold.second(state)
     return second

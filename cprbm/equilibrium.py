@@ -118,7 +118,7 @@ def point_at(problem: Problem, values: dict[str, float], state: State, mu: Array
         at=at,
         mu=mu,
         lam=carried(before, lam, rows, model),
-        Z=closure_values(model, problem.closure, state, at),
+        Z=closure_values(model, problem.closure, state, at, values),
         rows=rows,
         gradient=gradient,
         A_E=A_E,
@@ -374,7 +374,7 @@ def potential_energy(problem: Problem, point: Point) -> float:
 def equilibrium(
     problem: Problem, values: dict[str, float], start: Point, tolerance: float, iterations: int
 ) -> Equilibrium:
-    """Newton's method from ``start`` to the equilibrium under the load ``values`` (SI)."""
+    """Newton's method from ``start`` to the equilibrium under the loads' and drives' ``values`` (SI)."""
     model = problem.model
     point = point_at(problem, values, start.state, start.mu, start.lam, start.rows)
     now = measure(problem, point)

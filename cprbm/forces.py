@@ -15,6 +15,7 @@ import numpy as np
 
 from cprbm.closure import closure_forces
 from cprbm.equilibrium import Point, Problem, contact_gradient
+from cprbm.holding import Held, held
 from cprbm.model import Chain
 from scene.answer import Array
 
@@ -89,6 +90,12 @@ def supports(problem: Problem, point: Point) -> tuple[Support, ...]:
     return tuple(found)
 
 
+def holding(problem: Problem, point: Point) -> tuple[Held, ...]:
+    """What slides and drives do to the bodies, in the order of the closure's."""
+    closure = problem.closure
+    return held(problem.model, closure.holds, point.state, point.mu[closure.first_hold :])
+
+
 def contact_imbalance(problem: Problem, point: Point) -> float:
     """Moment of all contact forces together over the supports' largest: zero where action is reaction."""
     contact = contact_forces(problem, point)
@@ -98,7 +105,7 @@ def contact_imbalance(problem: Problem, point: Point) -> float:
 
 
 def balances(problem: Problem, point: Point) -> tuple[float, float]:
-    """ΣF and ΣM about the origin of supports, loads and contacts, without units.
+    """ΣF and ΣM about the origin of supports, slides, drives, loads and contacts, without units.
 
     Each over its largest part; where forces are small beside moments over ℓ, ΣF is measured by these, and the
     other way round.  A beam's own ΣF vanishes by construction, for the force at its start is what balances it:
@@ -108,6 +115,7 @@ def balances(problem: Problem, point: Point) -> tuple[float, float]:
     parts: list[tuple[Array, Array, float]] = [
         (support.place, support.force, support.moment) for support in supports(problem, point)
     ]
+    parts += [(each.place, each.force, each.moment) for each in holding(problem, point)]
     work = point.work.gradient.reshape(-1, 3)
     for b in range(len(model.free_bodies)):
         place = model.references[b] + point.state.bodies[b, :2]

@@ -4,7 +4,7 @@
 θ, p, b     link angles, joint positions x and y, the free bodies' u, v, φ
 ρ           forces in the links: multipliers of p_{j+1} − p_j − L_i(cos θ_i, sin θ_i) = 0, and of
             beams' first joints and of marks at their places
-μ, λ        multipliers of closures and welds, and of the contacts that press
+μ, λ        multipliers of the equalities (:mod:`cprbm.closure`), and of the contacts that press
 ==========  ======================================================================================
 
     [ H_θθ + W   ·    Cᵀ ] [ dθ, dp, db ]   [ −∂PE        ]
@@ -66,7 +66,7 @@ class LocalSystem:
         fixed: unknowns that do not move.
         right: right-hand side for the step, without contact rows.
         values: c (m,).
-        first_mu: where the multipliers of closures and welds begin.
+        first_mu: where the multipliers of the equalities begin.
     """
 
     entries: tuple[Ints, Ints, Array]
@@ -167,6 +167,8 @@ def local_system(
         entries.both(np.array([first_mu + r]), np.array([link]), np.ones(1))
         if body >= 0:
             entries.both(np.array([first_mu + r]), np.array([first_body + 3 * body + 2]), -np.ones(1))
+    for r, hold in enumerate(closure.holds, start=first_mu + closure.first_hold):
+        entries.both(np.full(3, r), first_body + 3 * hold.at.body + np.arange(3), np.array(hold.row(state)))
 
     row_numbers, columns, values = [], [], []
     first = 0

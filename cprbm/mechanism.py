@@ -11,6 +11,7 @@ from cprbm.closure import closure_of
 from cprbm.contact import Formulation, Group, Rows
 from cprbm.energy import dead_loads
 from cprbm.equilibrium import Problem
+from cprbm.holding import holds_of
 from cprbm.kinematics import Positions, State
 from cprbm.model import EVEN, Fit, build
 from cprbm.nearest import Pair, pair_of
@@ -81,5 +82,6 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism
     parts: dict[str, Groups] = {
         name: boundaries[name].groups if boundaries else pair.groups for name, pair in pairs.items()
     }
-    problem = Problem(model, closure_of(model), dead_loads(scene, model), _formulation(parts))
+    closure = closure_of(model, holds_of(scene, model))
+    problem = Problem(model, closure, dead_loads(scene, model), _formulation(parts))
     return Mechanism(problem, pairs, boundaries)

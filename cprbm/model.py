@@ -180,7 +180,7 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
         for name, beam in scene.beams.items()
     }
     unit_moment = max(rigidities.values()) / unit_length
-    places = {name: next(iter(body.points.values())) for name, body in scene.bodies.items() if body.motion == "free"}
+    places = {name: next(iter(body.points.values())) for name, body in scene.bodies.items() if body.motion != "fixed"}
     # a chain begins somewhere: a start that nothing holds is welded to a body that nothing else holds
     places |= {_loose(name): beam.curve.start for name, beam in scene.beams.items() if isinstance(beam.start, FreeEnd)}
     free_bodies = tuple(places)

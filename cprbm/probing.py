@@ -6,13 +6,13 @@ import numpy as np
 
 from cprbm import smooth
 from cprbm.equilibrium import Point, Problem, potential_energy
-from cprbm.forces import contact_forces, contact_pressure, supports
+from cprbm.forces import contact_forces, contact_pressure, holding, supports
 from cprbm.mechanism import Mechanism
 from cprbm.stress import bending_stress
 from cprbm.zones import zones_of
 from scene import Probe, Scene, Shape
 from scene.answer import Array, frozen_array
-from scene.statement import PinnedEnd, WeldedEnd
+from scene.statement import DisplacementDrive, PinnedEnd, WeldedEnd
 
 
 def probed(scene: Scene, mechanism: Mechanism, point: Point, closed_at: dict[str, float]) -> dict[str, Array]:
@@ -71,6 +71,7 @@ def _displacement(scene: Scene, problem: Problem, point: Point, name: str) -> Ar
 
 
 def _reaction(scene: Scene, problem: Problem, point: Point, name: str) -> tuple[Array, float]:
+    """Force and moment of the ground at a point ``name``, or of the drives of that point or body."""
     force, moment = np.zeros(2), 0.0
     for support in supports(problem, point):
         beam = scene.beams[support.beam]
@@ -78,6 +79,11 @@ def _reaction(scene: Scene, problem: Problem, point: Point, name: str) -> tuple[
         if isinstance(end, WeldedEnd | PinnedEnd) and end.point == name:
             force = force + support.force
             moment += support.moment
+    for each in holding(problem, point):
+        drive = scene.drives.get(each.drive)  # a slide's name is none
+        if drive is not None and name == (drive.point if isinstance(drive, DisplacementDrive) else drive.body):
+            force = force + each.force
+            moment += each.moment
     return force, moment
 
 

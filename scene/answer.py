@@ -12,12 +12,13 @@ centre             (1,)    arc length on the contact's first beam of the resulta
 ends               (2,)    arc lengths on the contact's first beam where its zone begins and ends, m,
                            ascending, the same twice for contact in a point; empty if open; of several
                            zones the first one's beginning and the last one's end
-closing_load       (1,)    value of the stepped load at which a contact first closes; empty if open
+closing_load       (1,)    value of the stepped load or drive at which a contact first closes; empty if open
 bending_stress     (P,)    signed: E·t/2 times the change of curvature along the beam, Pa,
                            at P equal arc-length steps from the beam's start to its end;
                            a positive change turns the tangent counter-clockwise
-reaction           (2,)    force of the ground on what is joined at a point, N
-reaction_moment    (1,)    moment of the ground there, about that point, N·m
+reaction           (2,)    force of the ground on what is joined at a point, N; at a driven point the drive's force
+reaction_moment    (1,)    moment of the ground there, about that point, N·m; of a body that is turned by a
+                           drive the drive's moment
 potential_energy   (1,)    strain energy less the work of the dead loads from the initial state, J
 =================  ======  ====================================================================
 """
@@ -97,7 +98,7 @@ class Shape:
 class StationAnswer:
     """What was asked at one station: ``values`` by probe name, the shapes, and the certificate.
 
-    ``value`` is the stepped load's; ``touching`` holds, per closed contact, the places (k, 2) in metres
+    ``value`` is the stepped load's or drive's; ``touching`` holds, per closed contact, the places (k, 2) in metres
     where the beams touch.
     """
 
@@ -111,7 +112,7 @@ class StationAnswer:
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """A contact that closed: between two stations, at ``value`` of the load that ``stage`` steps."""
+    """A contact that closed: between two stations, at ``value`` of the load or drive that ``stage`` steps."""
 
     stage: str
     contact: str

@@ -6,54 +6,68 @@ from collections.abc import Iterator
 from math import isclose
 
 from scene.check_names import point_names
+from scene.freedoms import body_of, held, is_named, is_stated, rank, row_of, slide_rows
 from scene.mistakes import Mistake
-from scene.statement import FreeEnd, Moment, PinnedEnd, Scene
+from scene.statement import Force, FreeEnd, Moment, PinnedEnd, Scene, SlidingBody
+
+FREEDOMS = 3  # of what is rigid in the plane
 
 
 def wrong_supports(scene: Scene) -> Iterator[Mistake]:
-    """Beams and bodies that nothing holds."""
-    fixed = {name for name, body in scene.bodies.items() if body.motion == "fixed"}
-    if not fixed:
+    """Beams and bodies that nothing holds: no fixed body, and neither slides nor drives enough."""
+    if all(body.motion == "free" for body in scene.bodies.values()) and not scene.drives:
         yield Mistake("bodies", "no fixed body", 'at least one body with motion = "fixed"')
+        return
     known = set(point_names(scene))
     met: dict[str, set[str]] = {}
     sound = True
     for name, beam in scene.beams.items():
         ends = (beam.start, beam.end)
-        held = [end for end in ends if not isinstance(end, FreeEnd)]
-        if not held:
+        joined = [end for end in ends if not isinstance(end, FreeEnd)]
+        if not joined:
             yield Mistake(f"beams.{name}", "two free ends", "at least one end that meets a body")
-        elif len(held) == 1 and isinstance(held[0], PinnedEnd):
+        elif len(joined) == 1 and isinstance(joined[0], PinnedEnd):
             found = "a pin at one end and nothing at the other: the beam turns freely"
             yield Mistake(f"beams.{name}", found, "a weld, or joints at both ends")
-        sound = sound and all(end.point in known for end in held)
-        met[name] = {scene.body_of(end.point) for end in held if end.point in known}
-    if not sound or not fixed:
+        sound = sound and all(end.point in known for end in joined)
+        met[name] = {scene.body_of(end.point) for end in joined if end.point in known}
+    if not sound or not _rows_stated(scene):
         return
-    held_bodies = _reached(fixed, met)
     for name, body in scene.bodies.items():
-        if body.motion == "fixed":
+        if _holds(scene, _together(name, met)):
             continue
+        kind = "sliding" if isinstance(body, SlidingBody) else "free"
         if not any(name in bodies for bodies in met.values()):
-            yield Mistake(f"bodies.{name}", "a free body that no beam meets", "a beam's end at one of its points")
-        elif name not in held_bodies:
-            yield Mistake(f"bodies.{name}", "a free body that no fixed body holds", "beams that lead to a fixed body")
+            yield Mistake(f"bodies.{name}", f"a {kind} body that no beam meets", "a beam's end at one of its points")
+        else:
+            allowed = "beams that lead to a fixed body, or slides and drives that hold it"
+            yield Mistake(f"bodies.{name}", f"a {kind} body that no fixed body holds", allowed)
 
 
 def wrong_loads(scene: Scene) -> Iterator[Mistake]:
     """Loads on what cannot move, and forces without a direction."""
-    known = set(point_names(scene))
     for name, load in scene.loads.items():
-        if isinstance(load, Moment):
-            if load.body in scene.bodies and scene.bodies[load.body].motion == "fixed":
-                found = f"a moment on the fixed body {load.body!r}"
-                yield Mistake(f"loads.{name}.body", found, f"a body that can move: {_movable(scene)}")
-            continue
-        if load.point in known and scene.bodies[scene.body_of(load.point)].motion == "fixed":
-            found = f"a force at {load.point!r}, a point of the fixed body {scene.body_of(load.point)!r}"
-            yield Mistake(f"loads.{name}.point", found, f"a point of a body that can move: {_movable(scene)}")
-        if load.direction == (0.0, 0.0):
+        what = "body" if isinstance(load, Moment) else "point"
+        if isinstance(load, Force) and load.direction == (0.0, 0.0):
             yield Mistake(f"loads.{name}.direction", "[0, 0]", "a direction, at least one number not zero")
+        if not is_named(scene, load):
+            continue
+        owner = body_of(scene, load)
+        body = scene.bodies[owner]
+        if body.motion == "fixed":
+            of = f"the fixed body {owner!r}"
+            found = f"a moment on {of}" if isinstance(load, Moment) else f"a force at {load.point!r}, a point of {of}"
+            a = "a body" if isinstance(load, Moment) else "a point of a body"
+            yield Mistake(f"loads.{name}.{what}", found, f"{a} that can move: {_movable(scene)}")
+        elif isinstance(body, SlidingBody) and is_stated(scene, load) and body.along != (0.0, 0.0):
+            if not held(row_of(scene, load), slide_rows(body)):
+                continue
+            if isinstance(load, Moment):
+                found = f"a moment on {owner!r}, which slides and does not turn"
+                yield Mistake(f"loads.{name}.body", found, "a body that can turn")
+            else:
+                found, allowed = f"a force across the slide of {owner!r}", "a direction along which the body can move"
+                yield Mistake(f"loads.{name}.direction", found, allowed)
 
 
 def wrong_stages(scene: Scene) -> Iterator[Mistake]:
@@ -69,14 +83,31 @@ def wrong_stages(scene: Scene) -> Iterator[Mistake]:
                 yield Mistake(f"stages[{i}].stations[{j}]", f"{value:g} again", allowed)
 
 
-def _reached(fixed: set[str], met: dict[str, set[str]]) -> set[str]:
-    """Bodies that beams connect to a fixed one."""
-    reached = set(fixed)
+def _rows_stated(scene: Scene) -> bool:
+    """Whether every slide and every drive says which motion it prescribes."""
+    slides = (body for body in scene.bodies.values() if isinstance(body, SlidingBody))
+    return all(body.along != (0.0, 0.0) for body in slides) and all(
+        is_stated(scene, drive) for drive in scene.drives.values()
+    )
+
+
+def _together(body: str, met: dict[str, set[str]]) -> set[str]:
+    """Bodies that beams connect to a ``body``, itself among them."""
+    reached = {body}
     while True:
-        more = {body for bodies in met.values() if bodies & reached for body in bodies} - reached
+        more = {other for bodies in met.values() if bodies & reached for other in bodies} - reached
         if not more:
             return reached
         reached |= more
+
+
+def _holds(scene: Scene, bodies: set[str]) -> bool:
+    """Whether bodies that beams connect cannot all move as one: one is fixed, or slides and drives prevent it."""
+    if any(scene.bodies[name].motion == "fixed" for name in bodies):
+        return True
+    rows = [row for name in bodies for row in slide_rows(scene.bodies[name])]
+    rows += [row_of(scene, drive) for drive in scene.drives.values() if body_of(scene, drive) in bodies]
+    return rank(rows) == FREEDOMS
 
 
 def _movable(scene: Scene) -> str:

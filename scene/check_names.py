@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from scene.mistakes import Mistake, unknown_name
-from scene.statement import CircleContact, FreeEnd, Moment, Scene
+from scene.statement import CircleContact, FreeEnd, Moment, RotationDrive, Scene
 
 RESERVED = "scene"
 
@@ -16,12 +16,13 @@ def point_names(scene: Scene) -> list[str]:
 
 
 def repeated_names(scene: Scene) -> Iterator[Mistake]:
-    """Names of points, bodies, beams, contacts and loads that are used twice or reserved."""
+    """Names of points, bodies, beams, contacts, loads and drives that are used twice or reserved."""
     bearers = [
         *((f"bodies.{name}", name) for name in scene.bodies),
         *((f"bodies.{name}.points.{point}", point) for name, body in scene.bodies.items() for point in body.points),
         *((f"beams.{name}", name) for name in scene.beams),
         *((f"loads.{name}", name) for name in scene.loads),
+        *((f"drives.{name}", name) for name in scene.drives),
         *((f"contacts.{name}", name) for name in scene.contacts),
     ]
     first: dict[str, str] = {}
@@ -29,13 +30,13 @@ def repeated_names(scene: Scene) -> Iterator[Mistake]:
         if name == RESERVED:
             yield Mistake(key, f"the name {name!r}, which stands for the scene itself", "another name")
         elif name in first:
-            allowed = "names that are used once among points, bodies, beams, loads and contacts"
+            allowed = "names that are used once among points, bodies, beams, loads, drives and contacts"
             yield Mistake(key, f"the name {name!r}, which {first[name]} has too", allowed)
         first.setdefault(name, key)
 
 
 def unknown_names(scene: Scene) -> Iterator[Mistake]:
-    """References to materials, points, bodies, beams and loads that do not exist."""
+    """References to materials, points, bodies, beams, loads and drives that do not exist."""
     points = point_names(scene)
     for name, beam in scene.beams.items():
         if beam.material not in scene.materials:
@@ -43,12 +44,14 @@ def unknown_names(scene: Scene) -> Iterator[Mistake]:
         for side, end in (("start", beam.start), ("end", beam.end)):
             if not isinstance(end, FreeEnd) and end.point not in points:
                 yield unknown_name(f"beams.{name}.{side}.point", end.point, "point", points)
-    for name, load in scene.loads.items():
-        if isinstance(load, Moment):
-            if load.body not in scene.bodies:
-                yield unknown_name(f"loads.{name}.body", load.body, "body", scene.bodies)
-        elif load.point not in points:
-            yield unknown_name(f"loads.{name}.point", load.point, "point", points)
+    acting = [(f"loads.{name}", load) for name, load in scene.loads.items()]
+    driving = [(f"drives.{name}", drive) for name, drive in scene.drives.items()]
+    for key, each in (*acting, *driving):
+        if isinstance(each, Moment | RotationDrive):
+            if each.body not in scene.bodies:
+                yield unknown_name(f"{key}.body", each.body, "body", scene.bodies)
+        elif each.point not in points:
+            yield unknown_name(f"{key}.point", each.point, "point", points)
     for name, contact in scene.contacts.items():
         circle = isinstance(contact, CircleContact)
         for i, beam_name in enumerate(contact.beams):
@@ -58,5 +61,5 @@ def unknown_names(scene: Scene) -> Iterator[Mistake]:
         if isinstance(contact, CircleContact) and contact.body not in scene.bodies:
             yield unknown_name(f"contacts.{name}.body", contact.body, "body", scene.bodies)
     for i, stage in enumerate(scene.stages):
-        if stage.steps not in scene.loads:
-            yield unknown_name(f"stages[{i}].steps", stage.steps, "load", scene.loads)
+        if stage.steps not in scene.loads and stage.steps not in scene.drives:
+            yield unknown_name(f"stages[{i}].steps", stage.steps, "load or drive", (*scene.loads, *scene.drives))

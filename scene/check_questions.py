@@ -7,7 +7,7 @@ from math import isclose
 
 from scene.check_names import RESERVED, point_names
 from scene.mistakes import Mistake, unknown_name
-from scene.statement import FreeEnd, Quantity, Scene
+from scene.statement import DisplacementDrive, FreeEnd, Quantity, RotationDrive, Scene
 
 # what a quantity may be asked of
 _OF: dict[Quantity, str] = {
@@ -19,7 +19,7 @@ _OF: dict[Quantity, str] = {
     "closing_load": "contact",
     "bending_stress": "beam",
     "reaction": "support",
-    "reaction_moment": "support",
+    "reaction_moment": "turned",
     "potential_energy": RESERVED,
 }
 _SAID = {
@@ -27,7 +27,8 @@ _SAID = {
     "body": "a body",
     "contact": "a contact",
     "beam": "a beam",
-    "support": "a point of a fixed body at which a beam ends",
+    "support": "a point of a fixed body at which a beam ends, or a driven point",
+    "turned": "a point of a fixed body at which a beam ends, or a body whose rotation is driven",
     RESERVED: f"{RESERVED!r}, the scene itself",
 }
 
@@ -70,11 +71,14 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
     fixed = {p for body in scene.bodies.values() if body.motion == "fixed" for p in body.points}
     ends = [end for beam in scene.beams.values() for end in (beam.start, beam.end)]
     supports = [end.point for end in ends if not isinstance(end, FreeEnd) and end.point in fixed]
+    points = [drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)]
+    bodies = [drive.body for drive in scene.drives.values() if isinstance(drive, RotationDrive)]
     return {
         "point": point_names(scene),
         "body": list(scene.bodies),
         "contact": list(scene.contacts),
         "beam": list(scene.beams),
-        "support": list(dict.fromkeys(supports)),
+        "support": list(dict.fromkeys((*supports, *points))),
+        "turned": list(dict.fromkeys((*supports, *bodies))),
         RESERVED: [RESERVED],
     }

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from scene.check_circles import circle_overlaps, wrong_circles
+from scene.check_drives import wrong_drives, wrong_slides
 from scene.check_motion import wrong_loads, wrong_stages, wrong_supports
 from scene.check_names import repeated_names, unknown_names
 from scene.check_questions import wrong_claims, wrong_probes
@@ -18,8 +19,10 @@ _CHECKS = (
     wrong_curves,
     wrong_sections,
     wrong_ends,
+    wrong_slides,
     wrong_supports,
     wrong_loads,
+    wrong_drives,
     wrong_contacts,
     overlaps,
     wrong_circles,

@@ -20,7 +20,7 @@ def keys_at(loc: tuple[int | str, ...]) -> tuple[str, ...]:
 
 
 def tags_at(loc: tuple[int | str, ...]) -> tuple[str, ...]:
-    """Kinds (or joints) of which the table at ``loc`` may be one."""
+    """Kinds (or joints, or motions) of which the table at ``loc`` may be one."""
     place: Any = Scene
     for part in loc:
         place = _below(_bare(place), part)
@@ -50,4 +50,4 @@ def _bare(place: Any) -> Any:  # noqa: ANN401 - annotations are whatever they ar
 
 def _tags(record: type[BaseModel]) -> tuple[str, ...]:
     fields = record.model_fields
-    return get_args(fields["kind" if "kind" in fields else "joint"].annotation)
+    return get_args(next(fields[tag] for tag in ("kind", "joint", "motion") if tag in fields).annotation)

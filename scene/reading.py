@@ -167,9 +167,13 @@ def _key_path(loc: tuple[int | str, ...]) -> str:
 
 
 def _is_tag(loc: tuple[int | str, ...], depth: int) -> bool:
-    """Whether pydantic put the tag of a union there: below a load, a contact, a beam's curve and ends."""
+    """Whether pydantic put the tag of a union there: below a body, a load, a drive, a contact, a beam's parts."""
+    if loc[0] == "bodies":
+        return depth == 2 and loc[2] in {"fixed", "free", "slides"}
     if loc[0] == "loads":
         return depth == 2 and loc[2] in {"moment", "force"}
+    if loc[0] == "drives":
+        return depth == 2 and loc[2] in {"displacement", "rotation"}
     if loc[0] == "contacts":
         return depth == 2 and loc[2] in {"beam-beam", "beam-circle"}
     in_beam = loc[0] == "beams" and depth == 3

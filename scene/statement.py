@@ -5,8 +5,8 @@ dimensionless numbers and on signs that have no meaning (a thickness is
 positive).  What ties records together (a beam's end meets a body's point, a
 load acts on something that can move) is checked in :mod:`scene.checks`.
 
-Kinds are tagged unions: a further curve, joint, load or contact is a further
-record with a ``kind`` (or ``joint``) of its own, and nothing here changes.
+Kinds are tagged unions: a further curve, joint, body, load, drive or contact is a further
+record with a ``kind`` (or ``joint``, or ``motion``) of its own, and nothing here changes.
 """
 
 from __future__ import annotations
@@ -105,14 +105,35 @@ class Beam(Record):
     end: BeamEnd
 
 
-class Body(Record):
-    """A rigid body with named points (metres, initial position).
+Points = Annotated[Named[Point], Field(min_length=1)]
 
-    ``motion``: ``fixed`` is the ground; ``free`` has two translations and a rotation.
+
+class FixedBody(Record):
+    """The ground: a rigid body with named points (metres) that does not move."""
+
+    motion: Literal["fixed"]
+    points: Points
+
+
+class FreeBody(Record):
+    """A rigid body with two translations and a rotation; ``points`` in metres, initial position."""
+
+    motion: Literal["free"]
+    points: Points
+
+
+class SlidingBody(Record):
+    """A rigid body that the ground guides without friction: it moves ``along`` a direction and does not turn.
+
+    ``along`` is made a unit vector; ``points`` in metres, initial position.
     """
 
-    motion: Literal["fixed", "free"]
-    points: Annotated[Named[Point], Field(min_length=1)]
+    motion: Literal["slides"]
+    along: Point
+    points: Points
+
+
+Body = Annotated[FixedBody | FreeBody | SlidingBody, Field(discriminator="motion")]
 
 
 class Moment(Record):
@@ -131,6 +152,24 @@ class Force(Record):
 
 
 Load = Annotated[Moment | Force, Field(discriminator="kind")]
+
+
+class DisplacementDrive(Record):
+    """Prescribes how far a body's ``point`` moves along ``direction`` (made a unit vector), m; across it is free."""
+
+    kind: Literal["displacement"]
+    point: Name
+    direction: Point
+
+
+class RotationDrive(Record):
+    """Prescribes a ``body``'s rotation, counter-clockwise, rad."""
+
+    kind: Literal["rotation"]
+    body: Name
+
+
+Drive = Annotated[DisplacementDrive | RotationDrive, Field(discriminator="kind")]
 
 
 class Related(Record):
@@ -190,9 +229,10 @@ Contact = Annotated[BeamContact | CircleContact, Field(discriminator="kind")]
 
 
 class Stage(Record):
-    """A part of the loading: the values of one load, in the order in which they are reached.
+    """A part of the loading: the values of one load or drive, in the order in which they are reached.
 
-    Loads that no stage has stepped yet are zero; a load keeps its last value in later stages.
+    Loads and drives that no stage has stepped yet are zero (such a drive holds what it drives where it is);
+    each keeps its last value in later stages.
     """
 
     name: Name
@@ -243,7 +283,7 @@ class Claim(Record):
 class Scene(Record):
     """One problem statement: what is there, what happens to it, and what is asked.
 
-    Names of points, bodies, beams, contacts and loads are unique across the scene.
+    Names of points, bodies, beams, contacts, loads and drives are unique across the scene.
     ``verdict_limit`` is the largest total uncertainty (a fraction of a probe's scale)
     with which the scene still wants to hear AGREE.
     """
@@ -254,13 +294,22 @@ class Scene(Record):
     materials: Named[Material]
     beams: Annotated[Named[Beam], Field(min_length=1)]
     bodies: Named[Body]
-    loads: Annotated[Named[Load], Field(min_length=1)]
+    loads: Named[Load] = Field(default_factory=frozendict)
+    drives: Named[Drive] = Field(default_factory=frozendict)
     contacts: Named[Contact] = Field(default_factory=frozendict)
     stages: Annotated[tuple[Stage, ...], Field(min_length=1)]
     probes: Annotated[tuple[Probe, ...], Field(min_length=1)]
     claims: tuple[Claim, ...] = ()
     verdict_limit: Fraction = 0.015
     file: str = ""
+
+    def stepped(self, stage: Stage) -> Load | Drive:
+        """The load or drive that a stage steps.
+
+        Raises:
+            KeyError: nothing has the name that the stage says.
+        """
+        return self.loads[stage.steps] if stage.steps in self.loads else self.drives[stage.steps]
 
     def body_of(self, point: str) -> str:
         """Name of the body that owns ``point``.

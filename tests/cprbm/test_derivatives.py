@@ -98,7 +98,7 @@ def test_the_undeformed_state_is_free_of_force():
     state = rest_state(problem.model)
     at = positions(problem.model, state)
     assert np.max(np.abs(strain_gradient(problem.model, state))) == 0.0
-    assert np.max(np.abs(closure_values(problem.model, problem.closure, state, at))) < 1e-15
+    assert np.max(np.abs(closure_values(problem.model, problem.closure, state, at, {}))) < 1e-15
 
 
 def test_turning_a_mechanism_that_nothing_holds_costs_nothing():
@@ -169,7 +169,7 @@ def test_closure_second_derivatives_over_a_bodys_rotation():
 
     def value(phi):
         state = State(model.rest, np.array([[0.1, -0.2, phi]]))
-        return closure_values(model, closure, state, positions(model, state)) @ mu
+        return closure_values(model, closure, state, positions(model, state), {}) @ mu
 
     state = State(model.rest, np.array([[0.1, -0.2, 0.4]]))
     second = (value(0.4 + 1e-4) - 2 * value(0.4) + value(0.4 - 1e-4)) / 1e-8

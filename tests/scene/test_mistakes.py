@@ -106,7 +106,12 @@ TIES = [
     ("stages/0/stations", [0.67, 0.67], "stages[0].stations[1]", "0.67 again"),
     ("stages/0/stations", [0.67, 0.0, 0.67], "stages[0].stations[2]", "a further stage may go back"),
     ("probes/0/quantity", "rotation", "probes[0]", "'rotation' of a body: 'AC', 'BD'"),
-    ("probes/0/quantity", "reaction", "probes[0]", "point of a fixed body at which a beam ends: 'A', 'C'"),
+    (
+        "probes/0/quantity",
+        "reaction",
+        "probes[0]",
+        "point of a fixed body at which a beam ends, or a driven point: 'A', 'C'",
+    ),
     ("probes/0/points", 11, "probes[0].points", "'bending_stress' only"),
     ("probes/1/of", "B", "probes[1]", "'B.displacement' again"),
     ("claims/0/probe", "B.displacment", "claims[0].probe", "is 'B.displacement' meant"),

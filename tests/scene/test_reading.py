@@ -71,7 +71,7 @@ def test_an_empty_file_names_every_required_key(tmp_path):
     path.write_text("")
     with pytest.raises(SceneError) as caught:
         read(path)
-    required = {"name", "materials", "beams", "bodies", "loads", "stages", "probes"}
+    required = {"name", "materials", "beams", "bodies", "stages", "probes"}
     assert {mistake.key for mistake in caught.value.mistakes} == required
 
 

@@ -1,0 +1,109 @@
+"""What holds a body beside its beams: slides and drives, one equality each.
+
+======  ======================================================================================
+e, r    direction; the held point on the body, from its reference place
+Z_h     e·((u, v) + (R(φ) − 1) r) + τ φ − q: a displacement along e (τ = 0), or φ (e = 0, τ = 1)
+q       value of the drive; zero for a slide
+μ       multiplier; −μ e and −μ τ are the force at the point and the moment on the body
+======  ======================================================================================
+
+A slide is two of them: none across its direction, and no rotation.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cprbm.kinematics import State, arm
+from cprbm.model import Attachment, Model
+from scene import Scene
+from scene.answer import Array
+from scene.statement import DisplacementDrive, SlidingBody
+
+
+@dataclass(frozen=True, slots=True)
+class Hold:
+    """One equality on a body that moves.
+
+    Attributes:
+        drive: the drive's name; empty for a slide.
+        at: r and the body.
+        along: e, a unit vector or zero.
+        turn: τ, one or zero.
+        unit: q per unit (SI) of the drive's value.
+    """
+
+    drive: str
+    at: Attachment
+    along: tuple[float, float]
+    turn: float
+    unit: float
+
+    def value(self, state: State, values: dict[str, float]) -> float:
+        """Z_h with the drives' ``values`` (SI); drives without one are at zero."""
+        u, v, phi = state.bodies[self.at.body]
+        px, py = self.at.point
+        # cos φ − 1 as −2 sin²(φ/2), which keeps small rotations exact
+        less, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
+        ex, ey = self.along
+        moved = ex * (u + less * px - sin * py) + ey * (v + sin * px + less * py)
+        return float(moved + self.turn * phi - self.unit * values.get(self.drive, 0.0))
+
+    def row(self, state: State) -> tuple[float, float, float]:
+        """∂Z_h over the body's u, v, φ."""
+        rx, ry = arm(self.at, state.bodies)
+        ex, ey = self.along
+        return ex, ey, rx * ey - ry * ex + self.turn
+
+    def second(self, state: State) -> float:
+        """∂²Z_h over φ."""
+        rx, ry = arm(self.at, state.bodies)
+        return -(rx * self.along[0] + ry * self.along[1])
+
+
+@dataclass(frozen=True, slots=True)
+class Held:
+    """What a slide or drive does to a body: ``force`` (2,) at ``place`` (2,) and ``moment``, without units."""
+
+    drive: str
+    place: Array
+    force: Array
+    moment: float
+
+
+def holds_of(scene: Scene, model: Model) -> tuple[Hold, ...]:
+    """The scene's slides and drives."""
+    found = []
+    for name, body in scene.bodies.items():
+        if isinstance(body, SlidingBody):
+            at = Attachment(model.free_bodies.index(name), (0.0, 0.0), welded=False)
+            ex, ey = _unit(body.along)
+            found += [Hold("", at, (-ey, ex), 0.0, 0.0), Hold("", at, (0.0, 0.0), 1.0, 0.0)]
+    for name, drive in scene.drives.items():
+        if isinstance(drive, DisplacementDrive):
+            owner = scene.body_of(drive.point)
+            b = model.free_bodies.index(owner)
+            x, y = np.array(scene.bodies[owner].points[drive.point]) / model.unit_length - model.references[b]
+            at = Attachment(b, (float(x), float(y)), welded=False)
+            found.append(Hold(name, at, _unit(drive.direction), 0.0, 1.0 / model.unit_length))
+        else:
+            at = Attachment(model.free_bodies.index(drive.body), (0.0, 0.0), welded=False)
+            found.append(Hold(name, at, (0.0, 0.0), 1.0, 1.0))
+    return tuple(found)
+
+
+def held(model: Model, holds: tuple[Hold, ...], state: State, multipliers: Array) -> tuple[Held, ...]:
+    """What slides and drives do, from their ``multipliers`` (holds,)."""
+    found = []
+    for hold, mu in zip(holds, multipliers, strict=True):
+        b = hold.at.body
+        place = model.references[b] + state.bodies[b, :2] + arm(hold.at, state.bodies)
+        found.append(Held(hold.drive, place, -mu * np.array(hold.along), float(-mu * hold.turn)))
+    return tuple(found)
+
+
+def _unit(direction: tuple[float, float]) -> tuple[float, float]:
+    size = np.hypot(*direction)
+    return float(direction[0] / size), float(direction[1] / size)

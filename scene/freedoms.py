@@ -1,0 +1,114 @@
+"""Which motions of a rigid body slides, drives and loads act on: one row each over the body's three freedoms.
+
+=======  ==================================================================================
+symbol   meaning
+=======  ==================================================================================
+u, v, ω  small translations, and rotation times ℓ, of what is rigid, about the scene's origin
+e        unit vector of a drive, a force or a slide
+r        place of a driven or loaded point less the origin, m
+ℓ        extent of all points, m: makes a row a pure number
+=======  ==================================================================================
+
+A point's displacement along e is (e, r × e / ℓ)·(u, v, ω); a rotation is (0, 0, 1)·(u, v, ω).  The origin is one
+for all bodies, so that bodies which move together have rows in common.  This is the initial position's geometry
+and no mechanics: it says which questions make sense.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scene.statement import Body, Drive, Force, Load, Moment, Point, RotationDrive, Scene, SlidingBody
+
+Row = NDArray[np.float64]
+NEGLIGIBLE = 1e-9
+"""Share of a row (or of a unit vector) that is round-off."""
+
+_TURN = np.array([0.0, 0.0, 1.0])
+
+
+def unit(direction: Point) -> Row:
+    """The unit vector (2,) of a direction that is not zero."""
+    e = np.array(direction) / max(abs(direction[0]), abs(direction[1]))
+    return np.asarray(e / np.hypot(e[0], e[1]))
+
+
+def row_of(scene: Scene, acting: Load | Drive) -> Row:
+    """The motion (3,) that a drive prescribes or that a load does work in, its direction not zero.
+
+    Raises:
+        KeyError: its point does not exist.
+    """
+    if isinstance(acting, Moment | RotationDrive):
+        return _TURN
+    x, y = np.subtract(scene.bodies[scene.body_of(acting.point)].points[acting.point], _origin(scene))
+    e = unit(acting.direction)
+    return np.array([e[0], e[1], (x * e[1] - y * e[0]) / _extent(scene)])
+
+
+def slide_rows(body: Body) -> list[Row]:
+    """The motions that a body's guide prevents; none if it does not slide."""
+    if not isinstance(body, SlidingBody):
+        return []
+    e = unit(body.along)
+    return [np.array([-e[1], e[0], 0.0]), _TURN]
+
+
+def body_of(scene: Scene, acting: Load | Drive) -> str:
+    """Name of the body that a load or drive acts on.
+
+    Raises:
+        KeyError: its point does not exist.
+    """
+    return acting.body if isinstance(acting, Moment | RotationDrive) else scene.body_of(acting.point)
+
+
+def rank(rows: Sequence[Row]) -> int:
+    """Number of independent rows."""
+    return int(np.linalg.matrix_rank(np.array(rows), tol=NEGLIGIBLE)) if rows else 0
+
+
+def held(row: Row, rows: Sequence[Row]) -> bool:
+    """Whether ``rows`` already prescribe the motion of ``row``."""
+    return rank([*rows, row / np.linalg.norm(row)]) == rank(rows)
+
+
+def is_stated(scene: Scene, acting: Load | Drive) -> bool:
+    """Whether a load or drive names what exists and has a direction: nothing else can be said of it otherwise."""
+    return is_named(scene, acting) and (isinstance(acting, Moment | RotationDrive) or acting.direction != (0.0, 0.0))
+
+
+def is_named(scene: Scene, acting: Load | Drive) -> bool:
+    """Whether the body or point that a load or drive acts on exists."""
+    if isinstance(acting, Moment | RotationDrive):
+        return acting.body in scene.bodies
+    return any(acting.point in body.points for body in scene.bodies.values())
+
+
+def same_point(scene: Scene, load: Load, drive: Drive) -> bool:
+    """Whether a force acts where a displacement is driven, and along it in part."""
+    if not isinstance(load, Force) or isinstance(drive, RotationDrive):
+        return False
+    if body_of(scene, load) != body_of(scene, drive):
+        return False
+    points = scene.bodies[body_of(scene, load)].points
+    apart = np.hypot(*np.subtract(points[load.point], points[drive.point]))
+    along = abs(float(unit(load.direction) @ unit(drive.direction)))
+    return bool(apart <= NEGLIGIBLE * _extent(scene)) and along > NEGLIGIBLE
+
+
+def _places(scene: Scene) -> Row:
+    return np.array([place for body in scene.bodies.values() for place in body.points.values()])
+
+
+def _origin(scene: Scene) -> Row:
+    return np.asarray(_places(scene)[0])
+
+
+def _extent(scene: Scene) -> float:
+    """Largest distance of a point from the origin; of a single place 1 m, for nothing is measured by it then."""
+    offsets = _places(scene) - _origin(scene)
+    return float(np.max(np.hypot(offsets[:, 0], offsets[:, 1]))) or 1.0
