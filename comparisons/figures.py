@@ -224,8 +224,11 @@ def _against_load(scene: Scene, rows: list[Row], quantity: str, what: str) -> Pi
     figure = Figure(figsize=(6.4, 3.6), layout="constrained")
     axes = figure.add_subplot()
     factor, unit = scaled_unit(rows[0].unit, max(row.scale for row in rows))
+    last = scene.stages[-1]
     for name in dict.fromkeys(row.probe.name for row in rows):
         for stage in scene.stages:
+            if stage.steps != last.steps:  # another load or drive has another axis
+                continue
             mine = [row for row in rows if row.probe.name == name and row.stage == stage.name]
             load = [row.station for row in mine]
             axes.plot(load, [row.fea[0] / factor for row in mine], "-", color=_RED, label=f"{name}, FEA")
@@ -237,10 +240,10 @@ def _against_load(scene: Scene, rows: list[Row], quantity: str, what: str) -> Pi
                 markersize=4,
                 label=f"{name}, CPRBM",
             )
-    axes.set_xlabel(f"{scene.stages[-1].steps}, {load_unit(scene, scene.stages[-1])}")
+    axes.set_xlabel(f"{last.steps}, {load_unit(scene, last)}")
     axes.set_ylabel(f"{what.lower()}, {unit}")
     axes.legend(loc="best")
-    return _picture(figure, quantity, f"{what} against the load.")
+    return _picture(figure, quantity, f"{what} against {last.steps}.")
 
 
 def _picture(figure: Figure, name: str, caption: str) -> Picture:

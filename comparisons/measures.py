@@ -62,7 +62,7 @@ from comparisons.scales import denominator, family_size, natural_scale, norm, pr
 from comparisons.spots import clear_of_spots
 from scene import Answer, Probe, Scene, Stage, StationAnswer
 from scene.answer import Array
-from scene.statement import Moment, Quantity
+from scene.statement import Quantity
 
 SAFETY = 1.25
 SHARE_OF_LARGEST = SAFETY - 1.0
@@ -79,6 +79,8 @@ UNITS: Mapping[Quantity, str] = {
     "reaction_moment": "N·m",
     "potential_energy": "J",
 }
+
+LOAD_UNITS = {"moment": "N·m", "force": "N", "displacement": "m", "rotation": "rad"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +183,7 @@ def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
 
 
 def station_of(answer: Answer, stage: str, value: float) -> StationAnswer:
-    """An answer's station of a stage at a value of its load.
+    """An answer's station of a stage at a value of its load or drive.
 
     Raises:
         KeyError: the answer has none.
@@ -308,8 +310,8 @@ def unit_of(scene: Scene, probe: Probe, stage: Stage) -> str:
 
 
 def load_unit(scene: Scene, stage: Stage) -> str:
-    """The SI unit of the load that a stage steps."""
-    return "N·m" if isinstance(scene.loads[stage.steps], Moment) else "N"
+    """The SI unit of the load or drive that a stage steps."""
+    return LOAD_UNITS[scene.stepped(stage).kind]
 
 
 def arc_lengths(scene: Scene, probe: Probe) -> Array:

@@ -7,8 +7,8 @@ form a *family* with a scale of its own, and no probe's scale is less than a tho
 =====================================  ==============================================================
 quantity                               the family's scale in a stage
 =====================================  ==============================================================
-displacement                           largest displacement of any point, or rotation times length
-rotation                               largest rotation of any body, or displacement over length
+displacement                           largest displacement of any point, driven ones too, or rotation times length
+rotation                               largest rotation of any body, driven ones too, or displacement over length
 force, reaction                        largest of them, of the force loads, and of the moments over length
 reaction_moment                        largest of them, of the moment loads, and of the forces times length
 bending_stress                         largest stress in any beam
@@ -19,7 +19,7 @@ centre, ends                           length of the contact's first beam, which
 
 A moment at a support depends on the point about which it is taken: it is what is left of the loads' and the
 other supports' moments, and may be small by accident of that point.  Its scale is therefore the largest
-moment of the balance that it closes, of the supports' and the stepped one's.
+moment of the balance that it closes, of the supports', the drives' and the stepped one's.
 
 The length is the longest beam's.
 
@@ -33,13 +33,14 @@ bent by about a radian along the longest beam's length ℓ:
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Literal
 
 import numpy as np
 
 from comparisons.geometry import length
 from scene import Answer, Probe, Scene, Stage
 from scene.answer import Array
-from scene.statement import Moment, Quantity
+from scene.statement import Quantity
 
 SMALLEST_SHARE = 1e-3
 """Least scale of a probe as a share of its family's."""
@@ -49,6 +50,9 @@ SMALLEST_EVENT = 1e-7
 
 VANISHING = 1e-2
 """A reference below this share of its probe's scale counts as one that may vanish."""
+
+Kind = Literal["moment", "force", "displacement", "rotation"]
+"""Of a load or drive."""
 
 _OWN_NORM = frozenset({"displacement", "rotation", "potential_energy", "closing_load"})
 """Quantities whose differences are stated as shares of the reference itself."""
@@ -68,7 +72,7 @@ def probe_scale(scene: Scene, probe: Probe, stage: Stage, answers: tuple[Answer,
         return family
     if probe.quantity == "reaction_moment":
         supports = tuple(other for other in scene.probes if other.quantity == "reaction_moment")
-        moments = max(_largest(supports, stage, answers), _load(scene, stage, moments=True))
+        moments = max(_largest(supports, stage, answers), _stepped(scene, stage, "moment"))
         return max(moments, SMALLEST_SHARE * family)
     return max(_largest((probe,), stage, answers), SMALLEST_SHARE * family)
 
@@ -92,7 +96,7 @@ def natural_scale(scene: Scene, quantity: Quantity, stage: Stage, *, contact: st
         case "force" | "reaction":
             return S / lever
         case "closing_load":
-            return S if isinstance(scene.loads[stage.steps], Moment) else S / lever
+            return {"moment": S, "force": S / lever, "displacement": lever, "rotation": 1.0}[scene.stepped(stage).kind]
         case "bending_stress":
             return max(E * beam.thickness for beam, E in beams) / (2.0 * lever)
         case "centre" | "ends":
@@ -111,22 +115,24 @@ def family_size(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[A
     lever = _lever(scene)
     match quantity:
         case "displacement":
-            return max(largest("displacement"), lever * largest("rotation"))
+            moved = max(largest("displacement"), _stepped(scene, stage, "displacement"))
+            return max(moved, lever * largest("rotation"), lever * _stepped(scene, stage, "rotation"))
         case "rotation":
-            return max(largest("rotation"), largest("displacement") / lever)
+            turned = max(largest("rotation"), _stepped(scene, stage, "rotation"))
+            return max(turned, largest("displacement") / lever, _stepped(scene, stage, "displacement") / lever)
         case "force" | "reaction":
             return max(
                 largest("force", "reaction"),
-                _load(scene, stage, moments=False),
+                _stepped(scene, stage, "force"),
                 largest("reaction_moment") / lever,
-                _load(scene, stage, moments=True) / lever,
+                _stepped(scene, stage, "moment") / lever,
             )
         case "reaction_moment":
             return max(
                 largest("reaction_moment"),
-                _load(scene, stage, moments=True),
+                _stepped(scene, stage, "moment"),
                 largest("force", "reaction") * lever,
-                _load(scene, stage, moments=False) * lever,
+                _stepped(scene, stage, "force") * lever,
             )
         case "closing_load":
             return max(abs(station) for station in stage.stations)
@@ -161,7 +167,6 @@ def _norms(probes: tuple[Probe, ...], stage: Stage, answers: tuple[Answer, ...])
                     yield norm(probe.quantity, values)
 
 
-def _load(scene: Scene, stage: Stage, *, moments: bool) -> float:
-    """Largest magnitude of the stepped load, if it is a moment (or, without ``moments``, a force)."""
-    is_moment = isinstance(scene.loads[stage.steps], Moment)
-    return max(abs(station) for station in stage.stations) if is_moment is moments else 0.0
+def _stepped(scene: Scene, stage: Stage, kind: Kind) -> float:
+    """Largest magnitude of what the stage steps, if it is a load or drive of that ``kind``."""
+    return max(abs(station) for station in stage.stations) if scene.stepped(stage).kind == kind else 0.0

@@ -7,7 +7,7 @@ import numpy as np
 from fea_reference.curvature import smallest_curvature
 from fea_reference.march import March
 from fea_reference.model import Model
-from fea_reference.supports import support
+from fea_reference.supports import held, support
 from fea_reference.system import System
 from fea_reference.touch import Circle, Pair
 from scene.answer import Array, Certificate
@@ -72,7 +72,9 @@ def certify(march: March) -> Certificate:
 
 
 def _balance(model: Model, values: Array, system: System) -> tuple[float, float]:
-    """|ΣF| and |ΣM| about the origin of loads and supports, each over the largest in it if that is no round-off.
+    """|ΣF| and |ΣM| about the origin of loads, supports, guides and drives.
+
+    Each is over the largest in it if that is no round-off.
 
     A contact's two forces are opposite on one line: they cancel in both sums, unless one of them is on a circle
     that is fixed to the ground, which makes the other a support's.
@@ -86,7 +88,12 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float]
             forces.append(force)
             at = z[joint.dofs[:2]]
             moments += [moment, float(at[0] * force[1] - at[1] * force[0])]
-    for part, value in zip(model.loads, values, strict=True):
+    for hold in (*model.guides, *model.drives):
+        force, moment = held(hold, z)
+        forces.append(force)
+        at = model.carried(model.bodies[hold.body], hold.arm, z)
+        moments += [moment, float(at[0] * force[1] - at[1] * force[0])]
+    for part, value in zip(model.loads, values[: len(model.loads)], strict=True):
         body = model.bodies[part.body]
         if part.direction is None:
             moments.append(float(value))

@@ -4,7 +4,7 @@
 symbol  meaning
 ======  =====================================================================================
 K       the tangent of the Lagrangian, with the joints' rows and the axial forces
-u, q    motions of all nodes and bodies; those that no joint gives, u = T q
+u, q    motions of all nodes and bodies; those that no joint, guide or drive gives, u = T q
 H, B    K's block of the motions, and its rows of the axial forces by them
 c l     the axial forces' diagonal in K, turned round: compliance times length
 M       lumped mass, diagonal in u: arc length for the nodes, one for the bodies
@@ -26,8 +26,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded, eigvalsh_tridiagonal
-from scipy.sparse import csr_array, diags_array
+from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded, eigvalsh_tridiagonal, null_space
+from scipy.sparse import block_diag, csr_array, diags_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from fea_reference.model import Model
@@ -89,7 +89,7 @@ def _on_feasible_directions(model: Model, system: System) -> tuple[csr_array, cs
     if held.size:
         own = csr_array((np.ones(held.size), (place[held], np.arange(held.size))), (motions.size, held.size))
         follow = own @ K[rows][:, motions]
-    T = csr_array(diags_array(np.ones(motions.size)) - follow)[:, free]
+    T = csr_array(diags_array(np.ones(motions.size)) - follow)[:, free] @ _bodies_motions(model, K, int(free.sum()))
 
     compliance = np.maximum(-K.diagonal()[axial], model.elements.length / _STIFF)
     B = K[axial][:, motions] @ T
@@ -103,6 +103,18 @@ def _on_feasible_directions(model: Model, system: System) -> tuple[csr_array, cs
         own_mass[1:] += 0.5 * h[beam.elements]
     mass = np.concatenate([np.repeat(lumped, 3), np.ones(motions.size - 3 * lumped.size)])
     return T, csr_array(A), mass
+
+
+def _bodies_motions(model: Model, K: csr_array, size: int) -> csr_array:
+    """What guides and drives leave free of ``size`` motions, of which the last are the bodies': a matrix (size, q)."""
+    blocks = []
+    for i, body in enumerate(model.bodies):
+        if body.dofs is None:
+            continue
+        rows = [hold.row for hold in (*model.guides, *model.drives) if hold.body == i]
+        blocks.append(null_space(K[rows][:, body.dofs].toarray()) if rows else np.eye(3))
+    nodes = diags_array(np.ones(size - 3 * len(blocks)))
+    return csr_array(block_diag([nodes, *blocks]))
 
 
 def _bands(*matrices: csr_array) -> list[Array]:

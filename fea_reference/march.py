@@ -42,9 +42,9 @@ class StoppedError(Exception):
 class March:
     """Where the march stands: the state of the one loop that is allowed one.
 
-    ``values`` are the loads' without units; ``penalties`` the contacts that have closed so far, with their
-    stiffness; ``closing`` the value of the stepped load at which each did; ``iterations`` are counted since
-    the last station.
+    ``values`` are the loads' and then the drives' without units; ``penalties`` the contacts that have closed so
+    far, with their stiffness; ``closing`` the value of the stepped load or drive at which each did; ``iterations``
+    are counted since the last station.
     """
 
     model: Model
@@ -57,7 +57,7 @@ class March:
     iterations: int = 0
 
     def reach(self, load: int, target: float) -> None:
-        """March one load to ``target`` and land on it exactly.
+        """March one load or drive to ``target`` and land on it exactly.
 
         Raises:
             StoppedError: it cannot be reached.
@@ -180,7 +180,7 @@ class March:
             if zones_of(self.model, pair, self.system.z).least <= 1e-9 * pair.scale:
                 self.open.remove(pair)
                 self.penalties[pair] = Penalty(pair.stiffness)
-                self.closing[pair.name] = float(self.values[load]) * self.model.loads[load].unit
+                self.closing[pair.name] = float(self.values[load]) * self.model.stepped[load].unit
         self.system = assemble(self.model, self.penalties, self.settings.quadrature, self.values, self.system.z)
 
     def _loosen(self) -> None:
@@ -256,12 +256,12 @@ class March:
         return float(np.abs((system.z.values - z.values)[self._moving]).max())
 
     def _shown(self, load: int, value: float) -> str:
-        part = self.model.loads[load]
+        part = self.model.stepped[load]
         return f"{part.name} = {value * part.unit:.6g}"
 
 
 def begin(model: Model, settings: Settings, contacts: tuple[Contact, ...]) -> March:
     """The undeformed mechanism, unloaded."""
-    values = np.zeros(len(model.loads))
+    values = np.zeros(len(model.stepped))
     system = assemble(model, {}, settings.quadrature, values, model.start)
     return March(model, settings, list(contacts), values, system)

@@ -1,10 +1,11 @@
-"""A scene made discrete: nodes, elements, bodies, joints and loads, all without units.
+"""A scene made discrete: nodes, elements, bodies, joints, guides, drives and loads, all without units.
 
 Lengths are over the longest beam, bending stiffnesses over the largest, so forces are over EI/length² and
 moments over EI/length: the same scene in other units is the same problem to the last digits.
 
 The unknowns z are, in this order: the nodes' (x, y, θ) and the elements' axial forces N, numbered by
-scikit-fem; (X, Y, φ) of every free body, its displacement and rotation; one multiplier per joint row.
+scikit-fem; (X, Y, φ) of every body that moves, its displacement and rotation; one multiplier per row of a joint, of a
+guide (a sliding body has two: no motion across, no rotation) and of a drive.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from fea_reference.hermite import Index, NeutralLine
 from fea_reference.settings import Settings
 from fea_reference.state import State
 from scene.answer import Array
-from scene.statement import BeamEnd, Force, FreeEnd, Moment, Scene, WeldedEnd
+from scene.statement import BeamEnd, DisplacementDrive, Force, FreeEnd, Moment, Scene, SlidingBody, WeldedEnd
 
 SHEAR_FACTOR = 5.0 / 6.0  # of a rectangle
 
@@ -58,7 +59,7 @@ class BeamPart:
 
 @dataclass(frozen=True, slots=True)
 class BodyPart:
-    """A rigid body: reference ``centre`` (2,), ``points`` (2,) by name, its three unknowns if it is free."""
+    """A rigid body: reference ``centre`` (2,), ``points`` (2,) by name, its three unknowns if it moves."""
 
     name: str
     centre: Array
@@ -93,20 +94,62 @@ class LoadPart:
 
 
 @dataclass(frozen=True, slots=True)
+class DrivePart:
+    """A row that prescribes a body's motion: direction·(X + R(φ) r − r) = value, or φ = value without a direction.
+
+    ``row`` is the multiplier's, ``arm`` is r, ``unit`` the value's (m or rad).
+    """
+
+    name: str
+    body: int
+    row: int
+    arm: Array
+    direction: Array | None
+    unit: float
+
+    def motion(self, X: Array) -> float:
+        """What is prescribed, of a body's (X, Y, φ)."""
+        if self.direction is None:
+            return float(X[2])
+        return float(self.direction @ (X[:2] + turned(self.arm, X[2]) - self.arm))
+
+    def gradient(self, phi: float) -> Array:
+        """The motion's derivative by (X, Y, φ)."""
+        if self.direction is None:
+            return np.array([0.0, 0.0, 1.0])
+        arm = turned(self.arm, phi)
+        return np.array([*self.direction, arm[0] * self.direction[1] - arm[1] * self.direction[0]])
+
+    def second(self, phi: float) -> float:
+        """The motion's second derivative by φ, the only one that does not vanish."""
+        return 0.0 if self.direction is None else -float(self.direction @ turned(self.arm, phi))
+
+
+@dataclass(frozen=True, slots=True)
 class Model:
-    """Everything the mechanics needs to know of a scene; ``start`` is the undeformed state."""
+    """Everything the mechanics needs to know of a scene; ``start`` is the undeformed state.
+
+    ``guides`` are rows like a drive's whose value stays zero.
+    """
 
     units: Units
     beams: tuple[BeamPart, ...]
     bodies: tuple[BodyPart, ...]
     joints: tuple[JointPart, ...]
     loads: tuple[LoadPart, ...]
+    guides: tuple[DrivePart, ...]
+    drives: tuple[DrivePart, ...]
     elements: Elements
     node_dofs: Index
     element_dofs: Index
     multipliers: Index
     size: int
     start: State
+
+    @property
+    def stepped(self) -> tuple[LoadPart | DrivePart, ...]:
+        """What has a value that stages step, in the order of the values: loads, then drives."""
+        return (*self.loads, *self.drives)
 
     def beam(self, name: str) -> BeamPart:
         """The beam of that name."""
@@ -200,10 +243,10 @@ def build(scene: Scene, settings: Settings) -> Model:
     bodies: list[BodyPart] = []
     for name, body in scene.bodies.items():
         places = {key: (np.array(at) - units.origin) / units.length for key, at in body.points.items()}
-        free = body.motion == "free"
-        dofs = np.arange(size, size + 3) if free else None
+        moves = body.motion != "fixed"
+        dofs = np.arange(size, size + 3) if moves else None
         bodies.append(BodyPart(name, np.mean(list(places.values()), axis=0), places, dofs))
-        size += 3 if free else 0
+        size += 3 if moves else 0
     number = {body.name: i for i, body in enumerate(bodies)}
 
     first_row = size
@@ -227,6 +270,23 @@ def build(scene: Scene, settings: Settings) -> Model:
                 direction = np.array(load.direction) / np.hypot(*load.direction)
                 loads.append(LoadPart(name, i, arm, direction, units.force))
 
+    guides: list[DrivePart] = []
+    for name, body in scene.bodies.items():
+        if isinstance(body, SlidingBody):
+            along = np.array(body.along) / np.hypot(*body.along)
+            guides.append(DrivePart(name, number[name], size, np.zeros(2), turned(along, np.pi / 2), units.length))
+            guides.append(DrivePart(name, number[name], size + 1, np.zeros(2), None, 1.0))
+            size += 2
+    drives: list[DrivePart] = []
+    for name, drive in scene.drives.items():
+        if isinstance(drive, DisplacementDrive):
+            i = number[scene.body_of(drive.point)]
+            arm, direction = bodies[i].points[drive.point] - bodies[i].centre, np.array(drive.direction)
+            drives.append(DrivePart(name, i, size, arm, direction / np.hypot(*direction), units.length))
+        else:
+            drives.append(DrivePart(name, number[drive.body], size, np.zeros(2), None, 1.0))
+        size += 1
+
     start = np.zeros(size)
     start[node_dofs] = np.stack([nodes[:, 0], nodes[:, 1], angles])
     return Model(
@@ -235,6 +295,8 @@ def build(scene: Scene, settings: Settings) -> Model:
         tuple(bodies),
         tuple(joints),
         tuple(loads),
+        tuple(guides),
+        tuple(drives),
         elements,
         node_dofs,
         np.asarray(basis.element_dofs, dtype=np.int64),

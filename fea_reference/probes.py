@@ -8,10 +8,10 @@ from fea_reference.ends import ends
 from fea_reference.march import March
 from fea_reference.projection import project
 from fea_reference.recovery import bending_moment
-from fea_reference.supports import support
+from fea_reference.supports import held, support
 from fea_reference.touch import Pair, Touch
 from scene.answer import Array, Shape, frozen_array
-from scene.statement import Probe, Scene
+from scene.statement import DisplacementDrive, Probe, Scene
 
 
 def probed(scene: Scene, march: March, probe: Probe) -> Array:
@@ -26,12 +26,10 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
             body = next(body for body in model.bodies if body.name == probe.of)
             return frozen_array(model.body_state(body, z)[2])
         case "reaction":
-            held = [support(joint, z)[0] for joint in model.joints if joint.point == probe.of]
-            return frozen_array(sum(held, np.zeros(2)) * units.force)
+            forces = [force for force, _ in _holding(scene, march, probe.of)]
+            return frozen_array(sum(forces, np.zeros(2)) * units.force)
         case "reaction_moment":
-            return frozen_array(
-                sum(support(joint, z)[1] for joint in model.joints if joint.point == probe.of) * units.moment
-            )
+            return frozen_array(sum(moment for _, moment in _holding(scene, march, probe.of)) * units.moment)
         case "bending_stress":
             moment = bending_moment(model, march.system, model.beam(probe.of), np.linspace(0.0, 1.0, probe.points))
             beam = scene.beams[probe.of]
@@ -79,6 +77,22 @@ def touching(march: March) -> dict[str, Array]:
     return places
 
 
+def _holding(scene: Scene, march: March, name: str) -> list[tuple[Array, float]]:
+    """Forces and moments of the ground at a point, or of the drives of a point or body."""
+    model, z = march.model, march.system.z
+    grounded = [joint for joint in model.joints if model.bodies[joint.body].dofs is None]
+    return [
+        *(support(joint, z) for joint in grounded if joint.point == name),
+        *(held(part, z) for part in model.drives if _driven(scene, part.name) == name),
+    ]
+
+
+def _driven(scene: Scene, drive: str) -> str:
+    """Name of the point or body that a drive drives."""
+    part = scene.drives[drive]
+    return part.point if isinstance(part, DisplacementDrive) else part.body
+
+
 def _touch(march: March, name: str) -> Touch | None:
     """A contact's state, None while it is open."""
     return next((one for one in march.system.touches if one.pair.name == name and one.closed), None)
@@ -118,10 +132,10 @@ def _arc_lengths(march: March, touch: Touch, zeta: Array) -> Array:
 
 
 def _potential_energy(march: March) -> float:
-    """Strain energy less the work of the dead loads."""
+    """Strain energy less the work of the dead loads; what drives put in is in the strain energy."""
     model, z = march.model, march.system.z
     energy = float(march.system.elements.energy.sum())
-    for part, load in zip(model.loads, march.values, strict=True):
+    for part, load in zip(model.loads, march.values[: len(model.loads)], strict=True):
         body = model.bodies[part.body]
         if part.direction is None:
             energy -= load * model.body_state(body, z)[2]

@@ -38,10 +38,10 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     with threadpool_limits(limits=1, user_api="blas"):
         try:
             for stage in scene.stages:
-                load = list(scene.loads).index(stage.steps)
+                load = [part.name for part in model.stepped].index(stage.steps)
                 for station in stage.stations:
                     known = set(march.closing)
-                    march.reach(load, station / model.loads[load].unit)
+                    march.reach(load, station / model.stepped[load].unit)
                     events += [
                         Event(stage.name, name, "closes", closing)
                         for name, closing in march.closing.items()

@@ -1,8 +1,10 @@
-"""What the ground does to what is joined to it."""
+"""What the ground, guides and drives do to what they hold."""
 
 from __future__ import annotations
 
-from fea_reference.model import JointPart
+import numpy as np
+
+from fea_reference.model import DrivePart, JointPart
 from fea_reference.state import State
 from scene.answer import Array
 
@@ -11,3 +13,9 @@ def support(joint: JointPart, z: State) -> tuple[Array, float]:
     """Force (2,) and moment of a joint's body on the beam's end: the multipliers, turned round."""
     force = -z[joint.rows[:2]]
     return force, float(-z[joint.rows[2]]) if joint.rows.size == 3 else 0.0
+
+
+def held(part: DrivePart, z: State) -> tuple[Array, float]:
+    """Force (2,) at the point and moment of a drive or guide on its body: the multiplier, turned round."""
+    pull = -float(z.values[part.row])
+    return (np.zeros(2), pull) if part.direction is None else (pull * part.direction, 0.0)

@@ -1,4 +1,4 @@
-"""The whole mechanism's unbalanced forces and their tangent: elements, joints, loads and contacts summed.
+"""The whole mechanism's unbalanced forces and their tangent: elements, joints, drives, loads and contacts summed.
 
 The residual is the derivative of the Lagrangian Π(z) − Σ loads + λᵀ c(z) by all unknowns, the multipliers
 included, and the tangent its second derivative: symmetric and indefinite.
@@ -17,7 +17,7 @@ from skfem.assembly.form.coo_data import COOData
 from fea_reference.contacts import touch
 from fea_reference.element import ElementForces, forces
 from fea_reference.hermite import Index
-from fea_reference.model import Model, turned
+from fea_reference.model import DrivePart, Model, turned
 from fea_reference.state import State
 from fea_reference.touch import Contact, Pair, Penalty, Touch
 from scene.answer import Array
@@ -63,7 +63,7 @@ def assemble(
         model: the mechanism.
         penalties: the contacts that are watched, with what presses them apart.
         quadrature: Gauss points per interval of a contact zone.
-        values: of the loads (number of loads,), without units.
+        values: of the loads and then of the drives (number of both,), without units.
         z: the unknowns.
         held: the contacts that are held at a depth, see :func:`~fea_reference.contact.touch`.
     """
@@ -79,7 +79,7 @@ def assemble(
     matrices.append(COOData(np.array([rows, columns]), np.array(entries), (model.size, model.size), local_shape=None))
     residual = sum(vectors).toarray() + rigid
     tangent = sum(matrices).tocsr().tocsc()
-    balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values).max(initial=0.0)]
+    balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values[: len(model.loads)]).max(initial=0.0)]
     balanced += [np.abs(one.gradient).max(initial=0.0) for one in touches]
     largest = float(max(balanced))
     angle = max(1.0, float(np.abs(z[model.node_dofs[2]]).max()))
@@ -106,10 +106,16 @@ def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
 
 
 def load_direction(model: Model, load: int, z: State) -> Array:
-    """The generalised force of one load of unit value, (size,)."""
-    part = model.loads[load]
+    """What one load or drive of unit value adds to the right-hand side, (size,).
+
+    Of a load its generalised force, of a drive one in its row.
+    """
+    part = model.stepped[load]
     body = model.bodies[part.body]
     f = np.zeros(model.size)
+    if isinstance(part, DrivePart):
+        f[part.row] = 1.0
+        return f
     if body.dofs is None:
         return f
     if part.direction is None:
@@ -121,7 +127,7 @@ def load_direction(model: Model, load: int, z: State) -> Array:
 
 
 def _rigid(model: Model, values: Array, z: State) -> tuple[Array, list[int], list[int], list[float]]:
-    """Joints and loads: few, so one after the other."""
+    """Joints, guides, drives and loads: few, so one after the other."""
     residual = np.zeros(model.size)
     rows: list[int] = []
     columns: list[int] = []
@@ -159,7 +165,21 @@ def _rigid(model: Model, values: Array, z: State) -> tuple[Array, list[int], lis
             if body.dofs is not None:
                 residual[body.dofs[2]] -= multiplier
                 couple(row, int(body.dofs[2]), -1.0)
-    for i, (part, value) in enumerate(zip(model.loads, values, strict=True)):
+    acting, prescribed = np.split(values, [len(model.loads)])
+    rests = np.zeros(len(model.guides))
+    for hold, value in zip((*model.guides, *model.drives), (*rests, *prescribed), strict=True):
+        dofs, multiplier = model.bodies[hold.body].dofs, float(z.values[hold.row])
+        assert dofs is not None
+        phi = float(z[dofs[2]])
+        gradient = hold.gradient(phi)
+        residual[hold.row] += hold.motion(z[dofs]) - value
+        residual[dofs] += multiplier * gradient
+        for dof, slope in zip(dofs, gradient, strict=True):
+            couple(hold.row, int(dof), float(slope))
+        rows.append(int(dofs[2]))
+        columns.append(int(dofs[2]))
+        entries.append(multiplier * hold.second(phi))
+    for i, (part, value) in enumerate(zip(model.loads, acting, strict=True)):
         residual -= value * load_direction(model, i, z)
         dofs = model.bodies[part.body].dofs
         if part.direction is not None and dofs is not None:
