@@ -47,7 +47,8 @@ def _value(
             zones = zones_of(mechanism.pairs[probe.of], point)
             return [zones[0].begin * model.unit_length, zones[-1].end * model.unit_length] if zones else []
         case "closing_load":
-            return [closed_at[probe.of]] if probe.of in closed_at else []
+            _, pressing = contact_pressure(point, probe.of, model.chain(scene.contacts[probe.of].beams[0]))
+            return [closed_at[probe.of]] if probe.of in closed_at and pressing.size else []
         case "bending_stress":
             return bending_stress(mechanism, point, model.chain(probe.of), probe.points)
         case "reaction" | "reaction_moment":

@@ -41,3 +41,33 @@ def driven_hinge(angle: float) -> Scene:
     return scene_from(
         {**data, "loads": {}, "drives": {"turn": drive}, "stages": stages, "probes": probes, "claims": []}
     )
+
+
+def guided(*, drive: bool, station: float) -> Scene:
+    """A beam along x between a shoe that slides along x and one that slides along y, which is driven or loaded.
+
+    Nothing is fixed: the two slides hold it.
+    """
+    data = cantilever_data({}, [])
+    across = {"point": "T", "direction": [0.0, 2.0]}
+    probes = [{"of": "T", "quantity": "displacement"}, {"of": "R", "quantity": "displacement"}]
+    return scene_from(
+        {
+            **data,
+            "bodies": {
+                "root": {"motion": "slides", "along": [-3.0, 0.0], "points": {"R": [0.0, 0.0], "far": [-0.01, 0.02]}},
+                "tip": {"motion": "slides", "along": [0.0, 1.0], "points": {"T": [LENGTH, 0.0]}},
+            },
+            "loads": {} if drive else {"P": {"kind": "force", **across}},
+            "drives": {"P": {"kind": "displacement", **across}} if drive else {},
+            "stages": [{"name": "load", "steps": "P", "stations": [station]}],
+            "probes": [
+                *probes,
+                {"of": "far", "quantity": "displacement"},
+                {"of": "tip", "quantity": "rotation"},
+                {"of": "beam", "quantity": "bending_stress", "points": 3},
+                {"of": "scene", "quantity": "potential_energy"},
+                *([{"of": "T", "quantity": "reaction"}] if drive else []),
+            ],
+        }
+    )

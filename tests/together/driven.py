@@ -1,0 +1,62 @@
+"""A small scene with a slide, a driven point, a driven body and a load, for both solvers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from scene import Scene
+from scene.reading import scene_from
+
+
+def gripper_like() -> Scene:
+    """A quarter of an arch whose root slides, pushed by its tip; then its tip is turned back, then loaded across.
+
+    Without contact, so that what is compared is the slide and the drives alone.
+    """
+    beam = {"thickness": 0.0021, "width": 0.0083, "material": "m"}
+    data: dict[str, Any] = {
+        "name": "driven",
+        "materials": {"m": {"youngs_modulus": 2.3e9, "poisson_ratio": 0.35}},
+        "bodies": {
+            "ground": {"motion": "fixed", "points": {"C": [0.153, 0.011]}},
+            "shoe": {"motion": "slides", "along": [2.0, 0.0], "points": {"S": [0.01, 0.02], "O": [0.0, 0.0]}},
+            "block": {"motion": "free", "points": {"M": [0.095, 0.06], "A": [0.09, 0.05], "B": [0.1, 0.05]}},
+        },
+        "beams": {
+            "straight": {
+                **beam,
+                "curve": {"kind": "line", "start": [0.0, 0.0], "end": [0.09, 0.05]},
+                "start": {"joint": "weld", "point": "O"},
+                "end": {"joint": "weld", "point": "A"},
+            },
+            "post": {
+                **beam,
+                "curve": {"kind": "line", "start": [0.153, 0.011], "end": [0.1, 0.05]},
+                "start": {"joint": "weld", "point": "C"},
+                "end": {"joint": "pin", "point": "B"},
+            },
+        },
+        "drives": {
+            "push": {"kind": "displacement", "point": "M", "direction": [1.0, -3.0]},
+            "turn": {"kind": "rotation", "body": "block"},
+        },
+        "loads": {"pull": {"kind": "force", "point": "S", "direction": [1.0, 1.0]}},
+        "stages": [
+            {"name": "push", "steps": "push", "stations": [0.001, 0.008]},
+            {"name": "turn", "steps": "turn", "stations": [0.15]},
+            {"name": "pull", "steps": "pull", "stations": [0.5]},
+        ],
+        "probes": [
+            {"of": "A", "quantity": "displacement"},
+            {"of": "S", "quantity": "displacement"},
+            {"of": "block", "quantity": "rotation"},
+            {"of": "shoe", "quantity": "rotation"},
+            {"of": "M", "quantity": "reaction"},
+            {"of": "block", "quantity": "reaction_moment"},
+            {"of": "C", "quantity": "reaction"},
+            {"of": "C", "quantity": "reaction_moment"},
+            {"of": "straight", "quantity": "bending_stress"},
+            {"of": "scene", "quantity": "potential_energy"},
+        ],
+    }
+    return scene_from(data)

@@ -1,0 +1,66 @@
+"""Slides and drives: the two solvers through the verdict, and wrong ones that it must catch."""
+
+from dataclasses import replace
+from math import hypot
+
+import pytest
+
+from comparisons import figures
+from comparisons.choices import Choices
+from comparisons.measures import load_unit
+from comparisons.pairing import Solvers, cprbm_answer, paired
+from comparisons.scales import natural_scale
+from comparisons.verdict import Word, compared
+from tests.cprbm.driven import driven_hinge
+from tests.together.driven import gripper_like
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return gripper_like()
+
+
+def test_the_verdict_is_agree(scene):
+    """Slide, driven point, driven rotation and a load on the slide, in all three theories."""
+    found = compared(scene, paired(scene, Choices(), Solvers()))
+    assert found.verdict.word is Word.AGREE, found.verdict.sentence
+    assert {row.probe.name for row in found.rows} == {probe.name for probe in scene.probes}
+
+
+@pytest.mark.parametrize("probe", ["M.reaction", "block.reaction_moment", "S.displacement"])
+def test_a_drives_reaction_or_a_slide_that_is_two_per_cent_wrong_is_caught(scene, probe):
+    def wrong(scene, choices):
+        answer = cprbm_answer(scene, choices)
+        stations = tuple(
+            replace(station, values={**station.values, probe: 1.02 * station.values[probe]})
+            for station in answer.stations
+        )
+        return replace(answer, stations=stations)
+
+    found = compared(scene, paired(scene, Choices(), Solvers(cprbm=wrong)))
+    assert found.verdict.word is Word.DIFFER
+    assert probe in found.verdict.sentence
+
+
+def test_a_driven_hinge_agrees_and_its_stations_are_angles():
+    scene = driven_hinge(0.6)
+    found = compared(scene, paired(scene, Choices(kinematics="bending"), Solvers()))
+    assert found.verdict.word is Word.AGREE, found.verdict.sentence
+    closing = next(row for row in found.rows if row.probe.quantity == "closing_load")
+    assert closing.unit == "rad"
+    assert load_unit(scene, scene.stages[0]) == "rad"
+
+
+def test_units_and_natural_scales_of_what_stages_step(scene):
+    assert [load_unit(scene, stage) for stage in scene.stages] == ["m", "rad", "N"]
+    ell = hypot(0.09, 0.05)  # of the straight beam, m
+    EI = 2.3e9 * 0.0083 * 0.0021**3 / 12.0
+    natural = [natural_scale(scene, "closing_load", stage, contact="") for stage in scene.stages]
+    assert natural == pytest.approx([ell, 1.0, EI / ell**2], rel=1e-12)
+
+
+def test_a_figure_has_one_axis_of_load(scene):
+    """Stages that step different things are not drawn over one axis; the last one's is drawn."""
+    found = compared(scene, paired(scene, Choices(kinematics="bending", links=8, elements=8), Solvers()))
+    pictures = {picture.name: picture for picture in figures.of_comparison(found)}
+    assert "against pull" in pictures["rotation"].caption
