@@ -46,7 +46,7 @@ LOCAL = 8  # joints in a row that is local
 DENSE = 120  # unknowns up to which all curvatures are computed at once
 LANCZOS = 40  # steps
 SMALL = 1e-9  # of the largest compliance: negative ones below it are round-off
-NOTHING = 1e-12  # S: moments below it are no load at all
+NOTHING = 1e-12  # S: moments below it are no load at all, and what is left is measured by S
 EPS = float(np.finfo(float).eps)
 
 
@@ -178,14 +178,15 @@ def carried(before: Rows, lam: Array, rows: Rows, model: Model) -> Array:
 
 
 def measure(problem: Problem, point: Point) -> Measure:
-    """Residuals of the optimality conditions over the largest terms in them."""
+    """Residuals of the optimality conditions over the largest terms in them; over S where there is no load."""
     model = problem.model
     free = np.ones(len(point.gradient), dtype=bool)
     free[problem.closure.fixed] = False
     parts = (point.gradient, point.A_E.T @ point.mu, contact_gradient(model, point))
     terms = sum(np.abs(part) for part in parts)
     moments = np.abs(spring_moments(model, point.state))
-    scale = max(float(np.max(terms, initial=0.0)), float(np.max(moments, initial=0.0)), NOTHING)
+    scale = max(float(np.max(terms, initial=0.0)), float(np.max(moments, initial=0.0)))
+    scale = scale if scale > NOTHING else 1.0
     residual = parts[0] + parts[1] + parts[2]
     largest = float(np.max(np.abs(residual[free]), initial=0.0))
     # an angle is known to eps·|θ|, a spring's moment to the stiffness times that

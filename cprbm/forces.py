@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from cprbm.closure import closure_forces
-from cprbm.equilibrium import Point, Problem, contact_gradient
+from cprbm.equilibrium import NOTHING, Point, Problem, contact_gradient
 from cprbm.holding import Held, held
 from cprbm.model import Chain
 from scene.answer import Array
@@ -108,8 +108,8 @@ def balances(problem: Problem, point: Point) -> tuple[float, float]:
     """ΣF and ΣM about the origin of supports, slides, drives, loads and contacts, without units.
 
     Each over its largest part; where forces are small beside moments over ℓ, ΣF is measured by these, and the
-    other way round.  A beam's own ΣF vanishes by construction, for the force at its start is what balances it:
-    ΣF says whether the free bodies are in equilibrium, ΣM whether the beams are too.
+    other way round; where there is no load, by S.  A beam's own ΣF vanishes by construction, for the force at its
+    start is what balances it: ΣF says whether the free bodies are in equilibrium, ΣM whether the beams are too.
     """
     model = problem.model
     parts: list[tuple[Array, Array, float]] = [
@@ -134,6 +134,5 @@ def balances(problem: Problem, point: Point) -> tuple[float, float]:
     moments = np.array([m + place[0] * force[1] - place[1] * force[0] for place, force, m in parts])
     largest_force = float(np.max(np.abs(forces), initial=0.0))
     largest_moment = max(float(np.max(np.abs(moments), initial=0.0)), largest_force)
-    smallest = np.finfo(float).tiny
-    force_balance = float(np.hypot(*forces.sum(axis=0))) / max(largest_force, largest_moment, smallest)
-    return force_balance, abs(float(moments.sum())) / max(largest_moment, smallest)
+    scale = largest_moment if largest_moment > NOTHING else 1.0
+    return float(np.hypot(*forces.sum(axis=0))) / scale, abs(float(moments.sum())) / scale

@@ -6,6 +6,7 @@ from typing import Any
 
 from scene import Scene
 from scene.reading import scene_from
+from tests.cprbm.scenes import LENGTH, THICKNESS, cantilever_data
 
 
 def gripper_like() -> Scene:
@@ -60,3 +61,35 @@ def gripper_like() -> Scene:
         ],
     }
     return scene_from(data)
+
+
+GAP = 0.002  # m: of the punch over the beam
+
+
+def punched() -> Scene:
+    """A cantilever that a circle on a driven slide, held by no beam, presses down and lets go again."""
+    data = cantilever_data({}, [])
+    radius = 0.02
+    middle = [0.6 * LENGTH, radius + THICKNESS / 2 + GAP]
+    contact = {"kind": "beam-circle", "beam": "beam", "body": "punch", "center": middle, "radius": radius}
+    data["bodies"]["punch"] = {"motion": "slides", "along": [0.0, 1.0], "points": {"K": middle}}
+    return scene_from(
+        {
+            **data,
+            "loads": {},
+            "drives": {"down": {"kind": "displacement", "point": "K", "direction": [0.0, -1.0]}},
+            "contacts": {"circle": contact},
+            "stages": [
+                {"name": "down", "steps": "down", "stations": [0.001, 0.003, 0.012]},
+                {"name": "up", "steps": "down", "stations": [0.005, 0.0]},
+            ],
+            "probes": [
+                {"of": "T", "quantity": "displacement"},
+                {"of": "K", "quantity": "displacement"},
+                {"of": "R", "quantity": "reaction"},
+                {"of": "K", "quantity": "reaction"},
+                {"of": "circle", "quantity": "force"},
+                {"of": "circle", "quantity": "closing_load"},
+            ],
+        }
+    )

@@ -12,7 +12,7 @@ from comparisons.pairing import Solvers, cprbm_answer, paired
 from comparisons.scales import natural_scale
 from comparisons.verdict import Word, compared
 from tests.cprbm.driven import driven_hinge
-from tests.together.driven import gripper_like
+from tests.together.driven import GAP, gripper_like, punched
 
 
 @pytest.fixture(scope="module")
@@ -64,3 +64,22 @@ def test_a_figure_has_one_axis_of_load(scene):
     found = compared(scene, paired(scene, Choices(kinematics="bending", links=8, elements=8), Solvers()))
     pictures = {picture.name: picture for picture in figures.of_comparison(found)}
     assert "against pull" in pictures["rotation"].caption
+
+
+def test_a_driven_circle_presses_a_beam_and_lets_it_go():
+    """Open stations without any force among them; the drive pushes with what the wall holds against."""
+    scene = punched()
+    runs = paired(scene, Choices(), Solvers())
+    found = compared(scene, runs)
+    assert found.verdict.word is Word.AGREE, found.verdict.sentence
+    for answer in (runs.cprbm[0], runs.reference):
+        first, *pressed, last = answer.stations
+        for station in (first, last):
+            assert station.values["circle.force"][0] == 0.0
+            assert station.values["circle.closing_load"].size == 0
+        for station in pressed:
+            assert station.values["circle.closing_load"][0] == pytest.approx(GAP, rel=1e-6)
+            drive, wall, push = (station.values[name] for name in ("K.reaction", "R.reaction", "circle.force"))
+            assert drive[0] == pytest.approx(0.0, abs=1e-12 * push[0])  # the slide holds the rest
+            assert drive[1] == pytest.approx(-wall[1], rel=1e-8)
+            assert push[0] == pytest.approx(float(wall @ wall) ** 0.5, rel=1e-8)
