@@ -10,15 +10,19 @@ g           D − ½(t₁+t₂), the gap of the edges; constraint c = −g ≤ 0
 z           local numbers of A (5) and of B (5)
 ==========  ==================================================================================
 
-σ is the foot of the perpendicular, t·r = 0 (i).  A row stands at every local minimum of D along A:
-either within A, where the tangents are parallel, ψ_A − ψ_B = const (ii), or at an end of A; and, with
-the beams' parts exchanged, at the ends of B.  Both conditions hold for every z, which gives s and σ as
-functions of z; so
+σ is the foot of the perpendicular, t·r = 0 (i).  A row stands at every joint of A that is close to B, at the
+ends of A and, with the beams' parts exchanged, of B; and where D has a minimum within A that is deeper than
+the steps of the lines' curvature.  There s moves with the minimum: the tangents are parallel, ψ_A − ψ_B = const
+(ii).  The conditions hold for every z, which gives s and σ as functions of z; so
 
     ∂D/∂z_k = side·n·r_k
     ∂²D/∂z_k∂z_l = side·(n·r_kl − (t·r_k)·dψ_B/dz_l + n·C_A,sk·ds/dz_l − n·C_B,σk·dσ/dz_l)
 
 with dψ_B/dz_l = ψ_B,l + ψ_B'·dσ/dz_l, and nothing divides by D.
+
+Beams that lie on each other over a length share any pressure among A's joints.  A is the beam with the longer
+elements: rows at the joints of both would ask one element for two curvatures, and rows closer than the other
+beam's elements would follow the steps of its curvature.
 """
 
 from __future__ import annotations
@@ -37,14 +41,34 @@ from scene.answer import Array, Flags, Ints
 
 FOOT_ITERATIONS = 8
 FOOT_TOLERANCE = 1e-13  # of t·r, units of length
-CLOSEST_ITERATIONS = 12
+CLOSEST_ITERATIONS = 50
 LEAST_CURVATURE = 1e-3  # of D along A, 1/ℓ, below which its minimum has no place of its own
-REACH = 0.1  # gaps wider than this part of the longest beam are no constraints yet
+STEPS = 3.0  # a minimum is less convex than this many steps of the curvature: it belongs to a zone
+REACH = 0.1  # minima and ends with gaps wider than this part of the longest beam are no constraints yet
+JOINT_REACH = 2.0  # joints with gaps wider than this many h²·(|ψ_A'| + |ψ_B'| + 1/ℓ) are none
 PARALLEL = 1e-3  # a foot whose perpendicular misses by more (sine) is an end, not a foot
+SAME = 1e-3  # lengths that differ by less than this part are one
+PLACE_TOLERANCE = 1e-13  # of a minimum's place, units of length
+SETTLED = 1e-9  # slope of D at a minimum
+BESIDE = 0.25  # a joint closer than this many h to another row leaves its place to that
 
 ORDER = np.array([0, 5, 1, 6, 2, 3, 4, 7, 8, 9])  # (x, y, θθθ of A, the same of B) to (x, x, y, y, θ of A, θ of B)
 
 Lines = tuple[smooth.SmoothLine, smooth.SmoothLine]
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Where rows stand on one beam, and their feet on the other.
+
+    Attributes:
+        s, sigma: arc lengths on the one beam and on the other (k,).
+        keys: of the rows (k,): a joint's number on A, beyond those the ends of B; negative where s moves.
+    """
+
+    s: Array
+    sigma: Array
+    keys: Ints
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,11 +109,12 @@ class Pair:
         return self.offset if self.offset > 0.0 else 1.0
 
     def deepest(self, state: State, at: Positions) -> float:
-        """Largest overlap of the two beams anywhere along A, units of length; zero where they are apart."""
+        """Largest overlap of the two beams anywhere along A and at the ends of B, units of length; zero if apart."""
         lines = self.lines(state, at)
-        places = closest_places(self, lines)
-        D, _, foot = distance_along(self, lines, np.concatenate((smooth.halves(self.a), places.s, places.held_s)))
-        return float(np.max(np.where(foot, self.offset - D, 0.0), initial=0.0))
+        s = np.concatenate((smooth.halves(self.a), _minima(self, lines, *_sampled(self, lines))[0]))
+        D, _, foot = distance_along(self, lines, s)
+        E, _, facing = distance_along(self.exchanged(), lines[::-1], self.b.s[[0, -1]])
+        return float(np.max(np.where(np.append(foot, facing), self.offset - np.append(D, E), 0.0), initial=0.0))
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
         """Where the edges touch that touch at arc lengths ``s`` of A, (k, 2), units of length."""
@@ -111,19 +136,25 @@ class Pair:
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
         lines = self.lines(state, at)
-        found = closest_places(self, lines)
-        groups = []
-        if found.s.size:
-            groups.append(self._rows_at(lines, found.s, found.sigma, free=True))
-        if found.held_s.size:
-            groups.append(self._rows_at(lines, found.held_s, found.held_sigma, free=False))
-        if found.across_s.size:
-            rows = self.exchanged()._rows_at(lines[::-1], found.across_s, found.across_sigma, free=False)
-            groups.append(replace(rows, arc=found.across_sigma))
-        return tuple(groups)
+        if self.a.h < self.b.h * (1.0 - SAME):
+            turned = self.exchanged()
+            return tuple(replace(rows, arc=other) for rows, other in turned._rows(lines[::-1]))
+        return tuple(rows for rows, _ in self._rows(lines))
 
-    def _rows_at(self, lines: Lines, s: Array, sigma: Array, *, free: bool) -> Group:
-        """Rows at feet (s, σ); ``free`` where s moves with the minimum, else it is held."""
+    def _rows(self, lines: Lines) -> list[tuple[Group, Array]]:
+        """Rows at A's joints, at minima along A and at both beams' ends; with each group the places on B."""
+        along, across = closest_places(self, lines)
+        found = []
+        if along.s.size:
+            found.append((self._rows_at(lines, along), along.sigma))
+        if across.s.size:
+            rows = self.exchanged()._rows_at(lines[::-1], across)
+            found.append((replace(rows, arc=across.sigma), across.s))
+        return found
+
+    def _rows_at(self, lines: Lines, places: Places) -> Group:
+        """Rows at feet (s, σ) where the places are on A."""
+        s, sigma, free = places.s, places.sigma, places.keys < 0
         A, B = lines[0].at(s), lines[1].at(sigma)
         m, k = len(s), smooth.LOCALS
         tangent = np.stack((np.cos(B.psi), np.sin(B.psi)), axis=1)
@@ -141,14 +172,10 @@ class Pair:
         psi_A = np.concatenate((smooth.angle_slopes(A), zeros), axis=1)
         facing = np.cos(A.psi - B.psi)
         of_foot = -B.speed + distance * B.bend
-        if free:
-            determinant = A.bend * of_foot + B.bend * facing * A.speed
-            one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
-            s_z = (of_foot[:, None] * one + B.bend[:, None] * two) / determinant[:, None]
-            sigma_z = (A.bend[:, None] * two - (facing * A.speed)[:, None] * one) / determinant[:, None]
-        else:
-            s_z = np.zeros((m, 2 * k))
-            sigma_z = -(t_r + distance[:, None] * psi_B) / of_foot[:, None]
+        one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
+        determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.speed, 1.0)
+        s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
+        sigma_z = (two - (facing * A.speed)[:, None] * s_z) / of_foot[:, None]
         turning = psi_B + B.bend[:, None] * sigma_z
         second = np.zeros((m, 2 * k, 2 * k))
         second[:, :k, :k] = smooth.position_curvature(A, normal)
@@ -175,7 +202,7 @@ class Pair:
             angles=angles,
             slopes=-slope[:, ORDER],
             curvature=curvature,
-            keys=(-1,) * m,
+            keys=tuple(places.keys.tolist()),
             arc=np.asarray(A.s),
         )
 
@@ -184,18 +211,6 @@ def _angles(chain: Chain, link: Ints) -> Ints:
     """Links i−1, i, i+1; beyond the beam's ends link i itself, whose share there is zero."""
     own = np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, chain.n)), axis=1)
     return np.asarray(chain.first_link + own, dtype=np.intp)
-
-
-@dataclass(frozen=True, slots=True)
-class Places:
-    """Where rows stand: minima within A (s, σ), ends of A, and ends of B with A's and B's parts exchanged."""
-
-    s: Array
-    sigma: Array
-    held_s: Array
-    held_sigma: Array
-    across_s: Array
-    across_sigma: Array
 
 
 def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Flags]:
@@ -229,72 +244,96 @@ def _seen_from(B: smooth.Points, A: smooth.Points) -> tuple[Array, Array]:
     return cos * rx + sin * ry, cos * ry - sin * rx
 
 
-def closest_places(pair: Pair, lines: Lines) -> Places:
-    """All local minima of D along A within reach, and the ends of B that face A."""
-    none = np.zeros(0)
-    reach = pair.offset + REACH
+def closest_places(pair: Pair, lines: Lines) -> tuple[Places, Places]:
+    """Where rows stand on A, and on B with the beams' parts exchanged."""
+    a, b, reach = pair.a, pair.b, pair.offset + REACH
+    D, sigma = _sampled(pair, lines)
+    s, turned = _minima(pair, lines, D, sigma)
+    across_s, across_sigma = b.s[[0, -1]], np.zeros(2)
+    E, across_sigma, facing = distance_along(pair.exchanged(), lines[::-1], across_s)
+    inside = (across_sigma > SAME * a.h) & (across_sigma < a.s[-1] - SAME * a.h)
+    ends = facing & inside & (reach > E)
+    for i, end in enumerate((0, -1)):
+        ends[i] &= not _held_together(b, a, end, float(across_sigma[i]))
+
+    # D and feet at the joints are every other sample
+    bends = np.abs(lines[0].at(a.s).bend) + np.abs(lines[1].at(sigma[::2]).bend)
+    near = D[::2] - pair.offset < JOINT_REACH * a.h**2 * (1.0 + bends)
+    for place in np.concatenate((s, across_sigma[ends])):
+        near[1:-1] &= np.abs(a.s[1:-1] - place) > BESIDE * a.h
+    for end in (0, -1):
+        near[end] = reach > D[end] and not _held_together(a, b, end, float(sigma[end]))
+    joints = np.flatnonzero(near)
+    return (
+        Places(
+            np.concatenate((a.s[joints], s)),
+            np.concatenate((sigma[::2][joints], turned)),
+            np.concatenate((joints, np.full(len(s), -1))),
+        ),
+        Places(across_s[ends], across_sigma[ends], a.n + 2 + np.flatnonzero(ends)),
+    )
+
+
+def _held_together(one: Chain, other: Chain, end: int, foot: float) -> bool:
+    """Whether an end of ``one`` and what its foot on ``other`` lies on move with one body: their gap is no unknown."""
+    mine = one.start if end == 0 else one.end
+    if mine is None:
+        return False
+    first, last = other.s[1], other.s[-1] - other.s[-2]
+    for its, away, half in ((other.start, foot, first), (other.end, other.s[-1] - foot, last)):
+        if its is None or its.body != mine.body:
+            continue
+        # a welded end moves with the body as far as its half element hardly bends
+        if away <= (half if its.welded and mine.welded else SAME * half):
+            return True
+    return False
+
+
+def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
+    """D at the joints of A and half-way between them, infinite where it is out of reach, and σ, (2N+3,) each."""
     s, grid = smooth.halves(pair.a), smooth.halves(pair.b)
     A, G = lines[0].at(s), lines[1].at(grid)
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
-    limit = reach + pair.a.h + pair.b.h
     rough, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(
-        np.stack((A.x, A.y), axis=1), distance_upper_bound=limit
+        np.stack((A.x, A.y), axis=1), distance_upper_bound=pair.offset + REACH + pair.a.h + pair.b.h
     )
     close = np.flatnonzero(np.isfinite(rough))
-    across_s = across_sigma = none
-    for end in (0, -1):
-        if np.min((A.x - G.x[end]) ** 2 + (A.y - G.y[end]) ** 2) < limit * limit:
-            at_end, foot_of_end = _facing_end(pair, lines, grid[[end]], reach)
-            across_s, across_sigma = np.append(across_s, at_end), np.append(across_sigma, foot_of_end)
-    if not close.size:
-        return Places(none, none, none, none, across_s, across_sigma)
     D, sigma = np.full(len(s), np.inf), np.zeros(len(s))
-    distance, sigma[close], foot = _feet(pair, lines[1], lines[0].at(s[close]), grid[nearest[close]])
-    D[close] = np.where(foot, distance, np.inf)
-    padded = np.concatenate(([np.inf], D, [np.inf]))
-    lowest = (padded[:-2] >= D) & (padded[2:] > D) & (reach > D)
-    inner = lowest.copy()
-    inner[[0, -1]] = False
-    held_s, held_sigma = s[lowest & ~inner], sigma[lowest & ~inner]
-    free_s, free_sigma = none, none
-    if np.any(inner):
-        free_s, free_sigma, minimum = _refined(pair, lines, s[inner], sigma[inner])
-        held_s = np.concatenate((held_s, s[inner][~minimum]))
-        held_sigma = np.concatenate((held_sigma, sigma[inner][~minimum]))
-        free_s, free_sigma = free_s[minimum], free_sigma[minimum]
-    return Places(free_s, free_sigma, held_s, held_sigma, across_s, across_sigma)
+    if close.size:
+        distance, sigma[close], foot = _feet(pair, lines[1], lines[0].at(s[close]), grid[nearest[close]])
+        D[close] = np.where(foot, distance, np.inf)
+    return D, sigma
 
 
-def _facing_end(pair: Pair, lines: Lines, end: Array, reach: float) -> tuple[Array, Array]:
-    """An end of B (1,) and its foot within A, or nothing where it faces no part of A."""
-    E, foot, has_foot = distance_along(pair.exchanged(), lines[::-1], end)
-    facing = has_foot & (foot > 0.0) & (foot < pair.a.s[-1]) & (reach > E)
-    return end[facing], foot[facing]
+def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:
+    """(s, σ) of the minima of D within A that are deeper than the steps of the curvature, from its samples.
 
-
-def _refined(pair: Pair, lines: Lines, s: Array, sigma: Array) -> tuple[Array, Array, Flags]:
-    """Newton on (i) and (ii) from a sampled minimum; the last array says where it ended in a minimum nearby."""
-    s0, reach = s, pair.a.h
+    Newton's method on dD/ds = 0, kept between the samples beside the lowest: where the curvature jumps it alone
+    would not settle.
+    """
+    s = smooth.halves(pair.a)
+    lowest = np.flatnonzero((D[:-2] >= D[1:-1]) & (D[2:] > D[1:-1]) & (pair.offset + REACH > D[1:-1])) + 1
+    low, high, s, sigma = s[lowest - 1], s[lowest + 1], s[lowest], sigma[lowest]
+    if not s.size:
+        return s, sigma
     for _ in range(CLOSEST_ITERATIONS):
         A, B = lines[0].at(s), lines[1].at(sigma)
-        along, across = _seen_from(B, A)
         facing = np.cos(A.psi - B.psi)
-        crossing = np.sin(A.psi - B.psi) * facing  # zero where the tangents are parallel, either way
-        of_foot = -B.speed + across * B.bend
-        # d²D/ds² along the feet, over the speed
-        convex = pair.side * facing * (A.bend + B.bend * facing * A.speed / of_foot) > LEAST_CURVATURE
-        # (ii) and (i) over (s, σ)
-        J11, J12, J21, J22 = A.bend, -B.bend, facing * A.speed, of_foot
-        determinant = J11 * J22 - J12 * J21
-        safe = np.where(np.abs(determinant) > LEAST_CURVATURE, determinant, np.inf)
-        ds = -(J22 * crossing - J12 * along) / safe
-        dsigma = -(J11 * along - J21 * crossing) / safe
-        s = np.minimum(np.maximum(s + np.clip(ds, -reach, reach), 0.0), pair.a.s[-1])
-        sigma = np.minimum(np.maximum(sigma + np.clip(dsigma, -reach, reach), 0.0), pair.b.s[-1])
-        if np.all(np.abs(ds) + np.abs(dsigma) < 1e-13):
+        slope = pair.side * np.sin(A.psi - B.psi)
+        towards = facing * A.speed / (B.speed - B.bend * _seen_from(B, A)[1])  # dσ/ds
+        convex = pair.side * facing * (A.bend - B.bend * towards)
+        low, high = np.where(slope < 0.0, s, low), np.where(slope < 0.0, high, s)
+        ahead = s - slope / np.where(convex > LEAST_CURVATURE, convex, np.inf)
+        newton = (convex > LEAST_CURVATURE) & (ahead >= low) & (ahead <= high)
+        step = np.where(newton, ahead, 0.5 * (low + high)) - s
+        if np.max(np.abs(step)) < PLACE_TOLERANCE:
             break
-    settled = (np.abs(ds) < 1e-9) & (np.abs(determinant) > LEAST_CURVATURE)
-    return s, sigma, convex & settled & (np.abs(s - s0) <= reach)
+        s = s + step
+        _, sigma, _ = _feet(pair, lines[1], lines[0].at(s), sigma + towards * step)
+    steps = smooth.curvature_step(lines[0], A.link) + smooth.curvature_step(lines[1], B.link)
+    deep = convex > np.maximum(LEAST_CURVATURE, STEPS * steps)
+    settled = np.abs(slope) < SETTLED
+    return s[deep & settled], sigma[deep & settled]
 
 
 def pair_of(scene: Scene, model: Model, name: str) -> Pair:
