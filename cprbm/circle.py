@@ -17,25 +17,31 @@ the ripple with which the smooth line follows a circle. There s moves with the m
 
 Forces on joints can take any share of a line pressure; between two joints of a zone no further row is
 needed, since the line is bent like the circle there.
+
+Where an end of the beam is clamped on the circle, tangent to it, the spring next to the clamp cannot move:
+rows at the springs beyond fix the curve, and its own row follows from theirs.  How clamp and circle share the
+force there is no question of equilibrium; the pressure of the beam, even as the curve is, decides it.  The
+two joints next to such a clamp have one row together, the sum of theirs, and so the same force each.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cprbm import smooth
 from cprbm.contact import Blocks, Group
-from cprbm.kinematics import Positions, State
+from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.model import Chain, Model
 from scene import CircleContact, Mistake, Scene, SceneError
-from scene.answer import Array, Flags
+from scene.answer import Array, Flags, Ints
 
 CLOSEST_ITERATIONS = 12
 LEAST_CURVATURE = 1e-3  # of D along the beam, 1/ℓ, below which its minimum has no place of its own
 STEPS = 3.0  # a minimum is less convex than this many steps of the curvature: it belongs to a zone
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
+ON_IT = 1e-9  # gap of a clamped end, and how far its normal passes from the centre, where it is clamped on the circle
 JOINT_REACH = 2.0  # joints farther than this many h²·(1/R + 1/ℓ) are none
 
 
@@ -49,6 +55,7 @@ class Circle:
         x, y, radius: of the circle, units of length.
         offset: half the thickness, zero for a line; units of length.
         unit_length: ℓ, m.
+        clamped: whether the beam's start and end are clamped in touch with the circle and tangent to it.
     """
 
     name: str
@@ -58,6 +65,7 @@ class Circle:
     radius: float
     offset: float
     unit_length: float
+    clamped: tuple[bool, bool] = (False, False)
 
     def line(self, state: State, at: Positions) -> smooth.SmoothLine:
         """The beam's smooth line in a state."""
@@ -89,28 +97,64 @@ class Circle:
         moving = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
         second -= moving[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
 
+        values, slopes = self.offset - (rho - self.radius), -D_z
         link = A.link
         joints = (self.a.first_joint + link)[:, None]
         angles = self.a.first_link + np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n)), axis=1)
+        keys = np.where(free, -1, np.searchsorted(self.a.s, s))
+        every, alone = (joints, angles, second), np.ones(len(s), dtype=bool)
+        groups = []
+        for two in self._beside_clamps(keys):
+            alone[two] = False
+            i, j = two
+
+            def together(multipliers: Array, i: int = i, j: int = j) -> Blocks:
+                pressing = np.full(2, multipliers[0])
+                return Blocks(every[0][[i, j]], every[1][[i, j]], -pressing[:, None, None] * every[2][[i, j]])
+
+            x, y, turns = np.split(slopes[two], (1, 2), axis=1)
+            groups.append(
+                Group(
+                    contact=self.name,
+                    values=values[[i]] + values[[j]],
+                    joints=joints[two].T,
+                    angles=angles[two].reshape(1, -1),
+                    slopes=np.concatenate((x.T, y.T, turns.reshape(1, -1)), axis=1),
+                    curvature=together,
+                    keys=(int(keys[j]),),
+                    arc=0.5 * (s[[i]] + s[[j]]),
+                )
+            )
+        if not np.any(alone):
+            return tuple(groups)
+        joints, angles, second = joints[alone], angles[alone], second[alone]
 
         def curvature(multipliers: Array) -> Blocks:
             pressing = np.flatnonzero(multipliers)
             return Blocks(joints[pressing], angles[pressing], -multipliers[pressing, None, None] * second[pressing])
 
-        return (
+        groups.append(
             Group(
                 contact=self.name,
-                values=self.offset - (rho - self.radius),
+                values=values[alone],
                 joints=joints,
                 angles=angles,
-                slopes=-D_z,
+                slopes=slopes[alone],
                 curvature=curvature,
-                keys=tuple(
-                    -1 if is_free else round(place / self.a.h + 0.5) for place, is_free in zip(s, free, strict=True)
-                ),
-                arc=s,
-            ),
+                keys=tuple(keys[alone].tolist()),
+                arc=s[alone],
+            )
         )
+        return tuple(groups)
+
+    def _beside_clamps(self, keys: Ints) -> list[Ints]:
+        """For every end that is clamped on the circle, which two rows stand at the springs next to it."""
+        found = []
+        for clamped, outer, inner in zip(self.clamped, (1, self.a.n), (2, self.a.n - 1), strict=True):
+            rows = np.flatnonzero((keys == outer) | (keys == inner))
+            if clamped and rows.size == 2 and self.a.n > 3:
+                found.append(rows if outer < inner else rows[::-1])
+        return found
 
     def _convexity(self, A: smooth.Points, n: Array, q_s: Array, rho: Array) -> Array:
         """D_ss where the beam is parallel to the circle."""
@@ -195,4 +239,12 @@ def circle_of(scene: Scene, model: Model, name: str) -> Circle:
     chain = model.chain(contact.beam)
     unit = model.unit_length
     offset = 0.5 * chain.thickness if contact.thick else 0.0
-    return Circle(name, chain, contact.center[0] / unit, contact.center[1] / unit, contact.radius / unit, offset, unit)
+    circle = Circle(
+        name, chain, contact.center[0] / unit, contact.center[1] / unit, contact.radius / unit, offset, unit
+    )
+    state = rest_state(model)
+    ends = circle.line(state, positions(model, state)).at(chain.s[[0, -1]])
+    towards = (ends.x - circle.x) * np.cos(ends.psi) + (ends.y - circle.y) * np.sin(ends.psi)
+    on_it = (np.abs(circle.distance(ends) - offset) <= ON_IT) & (np.abs(towards) <= ON_IT)
+    start, end = (attached is not None and attached.body < 0 and attached.welded for attached in (chain.start, chain.end))
+    return replace(circle, clamped=(start and bool(on_it[0]), end and bool(on_it[1])))

@@ -15,6 +15,7 @@ import numpy as np
 
 from cprbm.closure import closure_forces
 from cprbm.equilibrium import Point, Problem, contact_gradient
+from cprbm.model import Chain
 from scene.answer import Array
 
 
@@ -44,6 +45,22 @@ def contact_forces(problem: Problem, point: Point, only: str | None = None) -> C
     mine = np.array([only is None or name == only for name in rows.contact], dtype=bool)
     fx, fy, moments = rows.forces(-np.where(mine, point.lam, 0.0), model.n_joints, model.n_links)
     return ContactForces(fx, fy, moments)
+
+
+def contact_pressure(point: Point, contact: str, chain: Chain) -> tuple[Array, Array]:
+    """Of the rows of one contact that press: arc length on its first beam, ``chain``, and the force on it, (k,) each."""
+    arcs, forces = [np.zeros(0)], [np.zeros(0)]
+    for group, lam in point.rows.shares(point.lam):
+        if group.contact != contact:
+            continue
+        p = group.joints.shape[1]
+        on_first = (group.joints >= chain.joints.start) & (group.joints < chain.joints.stop)
+        fx = np.sum(group.slopes[:, :p] * on_first, axis=1)
+        fy = np.sum(group.slopes[:, p : 2 * p] * on_first, axis=1)
+        pressing = lam > 0.0
+        arcs.append(group.arc[pressing])
+        forces.append((lam * np.hypot(fx, fy))[pressing])
+    return np.concatenate(arcs), np.concatenate(forces)
 
 
 def supports(problem: Problem, point: Point) -> tuple[Support, ...]:

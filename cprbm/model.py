@@ -6,10 +6,10 @@ one numbering each, so that every sum over the mechanism is one array.
 ==========  =====================================================================
 N           elements of a beam; springs 1..N at their middles, links 0..N, and
             joints 0..N+1: the beam's start, the springs, the beam's end
-h           arc length of an element
+h_i         arc length of element i; equal, unless a border was moved to where a contact ends
 L_i         length of link i, between joints i and i+1
 θ_i         tangent angle of link i; θ_i⁰ stress-free
-k_i         stiffness of spring i, E·I/h
+k_i         stiffness of spring i, E·I/h_i
 ℓ           unit of length: the longest beam, m
 S           unit of energy and moment: the largest E·I/ℓ, N·m; S/ℓ that of force
 ==========  =====================================================================
@@ -17,9 +17,11 @@ S           unit of energy and moment: the largest E·I/ℓ, N·m; S/ℓ that of
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from frozendict import frozendict
 
 from cprbm.curves import NeutralLine, neutral_line
 from cprbm.settings import Settings
@@ -49,13 +51,15 @@ class Chain:
         line: its stress-free neutral line, metres.
         n: number of elements N.
         first_link, first_joint: of this beam in the shared numbering.
-        h: element length.
+        h: mean element length.
+        sizes: h_i (N,).
+        borders: arc length of the elements' ends (N+1,).
         s: arc length of the joints (N+2,).
         lengths: of the links (N+1,), eq. (6).
         rest: stress-free link angles (N+1,).
-        stiffness: E·I/h of the springs, units of S.
+        rigidity: E·I, units of S and of length.
         thickness: units of length.
-        stress_unit: E·t/2 in Pa; times a spring's change of angle over h in units of length⁻¹ per metre.
+        stress_unit: E·t/2 in Pa; times a spring's change of angle over h_i in units of length⁻¹ per metre.
         start, end: what the ends are joined to; no end is None for a free one, a free start a body of its own.
     """
 
@@ -65,10 +69,12 @@ class Chain:
     first_link: int
     first_joint: int
     h: float
+    sizes: Array
+    borders: Array
     s: Array
     lengths: Array
     rest: Array
-    stiffness: float
+    rigidity: float
     thickness: float
     stress_unit: float
     start: Attachment
@@ -132,8 +138,16 @@ class Model:
         return next(chain for chain in self.chains if chain.name == name)
 
 
-def build(scene: Scene, settings: Settings) -> Model:
+NO_BORDERS: Mapping[str, Array] = frozendict()
+
+
+def build(scene: Scene, settings: Settings, borders: Mapping[str, Array] = NO_BORDERS) -> Model:
     """Cut every beam into elements, eqs. (2)-(3), and leave the units behind.
+
+    Args:
+        scene: the question.
+        settings: how many elements.
+        borders: for beams whose elements are not equal, where they end, (N+1,) from 0 to 1 of the length.
 
     Raises:
         SceneError: the numbers of links do not fit the scene's beams.
@@ -166,8 +180,8 @@ def build(scene: Scene, settings: Settings) -> Model:
     first_link = first_joint = 0
     for name, beam in scene.beams.items():
         line, n = lines[name], settings.links_of(name)
-        h = line.length / n
-        s = np.concatenate(([0.0], (np.arange(n) + 0.5) * h, [line.length]))
+        edges = line.length * borders.get(name, np.arange(n + 1) / n)
+        s = np.concatenate(([0.0], 0.5 * (edges[1:] + edges[:-1]), [line.length]))
         x, y = line.position(s)
         dx, dy = np.diff(x), np.diff(y)
         middle = line.angle(0.5 * (s[1:] + s[:-1]))  # a chord of constant curvature has its middle's direction
@@ -178,11 +192,13 @@ def build(scene: Scene, settings: Settings) -> Model:
                 n=n,
                 first_link=first_link,
                 first_joint=first_joint,
-                h=h / unit_length,
+                h=line.length / n / unit_length,
+                sizes=np.diff(edges) / unit_length,
+                borders=edges / unit_length,
                 s=s / unit_length,
                 lengths=np.hypot(dx, dy) / unit_length,
                 rest=middle,
-                stiffness=rigidities[name] / h / unit_moment,
+                rigidity=rigidities[name] / unit_length / unit_moment,
                 thickness=beam.thickness / unit_length,
                 stress_unit=0.5 * scene.materials[beam.material].youngs_modulus * beam.thickness / unit_length,
                 start=attachment(beam.start) or Attachment(free_bodies.index(_loose(name)), (0.0, 0.0), welded=True),
@@ -193,7 +209,7 @@ def build(scene: Scene, settings: Settings) -> Model:
         first_joint += n + 2
     couplings = np.zeros(first_link - 1)
     for chain in chains:
-        couplings[chain.first_link : chain.first_link + chain.n] = chain.stiffness
+        couplings[chain.first_link : chain.first_link + chain.n] = chain.rigidity / chain.sizes
     rest = np.concatenate([chain.rest for chain in chains])
     return Model(
         chains=tuple(chains),

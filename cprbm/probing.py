@@ -6,7 +6,7 @@ import numpy as np
 
 from cprbm import smooth
 from cprbm.equilibrium import Point, Problem, potential_energy
-from cprbm.forces import contact_forces, supports
+from cprbm.forces import contact_forces, contact_pressure, supports
 from cprbm.mechanism import Mechanism
 from cprbm.stress import bending_stress
 from scene import Probe, Scene, Shape
@@ -40,11 +40,8 @@ def _value(
             forces = contact_forces(problem, point, probe.of)
             return float(np.hypot(forces.fx[first].sum(), forces.fy[first].sum())) * model.unit_force
         case "centre":
-            mine = np.array([name == probe.of for name in point.rows.contact], dtype=bool)
-            pressing = point.lam[mine]
-            if not np.any(pressing > 0.0):
-                return []
-            return float(pressing @ point.rows.arc[mine] / pressing.sum()) * model.unit_length
+            arc, pressing = contact_pressure(point, probe.of, model.chain(scene.contacts[probe.of].beams[0]))
+            return float(pressing @ arc / pressing.sum()) * model.unit_length if pressing.size else []
         case "closing_load":
             return [closed_at[probe.of]] if probe.of in closed_at else []
         case "bending_stress":

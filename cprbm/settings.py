@@ -27,6 +27,7 @@ class Settings(BaseModel):
         degree: of the fitted polynomial of ``paper``; lowered to the number of points less one.
         tolerance: largest scaled residual and violation of an equilibrium; round-off may set a higher floor.
         iterations: most Newton iterations of one equilibrium.
+        iteration_limit: most Newton iterations of all load steps between two stations.
         largest_turn: most that a link may turn between two accepted load steps, rad.
         smallest_step: smallest load step, as a fraction of the way between two stations.
     """
@@ -38,6 +39,7 @@ class Settings(BaseModel):
     degree: Annotated[int, Field(ge=1, le=8)] = 4
     tolerance: Annotated[float, Field(gt=0.0, le=1e-4)] = 1e-11
     iterations: Annotated[int, Field(ge=1)] = 50
+    iteration_limit: Annotated[int, Field(ge=1)] = 1000
     largest_turn: Annotated[float, Field(gt=0.0)] = 1.6
     smallest_step: Annotated[float, Field(gt=0.0, le=1.0)] = 1e-5
 

@@ -4,20 +4,27 @@
 s, t        arc length from the beam's start and from the start of link i
 e_i, n_i    direction of link i and its left normal
 a, w        coordinates of a point along e_i and n_i from joint i
-δ_i         change of angle at spring i, eq. (4)
-b(ξ)        ½(½ − |ξ|)² for |ξ| ≤ ½: what spreading a unit turn over its element adds
+δ_i         change of angle at spring i, eq. (4); κ⁰ stress-free curvature
+Θ           κ⁰h + δ, turning of the beam along an element of length h
+u, ξ        arc length from the border of the element that lies on the link; u/h ≤ ½
+φ           Θξ, turning between the border and the point
+A, W        coordinates of the arc from the border, along its tangent and towards the inside
+R           radius of the arc times Θ/h; x = κ⁰h/2
 ==========  ==============================================================================
 
 Every link carries its own piece of the stress-free neutral line.  A spring gathers the turning of
-its element in one point; the beam turns evenly over the element.  Spreading δ_i evenly moves the
-line by h·δ_i·b((s − s_i)/h) towards the inside of the bend, and nothing outside the element:
+its element in one point; the beam turns evenly over the element, along a circular arc that touches
+both links at the element's borders.  The border lies on the link's own piece, so that
 
-    C(s) = p_i + a⁰(t)·e_i + (w⁰(t) + h·δ_i·b(t/h) + h·δ_{i+1}·b((s_{i+1} − s)/h))·n_i
+    A = h R sin φ/Θ,    W = h R (1 − cos φ)/Θ,    R = (Θ/2) cot(Θ/2) sin x/x + Θ (1 − cos x)/(2x)
+    C(s) = p_i + (a⁰ ∓ (A − A⁰))·e + (w⁰ + W − W⁰)·n      (− before the border, + after it)
 
-At rest this is the true neutral line; deformed it has a continuous tangent (to third order in the turn
-of one element).  A force at C(s) then does the same work on the springs as on a beam whose change of
-curvature is constant over each element, wherever in the element it acts: this keeps the error of a
-contact force even in N.
+where A⁰, W⁰ belong to δ = 0, and e, n are turned with the piece's tangent at the border.  R is such that the
+arcs of a chain that turns evenly lie on one circle, at the joints as well as at the borders: a polygon round
+a circle closes all its gaps at once, and what each contact force is follows from equilibrium even where a gap
+hardly yields, beside a clamp.  At rest C is the true neutral line.  A force at C(s) does the same work
+on the springs as on a beam whose curvature is even over each element, wherever in the element it acts:
+this keeps the error of a contact force even in N.
 """
 
 from __future__ import annotations
@@ -28,9 +35,14 @@ import numpy as np
 
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
-from scene.answer import Array, Ints
+from scene.answer import Array, Flags, Ints
 
 LOCALS = 5  # x_i, y_i, θ_{i−1}, θ_i, θ_{i+1}
+
+# Taylor coefficients, lowest first, of sin z/z and (1 − cos z)/z² in z² and of y cot y in y²
+SINE = (1.0, -1 / 6, 1 / 120, -1 / 5040, 1 / 362880, -1 / 39916800)
+VERSINE = (1 / 2, -1 / 24, 1 / 720, -1 / 40320, 1 / 3628800, -1 / 479001600)
+COTANGENT = (1.0, -1 / 3, -1 / 45, -2 / 945, -1 / 4725, -2 / 93555, -1382 / 638512875)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,8 +55,9 @@ class Points:
         speed: |dC/ds|; bend: dψ/ds.
         cos, sin: of the link's angle: e = (cos, sin), n = (−sin, cos).
         a, w, a1, w1: coordinates in the link's frame and their derivatives over s.
-        left, right: ½ − |ξ| of the springs before and after, zero outside their elements.
-        h: element length.
+        before: whether each lies before the border, in the element of the link's first joint.
+        h, turn, ratio, xi: of its element h, Θ, κ⁰h; ξ.
+        lean: (2, k), cos and sin of the tangent at the border against the link.
     """
 
     s: Array
@@ -60,9 +73,12 @@ class Points:
     w: Array
     a1: Array
     w1: Array
-    left: Array
-    right: Array
-    h: float
+    before: Flags
+    h: Array
+    turn: Array
+    ratio: Array
+    xi: Array
+    lean: Array
 
     @property
     def e(self) -> Array:
@@ -74,16 +90,6 @@ class Points:
         """Left normal of the link, (k, 2)."""
         return np.stack((-self.sin, self.cos), axis=1)
 
-    @property
-    def b(self) -> Array:
-        """∂w over δ_i and δ_{i+1}, (k, 2)."""
-        return 0.5 * self.h * np.stack((self.left**2, self.right**2), axis=1)
-
-    @property
-    def b1(self) -> Array:
-        """∂w' over δ_i and δ_{i+1}, (k, 2)."""
-        return np.stack((-self.left, self.right), axis=1)
-
 
 @dataclass(frozen=True, slots=True)
 class SmoothLine:
@@ -91,9 +97,9 @@ class SmoothLine:
 
     Attributes:
         chain: the beam.
-        curvature: stress-free, over units of length.
+        curvature: κ⁰ over units of length.
         theta, cos, sin: angles of the links (N+1,).
-        turns: δ at the joints 0..N+1, zero at the ends, which carry no spring.
+        turns: δ of the springs (N,).
         x, y: joints (N+2,).
     """
 
@@ -108,28 +114,47 @@ class SmoothLine:
 
     def at(self, s: Array) -> Points:
         """Points at arc lengths ``s`` (k,), units of length; beyond the ends the end itself."""
-        chain, h = self.chain, self.chain.h
+        chain, curved = self.chain, self.curvature != 0.0
         s = np.minimum(np.maximum(s, 0.0), chain.s[-1])
-        # joints stand at 0, h/2, 3h/2, ...: link i begins at (i − ½)h
-        link = np.minimum((s / h + 0.5).astype(np.intp), chain.n)
-        start, stop = chain.s[link], chain.s[link + 1]
-        t = s - start
+        link = np.minimum(np.searchsorted(chain.s, s, side="right") - 1, chain.n)
+        t = s - chain.s[link]
+        off = s - chain.borders[link]
+        before = (off < 0.0) | (link == chain.n)
+        spring = link - before
+        h, sign = chain.sizes[spring], np.where(before, -1.0, 1.0)
         cos, sin = self.cos[link], self.sin[link]
-        nothing = np.zeros(len(s))
-        a, w, a1, w1, a2, w2 = t, nothing, nothing + 1.0, nothing, nothing, nothing
-        if self.curvature != 0.0:
-            first = chain.line.theta0 + self.curvature * start - chain.rest[link]
+        xi = np.abs(off) / h
+        ratio = self.curvature * h
+        turn = ratio + self.turns[spring]
+        R, phi = _radius(turn, ratio), turn * xi
+        R_cos, R_sin = R * np.cos(phi), R * np.sin(phi)
+        # A − A⁰ and W − W⁰ and their derivatives over u
+        A, W = h * xi * R * _series(SINE, phi * phi), h * xi * R * phi * _series(VERSINE, phi * phi)
+        A_u, W_u, A_uu, W_uu = R_cos, R_sin, -turn / h * R_sin, turn / h * R_cos
+        a, w, a1, w1, a2, w2 = t, 0.0 * t, 1.0, 0.0, 0.0, 0.0
+        lean = np.stack((np.ones(len(s)), np.zeros(len(s))))
+        if curved:
+            phi = ratio * xi
+            A, W = A - h * xi * _series(SINE, phi * phi), W - h * xi * phi * _series(VERSINE, phi * phi)
+            A_u, W_u = A_u - np.cos(phi), W_u - np.sin(phi)
+            A_uu, W_uu = A_uu + self.curvature * np.sin(phi), W_uu - self.curvature * np.cos(phi)
+            rest = chain.rest[link]
+            first = chain.line.theta0 + self.curvature * chain.s[link] - rest
             half = 0.5 * self.curvature * t
             chord = t * np.sinc(half / np.pi)
             a, w = chord * np.cos(first + half), chord * np.sin(first + half)
             a1, w1 = np.cos(first + 2.0 * half), np.sin(first + 2.0 * half)
             a2, w2 = -self.curvature * w1, self.curvature * a1
-        left = np.maximum(0.5 - t / h, 0.0) * (link > 0)
-        right = np.maximum(0.5 - (stop - s) / h, 0.0) * (link < chain.n)
-        before, after = self.turns[link], self.turns[link + 1]
-        w = w + 0.5 * h * (left * left * before + right * right * after)
-        w1 = w1 - left * before + right * after
-        w2 = w2 + ((left > 0.0) * before + (right > 0.0) * after) / h
+            leaning = chain.line.theta0 + self.curvature * chain.borders[link] - rest
+            lean = np.stack((np.cos(leaning), np.sin(leaning)))
+        else:
+            A, A_u = A - h * xi, A_u - 1.0
+        along, across = _leant(lean, sign * A, W)
+        a, w = a + along, w + across
+        along, across = _leant(lean, A_u, sign * W_u)
+        a1, w1 = a1 + along, w1 + across
+        along, across = _leant(lean, sign * A_uu, W_uu)
+        a2, w2 = a2 + along, w2 + across
         squared = a1 * a1 + w1 * w1
         return Points(
             s=s,
@@ -145,24 +170,25 @@ class SmoothLine:
             w=w,
             a1=a1,
             w1=w1,
-            left=left,
-            right=right,
+            before=before,
             h=h,
+            turn=turn,
+            ratio=ratio,
+            xi=xi,
+            lean=lean,
         )
 
 
 def smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -> SmoothLine:
     """The smooth line of ``chain`` in a state."""
     theta = state.theta[chain.links]
-    turns = np.zeros(chain.n + 2)
-    turns[1:-1] = np.diff(theta) - np.diff(chain.rest)
     return SmoothLine(
         chain=chain,
         curvature=chain.line.curvature * unit_length,
         theta=theta,
         cos=np.cos(theta),
         sin=np.sin(theta),
-        turns=turns,
+        turns=np.diff(theta) - np.diff(chain.rest),
         x=at.x[chain.joints],
         y=at.y[chain.joints],
     )
@@ -171,8 +197,8 @@ def smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -
 def curvature_step(line: SmoothLine, link: Ints) -> Array:
     """Largest step of the change of curvature between elements that meet at or beside a link, (k,)."""
     n = line.chain.n
-    steps = np.zeros(n + 1)  # across the far border of element i, springs i and i+1
-    steps[1:n] = np.abs(np.diff(line.turns[1:-1])) / line.chain.h
+    steps = np.zeros(n + 1)  # at border i, between the elements of springs i and i+1
+    steps[1:n] = np.abs(np.diff(line.turns / line.chain.sizes))
     return np.asarray(
         np.maximum(steps[link], np.maximum(steps[np.maximum(link - 1, 0)], steps[np.minimum(link + 1, n)]))
     )
@@ -186,16 +212,76 @@ def halves(chain: Chain) -> Array:
     return s
 
 
-def _over_angles(b: Array) -> Array:
-    """∂w over (θ_{i−1}, θ_i, θ_{i+1}) from ∂w over (δ_i, δ_{i+1}), (k, 3)."""
-    return np.stack((-b[:, 0], b[:, 0] - b[:, 1], b[:, 1]), axis=1)
+def _series(coefficients: tuple[float, ...], z: Array) -> Array:
+    """Σ c_k z^k."""
+    total = np.full_like(z, coefficients[-1])
+    for coefficient in coefficients[-2::-1]:
+        total = total * z + coefficient
+    return total
+
+
+def _slope(coefficients: tuple[float, ...]) -> tuple[float, ...]:
+    """Coefficients of the derivative."""
+    return tuple(k * coefficient for k, coefficient in enumerate(coefficients))[1:]
+
+
+SINE_1, VERSINE_1, COTANGENT_1 = _slope(SINE), _slope(VERSINE), _slope(COTANGENT)
+SINE_2, VERSINE_2, COTANGENT_2 = _slope(SINE_1), _slope(VERSINE_1), _slope(COTANGENT_1)
+
+
+def _radius(turn: Array, ratio: Array) -> Array:
+    """R."""
+    x = 0.5 * ratio
+    return np.asarray(
+        _series(SINE, x * x) * _series(COTANGENT, 0.25 * turn * turn) + 0.5 * turn * x * _series(VERSINE, x * x)
+    )
+
+
+def _leant(lean: Array, along: Array, across: Array) -> tuple[Array, Array]:
+    """Coordinates in the link's frame of a vector given along and across the border's tangent."""
+    return lean[0] * along - lean[1] * across, lean[1] * along + lean[0] * across
+
+
+def _over_turn(points: Points) -> tuple[Array, Array, Array]:
+    """∂(a, w), ∂(a′, w′) and ∂²(a, w) over δ of the point's element, (2, k) each; ′ is the derivative over s."""
+    x, y, xi, turn = 0.5 * points.ratio, 0.5 * points.turn, points.xi, points.turn
+    phi, q = turn * xi, (turn * xi) ** 2
+    s0, s1 = _series(SINE, x * x), 0.5 * x * _series(VERSINE, x * x)
+    T1, T2 = _series(COTANGENT_1, y * y), _series(COTANGENT_2, y * y)
+    R = _radius(turn, points.ratio)
+    R_1, R_2 = s0 * y * T1 + s1, 0.5 * s0 * (T1 + 2.0 * y * y * T2)
+    S1, S2 = _series(SINE_1, q), _series(SINE_2, q)
+    V, V1, V2 = _series(VERSINE, q), _series(VERSINE_1, q), _series(VERSINE_2, q)
+    P, P_1, P_2 = _series(SINE, q), 2.0 * phi * S1, 2.0 * S1 + 4.0 * q * S2
+    Q, Q_1, Q_2 = phi * V, V + 2.0 * q * V1, 6.0 * phi * V1 + 4.0 * phi * q * V2
+    u, sign = points.h * xi, np.where(points.before, -1.0, 1.0)
+    A, W = u * (R_1 * P + R * xi * P_1), u * (R_1 * Q + R * xi * Q_1)
+    A_2 = u * (R_2 * P + 2.0 * R_1 * xi * P_1 + R * xi * xi * P_2)
+    W_2 = u * (R_2 * Q + 2.0 * R_1 * xi * Q_1 + R * xi * xi * Q_2)
+    cos, sin = np.cos(phi), np.sin(phi)
+    A_u, W_u = R_1 * cos - R * xi * sin, R_1 * sin + R * xi * cos
+    return (
+        np.stack(_leant(points.lean, sign * A, W)),
+        np.stack(_leant(points.lean, A_u, sign * W_u)),
+        np.stack(_leant(points.lean, sign * A_2, W_2)),
+    )
+
+
+def _over_angles(points: Points) -> Array:
+    """∂δ of the point's element over (θ_{i−1}, θ_i, θ_{i+1}), (k, 3)."""
+    return np.where(points.before[:, None], (-1.0, 1.0, 0.0), (0.0, -1.0, 1.0))
+
+
+def _vector(points: Points, local: Array) -> Array:
+    """Vectors (k, 2) from their coordinates (2, k) in the links' frames."""
+    return local[0][:, None] * points.e + local[1][:, None] * points.n
 
 
 def position_slopes(points: Points) -> Array:
     """∂C over the local numbers (x_i, y_i, θ_{i−1}, θ_i, θ_{i+1}), (k, 2, 5)."""
     slopes = np.zeros((len(points.s), 2, LOCALS))
     slopes[:, 0, 0] = slopes[:, 1, 1] = 1.0
-    slopes[:, :, 2:] = points.n[:, :, None] * _over_angles(points.b)[:, None, :]
+    slopes[:, :, 2:] = _vector(points, _over_turn(points)[0])[:, :, None] * _over_angles(points)[:, None, :]
     slopes[:, :, 3] += points.a[:, None] * points.n - points.w[:, None] * points.e
     return slopes
 
@@ -204,7 +290,10 @@ def position_curvature(points: Points, along: Array) -> Array:
     """Second derivatives of along·C over the local numbers for directions ``along`` (k, 2): (k, 5, 5)."""
     second = np.zeros((len(points.s), LOCALS, LOCALS))
     on_e, on_n = np.sum(along * points.e, axis=1), np.sum(along * points.n, axis=1)
-    over = -on_e[:, None] * _over_angles(points.b)
+    once, _, twice = _over_turn(points)
+    turns = _over_angles(points)
+    second[:, 2:, 2:] = (twice[0] * on_e + twice[1] * on_n)[:, None, None] * turns[:, :, None] * turns[:, None, :]
+    over = (once[0] * on_n - once[1] * on_e)[:, None] * turns
     second[:, 3, 2:] += over
     second[:, 2:, 3] += over
     second[:, 3, 3] -= points.a * on_e + points.w * on_n
@@ -214,7 +303,8 @@ def position_curvature(points: Points, along: Array) -> Array:
 def angle_slopes(points: Points) -> Array:
     """∂ψ over the local numbers, (k, 5)."""
     slopes = np.zeros((len(points.s), LOCALS))
-    slopes[:, 2:] = (points.a1 / points.speed**2)[:, None] * _over_angles(points.b1)
+    a1_, w1_ = _over_turn(points)[1]
+    slopes[:, 2:] = ((points.a1 * w1_ - points.w1 * a1_) / points.speed**2)[:, None] * _over_angles(points)
     slopes[:, 3] += 1.0
     return slopes
 
@@ -222,6 +312,6 @@ def angle_slopes(points: Points) -> Array:
 def tangent_slopes(points: Points) -> Array:
     """∂C_s over the local numbers, (k, 2, 5)."""
     slopes = np.zeros((len(points.s), 2, LOCALS))
-    slopes[:, :, 2:] = points.n[:, :, None] * _over_angles(points.b1)[:, None, :]
+    slopes[:, :, 2:] = _vector(points, _over_turn(points)[1])[:, :, None] * _over_angles(points)[:, None, :]
     slopes[:, :, 3] += points.a1[:, None] * points.n - points.w1[:, None] * points.e
     return slopes

@@ -136,6 +136,8 @@ class _March:
                 step *= GROWTH
                 continue
             step *= 0.5
+            if iterations > self.settings.iteration_limit:
+                return Ending.STEP_TOO_SMALL, f"{iterations} iterations did not lead to {load} = {target:.6g}", None
             if step < self.settings.smallest_step:
                 if not found.converged:
                     ending = Ending.STEP_TOO_SMALL

@@ -28,15 +28,35 @@ def bending_stress(mechanism: Mechanism, point: Point, chain: Chain, points: int
     """σ (points,), Pa, at equal arc-length steps; beyond the outer springs the nearest two are continued."""
     moments = spring_moments(mechanism.problem.model, point.state)[chain.first_link : chain.first_link + chain.n]
     at, jumps = _kinks(mechanism, point, chain)
-    edges = np.linspace(0.0, chain.s[-1], chain.n + 1)
-    # ∫|s − s_c| ds = ½ (s − s_c)|s − s_c|
-    integral = 0.25 * ((edges[:, None] - at) * np.abs(edges[:, None] - at)) @ jumps
-    smooth = moments - np.diff(integral) / chain.h
-    first, last = 1.5 * smooth[0] - 0.5 * smooth[1], 1.5 * smooth[-1] - 0.5 * smooth[-2]
+    smooth = moments - np.diff(_integral(at, jumps, chain.borders)) / chain.sizes
+    # beyond the outer springs the nearest two are continued
+    inner, slopes = chain.s[1:-1], np.diff(smooth) / np.diff(chain.s[1:-1])
+    first = smooth[0] - slopes[0] * inner[0]
+    last = smooth[-1] + slopes[-1] * (chain.s[-1] - inner[-1])
     s = np.linspace(0.0, chain.s[-1], points)
-    moment = np.interp(s, chain.s, np.concatenate(([first], smooth, [last])))
-    moment += 0.5 * np.abs(s[:, None] - at) @ jumps
-    return np.asarray(chain.stress_unit * moment / (chain.stiffness * chain.h))
+    moment = np.interp(s, chain.s, np.concatenate(([first], smooth, [last]))) + _kinked(at, jumps, s)
+    return np.asarray(chain.stress_unit * moment / chain.rigidity)
+
+
+def _sums(at: Array, jumps: Array, s: Array) -> tuple[Array, Array, Array]:
+    """Σ sgn(s − s_c) V s_cᵏ at places ``s`` for k = 0, 1, 2."""
+    order = np.argsort(at)
+    powers = jumps[order] * at[order] ** np.arange(3)[:, None]
+    below = np.concatenate((np.zeros((3, 1)), np.cumsum(powers, axis=1)), axis=1)
+    zeroth, first, second = 2.0 * below[:, np.searchsorted(at[order], s)] - below[:, -1:]
+    return zeroth, first, second
+
+
+def _kinked(at: Array, jumps: Array, s: Array) -> Array:
+    """K at places ``s``."""
+    zeroth, first, _ = _sums(at, jumps, s)
+    return np.asarray(0.5 * (s * zeroth - first))
+
+
+def _integral(at: Array, jumps: Array, s: Array) -> Array:
+    """∫K ds = ¼ Σ V (s − s_c)|s − s_c|."""
+    zeroth, first, second = _sums(at, jumps, s)
+    return np.asarray(0.25 * (s * (s * zeroth - 2.0 * first) + second))
 
 
 def _kinks(mechanism: Mechanism, point: Point, chain: Chain) -> tuple[Array, Array]:

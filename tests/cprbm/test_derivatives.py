@@ -130,7 +130,7 @@ def test_smooth_lines_are_true_at_rest_and_have_consistent_derivatives():
     assert (ahead.psi - behind.psi) / (2 * STEP) == pytest.approx(here.bend, rel=1e-6)
 
 
-def test_smooth_lines_have_one_tangent_at_every_joint_to_third_order():
+def test_smooth_lines_have_one_tangent_at_every_joint():
     def kink(links):
         model = mechanism_of(hinge(), Settings(links=links)).problem.model
         chain = model.chains[0]
@@ -141,7 +141,7 @@ def test_smooth_lines_have_one_tangent_at_every_joint_to_third_order():
         right = smooth.smooth_line(chain, model.unit_length, state, at).at(inner + 1e-12)
         return np.max(np.abs(left.psi - right.psi))
 
-    assert np.log2(kink(20) / kink(40)) > 2.8
+    assert kink(20) < 1e-10
 
 
 def test_pulled_back_forces_and_their_second_derivatives():

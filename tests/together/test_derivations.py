@@ -59,7 +59,7 @@ def test_bending_stiffness():
         beams = {name: {**beam, "thickness": thickness, "width": width} for name, beam in data["beams"].items()}
         scene = hinge(materials=data["materials"], beams=beams)
         chain = mechanism_of(scene, cprbm.Settings(links=7)).problem.model
-        ours = chain.chains[0].stiffness * chain.unit_moment * chain.chains[0].h * chain.unit_length
+        ours = chain.chains[0].rigidity * chain.unit_moment * chain.unit_length
         model = build(scene, fea_reference.Settings(elements=5))
         theirs = model.beams[0].bending * model.units.bending
         textbook = modulus * width * thickness**3 / 12.0  # second moment of a rectangle
