@@ -21,8 +21,17 @@ the steps of the lines' curvature.  There s moves with the minimum: the tangents
 with dψ_B/dz_l = ψ_B,l + ψ_B'·dσ/dz_l, and nothing divides by D.
 
 Beams that lie on each other over a length share any pressure among A's joints.  A is the beam with the longer
-elements: rows at the joints of both would ask one element for two curvatures, and rows closer than the other
-beam's elements would follow the steps of its curvature.
+elements: rows at the joints of both would ask one element for two curvatures.  At a joint stands the mean gap
+over the length of one element of B, and so the force is spread over it: the curvature of B, even over each
+element, becomes continuous in the mean, and the steps from one element to the next no longer press or pull.
+
+Where both are clamped together, touching, equilibrium does not say how clamp and contact share the force: the
+joints beside the clamp can hardly move, and two chains of unlike elements leave it at different slopes, by a
+part of h².  The first m ≈ √N joints have one row together, the mean of theirs, and so an even pressure; the
+slopes cost their force a part of 1/m², the pressure's own slope costs (m/N)².
+
+A row is a weighted sum over places.  Its local numbers are the position of one joint of each beam and the angles
+of the links around: positions of further joints follow from p_{i+1} = p_i + L_i (cos θ_i, sin θ_i).
 """
 
 from __future__ import annotations
@@ -33,7 +42,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from cprbm import smooth
-from cprbm.contact import Blocks, Group
+from cprbm.contact import Group
+from cprbm.gathering import Touches, gathered
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.model import Chain, Model
 from scene import BeamContact, Scene
@@ -52,7 +62,8 @@ PLACE_TOLERANCE = 1e-13  # of a minimum's place, units of length
 SETTLED = 1e-9  # slope of D at a minimum
 BESIDE = 0.25  # a joint closer than this many h to another row leaves its place to that
 
-ORDER = np.array([0, 5, 1, 6, 2, 3, 4, 7, 8, 9])  # (x, y, θθθ of A, the same of B) to (x, x, y, y, θ of A, θ of B)
+ON_IT = 1e-9  # gap and slope of two clamped ends, and how far they lie apart along the beams, where they touch
+POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)  # of the mean on either side of a border of B
 
 Lines = tuple[smooth.SmoothLine, smooth.SmoothLine]
 
@@ -70,6 +81,10 @@ class Places:
     sigma: Array
     keys: Ints
 
+    def only(self, these: Flags) -> Places:
+        """Some of the places."""
+        return Places(self.s[these], self.sigma[these], self.keys[these])
+
 
 @dataclass(frozen=True, slots=True)
 class Pair:
@@ -82,6 +97,7 @@ class Pair:
         across: +1 where B starts on the left of A, −1 on the right.
         offset: ½(t₁+t₂), zero for lines; units of length.
         unit_length: ℓ, m.
+        clamped: for the start and the end of A and of B, whether it is clamped together with an end of the other.
     """
 
     name: str
@@ -91,6 +107,7 @@ class Pair:
     across: float
     offset: float
     unit_length: float
+    clamped: tuple[tuple[bool, bool], tuple[bool, bool]] = ((False, False), (False, False))
 
     def lines(self, state: State, at: Positions) -> Lines:
         """The smooth lines of A and B in a state."""
@@ -101,7 +118,9 @@ class Pair:
 
     def exchanged(self) -> Pair:
         """The same contact with the parts of A and B exchanged."""
-        return Pair(self.name, self.b, self.a, self.across, self.side, self.offset, self.unit_length)
+        return Pair(
+            self.name, self.b, self.a, self.across, self.side, self.offset, self.unit_length, self.clamped[::-1]
+        )
 
     @property
     def thickness(self) -> float:
@@ -138,23 +157,85 @@ class Pair:
         lines = self.lines(state, at)
         if self.a.h < self.b.h * (1.0 - SAME):
             turned = self.exchanged()
-            return tuple(replace(rows, arc=other) for rows, other in turned._rows(lines[::-1]))
-        return tuple(rows for rows, _ in self._rows(lines))
+            return tuple(replace(rows, arc=other) for rows, other in turned._rows(lines[::-1], at))
+        return tuple(rows for rows, _ in self._rows(lines, at))
 
-    def _rows(self, lines: Lines) -> list[tuple[Group, Array]]:
+    def _rows(self, lines: Lines, at: Positions) -> list[tuple[Group, Array]]:
         """Rows at A's joints, at minima along A and at both beams' ends; with each group the places on B."""
         along, across = closest_places(self, lines)
+        inner = (along.keys > 0) & (along.keys <= self.a.n)
         found = []
-        if along.s.size:
-            found.append((self._rows_at(lines, along), along.sigma))
+        if np.any(inner):
+            found += self._mean_rows(lines, at, along.only(inner))
+        if not np.all(inner):
+            places = along.only(~inner)
+            found.append((self._rows_at(lines, at, places), places.sigma))
         if across.s.size:
-            rows = self.exchanged()._rows_at(lines[::-1], across)
+            rows = self.exchanged()._rows_at(lines[::-1], at, across)
             found.append((replace(rows, arc=across.sigma), across.s))
         return found
 
-    def _rows_at(self, lines: Lines, places: Places) -> Group:
-        """Rows at feet (s, σ) where the places are on A."""
-        s, sigma, free = places.s, places.sigma, places.keys < 0
+    def _rows_at(self, lines: Lines, at: Positions, places: Places) -> Group:
+        """Rows at single places."""
+        touches = self._touches(lines, places.s, places.sigma, places.keys < 0)
+        weights = np.ones((len(places.s), 1))
+        return gathered(self.name, (self.a, self.b), at, touches, weights, places.keys, places.s)
+
+    def _mean_rows(self, lines: Lines, at: Positions, joints: Places) -> list[tuple[Group, Array]]:
+        """Rows of the mean gap around joints of A; those next to a clamp of both beams in one."""
+        s, sigma, weights = self._around(lines, joints)
+        (m, q), chains = s.shape, (self.a, self.b)
+        touches = self._touches(lines, s.ravel(), sigma.ravel(), np.zeros(m * q, dtype=bool))
+        number, alone, found = np.arange(m * q).reshape(m, q), np.ones(m, dtype=bool), []
+        for key, beside in self._beside_clamps(joints.keys):
+            alone[beside] = False
+            tied = touches.only(number[beside].ravel())
+            shares = weights[beside].reshape(1, -1) / len(beside)
+            arc, other = np.mean(joints.s[beside], keepdims=True), np.mean(joints.sigma[beside], keepdims=True)
+            found.append((gathered(self.name, chains, at, tied, shares, np.array([key]), arc), other))
+        if np.any(alone):
+            rest = joints.only(alone)
+            own = touches.only(number[alone].ravel())
+            found.append((gathered(self.name, chains, at, own, weights[alone], rest.keys, rest.s), rest.sigma))
+        return found
+
+    def _around(self, lines: Lines, joints: Places) -> tuple[Array, Array, Array]:
+        """Places on A and on B and weights (m, 6) of the mean over one element of B around each joint of A.
+
+        Gauss's points on either side of the border of B's elements that lies within, where the curvature steps.
+        """
+        s, sigma = joints.s, joints.sigma
+        A, B = lines[0].at(s), lines[1].at(sigma)
+        ratio = (B.speed - B.bend * _seen_from(B, A)[1]) / (np.cos(A.psi - B.psi) * A.speed)  # ds/dσ
+        borders = self.b.borders
+        after = np.clip(np.searchsorted(borders, sigma), 1, self.b.n)
+        half = 0.5 * np.minimum(self.b.sizes[after - 1], self.a.sizes[joints.keys - 1])[:, None]
+        ahead, behind = borders[after] - sigma, borders[after - 1] - sigma
+        cut = np.clip((np.where(ahead < -behind, ahead, behind) * ratio)[:, None], -half, half)
+        x, w = 0.5 * (POINTS + 1.0), 0.5 * WEIGHTS
+        off = np.concatenate((-half + (cut + half) * x, cut + (half - cut) * x), axis=1)
+        weights = 0.5 * np.concatenate(((1.0 + cut / half) * w, (1.0 - cut / half) * w), axis=1)
+        at_A = s[:, None] + off
+        _, feet, _ = _feet(self, lines[1], lines[0].at(at_A.ravel()), (sigma[:, None] + off / ratio[:, None]).ravel())
+        at_B = feet.reshape(at_A.shape)
+        # beside an end of B, where it faces no element of B, the joint alone
+        alone = ~np.all((at_B > 0.0) & (at_B < self.b.s[-1]), axis=1)[:, None]
+        return np.where(alone, s[:, None], at_A), np.where(alone, sigma[:, None], at_B), weights
+
+    def _beside_clamps(self, keys: Ints) -> list[tuple[int, Ints]]:
+        """For every end of A that is clamped with B: the key of the row there, and which joints share it."""
+        m = round(np.sqrt(self.a.n))
+        found = []
+        for end, clamped in enumerate(self.clamped[0]):
+            beside = (keys if end == 0 else self.a.n + 1 - keys) <= 2 * m
+            # joints on both sides of the row's end lie close, or the beams part before
+            if clamped and np.sum(beside) == 2 * m < self.a.n:
+                these = np.flatnonzero(beside)
+                found.append((self.a.n + 4 + end, these[:m] if end == 0 else these[m:]))
+        return found
+
+    def _touches(self, lines: Lines, s: Array, sigma: Array, free: Flags) -> Touches:
+        """The constraint at feet (s, σ); where ``free`` (k,) the place moves with the minimum."""
         A, B = lines[0].at(s), lines[1].at(sigma)
         m, k = len(s), smooth.LOCALS
         tangent = np.stack((np.cos(B.psi), np.sin(B.psi)), axis=1)
@@ -164,7 +245,6 @@ class Pair:
         r_z = np.concatenate((smooth.position_slopes(A), -smooth.position_slopes(B)), axis=2)
         n_r = np.einsum("mi,mik->mk", normal, r_z)
         t_r = np.einsum("mi,mik->mk", tangent, r_z)
-        slope = self.side * n_r
 
         # ds/dz and dσ/dz from (i) and (ii)
         zeros = np.zeros((m, k))
@@ -184,33 +264,13 @@ class Pair:
         n_B = np.concatenate((zeros, np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(B))), axis=1)
         second += -t_r[:, :, None] * turning[:, None, :]
         second += n_A[:, :, None] * s_z[:, None, :] - n_B[:, :, None] * sigma_z[:, None, :]
-        second *= self.side
 
-        # local numbers of a row: joints of A and B, then θ (three of A, three of B)
-        joints = np.stack((self.a.first_joint + A.link, self.b.first_joint + B.link), axis=1)
-        angles = np.concatenate((_angles(self.a, A.link), _angles(self.b, B.link)), axis=1)
-
-        def curvature(multipliers: Array) -> Blocks:
-            pressing = np.flatnonzero(multipliers)
-            matrices = -multipliers[pressing, None, None] * second[pressing][:, ORDER[:, None], ORDER]
-            return Blocks(joints[pressing], angles[pressing], matrices)
-
-        return Group(
-            contact=self.name,
+        return Touches(
             values=self.offset - self.side * distance,
-            joints=joints,
-            angles=angles,
-            slopes=-slope[:, ORDER],
-            curvature=curvature,
-            keys=tuple(places.keys.tolist()),
-            arc=np.asarray(A.s),
+            slopes=-self.side * n_r,
+            second=-self.side * second,
+            links=np.stack((A.link, B.link)),
         )
-
-
-def _angles(chain: Chain, link: Ints) -> Ints:
-    """Links i−1, i, i+1; beyond the beam's ends link i itself, whose share there is zero."""
-    own = np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, chain.n)), axis=1)
-    return np.asarray(chain.first_link + own, dtype=np.intp)
 
 
 def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Flags]:
@@ -346,7 +406,21 @@ def pair_of(scene: Scene, model: Model, name: str) -> Pair:
     half = 0.5 * (a.thickness + b.thickness) if contact.thick else 0.0
     pair = Pair(name, a, b, 1.0, 1.0, half, model.unit_length)
     lines = pair.lines(state, at)
-    return replace(pair, side=_side(pair, lines), across=_side(pair.exchanged(), lines[::-1]))
+    pair = replace(pair, side=_side(pair, lines), across=_side(pair.exchanged(), lines[::-1]))
+    return replace(pair, clamped=(_clamped(pair, lines), _clamped(pair.exchanged(), lines[::-1])))
+
+
+def _clamped(pair: Pair, lines: Lines) -> tuple[bool, bool]:
+    """For the start and the end of A, whether it is clamped beside an end of B, touching and parallel."""
+    ends = pair.a.s[[0, -1]]
+    D, sigma, foot = distance_along(pair, lines, ends)
+    turn = np.sin(lines[0].at(ends).psi - lines[1].at(sigma).psi)
+    at_end = np.minimum(sigma, pair.b.s[-1] - sigma)
+    touching = foot & (np.abs(D - pair.offset) <= ON_IT) & (np.abs(turn) <= ON_IT) & (at_end <= ON_IT)
+    start, end = (
+        bool(touching[i]) and _held_together(pair.a, pair.b, e, float(sigma[i])) for i, e in enumerate((0, -1))
+    )
+    return start, end
 
 
 def _side(pair: Pair, lines: Lines) -> float:
