@@ -54,13 +54,15 @@ FOOT_TOLERANCE = 1e-13  # of t·r, units of length
 CLOSEST_ITERATIONS = 50
 LEAST_CURVATURE = 1e-3  # of D along A, 1/ℓ, below which its minimum has no place of its own
 STEPS = 3.0  # a minimum is less convex than this many steps of the curvature: it belongs to a zone
+STEPS_BETWEEN = 6.0  # the same where it lies below two joints that are closed
 REACH = 0.1  # minima and ends with gaps wider than this part of the longest beam are no constraints yet
 JOINT_REACH = 2.0  # joints with gaps wider than this many h²·(|ψ_A'| + |ψ_B'| + 1/ℓ) are none
 PARALLEL = 1e-3  # a foot whose perpendicular misses by more (sine) is an end, not a foot
 SAME = 1e-3  # lengths that differ by less than this part are one
 PLACE_TOLERANCE = 1e-13  # of a minimum's place, units of length
 SETTLED = 1e-9  # slope of D at a minimum
-BESIDE = 0.25  # a joint closer than this many h to another row leaves its place to that
+BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces A leaves its place to that
+BESIDE_MINIMUM = 2.5  # and to a minimum, from which D rises more than the curvature's steps can undo
 
 ON_IT = 1e-9  # gap and slope of two clamped ends, and how far they lie apart along the beams, where they touch
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)  # of the mean on either side of a border of B
@@ -309,18 +311,14 @@ def closest_places(pair: Pair, lines: Lines) -> tuple[Places, Places]:
     a, b, reach = pair.a, pair.b, pair.offset + REACH
     D, sigma = _sampled(pair, lines)
     s, turned = _minima(pair, lines, D, sigma)
-    across_s, across_sigma = b.s[[0, -1]], np.zeros(2)
-    E, across_sigma, facing = distance_along(pair.exchanged(), lines[::-1], across_s)
-    inside = (across_sigma > SAME * a.h) & (across_sigma < a.s[-1] - SAME * a.h)
-    ends = facing & inside & (reach > E)
-    for i, end in enumerate((0, -1)):
-        ends[i] &= not _held_together(b, a, end, float(across_sigma[i]))
+    ends = _facing_ends(pair, lines)
 
     # D and feet at the joints are every other sample
     bends = np.abs(lines[0].at(a.s).bend) + np.abs(lines[1].at(sigma[::2]).bend)
     near = D[::2] - pair.offset < JOINT_REACH * a.h**2 * (1.0 + bends)
-    for place in np.concatenate((s, across_sigma[ends])):
-        near[1:-1] &= np.abs(a.s[1:-1] - place) > BESIDE * a.h
+    for places, apart in ((s, BESIDE_MINIMUM), (ends.sigma, BESIDE_END)):
+        for place in places:
+            near[1:-1] &= np.abs(a.s[1:-1] - place) > apart * a.h
     for end in (0, -1):
         near[end] = reach > D[end] and not _held_together(a, b, end, float(sigma[end]))
     joints = np.flatnonzero(near)
@@ -330,8 +328,23 @@ def closest_places(pair: Pair, lines: Lines) -> tuple[Places, Places]:
             np.concatenate((sigma[::2][joints], turned)),
             np.concatenate((joints, np.full(len(s), -1))),
         ),
-        Places(across_s[ends], across_sigma[ends], a.n + 2 + np.flatnonzero(ends)),
+        ends,
     )
+
+
+def _facing_ends(pair: Pair, lines: Lines) -> Places:
+    """The ends of B that face A within reach, and their feet on A; the keys follow A's joints."""
+    a, b, reach = pair.a, pair.b, pair.offset + REACH
+    A, ends = lines[0].at(smooth.halves(a)), lines[1].at(b.s[[0, -1]])
+    away = np.array([np.min(np.hypot(A.x - x, A.y - y)) for x, y in zip(ends.x, ends.y, strict=True)])
+    near = np.flatnonzero(away < reach + a.h)
+    if not near.size:
+        return Places(np.zeros(0), np.zeros(0), near)
+    E, foot, facing = distance_along(pair.exchanged(), lines[::-1], ends.s[near])
+    facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
+    for i, end in enumerate(near):
+        facing[i] &= not _held_together(b, a, int(-end), float(foot[i]))
+    return Places(ends.s[near][facing], foot[facing], a.n + 2 + near[facing])
 
 
 def _held_together(one: Chain, other: Chain, end: int, foot: float) -> bool:
@@ -391,7 +404,12 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
         s = s + step
         _, sigma, _ = _feet(pair, lines[1], lines[0].at(s), sigma + towards * step)
     steps = smooth.curvature_step(lines[0], A.link) + smooth.curvature_step(lines[1], B.link)
-    deep = convex > np.maximum(LEAST_CURVATURE, STEPS * steps)
+    # what is held at the joints beside may stay there and what is held at the minimum too: no state is neither
+    joint = np.searchsorted(pair.a.s, s)
+    lowest_gap = pair.side * _seen_from(B, A)[1] - pair.offset
+    beside = np.maximum(D[::2][np.maximum(joint - 1, 0)], D[::2][joint]) - pair.offset
+    steps = steps * np.where(beside + lowest_gap > 0.0, STEPS, STEPS_BETWEEN)
+    deep = convex > np.maximum(LEAST_CURVATURE, steps)
     settled = np.abs(slope) < SETTLED
     return s[deep & settled], sigma[deep & settled]
 
