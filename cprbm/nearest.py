@@ -64,6 +64,7 @@ SETTLED = 1e-9  # slope of D at a minimum
 BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces A leaves its place to that
 BESIDE_MINIMUM = 2.5  # and to a minimum, from which D rises more than the curvature's steps can undo
 
+STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
 ON_IT = 1e-9  # gap and slope of two clamped ends, and how far they lie apart along the beams, where they touch
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)  # of the mean on either side of a border of B
 
@@ -211,7 +212,9 @@ class Pair:
         ratio = (B.speed - B.bend * _seen_from(B, A)[1]) / (np.cos(A.psi - B.psi) * A.speed)  # ds/dσ
         borders = self.b.borders
         after = np.clip(np.searchsorted(borders, sigma), 1, self.b.n)
-        half = 0.5 * np.minimum(self.b.sizes[after - 1], self.a.sizes[joints.keys - 1])[:, None]
+        # the length on A in steps, so that it does not change with the state where it is differentiated
+        stretch = np.round(np.abs(ratio) / STRETCH) * STRETCH
+        half = 0.5 * np.minimum(self.b.sizes[after - 1] * stretch, self.a.sizes[joints.keys - 1])[:, None]
         ahead, behind = borders[after] - sigma, borders[after - 1] - sigma
         cut = np.clip((np.where(ahead < -behind, ahead, behind) * ratio)[:, None], -half, half)
         x, w = 0.5 * (POINTS + 1.0), 0.5 * WEIGHTS

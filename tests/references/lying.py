@@ -129,6 +129,10 @@ class Lying:
         z = self._forces.sol(sigma / self.top.length)
         return self._pressed(z[0], z[1], z[2]) / self.top.length
 
+    def along_top(self, sigma: Array) -> Array:
+        """Arc lengths s (n,) on A that lie on B at ``sigma`` (n,) within the zone, m."""
+        return np.asarray(self._zone.sol(sigma / self.top.length)[4]) * self.top.length
+
     @property
     def contact_force(self) -> Array:
         """Resultant (2,) of pressure and lift-off force on A, N."""

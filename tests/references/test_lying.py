@@ -99,7 +99,7 @@ def test_each_beam_is_in_balance_under_clamp_contact_and_pull(pair):
 @every
 def test_the_centre_is_the_mean_place_of_the_forces(pair):
     sigma = np.linspace(0.0, pair.lift_off[1], 2001)
-    q, s = pair.pressure(sigma), pair._zone.sol(sigma / pair.top.length)[4] * pair.top.length
+    q, s = pair.pressure(sigma), pair.along_top(sigma)
     total = np.trapezoid(q, sigma) + pair.lift_off_force
     moment = np.trapezoid(q * s, sigma) + pair.lift_off_force * pair.lift_off[0]
     assert pair.contact_centre == pytest.approx(moment / total, rel=1e-6)
