@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from comparisons.benchmark import Benchmark, trend
 from comparisons.measures import Row, arc_lengths, unit_of
 from comparisons.verdict import Comparison
 from scene import Answer, Certificate, Claim, Probe, Scene
@@ -100,6 +101,44 @@ def worst(certificates: tuple[Certificate, ...]) -> Plain | None:
     }
 
 
+def benchmark(measured: Benchmark) -> Plain:
+    """``bench``: a row per method and size, and a trend per method; times in seconds."""
+    formulations = {"cprbm": measured.plan.choices.formulation, "fea": None}
+    return {
+        "case": measured.scene.name,
+        "machine": measured.machine,
+        "repeat": measured.plan.repeat,
+        "kinematics": measured.plan.choices.kinematics,
+        "rows": [
+            {
+                "method": timing.method,
+                "formulation": formulations[timing.method],
+                "n": timing.n,
+                "setup_seconds": None,
+                "seconds": timing.median,
+                "spread": timing.spread,
+                "error": None,
+                "ended": timing.ending.name,
+                "repeats": len(timing.seconds),
+                "iterations": timing.total_iterations,
+                "iterations_by_station": list(timing.iterations),
+            }
+            for timing in measured.timings
+        ],
+        "trends": [
+            {
+                "method": method,
+                "formulation": formulations[method],
+                "n": list(found.sizes),
+                "exponent": found.exponent,
+                "iterations_ratio": found.iterations,
+                "left_out": list(measured.left_out[method]),
+            }
+            for method, found in ((method, trend(measured, method)) for method in measured.plan.sizes)
+        ],
+    }
+
+
 def values(probe: Probe, found: Array) -> Any:  # noqa: ANN401 - a number, a list or nothing
     """A probe's values: a number, a list where it has several, None where there is none."""
     if found.size == 0:
@@ -165,10 +204,12 @@ def _row(scene: Scene, row: Row) -> Plain:
         "steps": None
         if steps is None
         else {
+            "contact": row.fraction(steps.contact),
             "own": row.fraction(steps.own),
             "stretch": row.fraction(steps.stretch),
             "shear": row.fraction(steps.shear),
         },
+        "contact_model": None if row.contact_model is None else row.fraction(row.contact_model),
         "difference_largest": None if row.largest is None else row.fraction(row.largest),
         "scale": row.scale,
         "denominator": row.denominator,

@@ -12,7 +12,9 @@ v_s         at n in the theory ``stretch``
 p           order of convergence that the error estimate assumes, 2; see :mod:`comparisons.order`
 S           safety factor of the error estimate, 1.25
 d           v_c − v_f, the difference
-u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (or n)
+u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (or n), and no less than F times the
+            probe's largest in the stage
+F           share of the largest uncertainty that none in the stage falls below, S − 1
 r           round-off allowance
 ==========  ===========================================================================================
 
@@ -20,15 +22,21 @@ The error of v is C/N^p and that of V a quarter of it (p = 2), so v − V is thr
 the factor 4/3 (Richardson; Roache, *Verification and Validation in Computational Science*, whose safety
 factor for a known order is 1.25).  Where finite elements converge faster, p = 2 only makes u larger.
 
+An error changes its sign somewhere along a stage, and where v − V passes through zero it says nothing of v's
+error: C is then small, and what the estimate leaves out (terms of higher order, contact that falls otherwise
+between joints) is all that is left.  S = 1 + F allows an estimate to be wrong by its share F.  By how much it is
+wrong does not pass through zero with it, and that share of the stage's largest is kept at every station.
+
 The formulation ``paper`` holds joints apart and not what lies between them, so that its error depends on where
 a contact falls between joints and no two N tell it. There u_c = |v_c − v_a| + S·4/3·|v_a − V_c|: its distance from the
 formulation whose error is even in N, and that one's own.
 
-The theory term is |v_b − v_f|, computed and never typed in.  The difference is the sum of three steps,
+The theory term is |v_b − v_f|, computed and never typed in.  The difference is the sum of its steps,
 
-    v_c − v_f = (v_c − v_b) + (v_b − v_s) + (v_s − v_f),
+    v_c − v_f = (v_c − v_a) + (v_a − v_b) + (v_b − v_s) + (v_s − v_f),
 
-and the share of each in it is its component along d.
+and the share of each in it is its component along d.  In ``auto`` v_a is v_c.  What the contact's formulation
+makes of the answer is |v_p − v_a| with v_p the value in ``paper``, whichever of the two was chosen.
 
 Round-off: a certificate states the relative residual that is left and the floor below which none can be
 asked.
@@ -57,6 +65,7 @@ from scene.answer import Array
 from scene.statement import Moment, Quantity
 
 SAFETY = 1.25
+SHARE_OF_LARGEST = SAFETY - 1.0
 ROUND_OFF = 1e-12
 
 UNITS: Mapping[Quantity, str] = {
@@ -64,6 +73,7 @@ UNITS: Mapping[Quantity, str] = {
     "rotation": "rad",
     "force": "N",
     "centre": "m",
+    "ends": "m",
     "bending_stress": "Pa",
     "reaction": "N",
     "reaction_moment": "N·m",
@@ -102,8 +112,13 @@ class Bounds:
 
 @dataclass(frozen=True, slots=True)
 class Steps:
-    """The difference as a sum of steps, each its component along the difference, in the probe's unit."""
+    """The difference as a sum of steps, each its component along the difference, in the probe's unit.
 
+    ``contact`` leads from the formulation ``paper`` to ``auto`` and is 0 if that was chosen; ``own`` from there to
+    the finite elements in ``bending``; ``stretch`` and ``shear`` to each further theory.
+    """
+
+    contact: float
     own: float
     stretch: float
     shear: float
@@ -115,9 +130,10 @@ class Row:
 
     ``cprbm`` and ``fea`` are the values, (k,) in ``unit``.  ``bounds`` is absent where a value is (an open
     contact has no centre), and then nothing is measured.  ``scale`` is the probe's in this stage,
-    ``denominator`` what the shown fractions are divided by.  For a stress, ``arc_length`` (k,) says where, m;
-    ``largest`` is the difference of the largest magnitudes, and the places next to the beam's held ends and
-    to the contacts take no part in ``difference``.
+    ``denominator`` what the shown fractions are divided by.  ``contact_model`` is the distance of the CPRBM's
+    values in the formulations ``paper`` and ``auto``, absent where one of them is.  For a stress, ``arc_length`` (k,)
+    says where, m; ``largest`` is the difference of the largest magnitudes, and the places next to the beam's held
+    ends and to where contacts end take no part in ``difference``.
     """
 
     probe: Probe
@@ -134,6 +150,7 @@ class Row:
     steps: Steps | None = None
     arc_length: Array | None = None
     largest: float | None = None
+    contact_model: float | None = None
 
     def fraction(self, value: float) -> float | None:
         """``value`` as a fraction of the denominator; None where that says nothing."""
@@ -153,11 +170,13 @@ def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
         KeyError: an answer lacks a station or a probe.
     """
     unsettled = {probe.name: _round_off(scene, runs, probe) for probe in scene.probes}
-    return tuple(
-        _row(scene, runs, probe, stage, value, unsettled[probe.name])
-        for stage in scene.stages
-        for value in stage.stations
-        for probe in scene.probes
+    return _none_small_by_accident(
+        tuple(
+            _row(scene, runs, probe, stage, value, unsettled[probe.name])
+            for stage in scene.stages
+            for value in stage.stations
+            for probe in scene.probes
+        )
     )
 
 
@@ -232,14 +251,55 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
         theory=size(v_b - v_f),
         round_off=0.0 if open_everywhere else unsettled,
     )
-    ladder = [v_c, *(values[f"fea {kinematics}"] for kinematics in runs.fea)]
+    ladder = [v_c, even, *(values[f"fea {kinematics}"] for kinematics in runs.fea)]
+    formulations = _formulations(runs, probe, stage.name, value)
     return replace(
         row,
         difference=size(v_c - v_f),
         same_theory=size(v_c - v_b),
         bounds=bounds,
         steps=_steps(probe.quantity, [step[counts] for step in ladder]),
+        contact_model=None if formulations is None else size(formulations[0] - formulations[1]),
     )
+
+
+def _none_small_by_accident(rows: tuple[Row, ...]) -> tuple[Row, ...]:
+    """The rows with each uncertainty at least F times the largest of its probe in its stage.
+
+    A contact that is open in every run has no force, and no uncertainty of it.
+    """
+    largest: dict[tuple[str, str], tuple[float, float, float]] = {}
+    for row in rows:
+        if row.bounds is not None:
+            key = (row.probe.name, row.stage)
+            cprbm, fea, bending = largest.get(key, (0.0, 0.0, 0.0))
+            largest[key] = (
+                max(cprbm, row.bounds.cprbm),
+                max(fea, row.bounds.fea),
+                max(bending, row.bounds.bending),
+            )
+    found = []
+    for row in rows:
+        if row.bounds is not None and row.bounds.total > 0.0:
+            cprbm, fea, bending = (SHARE_OF_LARGEST * size for size in largest[row.probe.name, row.stage])
+            bounds = replace(
+                row.bounds,
+                cprbm=max(row.bounds.cprbm, cprbm),
+                fea=max(row.bounds.fea, fea),
+                bending=max(row.bounds.bending, bending),
+            )
+            found.append(replace(row, bounds=bounds))
+        else:
+            found.append(row)
+    return tuple(found)
+
+
+def _formulations(runs: Runs, probe: Probe, stage: str, value: float) -> tuple[Array, Array] | None:
+    """A probe's values in ``paper`` and in ``auto``; None where one of them is missing."""
+    if runs.formulations is None:
+        return None
+    paper, auto = (station_of(answer, stage, value).values[probe.name] for answer in runs.formulations)
+    return (paper, auto) if paper.shape == auto.shape else None
 
 
 def unit_of(scene: Scene, probe: Probe, stage: Stage) -> str:
@@ -258,7 +318,7 @@ def arc_lengths(scene: Scene, probe: Probe) -> Array:
 
 
 def _steps(quantity: Quantity, ladder: list[Array]) -> Steps | None:
-    """Each step from CPRBM to bending, stretch and shear, along the whole way; None if that is zero."""
+    """Each step from the CPRBM to ``auto``, bending, stretch and shear, along the whole way; None if that is zero."""
     d = ladder[0] - ladder[-1]
     if not d.any():
         return None
@@ -269,5 +329,5 @@ def _steps(quantity: Quantity, ladder: list[Array]) -> Steps | None:
     else:
         along = d / np.linalg.norm(d)
     steps = [float(np.dot(a - b, along)) for a, b in pairwise(ladder)]
-    own, stretch, shear = steps + [0.0] * (3 - len(steps))
-    return Steps(own, stretch, shear)
+    contact, own, stretch, shear = steps + [0.0] * (4 - len(steps))
+    return Steps(contact, own, stretch, shear)

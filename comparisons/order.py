@@ -2,7 +2,8 @@
 
 Two for all but one thing: where a beam lies on a circle up to a held end, the pressure on the first element and
 the shear of the support are told apart only to one element.  Their sum converges with the second order, each
-alone with the first, and so does the place of the contact's resultant.
+alone with the first, and so does the place of the contact's resultant.  Where such a zone ends is known to
+one element as well.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ USUAL, BESIDE_A_HELD_END = 2, 1
 
 def order_of(scene: Scene, probe: Probe) -> int:
     """p of the probe's values in both solvers."""
-    if probe.quantity in ("force", "centre"):
+    if probe.quantity in ("force", "centre", "ends"):
         contact = scene.contacts.get(probe.of)
         first = isinstance(contact, CircleContact)
     elif probe.quantity == "reaction":

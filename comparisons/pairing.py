@@ -4,6 +4,9 @@ What is run for a comparison: the CPRBM at N and 2N links (in the formulation ``
 N, at N in ``paper``, and at N and 2N in ``auto``); the finite elements at n and 2n in the theory that
 was chosen and in ``bending``, the CPRBM's own; and at n in the theory between the two, if there is one, so
 that the step from one theory to the next can be split.
+
+Where ``auto`` was chosen and every contact says what ``paper`` must be told, that is run at N as well.  It shows
+what the contact's formulation makes of the answer and takes no part in the verdict.
 """
 
 from __future__ import annotations
@@ -20,9 +23,12 @@ from frozendict import frozendict
 from pydantic import ValidationError
 
 from comparisons.choices import KINEMATICS, Choices, Kinematics, check
-from scene import Answer, Mistake, Scene, SceneError
+from scene import Answer, BeamContact, Mistake, Scene, SceneError
 
 Solver = Callable[[Scene, Choices], Answer]
+
+PAPER_BESIDE_AUTO = 160
+"""Most links per beam with which ``paper`` is run beside ``auto``: its time grows with the cube of N."""
 
 
 def cprbm_answer(scene: Scene, choices: Choices) -> Answer:
@@ -72,20 +78,30 @@ class Runs:
         cprbm: at N and 2N links; the second always in the formulation ``auto``.
         fea: by theory, from ``bending`` up to the chosen one: at n and, for these two, at 2n elements.
         auto: the CPRBM at N links in the formulation ``auto``, if another was chosen.
+        paper: the same in the formulation ``paper``, if ``auto`` was chosen and the other could be asked;
+            nothing rests on it.
     """
 
     kinematics: Kinematics
     cprbm: tuple[Answer, Answer]
     fea: Mapping[Kinematics, tuple[Answer, ...]]
     auto: Answer | None = None
+    paper: Answer | None = None
 
     @property
     def reference(self) -> Answer:
         """The finite elements' answer in the chosen theory at n elements."""
         return self.fea[self.kinematics][0]
 
+    @property
+    def formulations(self) -> tuple[Answer, Answer] | None:
+        """The CPRBM at N links in ``paper`` and in ``auto``; None where one of them was not run."""
+        if self.auto is not None:
+            return self.cprbm[0], self.auto
+        return None if self.paper is None else (self.paper, self.cprbm[0])
+
     def everything(self) -> Iterator[tuple[str, Answer]]:
-        """Every answer with a name that says what it is."""
+        """Every answer that the verdict rests on, with a name that says what it is."""
         families = {"cprbm": self.cprbm, **{f"fea {kinematics}": fea for kinematics, fea in self.fea.items()}}
         for name, answers in families.items():
             for level, answer in enumerate(answers):
@@ -122,7 +138,22 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1
     fea: dict[Kinematics, tuple[Answer, ...]] = {}
     for (kinematics, _), answer in zip(places, answers[first:], strict=True):
         fea[kinematics] = (*fea.get(kinematics, ()), answer)
-    return Runs(choices.kinematics, (answers[0], answers[1]), frozendict(fea), answers[2] if extra else None)
+    if extra:
+        return Runs(choices.kinematics, (answers[0], answers[1]), frozendict(fea), auto=answers[2])
+    return Runs(choices.kinematics, (answers[0], answers[1]), frozendict(fea), paper=_paper(scene, choices, solvers))
+
+
+def _paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
+    """The CPRBM in the formulation ``paper``, where that can be asked and does not take long."""
+    finest = choices.links if isinstance(choices.links, int) else max(choices.links.values())
+    contacts = scene.contacts.values()
+    told = all(isinstance(contact, BeamContact) and contact.paper is not None for contact in contacts)
+    if not contacts or not told or finest > PAPER_BESIDE_AUTO:
+        return None
+    try:
+        return solvers.cprbm(scene, replace(choices, formulation="paper"))
+    except SceneError:  # at this number of links it lacks something, and nothing that was asked for depends on it
+        return None
 
 
 def _in_order(scene: Scene, jobs: list[tuple[Solver, Choices]], workers: int) -> list[Answer]:

@@ -57,6 +57,8 @@ def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison) -> tup
         write(own / f"{picture.name}.svg", picture.svg)
         write(own / f"{picture.name}.png", picture.png)
     answers = {name: archive.packed(answer) for name, answer in compared.runs.everything()}
+    if compared.runs.paper is not None:
+        answers["cprbm paper"] = archive.packed(compared.runs.paper)
     write(own / "answers.json", documents.text(answers))
     write(own / "comparison.json", documents.text({"cases": [documents.comparison(compared)]}))
     chapters = (*earlier, chapter(compared, pictures))

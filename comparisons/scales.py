@@ -14,7 +14,7 @@ reaction_moment                        largest of them, of the moment loads, and
 bending_stress                         largest stress in any beam
 potential_energy                       largest energy
 closing_load                           largest value that the stage steps to
-centre                                 length of the contact's first beam, which is also the probe's scale
+centre, ends                           length of the contact's first beam, which is also the probe's scale
 =====================================  ==============================================================
 
 A moment at a support depends on the point about which it is taken: it is what is left of the loads' and the
@@ -64,7 +64,7 @@ def norm(quantity: Quantity, values: Array) -> float:
 def probe_scale(scene: Scene, probe: Probe, stage: Stage, answers: tuple[Answer, ...]) -> float:
     """The scale of a probe in a stage, in the probe's unit; never 0."""
     family = family_scale(scene, probe.quantity, stage, answers, contact=probe.of)
-    if probe.quantity == "centre":
+    if probe.quantity in ("centre", "ends"):
         return family
     if probe.quantity == "reaction_moment":
         supports = tuple(other for other in scene.probes if other.quantity == "reaction_moment")
@@ -74,7 +74,7 @@ def probe_scale(scene: Scene, probe: Probe, stage: Stage, answers: tuple[Answer,
 
 
 def family_scale(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[Answer, ...], *, contact: str) -> float:
-    """The scale of a quantity's family in a stage; ``contact`` is the contact of a ``centre``."""
+    """The scale of a quantity's family in a stage; ``contact`` is the contact of a ``centre`` or of ``ends``."""
     natural = natural_scale(scene, quantity, stage, contact=contact)
     return max(family_size(scene, quantity, stage, answers, contact=contact), SMALLEST_EVENT * natural)
 
@@ -95,7 +95,7 @@ def natural_scale(scene: Scene, quantity: Quantity, stage: Stage, *, contact: st
             return S if isinstance(scene.loads[stage.steps], Moment) else S / lever
         case "bending_stress":
             return max(E * beam.thickness for beam, E in beams) / (2.0 * lever)
-        case "centre":
+        case "centre" | "ends":
             return length(scene.beams[scene.contacts[contact].beams[0]].curve)
         case _:
             return S
@@ -130,7 +130,7 @@ def family_size(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[A
             )
         case "closing_load":
             return max(abs(station) for station in stage.stations)
-        case "centre":
+        case "centre" | "ends":
             return length(scene.beams[scene.contacts[contact].beams[0]].curve)
         case _:
             return largest(quantity)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from comparisons.benchmark import FIT_FROM, Benchmark, trend
 from comparisons.documents import claim_met, claim_of, worst
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.geometry import radius
-from comparisons.measures import Row, unit_of
+from comparisons.measures import Row, Steps, unit_of
 from comparisons.scales import norm
 from comparisons.verdict import Comparison
 from scene import Answer, Scene
@@ -30,7 +31,7 @@ def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
     found = [_values(compared, rows), _verdicts(compared, rows)]
     found.append(_claims(compared))
     found.append(_stresses(compared.scene, rows))
-    found.append(_steps(rows))
+    found.append(_steps(compared, rows))
     found.append(_certificates(compared))
     return tuple(sheet for sheet in found if sheet.rows)
 
@@ -38,6 +39,60 @@ def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
 def of_answer(scene: Scene, answer: Answer) -> tuple[Sheet, ...]:
     """All tables of one solver's answer."""
     return tuple(sheet for sheet in (_answered(scene, answer), _events(answer)) if sheet.rows)
+
+
+def of_benchmark(measured: Benchmark) -> tuple[Sheet, ...]:
+    """The timings of a benchmark, and how they go with N."""
+    return _timings(measured), _trends(measured)
+
+
+def _timings(measured: Benchmark) -> Sheet:
+    body = tuple(
+        (
+            measured.label(timing.method),
+            str(timing.n),
+            number(timing.median),
+            number(timing.spread, 2),
+            str(len(timing.seconds)),
+            str(timing.total_iterations),
+            number(timing.iterations_per_station),
+            timing.ending.name,
+        )
+        for timing in measured.timings
+    )
+    return Sheet(
+        f"{measured.scene.title or measured.scene.name}: time against N",
+        ("method", "N", "seconds", "spread", "repeats", "iterations", "per station", "ended"),
+        body,
+        "Seconds of a whole answer, set-up included: median, and distance of the quartiles. N is the number of links "
+        "or elements per beam.",
+    )
+
+
+def _trends(measured: Benchmark) -> Sheet:
+    body = []
+    for method in measured.plan.sizes:
+        found = trend(measured, method)
+        left_out = measured.left_out[method]
+        body.append(
+            (
+                measured.label(method),
+                f"{found.sizes[0]} to {found.sizes[-1]}" if found.sizes else "–",
+                number(found.exponent),
+                number(found.iterations),
+                ", ".join(str(n) for n in left_out) or "none",
+            )
+        )
+    machine = measured.machine
+    return Sheet(
+        "How it grows",
+        ("method", "N", "exponent of time", "iterations, last to first", "sizes not begun"),
+        tuple(body),
+        f"The exponent e of seconds = a·N^e by least squares of the logarithms, over the runs with N of {FIT_FROM} or "
+        "more that completed. Sizes are not begun once a solve took more than "
+        f"{measured.plan.at_most:g} s. {machine['cpu']}, {machine['cores']} cores, BLAS on one thread; Python "
+        f"{machine['python']}, NumPy {machine['numpy']}, SciPy {machine['scipy']}, scikit-fem {machine['scikit-fem']}.",
+    )
 
 
 def last_rows(compared: Comparison) -> tuple[Row, ...]:
@@ -56,12 +111,24 @@ def explanation(compared: Comparison) -> tuple[str, ...]:
         sentences.append(
             f"{row.probe.name} at {row.station:g}: our difference of {_of(row, row.difference)} is the "
             f"finite elements' own step of theory, {_of(row, row.steps.stretch)} from bending to stretch and "
-            f"{_of(row, row.steps.shear)} from stretch to shear, and {_of(row, row.steps.own)} between the "
-            f"two methods within one theory, for which the two discretisations state "
-            f"{_of(row, row.bounds.same_theory if row.bounds else math.nan)}; the source's figure of "
-            f"{percent(claim.bound)} is not ours to approach."
+            f"{_of(row, row.steps.shear)} from stretch to shear, and {_within_one_theory(compared, row, row.steps)}; "
+            f"the source's figure of {percent(claim.bound)} is not ours to approach."
         )
     return tuple(sentences)
+
+
+def _within_one_theory(compared: Comparison, row: Row, steps: Steps) -> str:
+    """What is left of a difference without the theories' steps, and what the contact's formulation has in it."""
+    own, stated = _of(row, steps.own), _of(row, row.bounds.same_theory if row.bounds else math.nan)
+    if compared.runs.auto is not None:
+        return (
+            f"{own} between the two methods within one theory and {_of(row, steps.contact)} in the contact model, "
+            f"from paper to auto, for which together the runs state {stated}"
+        )
+    said = f"{own} between the two methods within one theory, for which the two discretisations state {stated}"
+    if row.contact_model is None:
+        return said
+    return f"{said}; the contact model of paper would put the CPRBM {_of(row, row.contact_model)} away"
 
 
 def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
@@ -163,28 +230,51 @@ def _stresses(scene: Scene, rows: tuple[Row, ...]) -> Sheet:
         "Bending stress along the beams",
         ("probe", "unit", "CPRBM", "FEA", "of the largest", "anywhere", "t/(3R)"),
         tuple(body),
-        "Anywhere: at least one thickness from held ends and contacts. Both solvers use the straight-beam "
+        "Anywhere: a thickness or more from held ends and from where contacts end. Both solvers use the straight-beam "
         "formula; in a beam of initial radius R the true stress at the inner edge is larger by about t/(3R).",
     )
 
 
-def _steps(rows: tuple[Row, ...]) -> Sheet:
-    body = tuple(
-        (
-            row.probe.name,
-            _of(row, row.difference),
-            _of(row, row.steps.own),
-            _of(row, row.steps.stretch),
-            _of(row, row.steps.shear),
+def _steps(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
+    runs = compared.runs
+    in_paper = runs.auto is not None
+    shown = any(row.contact_model is not None for row in rows)
+    body = []
+    for row in rows:
+        if row.steps is None:
+            continue
+        contact = row.steps.contact if in_paper else math.nan if row.contact_model is None else row.contact_model
+        body.append(
+            (
+                row.probe.name,
+                _of(row, row.difference),
+                *((_of(row, contact),) if shown else ()),
+                _of(row, row.steps.own),
+                _of(row, row.steps.stretch),
+                _of(row, row.steps.shear),
+            )
         )
-        for row in rows
-        if row.steps is not None
-    )
+    note = "Components along the difference; each line adds up."
+    if shown:
+        note += (
+            " Contact model: the CPRBM's step from paper to auto."
+            if in_paper
+            else " Contact model: the CPRBM's distance in paper from auto, which is no part of the sum."
+        )
+    elif runs.paper is not None and not runs.paper.completed:
+        note += f" The formulation paper ended early: {runs.paper.ending.value}."
     return Sheet(
         "What the difference is made of",
-        ("probe", "difference", "CPRBM to bending", "bending to stretch", "stretch to shear"),
-        body,
-        "Components along the difference; each line adds up.",
+        (
+            "probe",
+            "difference",
+            *(("contact model",) if shown else ()),
+            "CPRBM to bending",
+            "bending to stretch",
+            "stretch to shear",
+        ),
+        tuple(body),
+        note,
     )
 
 

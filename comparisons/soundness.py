@@ -7,8 +7,9 @@ import numpy as np
 from comparisons.measures import station_of
 from scene import Answer, Probe, Scene, StationAnswer
 
-_COMPONENTS = {"displacement": 2, "reaction": 2}
-_MAY_BE_EMPTY = frozenset({"centre", "closing_load"})
+_COMPONENTS = {"displacement": 2, "reaction": 2, "ends": 2}
+ABSENT_WHILE_OPEN = frozenset({"centre", "ends", "closing_load"})
+"""Quantities of a contact that have no value while it is open."""
 
 
 def complaints(scene: Scene, answer: Answer) -> tuple[str, ...]:
@@ -60,12 +61,13 @@ def _station_complaints(scene: Scene, station: StationAnswer) -> list[str]:
             found.append(f"{probe.name} has the shape {values.shape}")
         elif not np.all(np.isfinite(values)):
             found.append(f"{probe.name} is not finite")
+        elif probe.quantity == "ends" and np.any(np.diff(values) < 0.0):
+            found.append(f"{probe.name} are not ascending")
     return found
 
 
 def _shapes(probe: Probe) -> tuple[tuple[int, ...], ...]:
     if probe.quantity == "bending_stress":
         return ((probe.points,),)
-    if probe.quantity in _MAY_BE_EMPTY:
-        return ((1,), (0,))
-    return ((_COMPONENTS.get(probe.quantity, 1),),)
+    closed = (_COMPONENTS.get(probe.quantity, 1),)
+    return (closed, (0,)) if probe.quantity in ABSENT_WHILE_OPEN else (closed,)

@@ -1,11 +1,19 @@
 """Where a stress along a beam is compared, and where it is only shown.
 
-Next to a held end and next to a contact the two methods spread a concentrated force over lengths of their
-own: over a link there, over an element and the contact's own width here.  By Saint-Venant's principle that is
-a matter of about one thickness, and so far these places take no part in the difference.
+Next to a held end, to a contact in a point and to either end of a zone of contact the two methods spread a
+concentrated force over lengths of their own: over a link there, over an element and the contact's own width
+here.  By Saint-Venant's principle that is a matter of about one thickness, and so far these places take no part
+in the difference.  Inside a zone the pressure is spread over the beam, the stress is smooth, and it is compared.
+
+An answer says where a contact touches at as many places as its discretisation has there, and need not press at
+each of them.  So the places of all answers at a station are put together: those that follow each other along the
+beam within a few steps of the coarsest one are one zone, and each answer's first and last place in it is where
+that answer's zone ends.  What one answer takes for a point is compared if another has a zone round it.
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +23,14 @@ from scene import Scene, StationAnswer
 from scene.answer import Array
 from scene.statement import FreeEnd
 
+_STEPS_APART = 3.0
+"""Largest distance of neighbours in a zone, in steps of the coarsest line that an answer draws of the beam."""
+
 
 def clear_of_spots(
     scene: Scene, beam: str, arc_length: Array, stations: tuple[StationAnswer, ...]
 ) -> NDArray[np.bool_]:
-    """Which places (k,) of a beam lie at least one thickness from its held ends and from every contact.
+    """Which places (k,) of a beam lie at least one thickness from its held ends and from where contacts end.
 
     Args:
         scene: the question.
@@ -33,11 +44,32 @@ def clear_of_spots(
         spots.append(0.0)
     if not isinstance(record.end, FreeEnd):
         spots.append(length(record.curve))
-    for station in stations:
-        for contact, places in station.touching.items():
-            if beam in scene.contacts[contact].beams:
-                spots.extend(nearest(station.shapes[beam], place) for place in places)
+    coarsest = max(float(np.max(np.diff(station.shapes[beam].s))) for station in stations)
+    for name, contact in scene.contacts.items():
+        if beam in contact.beams:
+            places = [
+                np.array([nearest(station.shapes[beam], place) for place in station.touching.get(name, ())])
+                for station in stations
+            ]
+            spots += ends_of_zones(places, _STEPS_APART * coarsest)
     if not spots:
         return np.ones(arc_length.shape, dtype=bool)
     distance = np.min(np.abs(arc_length[:, None] - np.array(spots)), axis=1)
     return np.asarray(distance >= record.thickness * (1.0 - 1e-9))
+
+
+def ends_of_zones(places: Sequence[Array], apart: float) -> list[float]:
+    """Every answer's first and last place in every zone, m.
+
+    Args:
+        places: by answer, where a contact touches along a beam, (k,), m; empty where it is open.
+        apart: largest distance of neighbours in a zone, m.
+    """
+    together = np.sort(np.concatenate(places))
+    borders = 0.5 * (together[:-1] + together[1:])[np.diff(together) > apart]
+    found: list[float] = []
+    for own in places:
+        zone = np.searchsorted(borders, own)
+        for number in np.unique(zone):
+            found += [float(own[zone == number].min()), float(own[zone == number].max())]
+    return found

@@ -12,7 +12,7 @@ from cprbm.contact import Formulation, Group, Rows
 from cprbm.energy import dead_loads
 from cprbm.equilibrium import Problem
 from cprbm.kinematics import Positions, State
-from cprbm.model import build
+from cprbm.model import EVEN, Fit, build
 from cprbm.nearest import Pair, pair_of
 from cprbm.settings import Settings
 from scene import BeamContact, Scene
@@ -48,6 +48,11 @@ class Mechanism:
         groups = self._groups(contact)(state, at)
         return max((float(group.values.max()) for group in groups), default=float("-inf"))
 
+    def passed(self, before: Positions, after: Positions) -> str:
+        """Name of a contact with a circle that its beam has swept over between two states; empty if none."""
+        circles = (pair for pair in self.pairs.values() if isinstance(pair, Circle))
+        return next((circle.name for circle in circles if circle.passed(before, after)), "")
+
     def _groups(self, contact: str) -> Groups:
         return self.boundaries[contact].groups if self.boundaries else self.pairs[contact].groups
 
@@ -59,15 +64,15 @@ def _formulation(parts: dict[str, Groups]) -> Formulation:
     return rows
 
 
-def mechanism_of(scene: Scene, settings: Settings) -> Mechanism:
-    """Make a scene ready.
+def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism:
+    """Make a scene ready on even elements or those of a ``fit``.
 
     Raises:
         SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
     """
-    model = build(scene, settings)
+    model = build(scene, settings, fit)
     pairs = {
-        name: pair_of(scene, model, name) if isinstance(contact, BeamContact) else circle_of(scene, model, name)
+        name: pair_of(scene, model, name) if isinstance(contact, BeamContact) else circle_of(scene, model, name, fit)
         for name, contact in scene.contacts.items()
     }
     boundaries = {}

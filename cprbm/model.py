@@ -25,7 +25,7 @@ from frozendict import frozendict
 
 from cprbm.curves import NeutralLine, neutral_line
 from cprbm.settings import Settings
-from scene import BeamEnd, FreeEnd, Scene, WeldedEnd
+from scene import BeamEnd, CircleContact, FreeEnd, Scene, WeldedEnd
 from scene.answer import Array
 
 
@@ -106,6 +106,7 @@ class Model:
         rest_turns: θ⁰_{i+1} − θ⁰_i in the same places.
         lengths: of all links, units of length.
         rest: stress-free angles of all links.
+        marks: centres of circles on bodies that move, by contact; they are numbered behind all joints.
     """
 
     chains: tuple[Chain, ...]
@@ -117,6 +118,7 @@ class Model:
     rest_turns: Array
     lengths: Array
     rest: Array
+    marks: Mapping[str, Attachment]
 
     @property
     def n_links(self) -> int:
@@ -125,7 +127,12 @@ class Model:
 
     @property
     def n_joints(self) -> int:
-        """Joints of all beams, ends included."""
+        """Joints of all beams, ends included, and the marks behind them."""
+        return self.first_mark + len(self.marks)
+
+    @property
+    def first_mark(self) -> int:
+        """Number of the first mark, which is that of all joints."""
         return self.n_links + len(self.chains)
 
     @property
@@ -138,16 +145,29 @@ class Model:
         return next(chain for chain in self.chains if chain.name == name)
 
 
-NO_BORDERS: Mapping[str, Array] = frozendict()
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """A mesh that is fitted to contact over a length.
+
+    Attributes:
+        borders: for beams whose elements are not even, where they end, (N+1,) from 0 to 1 of the length.
+        ends: for contacts on them, where they begin and end within the first beam, (k,) shares of its length.
+    """
+
+    borders: Mapping[str, Array]
+    ends: Mapping[str, Array]
 
 
-def build(scene: Scene, settings: Settings, borders: Mapping[str, Array] = NO_BORDERS) -> Model:
+EVEN = Fit(frozendict(), frozendict())
+
+
+def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
     """Cut every beam into elements, eqs. (2)-(3), and leave the units behind.
 
     Args:
         scene: the question.
         settings: how many elements.
-        borders: for beams whose elements are not equal, where they end, (N+1,) from 0 to 1 of the length.
+        fit: where the elements end.
 
     Raises:
         SceneError: the numbers of links do not fit the scene's beams.
@@ -180,7 +200,7 @@ def build(scene: Scene, settings: Settings, borders: Mapping[str, Array] = NO_BO
     first_link = first_joint = 0
     for name, beam in scene.beams.items():
         line, n = lines[name], settings.links_of(name)
-        edges = line.length * borders.get(name, np.arange(n + 1) / n)
+        edges = line.length * fit.borders.get(name, np.arange(n + 1) / n)
         s = np.concatenate(([0.0], 0.5 * (edges[1:] + edges[:-1]), [line.length]))
         x, y = line.position(s)
         dx, dy = np.diff(x), np.diff(y)
@@ -221,7 +241,18 @@ def build(scene: Scene, settings: Settings, borders: Mapping[str, Array] = NO_BO
         rest_turns=np.diff(rest),
         lengths=np.concatenate([chain.lengths for chain in chains]),
         rest=rest,
+        marks=_marks(scene, free_bodies, references, unit_length),
     )
+
+
+def _marks(scene: Scene, free_bodies: tuple[str, ...], references: Array, unit_length: float) -> dict[str, Attachment]:
+    marks = {}
+    for name, contact in scene.contacts.items():
+        if isinstance(contact, CircleContact) and contact.body in free_bodies:
+            body = free_bodies.index(contact.body)
+            x, y = (np.array(contact.center) - references[body]) / unit_length
+            marks[name] = Attachment(body, (float(x), float(y)), welded=False)
+    return marks
 
 
 def _loose(beam: str) -> str:

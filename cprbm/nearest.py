@@ -126,6 +126,24 @@ class Pair:
         )
 
     @property
+    def clamped(self) -> tuple[bool, bool]:
+        """Whether the beam's start and end are clamped in touch with the other: not told."""
+        return (False, False)
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Arc lengths of A at which zones end on this mesh: meshes are not fitted to them."""
+        return ()
+
+    def parting(self, state: State, at: Positions, s: Array) -> Array:
+        """Curvature D″ with which A parts from B, at arc lengths ``s``."""
+        lines = self.lines(state, at)
+        D, sigma, _ = distance_along(self, lines, s)
+        A, B = lines[0].at(s), lines[1].at(sigma)
+        facing = np.sign(np.cos(A.psi - B.psi))
+        return np.asarray(self.side * (facing * A.bend - B.bend / (1.0 - self.side * D * B.bend)))
+
+    @property
     def thickness(self) -> float:
         """What an overlap is measured by: the mean thickness, for lines the longest beam; units of length."""
         return self.offset if self.offset > 0.0 else 1.0

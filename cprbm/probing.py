@@ -9,6 +9,7 @@ from cprbm.equilibrium import Point, Problem, potential_energy
 from cprbm.forces import contact_forces, contact_pressure, supports
 from cprbm.mechanism import Mechanism
 from cprbm.stress import bending_stress
+from cprbm.zones import zones_of
 from scene import Probe, Scene, Shape
 from scene.answer import Array, frozen_array
 from scene.statement import PinnedEnd, WeldedEnd
@@ -42,6 +43,9 @@ def _value(
         case "centre":
             arc, pressing = contact_pressure(point, probe.of, model.chain(scene.contacts[probe.of].beams[0]))
             return float(pressing @ arc / pressing.sum()) * model.unit_length if pressing.size else []
+        case "ends":
+            zones = zones_of(mechanism.pairs[probe.of], point)
+            return [zones[0].begin * model.unit_length, zones[-1].end * model.unit_length] if zones else []
         case "closing_load":
             return [closed_at[probe.of]] if probe.of in closed_at else []
         case "bending_stress":

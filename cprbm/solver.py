@@ -1,4 +1,8 @@
-"""From a scene to an answer: marching through the stations, load steps that cut and grow."""
+"""From a scene to an answer: marching through the stations, load steps that cut and grow.
+
+The march goes on even elements, on a coarse mesh where many are asked.  What is handed out at a station is solved
+from there on the mesh that was asked, fitted to where contacts begin and end (:mod:`cprbm.refining`).
+"""
 
 from __future__ import annotations
 
@@ -16,12 +20,15 @@ from cprbm.forces import contact_imbalance
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.probing import probed, shapes, touching
+from cprbm.refining import all_zones, carried_over, coarser, ends_of, fits, fitted
 from cprbm.settings import Settings
 from scene import Answer, Certificate, Ending, Event, Scene, StationAnswer
 
 GROWTH = 2.0
 EVENT_TOLERANCE = 1e-10  # of the load step in which a contact closed
 CLOSER = 8
+FITS = 2  # of the mesh to the zones' ends, at most
+FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
 
 
 def answer(scene: Scene, settings: Settings | None = None) -> Answer:
@@ -41,9 +48,12 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
     settings = settings or Settings()
     # small matrices: more than one thread of BLAS costs more than it brings
     with threadpool_limits(limits=1, user_api="blas"):
-        mechanism = mechanism_of(scene, settings)
-        march = _March(scene, settings, mechanism)
+        march = _March(scene, coarser(settings))
         ending, sentence = march.run()
+        if ending is not Ending.COMPLETED and len(march.family) > 1:
+            # a coarse mesh may be too coarse: without it then
+            march = _March(scene, (settings,))
+            ending, sentence = march.run()
         notes = march.notes()
     return Answer(
         solver="cprbm",
@@ -59,12 +69,16 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
 
 
 class _March:
-    """The state while marching: where we are, under which loads, and what was reached."""
+    """The state while marching: where we are, under which loads, and what was reached.
 
-    def __init__(self, scene: Scene, settings: Settings, mechanism: Mechanism) -> None:
-        self.scene, self.settings, self.mechanism = scene, settings, mechanism
+    ``family`` are the meshes from the one that is marched on to the one that is asked.
+    """
+
+    def __init__(self, scene: Scene, family: tuple[Settings, ...]) -> None:
+        self.scene, self.family, self.settings = scene, family, family[0]
+        self.mechanism = mechanism_of(scene, self.settings)
         self.values: dict[str, float] = {}
-        problem = mechanism.problem
+        problem = self.mechanism.problem
         state = rest_state(problem.model)
         closed = np.zeros(problem.closure.rows)
         self.point = point_at(problem, {}, state, closed, np.zeros(0), NO_ROWS)
@@ -82,17 +96,51 @@ class _March:
                 if certificate is None:
                     last = f"the last good value of {stage.steps} is {self.values.get(stage.steps, 0.0):.6g}"
                     return ending, f"{ending.value}: {sentence}; {last}"
-                self.reached.append(
-                    StationAnswer(
-                        stage=stage.name,
-                        value=target,
-                        values=probed(self.scene, self.mechanism, self.point, self.closed_at),
-                        shapes=shapes(self.mechanism, self.point),
-                        touching=touching(self.mechanism, self.point),
-                        certificate=certificate,
-                    )
-                )
+                station = self._station(stage.name, target, certificate)
+                if station is None:
+                    return Ending.STEP_TOO_SMALL, "the finer meshes do not follow the coarsest"
+                self.reached.append(station)
         return Ending.COMPLETED, Ending.COMPLETED.value
+
+    def _station(self, stage: str, value: float, certificate: Certificate) -> StationAnswer | None:
+        """The answer at a station that the march has reached, on the mesh that was asked; None if that fails."""
+        fitted = self._fitted(certificate)
+        if fitted is None:
+            if len(self.family) > 1:
+                return None
+            fitted = self.mechanism, self.point, certificate
+        mechanism, point, certificate = fitted
+        return StationAnswer(
+            stage=stage,
+            value=value,
+            values=probed(self.scene, mechanism, point, self.closed_at),
+            shapes=shapes(mechanism, point),
+            touching=touching(mechanism, point),
+            certificate=certificate,
+        )
+
+    def _fitted(self, certificate: Certificate) -> tuple[Mechanism, Point, Certificate] | None:
+        """The present state on the mesh that was asked, its borders where zones of contact end."""
+        mechanism, point, iterations = self.mechanism, self.point, certificate.iterations
+        for settings in self.family:
+            solved, passes = settings is self.settings, 0
+            while passes < (FITS if settings is self.family[-1] else 1):
+                fit = fitted(mechanism, ends_of(mechanism, all_zones(mechanism, point)), settings)
+                if solved and (fits(mechanism, fit) or settings is not self.family[-1]):
+                    break
+                target = mechanism_of(self.scene, settings, fit)
+                start = carried_over(mechanism, point, target, self.values)
+                found = equilibrium(target.problem, self.values, start, settings.tolerance, settings.iterations)
+                turned = float(np.max(np.abs(found.point.state.theta - start.state.theta)))
+                if not found.converged or turned > FOLLOWED:
+                    return None
+                mechanism, point, iterations = target, found.point, iterations + found.iterations
+                solved, passes = True, passes + 1
+        if mechanism is not self.mechanism:
+            certificate, ending = certify(mechanism, settings, found)
+            if ending is not Ending.COMPLETED:
+                return None
+        return mechanism, point, replace(certificate, iterations=iterations)
 
     def notes(self) -> list[str]:
         """What a reader should know besides the numbers."""
@@ -125,6 +173,8 @@ class _March:
                     Ending.STEP_TOO_SMALL,
                     f"a link turned by {turned:.2f} rad in one load step",
                 )
+            elif ending is Ending.COMPLETED and (crossed := self.mechanism.passed(self.point.at, found.point.at)):
+                ending, sentence = Ending.BEAMS_CROSSED, f"in contact '{crossed}' the beam went across the circle"
             elif certificate.failures:
                 sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
             if ending is Ending.COMPLETED:
@@ -158,9 +208,12 @@ class _March:
 
     def _closing(self, name: str, load: str, target: float) -> float | None:
         """The load at which the gap of an open contact becomes zero, the contact itself left out."""
-        problem = self.mechanism.without(name)
-        begin = self.values.get(load, 0.0)
-        near = point_at(problem, self.values, self.point.state, self.point.mu, np.zeros(0), NO_ROWS)
+        mechanism, point, begin = self.mechanism, self.point, self.values.get(load, 0.0)
+        if len(self.family) > 1:
+            asked = mechanism_of(self.scene, self.family[-1])
+            mechanism, point = asked, carried_over(mechanism, point, asked, self.values)
+        problem = mechanism.without(name)
+        near = point_at(problem, self.values, point.state, point.mu, np.zeros(0), NO_ROWS)
 
         def overlap(value: float) -> float:
             nonlocal near
@@ -169,7 +222,7 @@ class _March:
             if not found.converged:
                 return float("nan")
             near = found.point
-            return max(self.mechanism.overlap(name, found.point.state, found.point.at), -1.0)
+            return max(mechanism.overlap(name, found.point.state, found.point.at), -1.0)
 
         # without the contact the far end may be out of reach: come closer until it is not
         low, high = overlap(begin), overlap(target)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from fea_reference.ends import ends
 from fea_reference.march import March
+from fea_reference.projection import project
 from fea_reference.recovery import bending_moment
 from fea_reference.supports import support
 from fea_reference.touch import Pair, Touch
@@ -46,6 +48,9 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
         case "centre":
             touch = _touch(march, probe.of)
             return frozen_array([] if touch is None else _centre(march, touch) * units.length)
+        case "ends":
+            touch = _touch(march, probe.of)
+            return frozen_array([] if touch is None else _ends(march, touch) * units.length)
 
 
 def shapes(march: March) -> dict[str, Shape]:
@@ -82,15 +87,34 @@ def _touch(march: March, name: str) -> Touch | None:
 def _centre(march: March, touch: Touch) -> float:
     """Arc length of the pressure's centre on the beam that the scene names first."""
     weight = np.hypot(*touch.force)
-    pair = touch.pair
+    zeta = touch.zeta_m if _turned(touch) else touch.zeta
+    return float(weight @ _arc_lengths(march, touch, zeta) / weight.sum())
+
+
+def _ends(march: March, touch: Touch) -> Array:
+    """Arc lengths (2,) on the beam that the scene names first where the zone of contact begins and ends."""
+    zeta = ends(march.model, march.system, touch)
+    pair, model, z = touch.pair, march.model, march.system.z
     if isinstance(pair, Pair) and pair.turned:
-        number, zeta = pair.second, touch.zeta_m
-    else:
-        number, zeta = pair.first, touch.zeta
+        first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
+        nearest = np.argmin(np.abs(touch.zeta[:, None] - zeta), axis=0)
+        zeta, _ = project(second, first.at(zeta)[0], touch.zeta_m[nearest])
+    return np.sort(_arc_lengths(march, touch, zeta))
+
+
+def _turned(touch: Touch) -> bool:
+    """Whether the beam that the scene names first is the pair's second."""
+    return isinstance(touch.pair, Pair) and touch.pair.turned
+
+
+def _arc_lengths(march: March, touch: Touch, zeta: Array) -> Array:
+    """Arc lengths (k,) of places ``zeta`` (k,) on the beam that the scene names first."""
+    pair = touch.pair
+    number = pair.second if isinstance(pair, Pair) and pair.turned else pair.first
     line = march.model.line(march.model.beams[number], march.system.z)
     e, xi = line.locate(zeta)
     start = np.concatenate([[0.0], np.cumsum(line.lengths)])
-    return float(weight @ (start[e] + xi * line.lengths[e]) / weight.sum())
+    return np.asarray(start[e] + xi * line.lengths[e])
 
 
 def _potential_energy(march: March) -> float:

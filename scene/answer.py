@@ -9,6 +9,9 @@ displacement       (2,)    of a body's point, m
 rotation           (1,)    of a body, counter-clockwise, rad, counted through full turns
 force              (1,)    magnitude of a contact's resultant, N; 0 where it is open
 centre             (1,)    arc length on the contact's first beam of the resultant, m; empty if open
+ends               (2,)    arc lengths on the contact's first beam where its zone begins and ends, m,
+                           ascending, the same twice for contact in a point; empty if open; of several
+                           zones the first one's beginning and the last one's end
 closing_load       (1,)    value of the stepped load at which a contact first closes; empty if open
 bending_stress     (P,)    signed: E·t/2 times the change of curvature along the beam, Pa,
                            at P equal arc-length steps from the beam's start to its end;

@@ -15,6 +15,7 @@ _OF: dict[Quantity, str] = {
     "rotation": "body",
     "force": "contact",
     "centre": "contact",
+    "ends": "contact",
     "closing_load": "contact",
     "bending_stress": "beam",
     "reaction": "support",

@@ -205,6 +205,7 @@ Quantity = Literal[
     "rotation",
     "force",
     "centre",
+    "ends",
     "closing_load",
     "bending_stress",
     "reaction",

@@ -37,19 +37,53 @@ def _whole(text: str) -> int:
     return int(text)
 
 
+def whole(ctx: click.Context, param: click.Parameter, value: str) -> int:
+    """A whole number from 1 to 9999.
+
+    Raises:
+        click.BadParameter: the text is none.
+    """
+    return _whole(value)
+
+
+def counts(ctx: click.Context, param: click.Parameter, value: str | None) -> tuple[int, ...] | None:
+    """Whole numbers with commas between them; None where nothing is given.
+
+    Raises:
+        click.BadParameter: the text is something else.
+    """
+    return None if value is None else tuple(_whole(text.strip()) for text in value.split(","))
+
+
+def positive(ctx: click.Context, param: click.Parameter, value: str) -> float:
+    """A positive, finite number.
+
+    Raises:
+        click.BadParameter: the text is none.
+    """
+    number = _number(value)
+    if not 0.0 < number < math.inf:
+        raise click.BadParameter(f"found {value!r}; allowed: a number greater than 0")
+    return number
+
+
 def fraction(ctx: click.Context, param: click.Parameter, value: str) -> float:
     """A positive number that is less than 1.
 
     Raises:
         click.BadParameter: the text is none.
     """
-    try:
-        number = float(value)
-    except ValueError:
-        number = math.nan
+    number = _number(value)
     if not 0.0 < number < 1.0:
         raise click.BadParameter(f"found {value!r}; allowed: a number greater than 0 and less than 1")
     return number
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
 
 
 def numerical(command: Decorated) -> Decorated:

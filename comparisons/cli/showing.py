@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import shutil
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TypeVar
 
@@ -61,3 +62,15 @@ def progress(items: Sequence[T], *, shown: bool) -> Iterator[T]:
     from rich.progress import track
 
     yield from track(items, "solving", console=Console(stderr=True), transient=True)
+
+
+@contextmanager
+def current(*, shown: bool) -> Iterator[Callable[[str], None]]:
+    """A line on standard error that says what is being done, if that is a terminal and the line is wanted."""
+    if not shown or not sys.stderr.isatty():
+        yield lambda text: None
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status("solving") as status:
+        yield status.update

@@ -25,7 +25,8 @@ THEORY = {"bending": 0.0, "stretch": 0.002, "shear": 0.005}
 
 @dataclass(frozen=True)
 class MadeUp:
-    """An answer function: ``error`` is C/N² at N = 40, relative; the rest plants faults."""
+    """An answer function: ``error`` is C/N² at N = 40, relative; ``paper`` what that formulation adds; the rest
+    plants faults."""
 
     solver: str
     error: float
@@ -34,11 +35,13 @@ class MadeUp:
     sign: float = 1.0
     until: int | None = None
     spoilt: Callable[[StationAnswer], StationAnswer] | None = None
+    paper: float = 0.0
 
     def __call__(self, scene: Scene, choices: Choices) -> Answer:
         count = choices.links if self.solver == "cprbm" else choices.elements
         n = count if isinstance(count, int) else min(count.values())
-        theory = 0.0 if self.solver == "cprbm" else THEORY[choices.kinematics]
+        variant = self.paper * (choices.formulation == "paper")
+        theory = variant if self.solver == "cprbm" else THEORY[choices.kinematics]
         factor = (1.0 + self.error * (40.0 / n) ** 2 + theory) / self.stiffness
         stations = [
             self._station(scene, stage.name, value, factor) for stage in scene.stages for value in stage.stations
@@ -60,13 +63,15 @@ class MadeUp:
         reach = load * factor
         closed = self.contact and reach > CLOSES
         push = self.sign * (reach - CLOSES) if closed else 0.0
-        beam1 = scene.beams["beam1"]
-        total = length(beam1.curve)
+        first = next(iter(scene.beams))
+        total = length(scene.beams[first].curve)
+        shift = 0.01 * total * push / (1.0 + abs(push))
         laws: dict[str, Array] = {
             "displacement": np.array([0.01 * reach, 0.02 * reach - 0.005 * push]),
             "rotation": np.array([0.9 * reach - 0.1 * push]),
             "force": np.array([20.0 * abs(push)]),
-            "centre": np.array([0.5 * total + 0.001 * push]) if closed else np.empty(0),
+            "centre": np.array([0.5 * total + shift]) if closed else np.empty(0),
+            "ends": np.array([0.4 * total, 0.6 * total + shift]) if closed else np.empty(0),
             "closing_load": np.array([CLOSES / factor]) if closed else np.empty(0),
             "reaction": np.array([3.0 * load, 1.0 * load + 5.0 * push]),
             "reaction_moment": np.array([0.3 * load + 0.02 * push]),
@@ -86,7 +91,7 @@ class MadeUp:
             x, y = points(beam.curve, s).T + 0.01 * reach * np.outer([1.0, 1.5], (s / s[-1]) ** 2)
             shapes[name] = Shape(frozen_array(s), frozen_array(x), frozen_array(y))
         if closed:
-            touching["contact"] = frozen_array([[shapes["beam1"].x[20], shapes["beam1"].y[20] - 0.001]])
+            touching["contact"] = frozen_array([[shapes[first].x[20], shapes[first].y[20] - 0.001]])
         return StationAnswer(stage, load, frozendict(values), frozendict(shapes), frozendict(touching), CERTIFICATE)
 
 

@@ -3,7 +3,13 @@
 import pytest
 
 from comparisons.order import order_of, richardson
+from scene import Probe
 from tests.cprbm.test_circle import scene_of
+
+
+def test_the_ends_of_a_contact_with_a_circle_are_of_first_order_and_of_another_beam_of_second(hinge):
+    assert order_of(scene_of([1.0]), Probe(of="circle", quantity="ends")) == 1
+    assert order_of(hinge, Probe(of="contact", quantity="ends")) == 2
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ import sys
 
 import pytest
 
+from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
 from scene import Mistake, SceneError
@@ -22,7 +23,11 @@ def test_every_run_is_asked_for_once(hinge, right):
         return answer
 
     paired(hinge, Choices(), Solvers(noting("cprbm", right.cprbm), noting("fea", right.fea)))
-    assert [choices.links for name, choices in asked if name == "cprbm"] == [40, 80]
+    assert [(choices.links, choices.formulation) for name, choices in asked if name == "cprbm"] == [
+        (40, "auto"),
+        (80, "auto"),
+        (40, "paper"),
+    ]
     assert [
         (choices.kinematics, choices.elements, choices.penetration) for name, choices in asked if name == "fea"
     ] == [
@@ -32,6 +37,46 @@ def test_every_run_is_asked_for_once(hinge, right):
         ("shear", 80, 1e-4),
         ("shear", 160, 6.25e-6),
     ]
+
+
+def test_both_formulations_are_there_whichever_was_chosen(hinge):
+    solvers = Solvers(MadeUp("cprbm", 2e-3, paper=1e-3), MadeUp("fea", 0.0))
+    found = [paired(hinge, Choices(formulation=one), solvers).formulations for one in ("auto", "paper")]
+    rotations = [[answer.stations[0].values["BD.rotation"] for answer in pair or ()] for pair in found]
+    assert rotations[0] == rotations[1]
+    assert rotations[0][0] != rotations[0][1]
+
+
+@pytest.mark.parametrize(
+    ("case", "links", "asked"),
+    [
+        ("hinge", 160, True),
+        ("hinge", 161, False),
+        ("hinge", {"beam1": 20, "beam2": 200}, False),
+        ("wrapped", 40, False),
+    ],
+)
+def test_paper_stands_beside_auto_where_it_was_told_all_and_is_quick(right, case, links, asked):
+    runs = paired(cases.opened(case), Choices(links=links), right)
+    assert (runs.paper is not None) is asked
+    assert "paper" not in dict(runs.everything())
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_refusal_of_paper_alone_is_none(hinge, right, workers):
+    runs = paired(hinge, Choices(), Solvers(RefusingPaper(), right.fea), workers=workers)
+    assert runs.paper is runs.formulations is None
+    with pytest.raises(SceneError):
+        paired(hinge, Choices(formulation="paper"), Solvers(RefusingPaper(), right.fea), workers=workers)
+
+
+class RefusingPaper:
+    """A solver that lacks something for the formulation ``paper``."""
+
+    def __call__(self, scene, choices):
+        if choices.formulation == "paper":
+            raise SceneError([Mistake("contacts.contact.paper", "nothing", "something", "file.toml")])
+        return MadeUp("cprbm", 2e-3)(scene, choices)
 
 
 def test_counts_by_beam_are_doubled_beam_by_beam():

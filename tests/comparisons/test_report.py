@@ -35,7 +35,8 @@ def test_the_folder_holds_everything(written):
     data = json.loads((written / "hinge" / "comparison.json").read_text("utf-8"))
     assert data["cases"][0]["case"] == "hinge"
     answers = json.loads((written / "hinge" / "answers.json").read_text("utf-8"))
-    assert len(answers) == 7
+    assert len(answers) == 8
+    assert "cprbm paper" in answers
 
 
 def test_figures_are_the_same_bytes_every_time_and_carry_no_date(written, comparison):
@@ -64,6 +65,7 @@ def test_the_page_shows_verdict_claims_and_certificates(written):
         "t/(3R)",
         "Certificates",
         "stretch to shear",
+        "contact model",
     )
     for text in expected:
         assert text in page

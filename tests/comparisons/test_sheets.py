@@ -1,6 +1,7 @@
 """The tables: as many cells as headers, and no figure that hides what it stands for."""
 
 import re
+from dataclasses import replace
 
 import pytest
 
@@ -8,6 +9,7 @@ from comparisons import cases, sheets, tables
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict import compared
+from scene import Ending
 from tests.comparisons.made_up import MadeUp
 
 
@@ -46,6 +48,32 @@ def test_there_is_one_explanation_per_claim(comparison):
     assert [sentence.split()[0] for sentence in sentences] == ["B.displacement", "D.displacement"]
     assert "0.620 %" in sentences[0]
     assert "0.810 %" in sentences[1]
+
+
+@pytest.mark.parametrize(("formulation", "said"), [("auto", "would put the CPRBM"), ("paper", "in the contact model")])
+def test_the_contact_model_has_a_column_and_a_word(formulation, said):
+    scene, solvers = cases.opened("hinge"), Solvers(MadeUp("cprbm", 2e-3, paper=1e-3), MadeUp("fea", 0.0))
+    found = compared(scene, paired(scene, Choices(formulation=formulation), solvers))
+    sheet = next(sheet for sheet in sheets.of_comparison(found) if "contact model" in sheet.headers)
+    row = next(row for row in found.rows if row.probe.name == "BD.rotation" and row.station == 0.67)
+    assert row.contact_model is not None
+    share = 100 * row.contact_model / row.denominator
+    assert float(cell(sheet, "BD.rotation", "contact model").removesuffix(" %").lstrip("-")) == pytest.approx(
+        share, 1e-2
+    )
+    assert said in sheets.explanation(found)[0]
+
+
+def test_without_a_whole_answer_in_paper_the_column_is_left_out_and_the_verdict_is_the_same(comparison):
+    early = replace(
+        comparison.runs.cprbm[0], ending=Ending.LEFT_BOUNDARY, stations=comparison.runs.cprbm[0].stations[:3]
+    )
+    for paper in (early, None):
+        found = compared(comparison.scene, replace(comparison.runs, paper=paper))
+        assert found.verdict == comparison.verdict
+        steps = next(sheet for sheet in sheets.of_comparison(found) if sheet.title.startswith("What the difference"))
+        assert "contact model" not in steps.headers
+        assert (Ending.LEFT_BOUNDARY.value in steps.note) is (paper is not None)
 
 
 def test_one_answer_makes_its_own_tables(comparison):

@@ -12,7 +12,7 @@ from comparisons.choices import Choices
 from comparisons.measures import Bounds, Row
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict import Word, compared, judged
-from scene import Ending, Probe
+from scene import Ending, Probe, Stage
 from scene.answer import frozen_array
 from tests.comparisons.made_up import MadeUp, with_value
 
@@ -94,6 +94,12 @@ def test_an_answer_of_another_shape_is_undecided(hinge):
     assert "A.reaction has the shape (3,)" in verdict(hinge, wrong, RIGHT[1]).sentence
 
 
+def test_ends_that_descend_are_undecided(hinge):
+    asked = hinge.model_copy(update={"probes": (*hinge.probes, Probe(of="contact", quantity="ends"))})
+    wrong = replace(RIGHT[1], spoilt=with_value("contact.ends", [0.05, 0.02]))
+    assert "contact.ends are not ascending" in verdict(asked, RIGHT[0], wrong).sentence
+
+
 def test_a_missing_probe_is_undecided(hinge):
     def spoilt(station):
         return replace(station, values={k: v for k, v in station.values.items() if k != "BD.rotation"})
@@ -163,6 +169,8 @@ def test_round_off_in_a_number_that_vanishes_by_symmetry_is_no_difference(hinge)
 
 
 def test_but_more_than_round_off_is_one(hinge):
+    last = Stage(name="load", steps="M", stations=(0.67,))  # alone, so that no other station's uncertainty counts
+    hinge = hinge.model_copy(update={"stages": (last,)})
     cprbm = replace(RIGHT[0], spoilt=with_value("C.reaction", [2.01 + 1e-9, 3.0]))
     fea = replace(RIGHT[1], spoilt=with_value("C.reaction", [2.01, 3.0]))
     assert verdict(hinge, cprbm, fea).word is Word.DIFFER
@@ -174,11 +182,10 @@ def test_a_centre_in_one_answer_only_is_left_to_the_force(hinge):
     assert "contact.force" in said.sentence or "displacement" in said.sentence or "reaction" in said.sentence
 
 
-def test_without_a_force_probe_a_centre_in_one_answer_only_is_undecided(hinge):
-    centre_only = hinge.model_copy(
-        update={"probes": tuple(probe for probe in hinge.probes if probe.quantity == "centre"), "claims": ()}
-    )
-    assert verdict(centre_only, replace(RIGHT[0], contact=False), RIGHT[1]).word is Word.UNDECIDED
+@pytest.mark.parametrize("quantity", ["centre", "ends", "closing_load"])
+def test_without_a_force_probe_a_place_in_one_answer_only_is_undecided(hinge, quantity):
+    place_only = hinge.model_copy(update={"probes": (Probe(of="contact", quantity=quantity),), "claims": ()})
+    assert verdict(place_only, replace(RIGHT[0], contact=False), RIGHT[1]).word is Word.UNDECIDED
 
 
 def test_the_sentence_names_the_row_that_decided(hinge):

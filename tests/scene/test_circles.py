@@ -139,7 +139,7 @@ def test_the_same_circle_twice_is_refused_and_two_circles_pass():
     assert mistakes(("contacts/more", {**second, "body": "block"}), base=CIRCLE) == {}
 
 
-@pytest.mark.parametrize("quantity", ["force", "centre", "closing_load"])
+@pytest.mark.parametrize("quantity", ["force", "centre", "ends", "closing_load"])
 def test_what_may_be_asked_of_a_circle(quantity):
     assert mistakes(("probes/0", {"of": "touch", "quantity": quantity}), base=CIRCLE) == {}
 

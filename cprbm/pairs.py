@@ -1,0 +1,49 @@
+"""What a contact of the formulation ``auto`` can be asked, whatever touches."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from cprbm.contact import Group
+from cprbm.kinematics import Positions, State
+from cprbm.model import Chain
+from scene.answer import Array
+
+
+class Touching(Protocol):
+    """A beam and what it may touch; arc lengths are those of the first beam, all in units of length."""
+
+    @property
+    def name(self) -> str:
+        """Of the contact."""
+
+    @property
+    def a(self) -> Chain:
+        """The first beam."""
+
+    @property
+    def clamped(self) -> tuple[bool, bool]:
+        """Whether the beam's start and end are clamped in touch with the other."""
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Arc lengths of the first beam at which zones end on this mesh."""
+
+    @property
+    def thickness(self) -> float:
+        """What an overlap is measured by."""
+
+    def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
+        """The constraints at a state, with exact derivatives."""
+
+    def deepest(self, state: State, at: Positions) -> float:
+        """Largest overlap anywhere along the beam; zero where it is apart."""
+
+    def touching(self, state: State, at: Positions, s: Array) -> Array:
+        """Where the edges touch that touch at arc lengths ``s``, (k, 2)."""
+
+    def pressed(self, state: State, at: Positions, chain: Chain, s: Array) -> tuple[float, Array, Array] | None:
+        """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s``."""
+
+    def parting(self, state: State, at: Positions, s: Array) -> Array:
+        """Curvature D″ with which the beam parts from what it touched, at arc lengths ``s``."""

@@ -1,0 +1,158 @@
+"""Meshes for contact over a length, and carrying a state from one mesh to another.
+
+==========  ====================================================================================
+N_k         links of the meshes, N/4^k; the coarsest is where a solve begins
+c_i         arc lengths at which the zones of a contact begin and end, :mod:`cprbm.zones`
+β_i         numbers of the element borders that are put there
+==========  ====================================================================================
+
+A set of pressing joints that starts wrong by half a beam is put right only by a few joints at a time; a coarse
+mesh has few joints, and says where the zone ends on the next.  And a force at a zone's end that must be shared by
+the two joints beside it bends the beam by a part of h² that depends on where between them the end falls.
+With a border at every end of a zone and a row there, and the elements between even, it is shared by none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from cprbm.contact import Rows
+from cprbm.equilibrium import Point, point_at
+from cprbm.kinematics import State, positions
+from cprbm.mechanism import Mechanism
+from cprbm.model import Chain, Fit
+from cprbm.settings import Settings
+from cprbm.zones import Zone, zones_of
+from scene.answer import Array
+
+COARSEST = 80  # links that need no coarser mesh to start from
+FACTOR = 4
+FEWEST = 8  # links of a beam in a coarser mesh
+BESIDE = 0.6  # elements beyond a zone's end up to which a joint presses
+LEAST = 1e-3  # of the largest pressure, on a joint within a zone
+MOVED = 0.02  # elements: ends that have moved less since the mesh was made are where the mesh has them
+
+
+def coarser(settings: Settings) -> tuple[Settings, ...]:
+    """The meshes to go through, from the coarsest to the one that is asked."""
+    family = [settings]
+    if settings.formulation == "paper":  # its boundary has the joints that the asked mesh has
+        return (settings,)
+    while max(_counts(family[0])) > COARSEST:
+        links = family[0].links
+        fewer = _fewer(links) if isinstance(links, int) else {beam: _fewer(number) for beam, number in links.items()}
+        family.insert(0, settings.model_copy(update={"links": fewer}))
+    return tuple(family)
+
+
+def _counts(settings: Settings) -> tuple[int, ...]:
+    return (settings.links,) if isinstance(settings.links, int) else tuple(settings.links.values())
+
+
+def _fewer(links: int) -> int:
+    return max(min(links, FEWEST), -(-links // FACTOR))
+
+
+def all_zones(mechanism: Mechanism, point: Point) -> dict[str, tuple[Zone, ...]]:
+    """The zones of every contact that is closed over a length."""
+    if mechanism.boundaries:
+        return {}
+    found = {name: tuple(z for z in zones_of(pair, point) if z.long) for name, pair in mechanism.pairs.items()}
+    return {name: zones for name, zones in found.items() if zones}
+
+
+def ends_of(mechanism: Mechanism, zones: Mapping[str, tuple[Zone, ...]]) -> dict[str, Array]:
+    """For every contact with a zone, its ends c_i within the first beam, as shares of the length, ascending."""
+    ends = {}
+    for name, found in zones.items():
+        length = mechanism.pairs[name].a.s[-1]
+        inner = {end / length for zone in found for end in (zone.begin, zone.end) if 0.0 < end < length}
+        if inner:
+            ends[name] = np.array(sorted(inner))
+    return ends
+
+
+def fitted(mechanism: Mechanism, ends: Mapping[str, Array], settings: Settings) -> Fit:
+    """Elements that end where contacts do, even between; where ends are closer than an element, even ones."""
+    contacts: dict[str, list[str]] = {}
+    for name in ends:
+        contacts.setdefault(mechanism.pairs[name].a.name, []).append(name)
+    borders: dict[str, Array] = {}
+    kept: dict[str, Array] = {}
+    for beam, names in contacts.items():
+        n = settings.links_of(beam)
+        places = np.unique(np.concatenate([ends[name] for name in names]))
+        numbers = np.concatenate(([0.0], np.clip(np.round(places * n), 1, n - 1), [float(n)]))
+        if np.all(np.diff(numbers) >= 1.0):
+            borders[beam] = np.interp(np.arange(n + 1), numbers, np.concatenate(([0.0], places, [1.0])))
+            kept |= {name: ends[name] for name in names}
+    return Fit(borders, kept)
+
+
+def fits(mechanism: Mechanism, fit: Fit) -> bool:
+    """Whether the mechanism's mesh was made for (nearly) the same ends."""
+    for name, pair in mechanism.pairs.items():
+        wanted = fit.ends.get(name, np.zeros(0)) * pair.a.s[-1]
+        if len(wanted) != len(pair.ends) or np.any(np.abs(wanted - pair.ends) > MOVED * pair.a.h):
+            return False
+    return True
+
+
+def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict[str, float]) -> Point:
+    """A state of one mesh on another, with its forces: a guess."""
+    old, new = before.problem.model, after.problem.model
+    theta = new.rest.copy()
+    for source, target in zip(old.chains, new.chains, strict=True):
+        turned = point.state.theta[source.links] - source.rest
+        theta[target.links] += np.interp(_middles(target), _middles(source), turned)
+    state = State(theta, point.state.bodies)
+    at = positions(new, state)
+    rows = after.problem.formulation(state, at)
+    lam = np.zeros(rows.size)
+    zones = all_zones(before, point)
+    first = 0
+    for group in rows.groups:
+        name, mine = group.contact, slice(first, first + len(group.values))
+        first = mine.stop
+        if name in zones:
+            lam[mine] = _pressure(point, name, zones[name], (before.pairs[name].a, after.pairs[name].a), group.arc)
+    _add_single(point, zones, rows, lam, 2.0 * max(chain.h for chain in old.chains))
+    return point_at(after.problem, values, state, point.mu, lam, rows)
+
+
+def _middles(chain: Chain) -> Array:
+    """Where each link has the beam's tangent: its border."""
+    return chain.borders
+
+
+def _elements(chain: Chain, arc: Array) -> Array:
+    """Lengths of the elements at arc lengths ``arc``."""
+    return np.asarray(chain.sizes[np.clip(np.searchsorted(chain.borders, arc) - 1, 0, chain.n - 1)])
+
+
+def _pressure(point: Point, contact: str, zones: tuple[Zone, ...], chains: tuple[Chain, Chain], arc: Array) -> Array:
+    """Forces on rows at ``arc`` within the zones, from the pressures of an earlier mesh; its and the new chain."""
+    source, target = chains
+    lam = np.zeros(len(arc))
+    mine = np.array([name == contact for name in point.rows.contact], dtype=bool)
+    order = np.argsort(point.rows.arc[mine])
+    places, forces = point.rows.arc[mine][order], point.lam[mine][order]
+    pressure = np.interp(arc, places, forces / _elements(source, places))
+    size = _elements(target, arc)
+    for zone in zones:
+        # up to the joint beyond an end, which shares the force there; an arch's joints press too, in the limit
+        inside = (arc >= zone.begin - BESIDE * size) & (arc <= zone.end + BESIDE * size)
+        lam[inside] = np.maximum(pressure[inside], LEAST * pressure.max()) * size[inside]
+    return lam
+
+
+def _add_single(point: Point, zones: Mapping[str, tuple[Zone, ...]], rows: Rows, lam: Array, reach: float) -> None:
+    """Add the forces outside of zones to the nearest rows of the same contact."""
+    for force, arc, contact in zip(point.lam, point.rows.arc, point.rows.contact, strict=True):
+        if force <= 0.0 or any(zone.begin - reach <= arc <= zone.end + reach for zone in zones.get(contact, ())):
+            continue
+        mine = [i for i in range(rows.size) if rows.contact[i] == contact]
+        if mine:
+            lam[min(mine, key=lambda i: abs(rows.arc[i] - arc))] += force

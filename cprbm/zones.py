@@ -1,0 +1,82 @@
+"""Where a contact begins and ends along its first beam.
+
+==========  ==============================================================================
+s_j         arc length of the beam's joints
+b, e        the zone's ends
+D″          curvature with which the beam parts from what it touched, zero in a zone
+==========  ==============================================================================
+
+Forces act on joints, so that the last that press tell an end only to one element.  Beyond it the moment is
+smooth and D″ grows from zero: continued backwards from the next three joints, it says where it began.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cprbm.equilibrium import Point
+from cprbm.model import Chain
+from cprbm.pairs import Touching
+from scene.answer import Array
+
+CLOSE = 1.6  # elements between joints that are close; farther, a joint between them is not
+SHORTEST = 1.9  # elements between the outer forces of a zone; two neighbours share the force of one place
+CONTINUED = 3  # joints
+
+
+@dataclass(frozen=True, slots=True)
+class Zone:
+    """Arc lengths between which a beam touches, units of length; ``long`` where it is more than a place."""
+
+    begin: float
+    end: float
+    long: bool
+
+
+def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
+    """The zones of one contact in ascending order, none while it is open."""
+    chain = pair.a
+    mine = np.array([name == pair.name for name in point.rows.contact], dtype=bool)
+    arcs, forces, overlaps = point.rows.arc[mine], point.lam[mine], point.rows.values[mine]
+    if not np.any(forces > 0.0):
+        return ()
+    largest = forces.max()
+    # ends that are clamped in touch: no force is needed there
+    clamped = chain.s[[0, -1]][list(pair.clamped)]
+    arcs, forces = np.append(arcs, clamped), np.append(forces, np.full(len(clamped), largest))
+    overlaps = np.append(overlaps, np.zeros(len(clamped)))
+    order = np.argsort(arcs)
+    arcs, forces, overlaps = arcs[order], forces[order], overlaps[order]
+    pressed = np.flatnonzero(forces > 0.0)
+    h = float(chain.sizes.max())
+    # one zone goes on where each joint has a row, and the beam arches by no more than one force can bend an element
+    arched = -overlaps > largest * h**3 / chain.rigidity
+    breaks = np.concatenate(([0], np.cumsum((np.diff(arcs) > CLOSE * h) | arched[1:] | arched[:-1])))
+    runs = np.split(arcs[pressed], np.flatnonzero(np.diff(breaks[pressed])) + 1)
+    return tuple(_zone(pair, point, chain, run, h) for run in runs if len(run) > 1 or run[0] not in clamped)
+
+
+def _zone(pair: Touching, point: Point, chain: Chain, run: Array, h: float) -> Zone:
+    """The zone whose forces act at arc lengths ``run``, ascending."""
+    first, last = float(run[0]), float(run[-1])
+    springs = chain.s[1:-1]
+    before, after = springs[springs < first - 0.75 * h][::-1], springs[springs > last + 0.25 * h]
+    whole = run.size > 1 and (not before.size or not after.size)
+    if not whole and last - first < SHORTEST * h:
+        return Zone(first, last, long=False)
+    begin = _continued(pair, point, before[:CONTINUED], first, h) if before.size else 0.0
+    end = _continued(pair, point, after[:CONTINUED], last, h) if after.size else float(chain.s[-1])
+    return Zone(begin, max(begin, end), long=True)
+
+
+def _continued(pair: Touching, point: Point, joints: Array, last: float, h: float) -> float:
+    """Where D″ at some ``joints`` beyond a zone, the nearest first, was zero: near the ``last`` force."""
+    parting = pair.parting(point.state, point.at, joints)
+    if len(joints) < 2 or not np.all(np.diff(parting, prepend=0.0) > 0.0):
+        return last
+    # s as a polynomial of D″, at zero (Lagrange)
+    weights = [np.prod([other / (other - own) for other in np.delete(parting, i)]) for i, own in enumerate(parting)]
+    found = float(np.dot(weights, joints))
+    return found if abs(found - last) <= 1.5 * h else last
