@@ -100,7 +100,7 @@ class Pair:
         across: +1 where B starts on the left of A, −1 on the right.
         offset: ½(t₁+t₂), zero for lines; units of length.
         unit_length: ℓ, m.
-        clamped: for the start and the end of A and of B, whether it is clamped together with an end of the other.
+        clamps: for the start and the end of A and of B, whether it is clamped together with an end of the other.
     """
 
     name: str
@@ -110,7 +110,7 @@ class Pair:
     across: float
     offset: float
     unit_length: float
-    clamped: tuple[tuple[bool, bool], tuple[bool, bool]] = ((False, False), (False, False))
+    clamps: tuple[tuple[bool, bool], tuple[bool, bool]] = ((False, False), (False, False))
 
     def lines(self, state: State, at: Positions) -> Lines:
         """The smooth lines of A and B in a state."""
@@ -121,14 +121,12 @@ class Pair:
 
     def exchanged(self) -> Pair:
         """The same contact with the parts of A and B exchanged."""
-        return Pair(
-            self.name, self.b, self.a, self.across, self.side, self.offset, self.unit_length, self.clamped[::-1]
-        )
+        return Pair(self.name, self.b, self.a, self.across, self.side, self.offset, self.unit_length, self.clamps[::-1])
 
     @property
     def clamped(self) -> tuple[bool, bool]:
-        """Whether the beam's start and end are clamped in touch with the other: not told."""
-        return (False, False)
+        """Whether A's start and end are clamped in touch with B."""
+        return self.clamps[0]
 
     @property
     def ends(self) -> tuple[float, ...]:
@@ -136,12 +134,15 @@ class Pair:
         return ()
 
     def parting(self, state: State, at: Positions, s: Array) -> Array:
-        """Curvature D″ with which A parts from B, at arc lengths ``s``."""
+        """Curvature D″ with which A parts from B, at arc lengths ``s``; between springs it goes evenly."""
         lines = self.lines(state, at)
         D, sigma, _ = distance_along(self, lines, s)
-        A, B = lines[0].at(s), lines[1].at(sigma)
-        facing = np.sign(np.cos(A.psi - B.psi))
-        return np.asarray(self.side * (facing * A.bend - B.bend / (1.0 - self.side * D * B.bend)))
+        facing = np.sign(np.cos(lines[0].at(s).psi - lines[1].at(sigma).psi))
+        bend_A, bend_B = (
+            np.interp(places, line.chain.s[1:-1], line.at(line.chain.s[1:-1]).bend)
+            for line, places in zip(lines, (s, sigma), strict=True)
+        )
+        return np.asarray(self.side * (facing * bend_A - bend_B / (1.0 - self.side * D * bend_B)))
 
     @property
     def thickness(self) -> float:
@@ -213,7 +214,8 @@ class Pair:
             tied = touches.only(number[beside].ravel())
             shares = weights[beside].reshape(1, -1) / len(beside)
             arc, other = np.mean(joints.s[beside], keepdims=True), np.mean(joints.sigma[beside], keepdims=True)
-            found.append((gathered(self.name, chains, at, tied, shares, np.array([key]), arc), other))
+            rows = gathered(self.name, chains, at, tied, shares, np.array([key]), arc)
+            found.append((replace(rows, reach=0.5 * float(np.ptp(joints.s[beside]))), other))
         if np.any(alone):
             rest = joints.only(alone)
             own = touches.only(number[alone].ravel())
@@ -249,7 +251,7 @@ class Pair:
         """For every end of A that is clamped with B: the key of the row there, and which joints share it."""
         m = round(np.sqrt(self.a.n))
         found = []
-        for end, clamped in enumerate(self.clamped[0]):
+        for end, clamped in enumerate(self.clamps[0]):
             beside = (keys if end == 0 else self.a.n + 1 - keys) <= 2 * m
             # joints on both sides of the row's end lie close, or the beams part before
             if clamped and np.sum(beside) == 2 * m < self.a.n:
@@ -446,7 +448,7 @@ def pair_of(scene: Scene, model: Model, name: str) -> Pair:
     pair = Pair(name, a, b, 1.0, 1.0, half, model.unit_length)
     lines = pair.lines(state, at)
     pair = replace(pair, side=_side(pair, lines), across=_side(pair.exchanged(), lines[::-1]))
-    return replace(pair, clamped=(_clamped(pair, lines), _clamped(pair.exchanged(), lines[::-1])))
+    return replace(pair, clamps=(_clamped(pair, lines), _clamped(pair.exchanged(), lines[::-1])))
 
 
 def _clamped(pair: Pair, lines: Lines) -> tuple[bool, bool]:

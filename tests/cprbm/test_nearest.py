@@ -121,7 +121,7 @@ def test_what_is_welded_to_one_body_side_by_side_has_no_row_there(longer):
     # a gap between welds that cannot open or close is no unknown: without the row the load is carried
     scene = beams(line((0.0, 0.001), (0.1, 0.001)), line((0.0, 0.0), (0.1 * longer, 0.0)))
     pair, state, at = pair_at_rest(scene, 12)
-    assert pair.clamped == ((True, False), (True, False))
+    assert pair.clamps == ((True, False), (True, False))
     rows = Rows(pair.groups(state, at))
     assert np.min(rows.arc) > 0.0
     assert len(set(rows.keys)) == rows.size
@@ -134,7 +134,7 @@ def test_what_is_welded_to_one_body_side_by_side_has_no_row_there(longer):
 def test_clamps_that_leave_a_gap_are_not_taken_for_one():
     scene = beams(line((0.0, 0.0011), (0.1, 0.0011)), line((0.0, 0.0), (0.1, 0.0)))
     pair, _, _ = pair_at_rest(scene, 12)
-    assert pair.clamped == ((False, False), (False, False))
+    assert pair.clamps == ((False, False), (False, False))
 
 
 def test_rows_keep_their_keys_while_the_state_moves_a_little():
