@@ -93,3 +93,53 @@ def punched() -> Scene:
             ],
         }
     )
+
+
+RISE, HALF_SPAN = 0.01, 0.05
+
+
+def snapping() -> Scene:
+    """A shallow arch on two pins, its crown driven down and held from turning and from going aside.
+
+    Under a load it would jump at its limit point, which a drive goes through; the reaction changes its sign.
+    """
+    radius = (HALF_SPAN**2 + RISE**2) / (2.0 * RISE)
+    arc = {"kind": "arc", "center": [0.0, RISE - radius], "direction": "clockwise"}
+    beam = {"thickness": 0.0005, "width": 0.008, "material": "m"}  # slender: a stout shallow arch also shortens
+    crown, left, right = [0.0, RISE], [-HALF_SPAN, 0.0], [HALF_SPAN, 0.0]
+    pin, weld = {"joint": "pin"}, {"joint": "weld", "point": "T"}
+    return scene_from(
+        {
+            "name": "snapping",
+            "materials": {"m": {"youngs_modulus": 2.3e9, "poisson_ratio": 0.35}},
+            "bodies": {
+                "ground": {"motion": "fixed", "points": {"A": left, "B": right}},
+                "top": {"motion": "free", "points": {"T": crown}},
+            },
+            "beams": {
+                "left": {
+                    **beam,
+                    "curve": {**arc, "start": left, "end": crown},
+                    "start": {**pin, "point": "A"},
+                    "end": weld,
+                },
+                "right": {
+                    **beam,
+                    "curve": {**arc, "start": crown, "end": right},
+                    "start": weld,
+                    "end": {**pin, "point": "B"},
+                },
+            },
+            "drives": {
+                "down": {"kind": "displacement", "point": "T", "direction": [0.0, -1.0]},
+                "aside": {"kind": "displacement", "point": "T", "direction": [1.0, 0.0]},
+                "turn": {"kind": "rotation", "body": "top"},
+            },
+            "stages": [{"name": "down", "steps": "down", "stations": [0.002, 0.006, 0.012, 0.016]}],
+            "probes": [
+                {"of": "T", "quantity": "reaction"},
+                {"of": "A", "quantity": "reaction"},
+                {"of": "scene", "quantity": "potential_energy"},
+            ],
+        }
+    )

@@ -12,7 +12,7 @@ from comparisons.pairing import Solvers, cprbm_answer, paired
 from comparisons.scales import natural_scale
 from comparisons.verdict import Word, compared
 from tests.cprbm.driven import driven_hinge
-from tests.together.driven import GAP, gripper_like, punched
+from tests.together.driven import GAP, gripper_like, punched, snapping
 
 
 @pytest.fixture(scope="module")
@@ -83,3 +83,16 @@ def test_a_driven_circle_presses_a_beam_and_lets_it_go():
             assert drive[0] == pytest.approx(0.0, abs=1e-12 * push[0])  # the slide holds the rest
             assert drive[1] == pytest.approx(-wall[1], rel=1e-8)
             assert push[0] == pytest.approx(float(wall @ wall) ** 0.5, rel=1e-8)
+
+
+def test_a_drive_goes_through_a_limit_point():
+    """The push grows, falls and becomes a pull; a load would have jumped. Both supports share it."""
+    scene = snapping()
+    runs = paired(scene, Choices(), Solvers())
+    found = compared(scene, runs)
+    assert found.verdict.word is Word.AGREE, found.verdict.sentence
+    for answer in (runs.cprbm[0], runs.reference):
+        pushes = [station.values["T.reaction"][1] for station in answer.stations]
+        assert pushes[1] < pushes[0] < pushes[2] < 0.0 < pushes[3]
+        for station, push in zip(answer.stations, pushes, strict=True):
+            assert station.values["A.reaction"][1] == pytest.approx(-0.5 * push, rel=1e-6)
