@@ -31,7 +31,9 @@ The formulation ``paper`` holds joints apart and not what lies between them, so 
 a contact falls between joints and no two N tell it. There u_c = |v_c − v_a| + S·4/3·|v_a − V_c|: its distance from the
 formulation whose error is even in N, and that one's own.
 
-The theory term is |v_b − v_f|, computed and never typed in.  The difference is the sum of its steps,
+The theory term is |v_b − v_f|, computed and never typed in.  It holds what the discretisations make of either
+value, so that the exact sum v_c − v_f = (v_c − v_b) + (v_b − v_f) is bounded by u_c + u_b and the term: of the
+finite elements' two uncertainties the larger one stands in the whole.  The difference is the sum of its steps,
 
     v_c − v_f = (v_c − v_a) + (v_a − v_b) + (v_b − v_s) + (v_s − v_f),
 
@@ -102,7 +104,7 @@ class Bounds:
     @property
     def total(self) -> float:
         """What may lie between the two solvers."""
-        return self.cprbm + self.fea + self.theory + self.round_off
+        return self.cprbm + max(self.fea, self.bending) + self.theory + self.round_off
 
     @property
     def same_theory(self) -> float:

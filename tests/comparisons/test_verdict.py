@@ -211,13 +211,24 @@ def test_a_word_follows_its_definition(difference, same_theory, c, f, b, theory,
 
     scene = cases.opened("hinge")
     said = judged(scene, (row(difference, same_theory, Bounds(c, f, b, theory, round_off)),)).word
-    total, tight = c + f + theory + round_off, c + b + round_off
+    total, tight = c + max(f, b) + theory + round_off, c + b + round_off
     if difference > total or same_theory > tight:
         assert said is Word.DIFFER
     elif total > 0.015 or tight > 0.015:
         assert said is Word.UNDECIDED
     else:
         assert said is Word.AGREE
+
+
+@settings(max_examples=300)
+@given(SHARES, SHARES, SHARES, SHARES, SHARES, st.sampled_from([-1.0, 1.0]), st.sampled_from([-1.0, 1.0]))
+def test_what_agrees_within_one_theory_does_not_differ_by_the_step_between_them(own, c, f, b, step, first, second):
+    """v_c − v_f is the sum of v_c − v_b and of v_b − v_f, and the second is known."""
+    from comparisons import cases
+
+    difference, same_theory = abs(first * own + second * step), own
+    said = judged(cases.opened("hinge"), (row(difference, same_theory, Bounds(c, f, b, step, 1e-15)),)).word
+    assert (said is Word.DIFFER) is (same_theory > c + b + 1e-15)
 
 
 def test_differing_weighs_more_than_undecided(hinge):
