@@ -2,7 +2,7 @@
 
 With the symbols of :mod:`comparisons.measures`, a row says
 
-* DIFFER if  |v_c − v_f| > u_c + max(u_f, u_b) + |v_b − v_f| + r   or   |v_c − v_b| > u_c + u_b + r;
+* DIFFER if  |v_c − v_f| > u_c + u_f + |v_b − v_f| + r   or   |v_c − v_b| > u_c + u_b + r;
 * UNDECIDED if it does not differ, but one of the two sums is more than the scene's ``verdict_limit`` of the
   probe's scale: such a sum would have excused a wrong answer too;
 * AGREE otherwise.
@@ -162,7 +162,7 @@ def _sentence(scene: Scene, row: Row, word: Word, count: int, rows: int) -> str:
 
 
 def _sum(bounds: Bounds, row: Row, *, tight: bool) -> str:
-    parts = {"cprbm": bounds.cprbm, "fea": bounds.bending if tight else max(bounds.fea, bounds.bending)}
+    parts = {"cprbm": bounds.cprbm, "fea": bounds.bending if tight else bounds.fea}
     if not tight:
         parts["theory"] = bounds.theory
     return ", ".join(f"{name} {_of_scale(part, row)}" for name, part in parts.items())

@@ -48,7 +48,7 @@ def contact_forces(problem: Problem, point: Point, only: str | None = None) -> C
 
 
 def contact_pressure(point: Point, contact: str, chain: Chain) -> tuple[Array, Array]:
-    """Of the rows of one contact that press: arc length on its first beam, ``chain``, and the force on it, (k,) each."""
+    """Of the rows of a contact that press: arc length on its first beam, ``chain``, and the force there, (k,) each."""
     arcs, forces = [np.zeros(0)], [np.zeros(0)]
     for group, lam in point.rows.shares(point.lam):
         if group.contact != contact:
@@ -119,6 +119,9 @@ def balances(problem: Problem, point: Point) -> tuple[float, float]:
         moment = np.sum(point.at.x[j] * contact.fy[j] - point.at.y[j] * contact.fx[j])
         moment += np.sum(contact.moments[chain.links])
         parts.append((np.zeros(2), force, float(moment)))
+    for mark in range(model.first_mark, model.n_joints):
+        force = np.array([contact.fx[mark], contact.fy[mark]])
+        parts.append((np.array([point.at.x[mark], point.at.y[mark]]), force, 0.0))
     forces = np.array([force for _, force, _ in parts])
     moments = np.array([m + place[0] * force[1] - place[1] * force[0] for place, force, m in parts])
     largest_force = float(np.max(np.abs(forces), initial=0.0))

@@ -42,9 +42,7 @@ def coarser(settings: Settings) -> tuple[Settings, ...]:
         return (settings,)
     while max(_counts(family[0])) > COARSEST:
         links = family[0].links
-        fewer = (
-            _fewer(links) if isinstance(links, int) else {beam: _fewer(number) for beam, number in links.items()}
-        )
+        fewer = _fewer(links) if isinstance(links, int) else {beam: _fewer(number) for beam, number in links.items()}
         family.insert(0, settings.model_copy(update={"links": fewer}))
     return tuple(family)
 
@@ -116,10 +114,10 @@ def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict
     zones = all_zones(before, point)
     first = 0
     for group in rows.groups:
-        mine = slice(first, first + len(group.values))
+        name, mine = group.contact, slice(first, first + len(group.values))
         first = mine.stop
-        pair = after.pairs[group.contact]
-        lam[mine] = _pressure(point, group.contact, zones.get(group.contact, ()), before.pairs[group.contact].a, pair.a, group.arc)
+        if name in zones:
+            lam[mine] = _pressure(point, name, zones[name], (before.pairs[name].a, after.pairs[name].a), group.arc)
     _add_single(point, zones, rows, lam, 2.0 * max(chain.h for chain in old.chains))
     return point_at(after.problem, values, state, point.mu, lam, rows)
 
@@ -134,11 +132,10 @@ def _elements(chain: Chain, arc: Array) -> Array:
     return np.asarray(chain.sizes[np.clip(np.searchsorted(chain.borders, arc) - 1, 0, chain.n - 1)])
 
 
-def _pressure(point: Point, contact: str, zones: tuple[Zone, ...], source: Chain, target: Chain, arc: Array) -> Array:
-    """Forces on rows at ``arc`` within the zones, from the pressures of an earlier mesh."""
+def _pressure(point: Point, contact: str, zones: tuple[Zone, ...], chains: tuple[Chain, Chain], arc: Array) -> Array:
+    """Forces on rows at ``arc`` within the zones, from the pressures of an earlier mesh; its and the new chain."""
+    source, target = chains
     lam = np.zeros(len(arc))
-    if not zones:
-        return lam
     mine = np.array([name == contact for name in point.rows.contact], dtype=bool)
     order = np.argsort(point.rows.arc[mine])
     places, forces = point.rows.arc[mine][order], point.lam[mine][order]
@@ -151,9 +148,7 @@ def _pressure(point: Point, contact: str, zones: tuple[Zone, ...], source: Chain
     return lam
 
 
-def _add_single(
-    point: Point, zones: Mapping[str, tuple[Zone, ...]], rows: Rows, lam: Array, reach: float
-) -> None:
+def _add_single(point: Point, zones: Mapping[str, tuple[Zone, ...]], rows: Rows, lam: Array, reach: float) -> None:
     """Add the forces outside of zones to the nearest rows of the same contact."""
     for force, arc, contact in zip(point.lam, point.rows.arc, point.rows.contact, strict=True):
         if force <= 0.0 or any(zone.begin - reach <= arc <= zone.end + reach for zone in zones.get(contact, ())):

@@ -131,7 +131,8 @@ class SmoothLine:
         # A − A⁰ and W − W⁰ and their derivatives over u
         A, W = h * xi * R * _series(SINE, phi * phi), h * xi * R * phi * _series(VERSINE, phi * phi)
         A_u, W_u, A_uu, W_uu = R_cos, R_sin, -turn / h * R_sin, turn / h * R_cos
-        a, w, a1, w1, a2, w2 = t, 0.0 * t, 1.0, 0.0, 0.0, 0.0
+        nothing = np.zeros(len(s))
+        a, w, a1, w1, a2, w2 = t, nothing, nothing + 1.0, nothing, nothing, nothing
         lean = np.stack((np.ones(len(s)), np.zeros(len(s))))
         if curved:
             phi = ratio * xi
@@ -274,7 +275,7 @@ def _over_angles(points: Points) -> Array:
 
 def _vector(points: Points, local: Array) -> Array:
     """Vectors (k, 2) from their coordinates (2, k) in the links' frames."""
-    return local[0][:, None] * points.e + local[1][:, None] * points.n
+    return np.asarray(local[0][:, None] * points.e + local[1][:, None] * points.n)
 
 
 def position_slopes(points: Points) -> Array:

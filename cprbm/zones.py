@@ -38,8 +38,8 @@ class Zone:
 def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     """The zones of one contact in ascending order, none while it is open."""
     chain = pair.a
-    rows = [(group.arc, lam, group.values) for group, lam in point.rows.shares(point.lam) if group.contact == pair.name]
-    arcs, forces, overlaps = (np.concatenate([np.zeros(0), *part]) for part in (zip(*rows, strict=True) if rows else ((),) * 3))
+    mine = np.array([name == pair.name for name in point.rows.contact], dtype=bool)
+    arcs, forces, overlaps = point.rows.arc[mine], point.lam[mine], point.rows.values[mine]
     if not np.any(forces > 0.0):
         return ()
     largest = forces.max()

@@ -18,20 +18,22 @@ from __future__ import annotations
 import numpy as np
 
 from fea_reference.model import Model
+from fea_reference.state import State
 from scene.answer import Array
 
 
-def advance(model: Model, z: Array, step: Array) -> Array:
-    """State ``z`` moved by ``step``, both (size,)."""
-    moved = np.asarray(z + step)
+def advance(model: Model, z: State, step: Array) -> State:
+    """State ``z`` moved by ``step`` (size,)."""
+    way = step.copy()
     for beam in model.beams:
         dofs = model.node_dofs[:2, beam.nodes]
-        dx, dy = np.diff(z[dofs], axis=1)
+        dx, dy = z.difference(dofs[:, 1:], dofs[:, :-1])
         step_x, step_y = np.diff(step[dofs], axis=1)
         square = dx * dx + dy * dy
         turn = (dx * step_y - dy * step_x) / square
-        stretch = 1.0 + (dx * step_x + dy * step_y) / square
-        cos, sin = stretch * np.cos(turn), stretch * np.sin(turn)
-        chords = np.stack([cos * dx - sin * dy, sin * dx + cos * dy])
-        moved[dofs[:, 1:]] = moved[dofs[:, :1]] + np.cumsum(chords, axis=1)
-    return moved
+        stretch = (dx * step_x + dy * step_y) / square
+        # What each chord changes by, with all digits however small it is: (1 + stretch) R(turn) less one.
+        along, across = stretch * np.cos(turn) - 2.0 * np.sin(0.5 * turn) ** 2, (1.0 + stretch) * np.sin(turn)
+        changes = np.stack([along * dx - across * dy, across * dx + along * dy])
+        way[dofs[:, 1:]] = step[dofs[:, :1]] + np.cumsum(changes, axis=1)
+    return z.moved(way)

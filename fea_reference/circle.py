@@ -8,30 +8,43 @@ r, n    distance |x − c| and its direction (x − c)/r;  τ is n turned clockw
 R, T    radius; half of the beam's thickness, zero for a line
 g       gap r − R − T
 ε       penalty stiffness per unit length of the beam
+δ       lead: the gap at which the pressure begins
+N       axial force of the beam
 ======  =====================================================================================
 
-Energy Π_c = ∫ ½ ε ⟨−g⟩² ds over the beam's undeformed arc length, where
+Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the beam's undeformed arc length, where
 
     δg = n·(δx − δc),     δ²g = n·(δ²x − δ²c) + (τ·(δx − δc))²/r,
 
-and by ζ alone g' = n·x', g'' = n·x'' + (τ·x')²/r.  The integral runs over the exact intervals on which g < 0,
+and by ζ alone g' = n·x', g'' = n·x'' + (τ·x')²/r.  The integral runs over the exact intervals on which g < δ,
 as in :mod:`fea_reference.contact`: the pressure vanishes at their ends.
+
+A beam that lies on a circle has the circle's curvature, so it has no shear force, so its tension is constant and
+presses it on with N/(R + T) (Landau and Lifshitz, Theory of Elasticity, §19).  Without a lead, the beam sinks in by
+that over ε, and beside a clamp, which does not, a layer of width (4 EI/ε)^¼ leaves its pressure to the clamp: an
+error of first order in the layer's width in the contact's force.  With δ = N/((R + T) ε) there is no such layer, and
+what is left, at the end of the zone, is of second order.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from fea_reference.hermite import NeutralLine, along, bending_along, shapes
+from fea_reference.hermite import NeutralLine, along, shapes, twice_along
 from fea_reference.model import Model, turned
-from fea_reference.touch import Circle, Touch
+from fea_reference.state import State, squared, summed
+from fea_reference.touch import Circle, Penalty, Touch
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative
 from scene.answer import Array
 from scene.statement import CircleContact, Scene
 
 _LAYERS = 32.0  # of the first penalty, in a beam's length
-_RESOLVED = 4.2  # layers in an element: with more, its cubic cannot follow, and the force at a clamp suffers
-_THINNEST = 800.0  # layers in a beam's length: with more, the force is lost in round-off
+# Layers in an element: its cubic leaves the circle by a share of h⁴, which a clamp's own element does not make up for.
+_RESOLVED = 3.0
+# Layers in a beam's length: what they leave, of second order, is below 1e-6, and more of them only cost iterations.
+_THINNEST = 800.0
 
 
 def circles(scene: Scene, model: Model) -> tuple[Circle, ...]:
@@ -66,17 +79,17 @@ def circles(scene: Scene, model: Model) -> tuple[Circle, ...]:
     return tuple(found)
 
 
-def zones_of(model: Model, circle: Circle, z: Array) -> Zones:
+def zones_of(model: Model, circle: Circle, z: State) -> Zones:
     """Where the beam overlaps the circle in state ``z``."""
     return _find(model.line(model.beams[circle.first], z), centre(model, circle, z), circle.radius + circle.distance)
 
 
-def centre(model: Model, circle: Circle, z: Array) -> Array:
+def centre(model: Model, circle: Circle, z: State) -> Array:
     """Where the circle's centre is, (2,)."""
     return model.carried(model.bodies[circle.body], np.array(circle.arm), z)
 
 
-def passed(model: Model, circle: Circle, before: Array, after: Array) -> bool:
+def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
     """Whether a beam that goes straight from one state to another sweeps over the circle's centre.
 
     It does if the loop of its old place, its end's way, its new place backwards and its start's way winds
@@ -90,12 +103,13 @@ def passed(model: Model, circle: Circle, before: Array, after: Array) -> bool:
     return bool(abs(winding) > np.pi)
 
 
-def touch(model: Model, circle: Circle, stiffness: float, quadrature: int, z: Array) -> Touch:
+def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: State) -> Touch:
     """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[circle.first], model.bodies[circle.body]
     line, c = model.line(beam, z), centre(model, circle, z)
     reach = circle.radius + circle.distance
-    zones = _find(line, c, reach)
+    ahead = _find(line, c, reach + penalty.lead)
+    zones = replace(ahead, least=ahead.least + penalty.lead)
 
     points, weights = np.polynomial.legendre.leggauss(quadrature)
     width = zones.intervals[:, 1] - zones.intervals[:, 0]
@@ -104,27 +118,26 @@ def touch(model: Model, circle: Circle, stiffness: float, quadrature: int, z: Ar
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
     x = line.at(zeta)[0]
-    r = np.hypot(*(x - c[:, None]))
-    n = (x - c[:, None]) / r
+    r, n, g = _clearance(line, c, reach, zeta)
     tau = np.stack([n[1], -n[0]])
-    g = r - reach
 
-    H = shapes(xi, line.lengths[e])
+    H = shapes(xi)
     g_q, p = along(n, H, line, e), along(tau, H, line, e)
-    dofs = model.element_dofs[:6, e + beam.elements.start]
-    bent = dict(zip((2, 5), bending_along(n, H, line, e), strict=True))
+    dofs = model.element_dofs[:, e + beam.elements.start]
+    own = twice_along(n, H, line, e)
     if body.dofs is not None:
         arm = turned(np.array(circle.arm), z[body.dofs[2]])
         across = np.array([-arm[1], arm[0]])  # ∂(R arm)/∂φ; its derivative is −R arm
         g_q = np.concatenate([g_q, -n, -across[None] @ n])
         p = np.concatenate([p, -tau, -across[None] @ tau])
         dofs = np.concatenate([dofs, np.repeat(body.dofs[:, None], zeta.size, axis=1)])
-        bent[8] = arm @ n
     g_qq = p[:, None] * p[None, :] / r
-    for i, value in bent.items():
-        g_qq[i, i] += value
+    g_qq[:7, :7] += own
+    if body.dofs is not None:
+        g_qq[9, 9] += turned(np.array(circle.arm), z[body.dofs[2]]) @ n
 
-    weight = stiffness * ds
+    g = g - penalty.lead
+    weight = penalty.stiffness * ds
     return Touch(
         pair=circle,
         zones=zones,
@@ -141,17 +154,47 @@ def touch(model: Model, circle: Circle, stiffness: float, quadrature: int, z: Ar
     )
 
 
+def resting_pressure(model: Model, touch: Touch, circle: Circle, z: State) -> float:
+    """N/(R + T), of the mean tension along the zone; zero where the beam is pushed along instead."""
+    if not touch.closed:
+        return 0.0
+    beam = model.beams[circle.first]
+    low, high = touch.zones.intervals.T
+    e, _ = model.line(beam, z).locate(0.5 * (low + high))
+    axial = z[model.element_dofs[6, e + beam.elements.start]]
+    return max(0.0, float(axial @ (high - low) / (high - low).sum())) / (circle.radius + circle.distance)
+
+
+def _clearance(line: NeutralLine, c: Array, reach: float, zeta: Array) -> tuple[Array, Array, Array]:
+    """r (k,), n (2, k) and g (k,) at places ``zeta`` (k,): g by (r² − (R + T)²)/(r + R + T).
+
+    At an element's first node the numerator has all its digits; from there on it changes by no more than the
+    element is long, and so does its round-off.
+    """
+    e, _ = line.locate(zeta)
+    q, error = summed(line.points, -c[:, None] * np.ones_like(line.points))
+    q_rest = error + line.rest
+    square, lost = squared(q)
+    total, lost_in_sum = summed(square[0], square[1])
+    circle, lost_of_circle = squared(np.full_like(total, reach))
+    over, lost_in_difference = summed(total, -circle)
+    at_node = over + (lost_in_difference + lost_in_sum - lost_of_circle + (lost + 2.0 * q * q_rest).sum(axis=0))
+    d = line.from_node(zeta)
+    away = q[:, e] + d
+    r = np.hypot(away[0], away[1])
+    g = (at_node[e] + ((2.0 * q[:, e] + d) * d).sum(axis=0)) / (r + reach)
+    return r, away / r, g
+
+
 def _find(line: NeutralLine, c: Array, reach: float) -> Zones:
     """All intervals on which the neutral line is nearer to ``c`` than ``reach``."""
 
     def at(zeta: Array, none: Array) -> Gap:
-        x, x1, x2 = line.at(zeta)
-        away = x - c[:, None]
-        r = np.hypot(*away)
-        n = away / r
+        _, x1, x2 = line.at(zeta)
+        r, n, g = _clearance(line, c, reach, zeta)
         along_circle = n[1] * x1[0] - n[0] * x1[1]
         slope, curvature = (n * x1).sum(axis=0), (n * x2).sum(axis=0) + along_circle**2 / r
-        return Gap(r - reach, slope, curvature, none, np.ones(zeta.shape, dtype=bool))
+        return Gap(g, slope, curvature, none, np.ones(zeta.shape, dtype=bool))
 
     zeta = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
     return negative(at, zeta, at(zeta, np.zeros_like(zeta)), np.ones(zeta.size - 1, dtype=bool))

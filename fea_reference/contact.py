@@ -27,12 +27,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea_reference.hermite import NeutralLine, along, bending_along, shape_slopes, shapes
+from fea_reference.hermite import NeutralLine, along, apart, shape_slopes, shapes, twice_along
 from fea_reference.model import Model
 from fea_reference.projection import project
+from fea_reference.state import State
 from fea_reference.touch import Pair, Touch
 from fea_reference.zones import Zones, ends_over, find, side_of
-from scene.answer import Array
 from scene.statement import BeamContact, Scene
 
 _AT_END = 1e-6  # elements
@@ -61,13 +61,13 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
     return tuple(found)
 
 
-def zones_of(model: Model, pair: Pair, z: Array) -> Zones:
+def zones_of(model: Model, pair: Pair, z: State) -> Zones:
     """Where the beams of a pair overlap in state ``z``."""
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
     return find(first, second, pair.side, pair.distance)
 
 
-def touch(model: Model, pair: Pair, stiffness: float, quadrature: int, z: Array, held: float | None = None) -> Touch:
+def touch(model: Model, pair: Pair, stiffness: float, quadrature: int, z: State, held: float | None = None) -> Touch:
     """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval.
 
     A ``held`` contact acts, in tension too, where the gap is least by up to that depth: while Newton's method
@@ -96,25 +96,23 @@ def touch(model: Model, pair: Pair, stiffness: float, quadrature: int, z: Array,
     J = np.hypot(x_m1[0], x_m1[1])
     tau = x_m1 / J
     n = np.stack([-tau[1], tau[0]])
-    d = (n * (x - x_m)).sum(axis=0)
+    d = (n * apart(line, zeta, line_m, zeta_m)).sum(axis=0)
     a = (n * x_m2).sum(axis=0)
     Z = J**2 - d * a
     g = pair.side * d - pair.distance
 
-    H = shapes(xi, line.lengths[e])
-    H_m, H_m1 = shapes(xi_m, line_m.lengths[e_m]), shape_slopes(xi_m, line_m.lengths[e_m])
+    H, H_m, H_m1 = shapes(xi), shapes(xi_m), shape_slopes(xi_m)
     d_q = np.concatenate([along(n, H, line, e), -along(n, H_m, line_m, e_m)])
     p = np.concatenate([along(tau, H, line, e), -along(tau, H_m, line_m, e_m)])
-    k = np.concatenate([np.zeros_like(d_q[:6]), along(n, H_m1, line_m, e_m)])
+    k = np.concatenate([np.zeros_like(d_q[:7]), along(n, H_m1, line_m, e_m)])
     pk = p[:, None] * k[None, :]
     d_qq = -(a * p[:, None] * p[None, :] + d * k[:, None] * k[None, :] + J * (pk + pk.transpose(1, 0, 2))) / Z
-    bent, bent_m = bending_along(n, H, line, e), bending_along(n, H_m, line_m, e_m)
-    for i, value in zip((2, 5, 8, 11), (*bent, *-bent_m), strict=True):
-        d_qq[i, i] += value
+    d_qq[:7, :7] += twice_along(n, H, line, e)
+    d_qq[7:, 7:] -= twice_along(n, H_m, line_m, e_m)
 
     weight = stiffness * ds
     dofs = np.concatenate(
-        [model.element_dofs[:6, e + beam.elements.start], model.element_dofs[:6, e_m + beam_m.elements.start]]
+        [model.element_dofs[:, e + beam.elements.start], model.element_dofs[:, e_m + beam_m.elements.start]]
     )
     normal = pair.side * n
     return Touch(
@@ -138,10 +136,10 @@ def _missing(first: NeutralLine, second: NeutralLine, pair: Pair, stiffness: flo
     zeta, zeta_m = zones.intervals.ravel(), zones.zeta_m.ravel()
     across = np.minimum(zeta_m, second.n - zeta_m) <= _AT_END
     zeta, zeta_m = zeta[across], zeta_m[across]
-    x, x1, _ = first.at(zeta)
-    x_m, x_m1, _ = second.at(zeta_m)
+    _, x1, _ = first.at(zeta)
+    _, x_m1, _ = second.at(zeta_m)
     tau = x_m1 / np.hypot(x_m1[0], x_m1[1])
     n = np.stack([-tau[1], tau[0]])
-    g = np.minimum(pair.side * (n * (x - x_m)).sum(axis=0) - pair.distance, 0.0)
+    g = np.minimum(pair.side * (n * apart(first, zeta, second, zeta_m)).sum(axis=0) - pair.distance, 0.0)
     ahead = np.abs((x1 * tau).sum(axis=0)) / first.lengths[first.locate(zeta)[0]]
     return float((0.5 * stiffness * g**2 / np.maximum(ahead, 1e-3)).sum())

@@ -5,9 +5,9 @@ from __future__ import annotations
 from fea_reference import circle, contact
 from fea_reference.crossing import cross
 from fea_reference.model import Model
-from fea_reference.touch import Contact, Pair, Touch
+from fea_reference.state import State
+from fea_reference.touch import Contact, Pair, Penalty, Touch
 from fea_reference.zones import Zones
-from scene.answer import Array
 from scene.statement import Scene
 
 
@@ -18,19 +18,19 @@ def contacts(scene: Scene, model: Model) -> tuple[Contact, ...]:
     return tuple(found[name] for name in scene.contacts)
 
 
-def zones_of(model: Model, what: Contact, z: Array) -> Zones:
+def zones_of(model: Model, what: Contact, z: State) -> Zones:
     """Where there is overlap in state ``z``."""
     return contact.zones_of(model, what, z) if isinstance(what, Pair) else circle.zones_of(model, what, z)
 
 
-def touch(model: Model, what: Contact, stiffness: float, quadrature: int, z: Array, held: float | None = None) -> Touch:
+def touch(model: Model, what: Contact, penalty: Penalty, quadrature: int, z: State, held: float | None = None) -> Touch:
     """The penalty's energy derivatives, see :func:`fea_reference.contact.touch`; only beams are ever held."""
     if isinstance(what, Pair):
-        return contact.touch(model, what, stiffness, quadrature, z, held)
-    return circle.touch(model, what, stiffness, quadrature, z)
+        return contact.touch(model, what, penalty.stiffness, quadrature, z, held)
+    return circle.touch(model, what, penalty, quadrature, z)
 
 
-def passed_through(model: Model, what: Contact, before: Array, after: Array) -> bool:
+def passed_through(model: Model, what: Contact, before: State, after: State) -> bool:
     """Whether what may touch has passed through each other on the way from one state to another."""
     if not isinstance(what, Pair):
         return circle.passed(model, what, before, after)

@@ -32,6 +32,8 @@ from dataclasses import dataclass
 import numpy as np
 from skfem import BilinearForm, CellBasis, ElementLineP2, MeshLine
 
+from fea_reference.hermite import Index
+from fea_reference.state import State
 from scene.answer import Array
 
 
@@ -119,15 +121,16 @@ def _section_rotation(D: Array, m: Array, bending: Array, shear_compliance: Arra
     return np.concatenate([ends, middle[None]], axis=0)
 
 
-def forces(elements: Elements, u: Array) -> ElementForces:
-    """Value and derivatives at nodal values ``u`` (7, n) in the order (x₁, y₁, θ₁, x₂, y₂, θ₂, N)."""
-    n = u.shape[1]
-    dx, dy = u[3] - u[0], u[4] - u[1]
+def forces(elements: Elements, dofs: Index, state: State) -> ElementForces:
+    """Value and derivatives in ``state``, its unknowns ``dofs`` (7, n) in the order (x₁, y₁, θ₁, x₂, y₂, θ₂, N)."""
+    n = dofs.shape[1]
+    dx, dy = state.difference(dofs[3:5], dofs[:2])
     l = np.hypot(dx, dy)  # noqa: E741 - the chord's length
     alpha = np.arctan2(dy, dx)
-    theta = _wrapped(np.stack([u[2] - alpha, u[5] - alpha]))
+    ends = dofs[[2, 5]]
+    theta = _wrapped(state[ends] - alpha) + state.rest[ends]
     delta = theta - elements.rotation
-    N = u[6]
+    N = state[dofs[6]]
 
     bent = np.einsum("ijn,jn->in", elements.bending, delta)
     shortened = np.einsum("ijn,jn->in", elements.shortening, delta)
@@ -159,5 +162,6 @@ def forces(elements: Elements, u: Array) -> ElementForces:
 
 
 def _wrapped(angle: Array) -> Array:
-    """The same angle in [−π, π)."""
-    return (angle + np.pi) % (2 * np.pi) - np.pi
+    """The same angle in [−π, π], with all its digits if it is there already."""
+    turns = np.round(angle / (2 * np.pi))
+    return np.asarray(angle - 2 * np.pi * turns)

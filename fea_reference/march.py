@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,12 +10,14 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
 from fea_reference.advance import advance
+from fea_reference.circle import resting_pressure
 from fea_reference.contacts import passed_through, zones_of
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.settings import Settings
+from fea_reference.state import State
 from fea_reference.system import System, assemble, load_direction
-from fea_reference.touch import Circle, Contact, Pair, Touch
+from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
 from scene.answer import Array, Ending
 
 _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
@@ -23,6 +26,7 @@ _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow a
 _CUTS = 10  # in a row, each to a quarter
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _TIGHTENINGS = 25
+_LED = 1e-3  # of a known pressure, that may be another than the one led with
 _SLACK = 1.3  # on the penalty foreseen for the penetration asked
 
 
@@ -48,7 +52,7 @@ class March:
     open: list[Contact]
     values: Array
     system: System
-    penalties: dict[Contact, float] = field(default_factory=dict)
+    penalties: dict[Contact, Penalty] = field(default_factory=dict)
     closing: dict[str, float] = field(default_factory=dict)
     iterations: int = 0
 
@@ -96,10 +100,10 @@ class March:
         try:
             rate = splu(self.system.tangent).solve(load_direction(self.model, load, self.system.z))
         except RuntimeError:
-            return np.zeros_like(self.system.z)
-        return rate if np.isfinite(rate).all() else np.zeros_like(self.system.z)
+            return np.zeros(self.model.size)
+        return rate if np.isfinite(rate).all() else np.zeros(self.model.size)
 
-    def _solve(self, load: int, value: float, z: Array) -> System | None:
+    def _solve(self, load: int, value: float, z: State) -> System | None:
         """Equilibrium at ``value`` near ``z``; None if there is none to be found."""
         values = self.values.copy()
         values[load] = value
@@ -175,13 +179,15 @@ class March:
         for pair in list(self.open):
             if zones_of(self.model, pair, self.system.z).least <= 1e-9 * pair.scale:
                 self.open.remove(pair)
-                self.penalties[pair] = pair.stiffness
+                self.penalties[pair] = Penalty(pair.stiffness)
                 self.closing[pair.name] = float(self.values[load]) * self.model.loads[load].unit
         self.system = assemble(self.model, self.penalties, self.settings.quadrature, self.values, self.system.z)
 
     def _loosen(self) -> None:
         """Go back to the circles' first penalties: the ends of a zone move by a layer's width per iteration."""
-        looser = {pair: pair.stiffness if isinstance(pair, Circle) else now for pair, now in self.penalties.items()}
+        looser = {
+            pair: Penalty(pair.stiffness) if isinstance(pair, Circle) else now for pair, now in self.penalties.items()
+        }
         if looser == self.penalties:
             return
         solved = equilibrium(self.model, self.settings, looser, self.values, self.system.z, self._depths())
@@ -194,15 +200,16 @@ class March:
         most = _TIGHTEN
         for _ in range(_TIGHTENINGS):
             factors = {one.pair: self._too_soft(one) for one in self.system.touches}
-            if max(factors.values(), default=1.0) <= 1.0:
+            pressures = {one.pair: self._known_pressure(one) for one in self.system.touches}
+            if max(factors.values(), default=1.0) <= 1.0 and not self._misled(pressures):
                 return
             tighter, depths = dict(self.penalties), self._depths()
             for pair, wanted in factors.items():
-                if wanted > 1.0:
-                    factor = min(wanted, most)
-                    tighter[pair] *= factor
-                    if pair in depths:
-                        depths[pair] *= factor ** (-2.0 / 3.0)
+                factor = min(wanted, most)
+                stiffness = factor * self.penalties[pair].stiffness
+                tighter[pair] = Penalty(stiffness, pressures[pair] / stiffness)
+                if pair in depths:
+                    depths[pair] *= factor ** (-2.0 / 3.0)
             solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, depths)
             self.iterations += solved.iterations
             if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
@@ -219,8 +226,21 @@ class March:
         ratio = one.penetration / (self.settings.penetration * one.pair.scale)
         wanted = _SLACK * ratio**1.5 if ratio > 1.0 else 1.0
         if isinstance(one.pair, Circle) and one.closed:
-            wanted = max(wanted, one.pair.stiffest / self.penalties[one.pair])
+            wanted = max(wanted, one.pair.stiffest / self.penalties[one.pair].stiffness)
         return wanted
+
+    def _known_pressure(self, one: Touch) -> float:
+        """The line pressure that the beam's tension gives where it lies on a circle; of beams none is known."""
+        if not isinstance(one.pair, Circle):
+            return 0.0
+        return resting_pressure(self.model, one, one.pair, self.system.z)
+
+    def _misled(self, pressures: Mapping[Contact, float]) -> bool:
+        """Whether a lead belongs to another pressure than that of its beam's tension."""
+        return any(
+            abs(pressure - self.penalties[pair].lead * self.penalties[pair].stiffness) > _LED * pressure
+            for pair, pressure in pressures.items()
+        )
 
     def _depths(self) -> dict[Contact, float]:
         """The penetrations of the closed contacts of beams; of those just closed, what they will be allowed."""
@@ -231,9 +251,9 @@ class March:
             if isinstance(one.pair, Pair) and one.zones.least <= 1e-9 * one.pair.scale
         }
 
-    def _moved(self, system: System, z: Array) -> float:
+    def _moved(self, system: System, z: State) -> float:
         """The most by which anything differs."""
-        return float(np.abs((system.z - z)[self._moving]).max())
+        return float(np.abs((system.z.values - z.values)[self._moving]).max())
 
     def _shown(self, load: int, value: float) -> str:
         part = self.model.loads[load]

@@ -18,6 +18,7 @@ from fea_reference.curves import length, sample
 from fea_reference.element import Elements, reference
 from fea_reference.hermite import Index, NeutralLine
 from fea_reference.settings import Settings
+from fea_reference.state import State
 from scene.answer import Array
 from scene.statement import BeamEnd, Force, FreeEnd, Moment, Scene, WeldedEnd
 
@@ -93,7 +94,7 @@ class LoadPart:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """Everything the mechanics needs to know of a scene; ``start`` (size,) is the undeformed state."""
+    """Everything the mechanics needs to know of a scene; ``start`` is the undeformed state."""
 
     units: Units
     beams: tuple[BeamPart, ...]
@@ -105,26 +106,33 @@ class Model:
     element_dofs: Index
     multipliers: Index
     size: int
-    start: Array
+    start: State
 
     def beam(self, name: str) -> BeamPart:
         """The beam of that name."""
         return next(beam for beam in self.beams if beam.name == name)
 
-    def line(self, beam: BeamPart, z: Array) -> NeutralLine:
+    def line(self, beam: BeamPart, z: State) -> NeutralLine:
         """A beam's neutral line in state ``z``."""
-        x, y, angle = z[self.node_dofs[:, beam.nodes]]
-        return NeutralLine.through(np.stack([x, y]), angle, self.elements.length[beam.elements])
+        dofs = self.node_dofs[:, beam.nodes]
+        return NeutralLine.through(
+            z[dofs[:2]],
+            z[dofs[2]],
+            self.elements.length[beam.elements],
+            z.rest[dofs[:2]],
+            self.elements.compliance[beam.elements],
+            z[self.element_dofs[6, beam.elements]],
+        )
 
-    def body_state(self, body: BodyPart, z: Array) -> Array:
+    def body_state(self, body: BodyPart, z: State) -> Array:
         """(X, Y, φ) of a body, zero for the ground."""
         return np.zeros(3) if body.dofs is None else np.asarray(z[body.dofs])
 
-    def place(self, body: BodyPart, point: str, z: Array) -> Array:
+    def place(self, body: BodyPart, point: str, z: State) -> Array:
         """Where a body's point is, (2,)."""
         return self.carried(body, body.points[point] - body.centre, z)
 
-    def carried(self, body: BodyPart, arm: Array, z: Array) -> Array:
+    def carried(self, body: BodyPart, arm: Array, z: State) -> Array:
         """Where what lay at ``arm`` (2,) from a body's centre is, (2,)."""
         X, Y, phi = self.body_state(body, z)
         return np.asarray(body.centre + np.array([X, Y]) + turned(arm, phi))
@@ -232,7 +240,7 @@ def build(scene: Scene, settings: Settings) -> Model:
         np.asarray(basis.element_dofs, dtype=np.int64),
         np.arange(first_row, size),
         size,
-        start,
+        State.of(start),
     )
 
 

@@ -13,8 +13,9 @@ from fea_reference.hermite import Index
 from fea_reference.linesearch import searched
 from fea_reference.model import Model
 from fea_reference.settings import Settings
+from fea_reference.state import State
 from fea_reference.system import System, assemble
-from fea_reference.touch import Contact
+from fea_reference.touch import Contact, Penalty
 from scene.answer import Array
 
 _TURN = 0.4  # rad, and the same in lengths of the longest beam: the most that one iteration may move anything
@@ -35,9 +36,9 @@ class Solved:
 def equilibrium(
     model: Model,
     settings: Settings,
-    penalties: Mapping[Contact, float],
+    penalties: Mapping[Contact, Penalty],
     values: Array,
-    z: Array,
+    z: State,
     depths: Mapping[Contact, float],
 ) -> Solved:
     """Seek the equilibrium near ``z`` under load ``values``.
@@ -84,7 +85,7 @@ def equilibrium(
 def _along(
     model: Model,
     settings: Settings,
-    penalties: Mapping[Contact, float],
+    penalties: Mapping[Contact, Penalty],
     values: Array,
     system: System,
     step: Array,

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from fea_reference.ends import ends
 from fea_reference.march import March
+from fea_reference.projection import project
 from fea_reference.recovery import bending_moment
 from fea_reference.supports import support
 from fea_reference.touch import Pair, Touch
@@ -90,10 +92,14 @@ def _centre(march: March, touch: Touch) -> float:
 
 
 def _ends(march: March, touch: Touch) -> Array:
-    """Arc lengths (2,) on the beam that the scene names first where the overlap begins and ends."""
-    zones = touch.zones
-    s = _arc_lengths(march, touch, (zones.zeta_m if _turned(touch) else zones.intervals).ravel())
-    return np.array([s.min(), s.max()])
+    """Arc lengths (2,) on the beam that the scene names first where the zone of contact begins and ends."""
+    zeta = ends(march.model, march.system, touch)
+    pair, model, z = touch.pair, march.model, march.system.z
+    if isinstance(pair, Pair) and pair.turned:
+        first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
+        nearest = np.argmin(np.abs(touch.zeta[:, None] - zeta), axis=0)
+        zeta, _ = project(second, first.at(zeta)[0], touch.zeta_m[nearest])
+    return np.sort(_arc_lengths(march, touch, zeta))
 
 
 def _turned(touch: Touch) -> bool:

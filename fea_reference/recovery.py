@@ -47,5 +47,5 @@ def _on_beam(touch: Touch, number: int) -> tuple[Array, Array, Array, Array]:
     if touch.pair.first == number:
         return touch.zeta, touch.x, touch.force, touch.gradient[:3]
     if isinstance(touch.pair, Pair) and touch.pair.second == number:
-        return touch.zeta_m, touch.x_m, -touch.force, touch.gradient[6:9]
+        return touch.zeta_m, touch.x_m, -touch.force, touch.gradient[7:10]
     return _NOTHING

@@ -18,10 +18,11 @@ from fea_reference.contacts import touch
 from fea_reference.element import ElementForces, forces
 from fea_reference.hermite import Index
 from fea_reference.model import Model, turned
-from fea_reference.touch import Contact, Touch
+from fea_reference.state import State
+from fea_reference.touch import Contact, Pair, Penalty, Touch
 from scene.answer import Array
 
-_ROUND_OFF = 3.0  # measured: one to two from 20 to 320 elements
+_ROUND_OFF = 3.0  # measured: up to two from 20 to 1280 elements, of both of its parts
 _NOTHING = 10.0  # floors: a force below this is round-off itself
 _NONE_HELD: Mapping[Contact, float] = frozendict()
 
@@ -34,12 +35,12 @@ class System:
         residual: unbalanced generalised forces and violations of rows, (size,).
         tangent: its derivative, sparse (size, size).
         scale: the largest generalised force that balances; where there is none but round-off, EI/length².
-        floor: round-off of the residual: an element's end force is 12 EI/h³ times differences of positions
-            and angles that are known to machine precision, and errors of n elements add up like a random
-            walk: _ROUND_OFF eps EI h^-3.5.  A penalty adds what it makes of the gap's own round-off.
+        floor: round-off of the residual.  An element's end force is 12 EI/h² times the angle between its
+            tangents and its chord; the chord's own angle is rounded, and so the force is to 12 EI/h² times the
+            spacing of machine numbers there.  A penalty ε adds ε h times what the gap is rounded to.
     """
 
-    z: Array
+    z: State
     residual: Array
     tangent: csc_matrix
     elements: ElementForces
@@ -50,26 +51,24 @@ class System:
 
 def assemble(
     model: Model,
-    penalties: Mapping[Contact, float],
+    penalties: Mapping[Contact, Penalty],
     quadrature: int,
     values: Array,
-    z: Array,
+    z: State,
     held: Mapping[Contact, float] = _NONE_HELD,
 ) -> System:
     """Sum everything up in state ``z``.
 
     Args:
         model: the mechanism.
-        penalties: the contacts that are watched, with their stiffness.
+        penalties: the contacts that are watched, with what presses them apart.
         quadrature: Gauss points per interval of a contact zone.
         values: of the loads (number of loads,), without units.
-        z: the unknowns (size,).
+        z: the unknowns.
         held: the contacts that are held at a depth, see :func:`~fea_reference.contact.touch`.
     """
-    elements = forces(model.elements, z[model.element_dofs])
-    touches = tuple(
-        touch(model, pair, stiffness, quadrature, z, held.get(pair)) for pair, stiffness in penalties.items()
-    )
+    elements = forces(model.elements, model.element_dofs, z)
+    touches = tuple(touch(model, pair, penalty, quadrature, z, held.get(pair)) for pair, penalty in penalties.items())
     vectors = [_vector(model.element_dofs, elements.gradient, model.size)]
     matrices = [_matrix(model.element_dofs, elements.hessian, model.size)]
     for one in touches:
@@ -83,21 +82,30 @@ def assemble(
     balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values).max(initial=0.0)]
     balanced += [np.abs(one.gradient).max(initial=0.0) for one in touches]
     largest = float(max(balanced))
-    h = model.elements.length
-    EI = np.repeat([beam.bending for beam in model.beams], [b.elements.stop - b.elements.start for b in model.beams])
-    floor = float(_ROUND_OFF * np.finfo(float).eps * (EI / h**3.5).max())
-    floor += sum(_round_off(model, one, penalties[one.pair]) for one in touches)
+    angle = max(1.0, float(np.abs(z[model.node_dofs[2]]).max()))
+    stiffest = max(12.0 * beam.bending / model.elements.length[beam.elements.start] ** 2 for beam in model.beams)
+    floor = _ROUND_OFF * stiffest * float(np.spacing(angle))
+    floor += sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
     scale = largest if largest > _NOTHING * floor else 1.0
     return System(z, residual, tangent, elements, touches, scale, floor)
 
 
 def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
-    """Of a contact's force: its stiffness times machine precision, a random walk over the zone's intervals."""
-    h = model.elements.length[model.beams[touch.pair.first].elements.start]
-    return float(np.finfo(float).eps * stiffness * h * np.linalg.norm(np.diff(touch.zones.intervals, axis=1)))
+    """Of a contact's force on a node: ε h times what the gap is rounded to.
+
+    Within an element that is a share of the element's length, across a pair also of the beams' distance; where a
+    circle moves with its body, of the longest beam.
+    """
+    pair = touch.pair
+    h = float(model.elements.length[model.beams[pair.first].elements.start])
+    if isinstance(pair, Pair):
+        lengths = h + float(model.elements.length[model.beams[pair.second].elements.start]) + pair.distance
+    else:
+        lengths = h if model.bodies[pair.body].dofs is None else 1.0
+    return float(np.finfo(float).eps) * stiffness * h * lengths if touch.closed else 0.0
 
 
-def load_direction(model: Model, load: int, z: Array) -> Array:
+def load_direction(model: Model, load: int, z: State) -> Array:
     """The generalised force of one load of unit value, (size,)."""
     part = model.loads[load]
     body = model.bodies[part.body]
@@ -112,7 +120,7 @@ def load_direction(model: Model, load: int, z: Array) -> Array:
     return f
 
 
-def _rigid(model: Model, values: Array, z: Array) -> tuple[Array, list[int], list[int], list[float]]:
+def _rigid(model: Model, values: Array, z: State) -> tuple[Array, list[int], list[int], list[float]]:
     """Joints and loads: few, so one after the other."""
     residual = np.zeros(model.size)
     rows: list[int] = []
@@ -128,7 +136,7 @@ def _rigid(model: Model, values: Array, z: Array) -> tuple[Array, list[int], lis
         body = model.bodies[joint.body]
         X, Y, phi = model.body_state(body, z)
         arm = turned(joint.arm, phi)
-        gap = z[joint.dofs[:2]] - body.centre - (X, Y) - arm
+        gap = z[joint.dofs[:2]] - body.centre - (X, Y) - arm + z.rest[joint.dofs[:2]]
         across = (-arm[1], arm[0])  # ∂(R r)/∂φ
         for i in range(2):
             row, multiplier = int(joint.rows[i]), z[joint.rows[i]]
@@ -145,7 +153,7 @@ def _rigid(model: Model, values: Array, z: Array) -> tuple[Array, list[int], lis
                 entries.append(multiplier * arm[i])
         if joint.rows.size == 3:
             row, multiplier = int(joint.rows[2]), z[joint.rows[2]]
-            residual[row] += z[joint.dofs[2]] - phi - joint.angle
+            residual[row] += z[joint.dofs[2]] - phi - joint.angle + z.rest[joint.dofs[2]]
             residual[joint.dofs[2]] += multiplier
             couple(row, int(joint.dofs[2]), 1.0)
             if body.dofs is not None:

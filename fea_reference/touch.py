@@ -46,9 +46,9 @@ class Circle:
         stiffness: the penalty to begin with, EI over the fourth power of the width of the layer in which the
             pressure builds up at a zone's end: a share of the beam's length (or the radius, if that is less), so
             that finer elements make the search for the zone no harder.
-        stiffest: the penalty to end with, whatever the penetration: its layer is what an element resolves, so
-            that what the layer spoils (a share of the contact's force that the clamp beside it takes over)
-            vanishes with the element.
+        stiffest: the penalty to end with, if the penetration asks for no more: its layer is a fixed share of an
+            element, so that what layer and element spoil (a share of the contact's force that the clamp beside it
+            takes over) vanishes evenly with the element.
     """
 
     name: str
@@ -63,6 +63,20 @@ class Circle:
 
 
 Contact = Pair | Circle
+
+
+@dataclass(frozen=True, slots=True)
+class Penalty:
+    """What presses a contact apart: the line pressure is ``stiffness`` ⟨``lead`` − g⟩.
+
+    Attributes:
+        stiffness: ε.
+        lead: the gap at which the pressure begins.  It lets a pressure that is known beforehand act where the
+            gap is zero, as it does beside a clamp.
+    """
+
+    stiffness: float
+    lead: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

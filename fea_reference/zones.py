@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from fea_reference.hermite import NeutralLine
+from fea_reference.hermite import NeutralLine, apart
 from fea_reference.projection import project
 from scene.answer import Array
 
@@ -66,11 +66,11 @@ def gap(first: NeutralLine, second: NeutralLine, side: float, T: float, zeta: Ar
     """The gap at ``zeta`` (k,), closest points sought from ``zeta_m`` (k,)."""
     x, x1, x2 = first.at(zeta)
     zeta_m, found = project(second, x, zeta_m)
-    xm, xm1, xm2 = second.at(zeta_m)
+    _, xm1, xm2 = second.at(zeta_m)
     J = np.hypot(xm1[0], xm1[1])
     tau = xm1 / J
     n = np.stack([-tau[1], tau[0]])
-    d = (n * (x - xm)).sum(axis=0)
+    d = (n * apart(first, zeta, second, zeta_m)).sum(axis=0)
     a = (n * xm2).sum(axis=0)
     slope = side * (n * x1).sum(axis=0)
     curvature = side * ((n * x2).sum(axis=0) - a * (tau * x1).sum(axis=0) ** 2 / (J**2 - d * a))

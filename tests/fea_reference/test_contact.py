@@ -145,7 +145,9 @@ def test_a_propped_cantilever():
 
 def test_crossing_is_seen():
     def straight(*points):
-        return NeutralLine.through(np.array(points, dtype=float).T, np.zeros(len(points)), np.ones(len(points) - 1))
+        at = np.array(points, dtype=float).T
+        none = np.zeros(len(points) - 1)
+        return NeutralLine.through(at, np.zeros(len(points)), none + 1.0, np.zeros_like(at), none, none)
 
     level = straight((0, 0), (1, 0), (2, 0))
     assert cross(level, straight((0.3, -1), (0.7, 0.5)))

@@ -1,0 +1,99 @@
+"""Where a zone of contact ends: the free side, continued to where it would lie on what it touches.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+s       arc length on the first beam; s_e where the penalty's pressure ends
+κ       curvature by undeformed arc length: κ⁰ + M/EI, with M by statics
+κ_o     curvature that the first beam would have, if it lay on what it touches there
+χ       relative curvature, of the sign that opens the gap on the free side
+w       width of the layer over which a penalty spreads a force at a zone's end
+======  =====================================================================================
+
+The force at the end of a zone acts at a point c, where χ is zero and begins to grow.  A penalty spreads it over a layer
+of width w about c, so that the overlap ends at an s_e of c + O(w).  Beyond s_e there is no pressure, and there the
+beam is an elastica under the same resultants as the exact one beyond c, but for O(w²): continued backwards without
+pressure it has χ = 0 at c + O(w²).  χ is read at three places beyond s_e, from the moments that balance what acts
+before them, and continued as a parabola.  At a beam's end, or where the other beam ends, there is no free side, and
+the zone ends there itself.
+
+Of a contact in a point, χ is positive on either side: continued through the point, both sides reach zero beyond it, so
+that the zone would begin behind its end.  Then it is the pressure's centre.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea_reference.circle import centre
+from fea_reference.model import BeamPart, Model
+from fea_reference.projection import project
+from fea_reference.recovery import bending_moment
+from fea_reference.system import System
+from fea_reference.touch import Circle, Touch
+from scene.answer import Array
+
+_AT_END = 1e-6  # elements
+_READ = np.array([0.0, 1.0, 2.0])  # elements beyond s_e
+
+
+def ends(model: Model, system: System, touch: Touch) -> Array:
+    """Places ζ (2,) on the first beam where the contact's first zone begins and its last one ends."""
+    zones = touch.zones
+    weight = np.hypot(*touch.force)
+    middle = float(weight @ touch.zeta / weight.sum())
+    first = _continued(model, system, touch, float(zones.intervals[0, 0]), -1.0)
+    last = _continued(model, system, touch, float(zones.intervals[-1, 1]), 1.0)
+    return np.array([first, last]) if first <= last else np.array([middle, middle])
+
+
+def _continued(model: Model, system: System, touch: Touch, zeta: float, outwards: float) -> float:
+    """Where the zone that the pressure leaves at ``zeta`` ends, its free side lying ``outwards``."""
+    n = model.line(model.beams[touch.pair.first], system.z).n
+    room = (n - zeta) if outwards > 0.0 else zeta
+    if room <= _AT_END:
+        return zeta
+    beyond = zeta + outwards * _READ * min(1.0, room / _READ[-1])
+    chi = _relative_curvature(model, system, touch, beyond)
+    if chi is None:
+        return zeta
+    # χ along the way inwards, by a parabola through the three.
+    way = np.abs(beyond - zeta)
+    a, b, c = np.polyfit(way, chi, 2)
+    roots = np.roots([a, b, c])
+    real = roots[np.isreal(roots)].real
+    inwards = real[real <= 0.0]
+    return float(zeta + outwards * inwards.max()) if inwards.size else zeta
+
+
+def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array) -> Array | None:
+    """χ at places ``zeta`` (k,) of the first beam; None where the other beam does not reach."""
+    z, pair = system.z, touch.pair
+    beam = model.beams[pair.first]
+    line = model.line(beam, z)
+    x, tangent, _ = line.at(zeta)
+    own = _curvature(model, system, beam, zeta)
+    if isinstance(pair, Circle):
+        n = x - centre(model, pair, z)[:, None]
+        turning = np.sign(tangent[0] * n[1] - tangent[1] * n[0])
+        return np.asarray(turning * own + 1.0 / (pair.radius + pair.distance))
+    other = model.beams[pair.second]
+    line_m = model.line(other, z)
+    middle = 0.5 * (touch.zeta_m.min() + touch.zeta_m.max())
+    zeta_m, found = project(line_m, x, np.full(zeta.shape, middle))
+    if not found.all():
+        return None
+    tangent_m = line_m.at(zeta_m)[1]
+    along = np.sign((tangent * tangent_m).sum(axis=0))
+    beside = _curvature(model, system, other, zeta_m)
+    return np.asarray(pair.side * (along * own - beside / (1.0 - pair.side * pair.distance * beside)))
+
+
+def _curvature(model: Model, system: System, beam: BeamPart, zeta: Array) -> Array:
+    """Curvature of the neutral line as it lies, (1 + c N)⁻¹ (κ⁰ + M/EI)."""
+    elements = model.elements
+    e = model.line(beam, system.z).locate(zeta)[0] + beam.elements.start
+    undeformed = (elements.rotation[1, e] - elements.rotation[0, e]) / elements.length[e]
+    moment = bending_moment(model, system, beam, zeta / (beam.elements.stop - beam.elements.start))
+    stretch = elements.compliance[e] * system.z[model.element_dofs[6, e]]
+    return np.asarray((undeformed + moment / beam.bending) / (1.0 + stretch))
