@@ -28,7 +28,7 @@ from dataclasses import replace
 import numpy as np
 
 from fea_reference.hermite import NeutralLine, along, apart, shape_slopes, shapes, twice_along
-from fea_reference.model import Model
+from fea_reference.model import BeamPart, Model
 from fea_reference.projection import project
 from fea_reference.state import State
 from fea_reference.touch import Pair, Touch
@@ -36,6 +36,7 @@ from fea_reference.zones import Zones, ends_over, find, side_of
 from scene.statement import BeamContact, Scene
 
 _AT_END = 1e-6  # elements
+_LAYERS = 32.0  # the widest in a beam's length
 
 
 def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
@@ -53,12 +54,18 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         first, second = model.beams[i], model.beams[j]
         mean = 0.5 * (first.thickness + second.thickness)
         side = side_of(model.line(first, model.start), model.line(second, model.start))
-        stiffness = min(
-            beam.bending / max(model.elements.length[beam.elements.start], 0.5 * mean) ** 4 for beam in (first, second)
-        )
         distance, scale = (mean, mean) if contact.thick else (0.0, 1.0)
-        found.append(Pair(name, i, j, turned, side, distance, scale, stiffness))
+        penalties = [_penalties(model, beam, mean) for beam in (first, second)]
+        loosest, stiffness, stiffest = map(min, zip(*penalties, strict=True))
+        found.append(Pair(name, i, j, turned, side, distance, scale, loosest, stiffness, stiffest))
     return tuple(found)
+
+
+def _penalties(model: Model, beam: BeamPart, thickness: float) -> tuple[float, float, float]:
+    """EI over the fourth power of the widest layer, of the first, and of the thinnest."""
+    h = float(model.elements.length[beam.elements.start])
+    first = max(h, 0.5 * thickness)
+    return beam.bending / max(first, beam.length / _LAYERS) ** 4, beam.bending / first**4, beam.bending / h**4
 
 
 def zones_of(model: Model, pair: Pair, z: State) -> Zones:

@@ -65,8 +65,8 @@ class March:
         self.iterations = 0
         self._watch_what_touches(load)
         if self.values[load] != target:
-            self._loosen()
-        stride, cuts = np.inf, 0
+            self._loosen(Circle)
+        stride, cuts, searching = np.inf, 0, False
         reason = (Ending.STEP_TOO_SMALL, "")
         while self.values[load] != target:
             if cuts > _CUTS:
@@ -86,6 +86,8 @@ class March:
             trouble = self._step(load, value, rate)
             if trouble is None:
                 stride, cuts = 2.0 * size, 0
+            elif not searching and self._loosen(Pair):
+                searching = True
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
         self._tighten()
@@ -183,17 +185,24 @@ class March:
                 self.closing[pair.name] = float(self.values[load]) * self.model.loads[load].unit
         self.system = assemble(self.model, self.penalties, self.settings.quadrature, self.values, self.system.z)
 
-    def _loosen(self) -> None:
-        """Go back to the circles' first penalties: the ends of a zone move by a layer's width per iteration."""
+    def _loosen(self, kind: type[Circle | Pair]) -> bool:
+        """Go back to the loosest penalties: the ends of a zone move by a layer's width per iteration.
+
+        Returns whether it could be done.  Circles do it before every station, beams only if a step fails, since most
+        of them touch in a point.
+        """
         looser = {
-            pair: Penalty(pair.stiffness) if isinstance(pair, Circle) else now for pair, now in self.penalties.items()
+            pair: Penalty(pair.loosest) if isinstance(pair, kind) and pair.loosest < now.stiffness else now
+            for pair, now in self.penalties.items()
         }
         if looser == self.penalties:
-            return
+            return False
         solved = equilibrium(self.model, self.settings, looser, self.values, self.system.z, self._depths())
         self.iterations += solved.iterations
         if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
             self.system, self.penalties = solved.system, looser
+            return True
+        return False
 
     def _tighten(self) -> None:
         """Raise penalties, each time from the last equilibrium, until none is too soft."""
@@ -203,14 +212,12 @@ class March:
             pressures = {one.pair: self._known_pressure(one) for one in self.system.touches}
             if max(factors.values(), default=1.0) <= 1.0 and not self._misled(pressures):
                 return
-            tighter, depths = dict(self.penalties), self._depths()
+            tighter = dict(self.penalties)
             for pair, wanted in factors.items():
                 factor = min(wanted, most)
                 stiffness = factor * self.penalties[pair].stiffness
                 tighter[pair] = Penalty(stiffness, pressures[pair] / stiffness)
-                if pair in depths:
-                    depths[pair] *= factor ** (-2.0 / 3.0)
-            solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, depths)
+            solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, {})
             self.iterations += solved.iterations
             if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
                 self.system, self.penalties = solved.system, tighter
@@ -219,13 +226,13 @@ class March:
                 most = max(most**0.4, 1.2)
 
     def _too_soft(self, one: Touch) -> float:
-        """The factor by which a penalty falls short of the penetration asked, or of what its circle wants.
+        """The factor by which a penalty falls short of the penetration asked, or of the stiffest one.
 
         The penetration of a contact in a point falls with the penalty to the power −2/3, in an area with −1.
         """
         ratio = one.penetration / (self.settings.penetration * one.pair.scale)
         wanted = _SLACK * ratio**1.5 if ratio > 1.0 else 1.0
-        if isinstance(one.pair, Circle) and one.closed:
+        if one.closed:
             wanted = max(wanted, one.pair.stiffest / self.penalties[one.pair].stiffness)
         return wanted
 
@@ -243,12 +250,17 @@ class March:
         )
 
     def _depths(self) -> dict[Contact, float]:
-        """The penetrations of the closed contacts of beams; of those just closed, what they will be allowed."""
+        """The penetrations of the closed contacts of beams; of those just closed, what they will be allowed.
+
+        A contact in search of its zone is none of them: its penalty is soft enough to be let go.
+        """
         allowed = self.settings.penetration
         return {
             one.pair: max(one.penetration, allowed * one.pair.scale)
             for one in self.system.touches
-            if isinstance(one.pair, Pair) and one.zones.least <= 1e-9 * one.pair.scale
+            if isinstance(one.pair, Pair)
+            and one.zones.least <= 1e-9 * one.pair.scale
+            and self.penalties[one.pair].stiffness >= one.pair.stiffness
         }
 
     def _moved(self, system: System, z: State) -> float:
