@@ -10,8 +10,7 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
 from fea_reference.advance import advance
-from fea_reference.circle import resting_pressure
-from fea_reference.contacts import passed_through, zones_of
+from fea_reference.contacts import passed_through, resting_pressure, zones_of
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.settings import Settings
@@ -209,7 +208,7 @@ class March:
         most = _TIGHTEN
         for _ in range(_TIGHTENINGS):
             factors = {one.pair: self._too_soft(one) for one in self.system.touches}
-            pressures = {one.pair: self._known_pressure(one) for one in self.system.touches}
+            pressures = {one.pair: resting_pressure(self.model, one, self.system.z) for one in self.system.touches}
             if max(factors.values(), default=1.0) <= 1.0 and not self._misled(pressures):
                 return
             tighter = dict(self.penalties)
@@ -236,14 +235,8 @@ class March:
             wanted = max(wanted, one.pair.stiffest / self.penalties[one.pair].stiffness)
         return wanted
 
-    def _known_pressure(self, one: Touch) -> float:
-        """The line pressure that the beam's tension gives where it lies on a circle; of beams none is known."""
-        if not isinstance(one.pair, Circle):
-            return 0.0
-        return resting_pressure(self.model, one, one.pair, self.system.z)
-
     def _misled(self, pressures: Mapping[Contact, float]) -> bool:
-        """Whether a lead belongs to another pressure than that of its beam's tension."""
+        """Whether a lead belongs to another pressure than the axial forces give."""
         return any(
             abs(pressure - self.penalties[pair].lead * self.penalties[pair].stiffness) > _LED * pressure
             for pair, pressure in pressures.items()
