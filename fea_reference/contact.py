@@ -151,23 +151,21 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
 
 
 def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
-    """κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂), its mean along the zone; zero where the beams pull apart."""
+    """κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂), the median along the zone; zero where the beams pull apart."""
     if not touch.closed:
         return 0.0
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
-    width = touch.zones.intervals[:, 1] - touch.zones.intervals[:, 0]
     middle, middle_m = touch.zones.intervals.mean(axis=1), touch.zones.zeta_m.mean(axis=1)
     line, line_m = model.line(beam, z), model.line(beam_m, z)
     e = line.locate(middle)[0] + beam.elements.start
     e_m = line_m.locate(middle_m)[0] + beam_m.elements.start
-    bent = line_m.at(middle_m)[2]
-    speed = line_m.at(middle_m)[1]
+    _, speed, bent = line_m.at(middle_m)
     J = np.hypot(speed[0], speed[1])
     of_second = -pair.side * (speed[0] * bent[1] - speed[1] * bent[0]) / J**3
     kappa = of_second / (1.0 + pair.distance * of_second)  # parallel curves
     axial, axial_m = z[model.element_dofs[6, e]], z[model.element_dofs[6, e_m]]
     pressure = kappa * (axial * beam_m.bending - axial_m * beam.bending) / (beam.bending + beam_m.bending)
-    return max(0.0, float(pressure @ width / width.sum()))
+    return max(0.0, float(np.median(pressure)))
 
 
 def _missing(first: NeutralLine, second: NeutralLine, pair: Pair, penalty: Penalty, zones: Zones) -> float:

@@ -25,7 +25,7 @@ _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow a
 _CUTS = 10  # in a row, each to a quarter
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _TIGHTENINGS = 25
-_LED = 1e-3  # of a known pressure, that may be another than the one led with
+_LED = 1e-5  # of a known pressure, that may be another than the one led with
 _SLACK = 1.3  # on the penalty foreseen for the penetration asked
 
 

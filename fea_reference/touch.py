@@ -51,8 +51,7 @@ class Circle:
             pressure builds up at a zone's end: a share of the beam's length (or the radius, if that is less), so
             that finer elements make the search for the zone no harder.
         stiffest: the penalty to end with, if the penetration asks for no more: its layer is a fixed share of an
-            element, so that what layer and element spoil (a share of the contact's force that the clamp beside it
-            takes over) vanishes evenly with the element.
+            element, so that what it spoils vanishes evenly with the element.
     """
 
     name: str
