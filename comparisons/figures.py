@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from comparisons.benchmark import METHODS, Benchmark, trend
+from comparisons.benchmark import METHODS, Benchmark, Method, trend
 from comparisons.formats import scaled_unit
 from comparisons.geometry import length, points
 from comparisons.measures import Row, load_unit
@@ -79,31 +79,8 @@ def of_benchmark(measured: Benchmark) -> Picture:
         seconds, iterations = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         sizes = sorted({timing.n for timing in measured.timings})
         for method, colour, marker in zip(METHODS, (_BLUE, _RED), "os", strict=True):
-            timings = measured.of(method)
-            done = [timing for timing in timings if timing.ending is Ending.COMPLETED]
-            if not timings:
-                continue
-            label = measured.label(method)
-            found = trend(measured, method)
-            if found.exponent is not None and found.factor is not None:
-                span = np.array([found.sizes[0], found.sizes[-1]], dtype=float)
-                seconds.plot(span, found.factor * span**found.exponent, "--", color=colour, linewidth=1.0)
-                label += f": exponent {found.exponent:.2f}"
-            n = np.array([timing.n for timing in done])
-            median = np.array([timing.median for timing in done])
-            quartiles = np.array([np.percentile(timing.seconds, (25.0, 75.0)) for timing in done]).reshape(-1, 2).T
-            bars = np.abs(quartiles - median)
-            seconds.errorbar(n, median, bars, fmt=marker, color=colour, markersize=5, capsize=3, label=label)
-            iterations.plot(n, [timing.total_iterations for timing in done], marker, color=colour, markersize=5)
-            ended = [timing for timing in timings if timing.ending is not Ending.COMPLETED]
-            seconds.plot(
-                [timing.n for timing in ended],
-                [timing.median for timing in ended],
-                "x",
-                color=colour,
-                markersize=7,
-                label=f"{measured.label(method)}: did not complete" if ended else None,
-            )
+            if measured.of(method):
+                _timings(measured, method, seconds, iterations, colour, marker)
         for axes in (seconds, iterations):
             axes.set_xscale("log")
             axes.set_yscale("log")
@@ -124,6 +101,29 @@ def of_benchmark(measured: Benchmark) -> Picture:
             "bench",
             "Median time with the quartiles, and iterations, against the number of links or elements per beam.",
         )
+
+
+def _timings(measured: Benchmark, method: Method, seconds: Axes, iterations: Axes, colour: str, marker: str) -> None:
+    """A method's runs that completed with their fit, and crosses for those that did not."""
+    done = [timing for timing in measured.of(method) if timing.ending is Ending.COMPLETED]
+    ended = [timing for timing in measured.of(method) if timing.ending is not Ending.COMPLETED]
+    label = measured.label(method)
+    found = trend(measured, method)
+    if found.exponent is not None and found.factor is not None:
+        span = np.array([found.sizes[0], found.sizes[-1]], dtype=float)
+        seconds.plot(span, found.factor * span**found.exponent, "--", color=colour, linewidth=1.0)
+        label += f": exponent {found.exponent:.2f}"
+    n = [timing.n for timing in done]
+    if done:
+        median = np.array([timing.median for timing in done])
+        quartiles = np.array([np.percentile(timing.seconds, (25.0, 75.0)) for timing in done]).T
+        bars = np.abs(quartiles - median)
+        seconds.errorbar(n, median, bars, fmt=marker, color=colour, markersize=5, capsize=3, label=label)
+        iterations.plot(n, [timing.total_iterations for timing in done], marker, color=colour, markersize=5)
+    if ended:
+        label = f"{measured.label(method)}: did not complete"
+        times = [timing.median for timing in ended]
+        seconds.plot([timing.n for timing in ended], times, "x", color=colour, markersize=7, label=label)
 
 
 def _decades(axes: Axes, values: Sequence[float]) -> None:

@@ -12,7 +12,9 @@ v_s         at n in the theory ``stretch``
 p           order of convergence that the error estimate assumes, 2; see :mod:`comparisons.order`
 S           safety factor of the error estimate, 1.25
 d           v_c − v_f, the difference
-u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (or n)
+u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (or n), and no less than F times the
+            probe's largest in the stage
+F           share of the largest uncertainty that none in the stage falls below, S − 1
 r           round-off allowance
 ==========  ===========================================================================================
 
@@ -20,11 +22,17 @@ The error of v is C/N^p and that of V a quarter of it (p = 2), so v − V is thr
 the factor 4/3 (Richardson; Roache, *Verification and Validation in Computational Science*, whose safety
 factor for a known order is 1.25).  Where finite elements converge faster, p = 2 only makes u larger.
 
+An error changes its sign somewhere along a stage, and where v − V passes through zero it says nothing of v's
+error: C is then small, and what the estimate leaves out (terms of higher order, contact that falls otherwise
+between joints) is all that is left.  S = 1 + F allows an estimate to be wrong by its share F.  By how much it is
+wrong does not pass through zero with it, and that share of the stage's largest is kept at every station.
+
 The formulation ``paper`` holds joints apart and not what lies between them, so that its error depends on where
 a contact falls between joints and no two N tell it. There u_c = |v_c − v_a| + S·4/3·|v_a − V_c|: its distance from the
 formulation whose error is even in N, and that one's own.
 
-The theory term is |v_b − v_f|, computed and never typed in.  The difference is the sum of its steps,
+The theory term is |v_b − v_f|, computed and never typed in.  Where both solvers are as good as they state,
+|v_c − v_f| ≤ |v_c − v_b| + |v_b − v_f| ≤ u_c + u_b + |v_b − v_f|: u_f is therefore never taken for less than u_b.  The difference is the sum of its steps,
 
     v_c − v_f = (v_c − v_a) + (v_a − v_b) + (v_b − v_s) + (v_s − v_f),
 
@@ -58,6 +66,7 @@ from scene.answer import Array
 from scene.statement import Moment, Quantity
 
 SAFETY = 1.25
+SHARE_OF_LARGEST = SAFETY - 1.0
 ROUND_OFF = 1e-12
 
 UNITS: Mapping[Quantity, str] = {
@@ -79,7 +88,7 @@ class Bounds:
 
     Attributes:
         cprbm: the CPRBM's own uncertainty.
-        fea: the finite elements' own, in the chosen theory.
+        fea: the finite elements' own, the larger of those in the chosen theory and in ``bending``.
         bending: the finite elements' own, in the theory ``bending``.
         theory: between the theory ``bending`` and the chosen one.
         round_off: what the certificates leave unsettled.
@@ -162,11 +171,13 @@ def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
         KeyError: an answer lacks a station or a probe.
     """
     unsettled = {probe.name: _round_off(scene, runs, probe) for probe in scene.probes}
-    return tuple(
-        _row(scene, runs, probe, stage, value, unsettled[probe.name])
-        for stage in scene.stages
-        for value in stage.stations
-        for probe in scene.probes
+    return _none_small_by_accident(
+        tuple(
+            _row(scene, runs, probe, stage, value, unsettled[probe.name])
+            for stage in scene.stages
+            for value in stage.stations
+            for probe in scene.probes
+        )
     )
 
 
@@ -234,10 +245,11 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
     factor = SAFETY * richardson(order_of(scene, probe))
     even = values.get("cprbm auto", v_c)
     own = size(v_c - even) + factor * size(even - values["cprbm finer"])
+    bending = factor * size(v_b - values["fea bending finer"])
     bounds = Bounds(
         cprbm=own,
-        fea=factor * size(v_f - values[f"{chosen} finer"]),
-        bending=factor * size(v_b - values["fea bending finer"]),
+        fea=max(factor * size(v_f - values[f"{chosen} finer"]), bending),
+        bending=bending,
         theory=size(v_b - v_f),
         round_off=0.0 if open_everywhere else unsettled,
     )
@@ -251,6 +263,37 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
         steps=_steps(probe.quantity, [step[counts] for step in ladder]),
         contact_model=None if formulations is None else size(formulations[0] - formulations[1]),
     )
+
+
+def _none_small_by_accident(rows: tuple[Row, ...]) -> tuple[Row, ...]:
+    """The rows with each uncertainty at least F times the largest of its probe in its stage.
+
+    A contact that is open in every run has no force, and no uncertainty of it.
+    """
+    largest: dict[tuple[str, str], tuple[float, float, float]] = {}
+    for row in rows:
+        if row.bounds is not None:
+            key = (row.probe.name, row.stage)
+            cprbm, fea, bending = largest.get(key, (0.0, 0.0, 0.0))
+            largest[key] = (
+                max(cprbm, row.bounds.cprbm),
+                max(fea, row.bounds.fea),
+                max(bending, row.bounds.bending),
+            )
+    found = []
+    for row in rows:
+        if row.bounds is not None and row.bounds.total > 0.0:
+            cprbm, fea, bending = (SHARE_OF_LARGEST * size for size in largest[row.probe.name, row.stage])
+            bounds = replace(
+                row.bounds,
+                cprbm=max(row.bounds.cprbm, cprbm),
+                fea=max(row.bounds.fea, fea),
+                bending=max(row.bounds.bending, bending),
+            )
+            found.append(replace(row, bounds=bounds))
+        else:
+            found.append(row)
+    return tuple(found)
 
 
 def _formulations(runs: Runs, probe: Probe, stage: str, value: float) -> tuple[Array, Array] | None:

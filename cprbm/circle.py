@@ -5,15 +5,15 @@ C           smooth neutral line of the beam, :mod:`cprbm.smooth`; ψ its tangent
 o, R        centre and radius of the circle
 ρ, n        |C − o| and (C − o)/ρ
 D           ρ − R, distance of the neutral line from the circle; constraint c = t/2 − D ≤ 0
-z           local numbers of the beam (5)
-P           (I − n nᵀ)/ρ, derivative of n over C
+z           local numbers of the beam (5), and the centre's place where it moves (2)
+P           (I − n nᵀ)/ρ, derivative of n over r = C − o
 ==========  ===================================================================================
 
-A row stands at every joint that is close, and where D has a minimum between joints that is deeper than
-the ripple with which the smooth line follows a circle. There s moves with the minimum, D_s = 0:
+A row stands at every joint that is close, and where D has a minimum between joints that is more convex than
+what the steps of the curvature between elements make of a zone. There s moves with the minimum, D_s = 0:
 
-    D_z = n·C_z,     D_zz = n·C_zz + C_zᵀ P C_z − D_zs D_sz / D_ss     (last term only where s moves)
-    D_s = n·C_s,     D_sz = n·C_sz + C_sᵀ P C_z,     D_ss = n·C_ss + C_sᵀ P C_s
+    D_z = n·r_z,     D_zz = n·C_zz + r_zᵀ P r_z − D_zs D_sz / D_ss     (last term only where s moves)
+    D_s = n·C_s,     D_sz = n·C_sz + C_sᵀ P r_z,     D_ss = n·C_ss + C_sᵀ P C_s
 
 Forces on joints can take any share of a line pressure; between two joints of a zone no further row is
 needed, since the line is bent like the circle there.
@@ -34,9 +34,11 @@ from cprbm import smooth
 from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.model import EVEN, Chain, Fit, Model
-from scene import CircleContact, Mistake, Scene, SceneError
+from scene import CircleContact, Scene
 from scene.answer import Array, Flags, Ints
 
+# local numbers (x, y, θθθ, centre) to (x of joints, y of joints, θθθ)
+ALONE, WITH_CENTRE = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4])
 CLOSEST_ITERATIONS = 12
 LEAST_CURVATURE = 1e-3  # of D along the beam, 1/ℓ, below which its minimum has no place of its own
 STEPS = 3.0  # a minimum is less convex than this many steps of the curvature: it belongs to a zone
@@ -47,12 +49,14 @@ JOINT_REACH = 2.0  # joints farther than this many h²·(1/R + 1/ℓ) are none
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """A beam and a circle that stands still.
+    """A beam and a rigid circle.
 
     Attributes:
         name: of the contact.
         a: the beam's chain.
-        x, y, radius: of the circle, units of length.
+        body: that the circle is fixed to, −1 for the ground; ``mark`` the number of its centre among the joints,
+            if that is a body that moves.
+        x, y, radius: of the circle, units of length; x and y at rest, see :meth:`placed`.
         offset: half the thickness, zero for a line; units of length.
         unit_length: ℓ, m.
         clamped: whether the beam's start and end are clamped in touch with the circle and tangent to it.
@@ -61,6 +65,8 @@ class Circle:
 
     name: str
     a: Chain
+    body: int
+    mark: int
     x: float
     y: float
     radius: float
@@ -68,6 +74,10 @@ class Circle:
     unit_length: float
     clamped: tuple[bool, bool] = (False, False)
     ends: tuple[float, ...] = ()
+
+    def placed(self, at: Positions) -> Circle:
+        """The same circle where it is in a state."""
+        return self if self.body < 0 else replace(self, x=float(at.x[self.mark]), y=float(at.y[self.mark]))
 
     def line(self, state: State, at: Positions) -> smooth.SmoothLine:
         """The beam's smooth line in a state."""
@@ -79,6 +89,9 @@ class Circle:
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
+        return self.placed(at)._groups(state, at)
+
+    def _groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         line = self.line(state, at)
         s, free = self._places(line)
         if not s.size:
@@ -89,9 +102,14 @@ class Circle:
         n = np.stack((rx / rho, ry / rho), axis=1)
         across = np.stack((-n[:, 1], n[:, 0]), axis=1)
         C_z, C_sz = smooth.position_slopes(A), smooth.tangent_slopes(A)
+        second = smooth.position_curvature(A, n)
+        if self.body >= 0:
+            moves = np.tile(-np.eye(2), (len(s), 1, 1))
+            C_z, C_sz = np.concatenate((C_z, moves), axis=2), np.concatenate((C_sz, 0.0 * moves), axis=2)
+            second = np.pad(second, ((0, 0), (0, 2), (0, 2)))
         D_z = np.einsum("mi,mik->mk", n, C_z)
         q_z = np.einsum("mi,mik->mk", across, C_z)
-        second = smooth.position_curvature(A, n) + q_z[:, :, None] * q_z[:, None, :] / rho[:, None, None]
+        second += q_z[:, :, None] * q_z[:, None, :] / rho[:, None, None]
         C_s = A.speed[:, None] * np.stack((np.cos(A.psi), np.sin(A.psi)), axis=1)
         q_s = np.sum(across * C_s, axis=1)
         D_sz = np.einsum("mi,mik->mk", n, C_sz) + (q_s / rho)[:, None] * q_z
@@ -99,9 +117,12 @@ class Circle:
         moving = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
         second -= moving[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
 
-        values, slopes = self.offset - (rho - self.radius), -D_z
         link = A.link
         joints = (self.a.first_joint + link)[:, None]
+        order = ALONE
+        if self.body >= 0:
+            joints, order = np.stack((joints[:, 0], np.full(len(s), self.mark)), axis=1), WITH_CENTRE
+        values, slopes, second = self.offset - (rho - self.radius), -D_z[:, order], second[:, order[:, None], order]
         angles = self.a.first_link + np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n)), axis=1)
         keys = np.where(free, -1, np.searchsorted(self.a.s, s))
         at_ends = np.isin(s, self.ends)
@@ -116,14 +137,15 @@ class Circle:
                 pressing = np.full(2, multipliers[0])
                 return Blocks(every[0][[i, j]], every[1][[i, j]], -pressing[:, None, None] * every[2][[i, j]])
 
-            x, y, turns = np.split(slopes[two], (1, 2), axis=1)
+            p = joints.shape[1]
+            x, y, turns = np.split(slopes[two], (p, 2 * p), axis=1)
             groups.append(
                 Group(
                     contact=self.name,
                     values=values[[i]] + values[[j]],
-                    joints=joints[two].T,
+                    joints=joints[two].reshape(1, -1),
                     angles=angles[two].reshape(1, -1),
-                    slopes=np.concatenate((x.T, y.T, turns.reshape(1, -1)), axis=1),
+                    slopes=np.concatenate([part.reshape(1, -1) for part in (x, y, turns)], axis=1),
                     curvature=together,
                     keys=(int(keys[j]),),
                     arc=0.5 * (s[[i]] + s[[j]]),
@@ -171,9 +193,9 @@ class Circle:
         D = self.distance(line.at(s)) - self.offset
         near = np.zeros(len(s), dtype=bool)
         near[::2] = D[::2] < JOINT_REACH * self.a.h**2 * (1.0 / self.radius + 1.0)
-        # an end that the ground holds cannot move: its gap is no unknown
-        near[0] &= self.a.start.body >= 0
-        near[-1] &= self.a.end is None or self.a.end.body >= 0
+        # an end that the circle's own body holds cannot move against it: its gap is no unknown
+        near[0] &= self.a.start.body != self.body
+        near[-1] &= self.a.end is None or self.a.end.body != self.body
         padded = np.concatenate(([np.inf], D, [np.inf]))
         lowest = (padded[:-2] >= D) & (padded[2:] > D) & (D < REACH)
         lowest[[0, -1]] = False
@@ -183,7 +205,7 @@ class Circle:
         return np.concatenate((held, free)), np.concatenate((np.zeros(len(held), bool), np.ones(len(free), bool)))
 
     def _refined(self, line: smooth.SmoothLine, s: Array) -> tuple[Array, Flags]:
-        """Newton's method on D_s = 0; the flags say where it found a minimum nearby that is no ripple."""
+        """Newton's method on D_s = 0; the flags say where it found a minimum nearby that is no part of a zone."""
         start = s
         if not s.size:
             return s, np.zeros(0, dtype=bool)
@@ -199,15 +221,28 @@ class Circle:
             s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
             if np.max(np.abs(step)) < 1e-13:
                 break
-        ripple = self.a.h**2 * np.maximum(np.abs(A.bend), 1.0 / self.radius) ** 3
-        steps = STEPS * smooth.curvature_step(line, A.link)
-        deep = D_ss > np.maximum(LEAST_CURVATURE, np.maximum(ripple, steps))
+        deep = D_ss > np.maximum(LEAST_CURVATURE, STEPS * smooth.curvature_step(line, A.link))
         return s, deep & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
+
+    def passed(self, before: Positions, after: Positions) -> bool:
+        """Whether the beam has swept over the circle's centre between two states.
+
+        Seen from the centre, the beam's ends turn by as much more or less as the angle that it spans changes;
+        a beam that went across leaves a whole turn between the two.
+        """
+        angles = []
+        for at in (before, after):
+            here = self.placed(at)
+            angles.append(np.arctan2(at.y[self.a.joints] - here.y, at.x[self.a.joints] - here.x))
+        old, new = angles
+        spanned = np.sum(_turned(np.diff(new))) - np.sum(_turned(np.diff(old)))
+        ends = _turned(new[[0, -1]] - old[[0, -1]])
+        return bool(abs(spanned - (ends[1] - ends[0])) > np.pi)
 
     def parting(self, state: State, at: Positions, s: Array) -> Array:
         """D_ss at arc lengths ``s`` if the beam touched there along the circle: the curvature with which it parts."""
-        A = self.line(state, at).at(s)
-        outward = (A.y - self.y) * np.cos(A.psi) - (A.x - self.x) * np.sin(A.psi)
+        A, here = self.line(state, at).at(s), self.placed(at)
+        outward = (A.y - here.y) * np.cos(A.psi) - (A.x - here.x) * np.sin(A.psi)
         return np.asarray(np.sign(outward) * A.bend + 1.0 / (self.radius + self.offset))
 
     @property
@@ -217,10 +252,10 @@ class Circle:
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
         """Where the edge touches that touches at arc lengths ``s``, (k, 2), units of length."""
-        A = self.line(state, at).at(s)
-        rx, ry = A.x - self.x, A.y - self.y
+        A, here = self.line(state, at).at(s), self.placed(at)
+        rx, ry = A.x - here.x, A.y - here.y
         share = self.radius / np.hypot(rx, ry)
-        return np.stack((self.x + share * rx, self.y + share * ry), axis=1)
+        return np.stack((here.x + share * rx, here.y + share * ry), axis=1)
 
     def pressed(self, state: State, at: Positions, chain: Chain, s: Array) -> tuple[float, Array, Array] | None:
         """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s``."""
@@ -228,35 +263,34 @@ class Circle:
 
     def deepest(self, state: State, at: Positions) -> float:
         """Largest overlap anywhere along the beam, units of length; zero where it is apart."""
-        line = self.line(state, at)
-        s, _ = self._places(line)
-        D = self.distance(line.at(np.concatenate((smooth.halves(self.a), s))))
+        line, here = self.line(state, at), self.placed(at)
+        s, _ = here._places(line)
+        D = here.distance(line.at(np.concatenate((smooth.halves(self.a), s))))
         return float(np.max(self.offset - D, initial=0.0))
 
 
-def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:
-    """One of the scene's contacts with a circle.
+def _turned(angle: Array) -> Array:
+    """Angles in [−π, π)."""
+    return np.asarray((angle + np.pi) % (2.0 * np.pi) - np.pi)
 
-    Raises:
-        SceneError: the circle is fixed to a body that moves.
-    """
+
+def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:
+    """One of the scene's contacts with a circle."""
     contact = scene.contacts[name]
     assert isinstance(contact, CircleContact)
-    if scene.bodies[contact.body].motion != "fixed":
-        raise SceneError(
-            [Mistake(f"contacts.{name}.body", f"the moving body {contact.body!r}", "a fixed body", scene.file)]
-        )
     chain = model.chain(contact.beam)
     unit = model.unit_length
     offset = 0.5 * chain.thickness if contact.thick else 0.0
+    body = model.marks[name].body if name in model.marks else -1
+    mark = model.first_mark + list(model.marks).index(name) if body >= 0 else -1
     circle = Circle(
-        name, chain, contact.center[0] / unit, contact.center[1] / unit, contact.radius / unit, offset, unit
+        name, chain, body, mark, contact.center[0] / unit, contact.center[1] / unit, contact.radius / unit, offset, unit
     )
     state = rest_state(model)
     ends = circle.line(state, positions(model, state)).at(chain.s[[0, -1]])
     towards = (ends.x - circle.x) * np.cos(ends.psi) + (ends.y - circle.y) * np.sin(ends.psi)
     on_it = (np.abs(circle.distance(ends) - offset) <= ON_IT) & (np.abs(towards) <= ON_IT)
-    start, end = (held is not None and held.body < 0 and held.welded for held in (chain.start, chain.end))
+    start, end = (held is not None and held.body == body and held.welded for held in (chain.start, chain.end))
     return replace(
         circle,
         clamped=(start and bool(on_it[0]), end and bool(on_it[1])),

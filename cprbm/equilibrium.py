@@ -42,6 +42,7 @@ from scene.answer import Array, Flags, Ints
 LONGEST_TURN = 0.5  # of any link in one iteration, rad
 CONTACT_STIFFNESS = 1e4  # of pressing contacts while the energy alone is not convex, S/ℓ²
 MANY = 40  # contact rows beyond which the system is solved with the joints' positions as unknowns
+LOCAL = 8  # joints in a row that is local
 DENSE = 120  # unknowns up to which all curvatures are computed at once
 LANCZOS = 40  # steps
 SMALL = 1e-9  # of the largest compliance: negative ones below it are round-off
@@ -315,7 +316,7 @@ def _convex_system(problem: Problem, point: Point) -> System:
 
 def _many(rows: Rows) -> bool:
     """Whether the contacts are many and each is local: the rows of a fitted boundary are not."""
-    return rows.size > MANY and all(group.joints.shape[1] <= 2 for group in rows.groups)
+    return rows.size > MANY and all(group.joints.shape[1] <= LOCAL for group in rows.groups)
 
 
 def _local_system(problem: Problem, point: Point) -> LocalSystem:

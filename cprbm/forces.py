@@ -119,6 +119,9 @@ def balances(problem: Problem, point: Point) -> tuple[float, float]:
         moment = np.sum(point.at.x[j] * contact.fy[j] - point.at.y[j] * contact.fx[j])
         moment += np.sum(contact.moments[chain.links])
         parts.append((np.zeros(2), force, float(moment)))
+    for mark in range(model.first_mark, model.n_joints):
+        force = np.array([contact.fx[mark], contact.fy[mark]])
+        parts.append((np.array([point.at.x[mark], point.at.y[mark]]), force, 0.0))
     forces = np.array([force for _, force, _ in parts])
     moments = np.array([m + place[0] * force[1] - place[1] * force[0] for place, force, m in parts])
     largest_force = float(np.max(np.abs(forces), initial=0.0))

@@ -77,6 +77,8 @@ def positions(model: Model, state: State) -> Positions:
         np.cumsum(dy[chain.links], out=y[first + 1 : first + chain.n + 2])
         x[first + 1 : first + chain.n + 2] += x0
         y[first + 1 : first + chain.n + 2] += y0
+    for j, mark in enumerate(model.marks.values(), start=model.first_mark):
+        x[j], y[j] = place(model, mark, state.bodies)
     return Positions(x, y, dx, dy)
 
 
@@ -109,6 +111,10 @@ def pulled_back(model: Model, state: State, at: Positions, fx: Array, fy: Array)
             rx, ry = arm(start, state.bodies)
             over_bodies[start.body] += (tx[c], ty[c], rx * ty[c] - ry * tx[c])
             second_bodies[start.body] -= rx * tx[c] + ry * ty[c]
+    for j, mark in enumerate(model.marks.values(), start=model.first_mark):
+        rx, ry = arm(mark, state.bodies)
+        over_bodies[mark.body] += (fx[j], fy[j], rx * fy[j] - ry * fx[j])
+        second_bodies[mark.body] -= rx * fx[j] + ry * fy[j]
     return over_theta, over_bodies.ravel(), second, second_bodies
 
 
@@ -130,4 +136,10 @@ def position_rows(model: Model, state: State, at: Positions, joints: Ints) -> tu
             b = n + 3 * start.body
             rows_x[mine, b], rows_x[mine, b + 2] = 1.0, -ry
             rows_y[mine, b + 1], rows_y[mine, b + 2] = 1.0, rx
+    for j, mark in enumerate(model.marks.values(), start=model.first_mark):
+        mine = np.flatnonzero(joints == j)
+        rx, ry = arm(mark, state.bodies)
+        b = n + 3 * mark.body
+        rows_x[mine, b], rows_x[mine, b + 2] = 1.0, -ry
+        rows_y[mine, b + 1], rows_y[mine, b + 2] = 1.0, rx
     return rows_x, rows_y

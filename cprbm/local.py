@@ -2,8 +2,8 @@
 
 ==========  ======================================================================================
 θ, p, b     link angles, joint positions x and y, the free bodies' u, v, φ
-ρ           forces in the links: multipliers of p_{j+1} − p_j − L_i(cos θ_i, sin θ_i) = 0 and of
-            a beam's first joint at its place
+ρ           forces in the links: multipliers of p_{j+1} − p_j − L_i(cos θ_i, sin θ_i) = 0, and of
+            beams' first joints and of marks at their places
 μ, λ        multipliers of closures and welds, and of the contacts that press
 ==========  ======================================================================================
 
@@ -127,7 +127,7 @@ def local_system(
     n, J, n_bodies = model.n_links, model.n_joints, 3 * len(model.free_bodies)
     first_body = n + 2 * J
     first_rho = first_body + n_bodies
-    first_mu = first_rho + 2 * (n + len(model.chains))
+    first_mu = first_rho + 2 * (n + len(model.chains) + len(model.marks))
     size = first_mu + closure.rows
 
     fx, fy = closure_forces(model, closure, mu)
@@ -156,6 +156,9 @@ def local_system(
         place_row, joint_0 = first_rho + 2 * n + 2 * b, chain.first_joint
         lever = arm(chain.start, state.bodies)
         _tie(entries, place_row, n + joint_0, n + J + joint_0, first_body, chain.start.body, lever)
+    for m, mark in enumerate(model.marks.values()):
+        mark_row, number = first_rho + 2 * (n + len(model.chains) + m), model.first_mark + m
+        _tie(entries, mark_row, n + number, n + J + number, first_body, mark.body, arm(mark, state.bodies))
     for r, (b, last) in enumerate(zip(closure.ends, closure.end_joints, strict=True)):
         end = model.chains[b].end
         assert end is not None

@@ -48,6 +48,11 @@ class Mechanism:
         groups = self._groups(contact)(state, at)
         return max((float(group.values.max()) for group in groups), default=float("-inf"))
 
+    def passed(self, before: Positions, after: Positions) -> str:
+        """Name of a contact with a circle that its beam has swept over between two states; empty if none."""
+        circles = (pair for pair in self.pairs.values() if isinstance(pair, Circle))
+        return next((circle.name for circle in circles if circle.passed(before, after)), "")
+
     def _groups(self, contact: str) -> Groups:
         return self.boundaries[contact].groups if self.boundaries else self.pairs[contact].groups
 

@@ -25,7 +25,7 @@ from frozendict import frozendict
 
 from cprbm.curves import NeutralLine, neutral_line
 from cprbm.settings import Settings
-from scene import BeamEnd, FreeEnd, Scene, WeldedEnd
+from scene import BeamEnd, CircleContact, FreeEnd, Scene, WeldedEnd
 from scene.answer import Array
 
 
@@ -106,6 +106,7 @@ class Model:
         rest_turns: θ⁰_{i+1} − θ⁰_i in the same places.
         lengths: of all links, units of length.
         rest: stress-free angles of all links.
+        marks: centres of circles on bodies that move, by contact; they are numbered behind all joints.
     """
 
     chains: tuple[Chain, ...]
@@ -117,6 +118,7 @@ class Model:
     rest_turns: Array
     lengths: Array
     rest: Array
+    marks: Mapping[str, Attachment]
 
     @property
     def n_links(self) -> int:
@@ -125,7 +127,12 @@ class Model:
 
     @property
     def n_joints(self) -> int:
-        """Joints of all beams, ends included."""
+        """Joints of all beams, ends included, and the marks behind them."""
+        return self.first_mark + len(self.marks)
+
+    @property
+    def first_mark(self) -> int:
+        """Number of the first mark, which is that of all joints."""
         return self.n_links + len(self.chains)
 
     @property
@@ -234,7 +241,18 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
         rest_turns=np.diff(rest),
         lengths=np.concatenate([chain.lengths for chain in chains]),
         rest=rest,
+        marks=_marks(scene, free_bodies, references, unit_length),
     )
+
+
+def _marks(scene: Scene, free_bodies: tuple[str, ...], references: Array, unit_length: float) -> dict[str, Attachment]:
+    marks = {}
+    for name, contact in scene.contacts.items():
+        if isinstance(contact, CircleContact) and contact.body in free_bodies:
+            body = free_bodies.index(contact.body)
+            x, y = (np.array(contact.center) - references[body]) / unit_length
+            marks[name] = Attachment(body, (float(x), float(y)), welded=False)
+    return marks
 
 
 def _loose(beam: str) -> str:

@@ -10,6 +10,7 @@ import os
 import sys
 from collections.abc import Sequence
 from concurrent.futures.process import BrokenProcessPool
+from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING
 
 import click
@@ -50,8 +51,20 @@ class _Commands(click.Group):
         return command
 
 
+def _version(ctx: click.Context, param: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's form
+    """Say which version is installed; a folder of sources that is not installed has none."""
+    if value:
+        try:
+            click.echo(f"cprbm {version('cprbm')}")
+        except PackageNotFoundError:
+            click.echo("cprbm, run from its sources: no version is installed")
+        ctx.exit()
+
+
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.version_option(package_name="cprbm", prog_name="cprbm")
+@click.option(
+    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_version, help="Show the version and exit."
+)
 def commands() -> None:
     """Contact-aided compliant mechanisms: CPRBM beside finite elements, with a verdict."""
 

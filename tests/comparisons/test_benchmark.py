@@ -188,9 +188,11 @@ def test_bench_keeps_standard_output_for_json_and_asks_one_solver_if_told(right,
     assert {row["method"] for row in data["rows"]} == {"fea"}
 
 
-def test_bench_ends_with_1_if_a_run_does_not_complete(right, capsys):
+def test_bench_ends_with_1_if_a_run_does_not_complete(right, capsys, tmp_path):
     clock = Clock(lambda n: (0.1, 5, Ending.STEP_TOO_SMALL), power(1.0))
-    assert run(["bench", "hinge", "--sizes", "40", "--repeat", "1"], Solvers(clock.solvers.cprbm, right.fea)) == 1
+    arguments = ["bench", "hinge", "--sizes", "40", "--repeat", "1", "--solver", "cprbm", "--out", str(tmp_path)]
+    assert run(arguments, Solvers(clock.solvers.cprbm, right.fea)) == 1
+    assert (tmp_path / "hinge" / "bench.svg").is_file()
     assert "cprbm at N = 40: " + Ending.STEP_TOO_SMALL.value in capsys.readouterr().err
 
 

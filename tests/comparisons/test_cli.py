@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 
 import pytest
@@ -371,3 +372,17 @@ def test_an_interrupt_from_the_keyboard_ends_every_process_with_a_sentence(tmp_p
     _, said = process.communicate(timeout=60)
     assert process.returncode == 130
     assert said == "cprbm: Interrupted; what was finished before stands.\n"
+
+
+@pytest.mark.parametrize("installed", [True, False])
+def test_the_version_is_a_line_whether_or_not_the_package_is_installed(capsys, monkeypatch, installed):
+    def version(name):
+        if installed:
+            return "3.2.1"
+        raise PackageNotFoundError(name)
+
+    monkeypatch.setattr("comparisons.cli.main.version", version)
+    assert run(["--version"]) == 0
+    captured = capsys.readouterr()
+    assert captured.out == ("cprbm 3.2.1\n" if installed else "cprbm, run from its sources: no version is installed\n")
+    assert captured.err == ""

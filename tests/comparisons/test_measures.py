@@ -22,6 +22,11 @@ def rows_by_name(scene, runs, station=0.67):
     return {row.probe.name: row for row in rows_of(scene, runs) if row.station == station}
 
 
+def first_station_of(scene):
+    """The scene with one station, at which no other's uncertainty counts."""
+    return scene.model_copy(update={"stages": (Stage(name="load", steps="M", stations=(0.067,)),), "claims": ()})
+
+
 def test_there_is_one_row_per_probe_and_station(hinge, right):
     rows = rows_of(hinge, paired(hinge, Choices(), right))
     assert len(rows) == len(hinge.probes) * len(hinge.stages[0].stations)
@@ -31,6 +36,7 @@ def test_there_is_one_row_per_probe_and_station(hinge, right):
 def test_rotation_row_is_what_the_planted_errors_make_it(hinge):
     """Rotation 0.9·m·f before contact, f = 1 + e (40/n)² + theory: all terms follow in closed form."""
     solvers = Solvers(cprbm=MadeUp("cprbm", 4e-3), fea=MadeUp("fea", -8e-3))
+    hinge = first_station_of(hinge)
     row = rows_by_name(hinge, paired(hinge, Choices(), solvers), station=0.067)["BD.rotation"]
     rotation = 0.9 * 0.067
     fea_error = -8e-3 / 4  # 80 elements where the law's error is stated at 40
@@ -44,6 +50,7 @@ def test_rotation_row_is_what_the_planted_errors_make_it(hinge):
 
 
 def test_the_uncertainty_of_a_second_order_error_is_a_quarter_above_it(hinge, right):
+    hinge = first_station_of(hinge)
     row = rows_by_name(hinge, paired(hinge, Choices(), right), station=0.067)["BD.rotation"]
     assert row.bounds is not None
     assert row.bounds.cprbm / (0.9 * 0.067 * 2e-3) == pytest.approx(1.25, rel=1e-9)
@@ -56,6 +63,21 @@ def test_the_steps_add_up_to_the_difference(hinge, formulation):
         if row.steps is not None:
             total = row.steps.contact + row.steps.own + row.steps.stretch + row.steps.shear
             assert total == pytest.approx(row.difference, rel=1e-9)
+
+
+def test_an_uncertainty_that_vanishes_by_accident_is_a_quarter_of_the_stages_largest(hinge, right):
+    """At one station both discretisations give the same number, as if the error passed through zero there."""
+    runs = paired(hinge, Choices(), right)
+    rotation = runs.cprbm[0].stations[4].values["BD.rotation"]
+    same = with_value("BD.rotation", rotation)(runs.cprbm[1].stations[4])
+    stations = (*runs.cprbm[1].stations[:4], same, *runs.cprbm[1].stations[5:])
+    runs = replace(runs, cprbm=(runs.cprbm[0], replace(runs.cprbm[1], stations=stations)))
+    rows = [row for row in rows_of(hinge, runs) if row.probe.name == "BD.rotation"]
+    stated = [row.bounds.cprbm for row in rows if row.bounds is not None]
+    values = [float(answer.stations[-1].values["BD.rotation"][0]) for answer in runs.cprbm]
+    assert max(stated) == stated[-1] == pytest.approx(1.25 * 4.0 / 3.0 * abs(values[0] - values[1]), rel=1e-9)
+    assert stated[4] == pytest.approx(0.25 * stated[-1], rel=1e-12)
+    assert stated[3] > stated[4]
 
 
 @pytest.mark.parametrize(("formulation", "step"), [("auto", 0.0), ("paper", -1e-3)])

@@ -12,7 +12,7 @@ from comparisons.choices import Choices
 from comparisons.measures import Bounds, Row
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict import Word, compared, judged
-from scene import Ending, Probe
+from scene import Ending, Probe, Stage
 from scene.answer import frozen_array
 from tests.comparisons.made_up import MadeUp, with_value
 
@@ -169,6 +169,8 @@ def test_round_off_in_a_number_that_vanishes_by_symmetry_is_no_difference(hinge)
 
 
 def test_but_more_than_round_off_is_one(hinge):
+    last = Stage(name="load", steps="M", stations=(0.67,))  # alone, so that no other station's uncertainty counts
+    hinge = hinge.model_copy(update={"stages": (last,)})
     cprbm = replace(RIGHT[0], spoilt=with_value("C.reaction", [2.01 + 1e-9, 3.0]))
     fea = replace(RIGHT[1], spoilt=with_value("C.reaction", [2.01, 3.0]))
     assert verdict(hinge, cprbm, fea).word is Word.DIFFER

@@ -149,9 +149,13 @@ def test_a_force_that_pulls_backwards_wraps_more_than_half_a_circle():
     assert values["T.displacement"] == pytest.approx(reference.displacement, abs=1e-3 * BEAM["length"])
 
 
-@pytest.fixture
-def bent():
-    mechanism = mechanism_of(scene_of([60.0]), cprbm.Settings(links=23))
+@pytest.fixture(params=["fixed", "moving"])
+def bent(request):
+    scene = scene_of([60.0])
+    if request.param == "moving":  # with the tip, about which nothing is real but the derivatives
+        moving = scene.contacts["circle"].model_copy(update={"body": "tip"})
+        scene = scene.model_copy(update={"contacts": {"circle": moving}})
+    mechanism = mechanism_of(scene, cprbm.Settings(links=23))
     problem = mechanism.problem
     model = problem.model
     start = point_at(problem, {}, rest_state(model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
@@ -195,12 +199,80 @@ def test_derivatives_of_gaps_and_of_the_lagrangian(bent):
         assert np.concatenate((upper, lower)) == pytest.approx(product, rel=1e-5, abs=1e-5 * np.max(np.abs(product)))
 
 
-def test_a_circle_on_a_body_that_moves_is_refused():
-    data_contact = {"kind": "beam-circle", "beam": "beam", "body": "tip", "center": [0.05, -0.08], "radius": 0.05}
-    with pytest.raises(SceneError, match=r"contacts\.circle\.body"):
-        cprbm.answer(scene_of([1.0], contacts={"circle": data_contact}))
+def hanging(reference, hold):
+    """The beam's tip pinned to the ground, clamp and circle on a body that a dead force pulls down at ``hold`` metres
+    from the tip on the force's line in equilibrium; drawn so that the line is upright at rest too."""
+    length, radius = BEAM["length"], RADIUS + BEAM["thickness"] / 2.0
+    pull = np.array([np.cos(reference.pull), -np.sin(reference.pull)])
+    hub = reference.tip - hold * pull  # in the clamp's frame
+    towards = hub - [length, 0.0]
+    turn = -np.pi / 2.0 - np.arctan2(towards[1], towards[0])
+    cos, sin = np.cos(turn), np.sin(turn)
+
+    def drawn(x, y):
+        return [float(cos * x - sin * y), float(sin * x + cos * y)]
+
+    data = cantilever_data({"kind": "force", "point": "Q", "direction": [0.0, -1.0]}, [reference.force])
+    data["materials"]["m"]["youngs_modulus"] = BEAM["youngs_modulus"]
+    data["bodies"] = {
+        "wall": {"motion": "fixed", "points": {"T": drawn(length, 0.0)}},
+        "hub": {"motion": "free", "points": {"R": [0.0, 0.0], "Q": drawn(*hub)}},
+    }
+    beam = data["beams"]["beam"]
+    beam |= {"thickness": BEAM["thickness"], "width": BEAM["width"], "end": {"joint": "pin", "point": "T"}}
+    beam["curve"] = {"kind": "line", "start": [0.0, 0.0], "end": drawn(length, 0.0)}
+    circle = {"kind": "beam-circle", "beam": "beam", "body": "hub", "radius": RADIUS, "center": drawn(0.0, -radius)}
+    data["contacts"] = {"circle": circle}
+    kinds = {
+        "hub": ["rotation"],
+        "T": ["reaction"],
+        "circle": ["force", "centre", "ends"],
+        "scene": ["potential_energy"],
+    }
+    data["probes"] = [{"of": of, "quantity": quantity} for of, asked in kinds.items() for quantity in asked]
+    turned = np.pi / 2.0 - np.arctan2(pull[1], pull[0]) - turn
+    return scene_from(data), (turned + np.pi) % (2.0 * np.pi) - np.pi
+
+
+@pytest.mark.parametrize("links", [30, 60])
+def test_a_circle_that_moves_with_the_body_that_the_beam_is_clamped_to(links):
+    # reference: tests.references.wrapped, seen from the moving body
+    reference = Wrapped(**BEAM, radius=RADIUS, force=97.0, pull=np.radians(80.0))
+    scene, turned = hanging(reference, 0.5)
+    answer = cprbm.answer(scene, cprbm.Settings(links=links))
+    assert answer.completed, answer.sentence
+    values, rough = answer.stations[-1].values, 0.5 / links**2
+    assert answer.stations[-1].certificate.force_balance < 1e-9
+    assert values["hub.rotation"][0] == pytest.approx(turned, abs=rough)
+    assert values["T.reaction"] == pytest.approx([0.0, reference.force], abs=1e-9 * reference.force)
+    assert values["circle.force"][0] == pytest.approx(np.hypot(*reference.contact_force), rel=rough)
+    assert values["circle.centre"][0] == pytest.approx(reference.contact_centre, abs=rough * BEAM["length"])
+    assert values["circle.ends"] == pytest.approx([0.0, reference.wrap_length], abs=rough * BEAM["length"])
 
 
 def test_the_papers_formulation_says_that_it_has_no_circle():
     with pytest.raises(SceneError, match=r"contacts\.circle\.paper"):
         cprbm.answer(scene_of([1.0]), cprbm.Settings(formulation="paper"))
+
+
+def test_a_beam_never_passes_over_a_circle_whatever_the_step():
+    # a thin pin under the middle of the beam, far smaller than what one load step moves the beam by; it stands
+    # in the way on the beam's whole path, so that an answer without force is on the wrong side of it
+    length = BEAM["length"]
+    pin = {"radius": 0.0005, "center": [0.5 * length, -0.012]}
+    answer = cprbm.answer(scene_of([400.0], **pin), cprbm.Settings(links=30))
+    for station in answer.stations:
+        assert station.values["circle.force"][0] > 10.0
+    free = cprbm.answer(scene_of([400.0], radius=0.0005, center=[-0.5, 0.5]), cprbm.Settings(links=30))
+    shape = free.stations[0].shapes["beam"]
+    assert np.interp(0.5 * length, shape.x, shape.y) < -0.012
+
+
+@pytest.mark.parametrize("load", [20.0, 100.0, 400.0, 1500.0])
+def test_a_pin_as_thin_as_the_beam_presses_at_one_place_however_coarse_the_elements(load):
+    # reference: the chain itself with many links; the force on a pin is no matter of the elements' length
+    pin = {"radius": 0.0005, "center": [0.5 * BEAM["length"], -0.012]}
+    coarse, fine = solved(load, 20, **pin), solved(load, 320, **pin)
+    assert coarse.values["circle.force"] == pytest.approx(fine.values["circle.force"], rel=0.03)
+    assert coarse.values["circle.ends"] == pytest.approx(fine.values["circle.ends"], abs=2e-3 * BEAM["length"])
+    assert np.ptp(coarse.values["circle.ends"]) == 0.0
