@@ -151,7 +151,10 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
 
 
 def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
-    """κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂), the median along the zone; zero where the beams pull apart."""
+    """κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂) where the zone meets an end of the first beam, where it matters; else the median.
+
+    Zero where the beams pull apart.
+    """
     if not touch.closed:
         return 0.0
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
@@ -165,7 +168,8 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
     kappa = of_second / (1.0 + pair.distance * of_second)  # parallel curves
     axial, axial_m = z[model.element_dofs[6, e]], z[model.element_dofs[6, e_m]]
     pressure = kappa * (axial * beam_m.bending - axial_m * beam.bending) / (beam.bending + beam_m.bending)
-    return max(0.0, float(np.median(pressure)))
+    at_end = np.array([touch.zones.intervals[0, 0] <= _AT_END, touch.zones.intervals[-1, 1] >= line.n - _AT_END])
+    return max(0.0, float(np.median(pressure[[0, -1]][at_end] if at_end.any() else pressure)))
 
 
 def _missing(first: NeutralLine, second: NeutralLine, pair: Pair, penalty: Penalty, zones: Zones) -> float:

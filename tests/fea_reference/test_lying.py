@@ -7,6 +7,7 @@ from comparisons import cases
 from fea_reference import Settings, answer
 from scene import Ending, Scene
 from tests.fea_reference.lying import LENGTH, LOWER, RADIUS, UPPER, WIDTH, YOUNG, lying
+from tests.references.lying import Lying, Strip
 from tests.references.small import rectangle_second_moment
 from tests.references.wrapped import Wrapped
 
@@ -21,7 +22,7 @@ def solved(scene, elements, penetration=1e-4):
 
 
 def test_a_curved_beam_is_pressed_flat():
-    """Even in the elements, in equilibrium, and symmetric in which of the beams is named first."""
+    """Like the closed form, even in the elements, in equilibrium, and the same whichever beam is named first."""
     runs = [solved(lying(("upper", "lower"), (LOAD,)), n, p) for n, p in ((20, 1e-4), (40, 1e-4), (80, 1e-4 / 16))]
     forces, lasts = ([run[probe][-1] for run in runs] for probe in ("touch.force", "touch.ends"))
     for run in runs:
@@ -30,10 +31,20 @@ def test_a_curved_beam_is_pressed_flat():
         assert run["touch.ends"][0] == pytest.approx(0.0, abs=1e-9)
     assert np.ptp(forces) < 3e-4 * forces[-1]
     assert np.ptp(lasts) < 1e-5 * lasts[-1]
+    exact = Lying(
+        top=Strip(LENGTH, UPPER, WIDTH, YOUNG),
+        bottom=Strip(1.1 * LENGTH, LOWER, WIDTH, YOUNG),
+        curvature=1.0 / RADIUS,
+        force=LOAD,
+    )
+    for run in runs:
+        assert run["tip.displacement"] == pytest.approx(exact.displacement, abs=1e-5 * LENGTH)
+        assert run["touch.force"][0] == pytest.approx(np.hypot(*exact.contact_force), rel=2e-4)
+        assert run["touch.centre"][0] == pytest.approx(exact.contact_centre, rel=2e-4)
+        assert run["touch.ends"][1] == pytest.approx(exact.lift_off[0], rel=1e-5)
     other = solved(lying(("lower", "upper"), (LOAD,)), 40)
+    assert other["touch.ends"][1] == pytest.approx(exact.lift_off[1], rel=1e-5)
     assert other["touch.force"] == pytest.approx(runs[1]["touch.force"], rel=1e-6)
-    # Straight across from the upper's last place, half the thicknesses nearer to the centre they bend about.
-    assert other["touch.ends"][1] == pytest.approx(runs[1]["touch.ends"][1], rel=5e-3)
 
 
 def test_the_curvatures_agree_where_beams_lie_on_each_other():
