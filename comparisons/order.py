@@ -1,9 +1,9 @@
 """The order of convergence that an error estimate may assume, probe by probe.
 
 Two for all but one thing: where a beam lies on a circle up to a held end, the pressure on the first element and
-the shear of the support are told apart only to one element.  Their sum converges with the second order, each
-alone with the first, and so does the place of the contact's resultant.  Where such a zone ends is known to
-one element as well.
+the shear of the support can be told apart to one element and no better, unless a method takes care of it.  Their
+sum converges with the second order, each alone with the first, and so do the place of the contact's resultant
+and the ends of the zone.  Of a method that does better the first order only makes the stated uncertainty larger.
 """
 
 from __future__ import annotations
