@@ -29,11 +29,13 @@ class Mechanism:
         problem: with every contact.
         pairs: smooth beams of each contact, which measure overlap whatever the formulation.
         boundaries: of the formulation ``paper``; empty for ``auto``.
+        fit: what the mesh was made for.
     """
 
     problem: Problem
     pairs: dict[str, Pair | Circle]
     boundaries: dict[str, FittedBoundary]
+    fit: Fit
 
     def without(self, contact: str) -> Problem:
         """The problem in which ``contact`` holds nothing apart."""
@@ -84,4 +86,4 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism
     }
     closure = closure_of(model, holds_of(scene, model))
     problem = Problem(model, closure, dead_loads(scene, model), _formulation(parts))
-    return Mechanism(problem, pairs, boundaries)
+    return Mechanism(problem, pairs, boundaries, fit)
