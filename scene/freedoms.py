@@ -44,9 +44,9 @@ def row_of(scene: Scene, acting: Load | Drive) -> Row:
     """
     if isinstance(acting, Moment | RotationDrive):
         return _TURN
-    x, y = np.subtract(scene.bodies[scene.body_of(acting.point)].points[acting.point], _origin(scene))
+    x, y = _offsets(scene)[body_of(scene, acting), acting.point]
     e = unit(acting.direction)
-    return np.array([e[0], e[1], (x * e[1] - y * e[0]) / _extent(scene)])
+    return np.array([e[0], e[1], x * e[1] - y * e[0]])
 
 
 def slide_rows(body: Body) -> list[Row]:
@@ -94,21 +94,18 @@ def same_point(scene: Scene, load: Load, drive: Drive) -> bool:
         return False
     if body_of(scene, load) != body_of(scene, drive):
         return False
-    points = scene.bodies[body_of(scene, load)].points
-    apart = np.hypot(*np.subtract(points[load.point], points[drive.point]))
+    offsets, owner = _offsets(scene), body_of(scene, load)
+    apart = np.hypot(*(offsets[owner, load.point] - offsets[owner, drive.point]))
     along = abs(float(unit(load.direction) @ unit(drive.direction)))
-    return bool(apart <= NEGLIGIBLE * _extent(scene)) and along > NEGLIGIBLE
+    return bool(apart <= NEGLIGIBLE) and along > NEGLIGIBLE
 
 
-def _places(scene: Scene) -> Row:
-    return np.array([place for body in scene.bodies.values() for place in body.points.values()])
-
-
-def _origin(scene: Scene) -> Row:
-    return np.asarray(_places(scene)[0])
-
-
-def _extent(scene: Scene) -> float:
-    """Largest distance of a point from the origin; of a single place 1 m, for nothing is measured by it then."""
-    offsets = _places(scene) - _origin(scene)
-    return float(np.max(np.hypot(offsets[:, 0], offsets[:, 1]))) or 1.0
+def _offsets(scene: Scene) -> dict[tuple[str, str], Row]:
+    """r/ℓ (2,) of every body's points."""
+    names = [(name, point) for name, body in scene.bodies.items() for point in body.points]
+    places = np.array([scene.bodies[name].points[point] for name, point in names])
+    # first to order one, so that no length is too large or too small to be squared
+    places = places / (float(np.max(np.abs(places))) or 1.0)
+    places = places - places[0]
+    extent = float(np.max(np.hypot(places[:, 0], places[:, 1]))) or 1.0
+    return dict(zip(names, places / extent, strict=True))

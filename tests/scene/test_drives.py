@@ -1,7 +1,14 @@
 """Sliding bodies and drives: what a scene can say of them, and each wrong question by its key and a word."""
 
-import pytest
+import copy
+import math
+from contextlib import suppress
 
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from scene import Scene, SceneError
 from scene.reading import scene_from
 from scene.statement import DisplacementDrive
 from tests.scene.editing import REMOVED, edited, mistakes
@@ -117,3 +124,44 @@ def test_a_wrong_question_is_named_by_its_key(base, edit, key, word):
 def test_a_force_across_a_driven_direction_is_no_mistake():
     across = {"kind": "force", "point": "B", "direction": [-4.0, 3.0]}
     assert not mistakes(("loads/F", across), base=DRIVEN)
+
+
+BOTH = edited(("drives/t", TURN), ("bodies/slider", {**SLIDES, "points": {"E": [0.1, 0.0]}}), base=DRIVEN)
+BOTH["drives"]["e"] = {"kind": "displacement", "point": "E", "direction": [1.0, 1.0]}
+BOTH["loads"]["F"] = {"kind": "force", "point": "B", "direction": [-4.0, 3.0]}
+VECTORS = [
+    ("bodies", "BD", "points", "B"),
+    ("bodies", "BD", "points", "D"),
+    ("bodies", "slider", "points", "E"),
+    ("bodies", "slider", "along"),
+    ("drives", "d", "direction"),
+    ("drives", "e", "direction"),
+    ("loads", "F", "direction"),
+]
+NUMBERS = st.one_of(st.floats(allow_nan=False), st.sampled_from([0.0, 1.0, 5e-324, 1e-308, 1e154, 1.7e308, -1.7e308]))
+
+
+def test_the_scene_that_is_edited_at_random_is_a_good_question():
+    assert not mistakes(base=BOTH)
+
+
+@settings(max_examples=150, deadline=None, derandomize=True)
+@given(st.lists(st.tuples(st.sampled_from(VECTORS), st.tuples(NUMBERS, NUMBERS)), min_size=1, max_size=4))
+def test_any_vector_gives_a_scene_or_mistakes(edits):
+    data = copy.deepcopy(BOTH)
+    for path, value in edits:
+        place = data
+        for key in path[:-1]:
+            place = place[key]
+        place[path[-1]] = list(value)
+    with suppress(SceneError):
+        assert isinstance(scene_from(data), Scene)
+
+
+@pytest.mark.parametrize("exponent", [-290, -30, 30, 290])
+def test_the_length_of_a_direction_means_nothing(exponent):
+    factor = math.ldexp(1.0, exponent)
+    direction = [3.0 * factor, 4.0 * factor]
+    across = [-4.0 * factor, 3.0 * factor]
+    edits = ("drives/d/direction", direction), ("bodies/slider/along", direction), ("loads/F/direction", across)
+    assert not mistakes(*edits, base=BOTH)
