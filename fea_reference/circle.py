@@ -43,13 +43,15 @@ from scene.statement import CircleContact, Scene
 _LAYERS = 32.0  # of the first penalty, in a beam's length
 # Layers in an element: its cubic leaves the circle by a share of h⁴, which a clamp's own element does not make up for.
 _RESOLVED = 3.0
-# Layers in a beam's length: what they leave, of second order, is below 1e-6, and more of them only cost iterations.
-_THINNEST = 800.0
+# Layers in a beam's length at the standard penetration: what they leave, of second order, is below 1e-6, and more of
+# them only cost iterations. As penetration goes with the fourth power of the layer, a smaller one asks for more.
+_THINNEST, _STANDARD = 800.0, 1e-4
 
 
-def circles(scene: Scene, model: Model) -> tuple[Circle, ...]:
-    """The scene's contacts of a beam with a circle."""
+def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...]:
+    """The scene's contacts of a beam with a circle, ``penetration`` as in the settings."""
     found = []
+    thinnest = _THINNEST * (_STANDARD / penetration) ** 0.25
     beams = [beam.name for beam in model.beams]
     bodies = [body.name for body in model.bodies]
     for name, contact in scene.contacts.items():
@@ -73,7 +75,7 @@ def circles(scene: Scene, model: Model) -> tuple[Circle, ...]:
                 half if contact.thick else 0.0,
                 beam.thickness if contact.thick else 1.0,
                 beam.bending / layer**4,
-                beam.bending / max(h / _RESOLVED, beam.length / _THINNEST) ** 4,
+                beam.bending / max(h / _RESOLVED, beam.length / thinnest) ** 4,
             )
         )
     return tuple(found)

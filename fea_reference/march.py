@@ -219,15 +219,14 @@ class March:
                 most = max(most**0.4, 1.2)
 
     def _too_soft(self, one: Touch) -> float:
-        """The factor by which a penalty falls short of the penetration asked, or of what its circle wants.
+        """The factor by which a penalty falls short of the penetration asked; a circle's, of what its elements resolve.
 
         The penetration of a contact in a point falls with the penalty to the power −2/3, in an area with −1.
         """
+        if isinstance(one.pair, Circle):
+            return max(1.0, one.pair.stiffest / self.penalties[one.pair].stiffness) if one.closed else 1.0
         ratio = one.penetration / (self.settings.penetration * one.pair.scale)
-        wanted = _SLACK * ratio**1.5 if ratio > 1.0 else 1.0
-        if isinstance(one.pair, Circle) and one.closed:
-            wanted = max(wanted, one.pair.stiffest / self.penalties[one.pair].stiffness)
-        return wanted
+        return _SLACK * ratio**1.5 if ratio > 1.0 else 1.0
 
     def _known_pressure(self, one: Touch) -> float:
         """The line pressure that the beam's tension gives where it lies on a circle; of beams none is known."""

@@ -46,7 +46,7 @@ class Circle:
         stiffness: the penalty to begin with, EI over the fourth power of the width of the layer in which the
             pressure builds up at a zone's end: a share of the beam's length (or the radius, if that is less), so
             that finer elements make the search for the zone no harder.
-        stiffest: the penalty to end with, if the penetration asks for no more: its layer is a fixed share of an
+        stiffest: the penalty to end with: its layer is a fixed share of an
             element, so that what layer and element spoil (a share of the contact's force that the clamp beside it
             takes over) vanishes evenly with the element.
     """
