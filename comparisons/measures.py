@@ -32,7 +32,8 @@ a contact falls between joints and no two N tell it. There u_c = |v_c − v_a| +
 formulation whose error is even in N, and that one's own.
 
 The theory term is |v_b − v_f|, computed and never typed in.  Where both solvers are as good as they state,
-|v_c − v_f| ≤ |v_c − v_b| + |v_b − v_f| ≤ u_c + u_b + |v_b − v_f|: u_f is therefore never taken for less than u_b.  The difference is the sum of its steps,
+|v_c − v_f| ≤ |v_c − v_b| + |v_b − v_f| ≤ u_c + u_b + |v_b − v_f|: u_f is therefore never taken for less than u_b.
+The difference is the sum of its steps,
 
     v_c − v_f = (v_c − v_a) + (v_a − v_b) + (v_b − v_s) + (v_s − v_f),
 

@@ -1,5 +1,7 @@
 """Meshes fitted to contact over a length, coarse meshes to start from, and zones' ends."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -28,7 +30,7 @@ def test_many_links_are_reached_through_quarters_and_few_at_once():
     family = [s.links for s in coarser(Settings(links=1281))]
     assert family[-1] == 1281
     assert family[0] <= 80
-    assert all(fine <= 4 * coarse for coarse, fine in zip(family, family[1:], strict=False))
+    assert all(fine <= 4 * coarse for coarse, fine in pairwise(family))
 
 
 def test_beams_with_few_links_keep_some_and_the_papers_meshes_are_not_coarsened():
