@@ -53,7 +53,13 @@ class ArcPieces:
 
 @dataclass(frozen=True, slots=True)
 class CurvePieces:
-    """Of a ``line`` of varying curvature: ``x``, ``y`` where links begin, from its start, m, and their ``angle`` (N+1,)."""
+    """Of a ``line`` of varying curvature.
+
+    Attributes:
+        line: the neutral line.
+        x, y: where the links begin, from its start, m (N+1,).
+        angle: of the links (N+1,).
+    """
 
     line: PolynomialLine
     x: Array

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from numpy.polynomial import Polynomial as Power
@@ -32,6 +31,8 @@ TAIL = 4  # coefficients that must have vanished
 VANISHED = 3e-14  # of the largest; what is left out behind them is smaller still
 SMALLEST = 2.0**-10  # of the range: no piece is cut below
 ITERATIONS = 50
+POINTS = chebyshev.chebpts1(DEGREE + 1)
+VALUES = chebyshev.chebvander(POINTS, DEGREE)  # T_k at the points at which the sum is S'
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +78,7 @@ def _pieces(curve: Polynomial) -> list[_Piece]:
     open_ = [(first, 0.5 * (last - first))]
     while open_:
         begin, half = open_.pop()
-        c = chebyshev.chebinterpolate(partial(_speed, slope=slope, begin=begin, half=half), DEGREE)
+        c = np.linalg.solve(VALUES, _speed(POINTS, slope, begin, half))
         cut = abs(half) > SMALLEST * abs(last - first)
         if cut and np.max(np.abs(c[-TAIL:])) > VANISHED * np.max(np.abs(c)):
             open_ += [(begin + half, 0.5 * half), (begin, 0.5 * half)]

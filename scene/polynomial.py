@@ -98,8 +98,8 @@ def points(curve: Polynomial, u: Array) -> Array:
     """Points (n, 2), m, at the fractions ``u`` (n,)."""
     graph = _graph(curve)
     w = _places(graph, u)
-    along, across = graph.sense * graph.extent * w, graph.extent * polynomial.polyval(w, graph.g)
-    return np.asarray(np.array(curve.start) + _in_plane(curve, along, across))
+    across = np.asarray(polynomial.polyval(w, graph.g), dtype=np.float64)
+    return np.asarray(np.array(curve.start) + graph.extent * _in_plane(curve, graph.sense * w, across))
 
 
 def tangents(curve: Polynomial, u: Array) -> Array:
@@ -107,7 +107,7 @@ def tangents(curve: Polynomial, u: Array) -> Array:
     graph = _graph(curve)
     w = _places(graph, u)
     speed = _speed(graph, w)
-    return _in_plane(curve, graph.sense / speed, np.asarray(polynomial.polyval(w, graph.g1) / speed))
+    return _in_plane(curve, graph.sense / speed, np.asarray(polynomial.polyval(w, graph.g1) / speed, dtype=np.float64))
 
 
 def distance_to(curve: Polynomial, point: Point) -> float:
@@ -128,9 +128,7 @@ def distance_to(curve: Polynomial, point: Point) -> float:
     found = [float(np.min(sampled))]
     for i in minima[np.argsort(sampled[minima], kind="stable")[:_REFINED]]:
         beside = (float(w[max(i - 1, 0)]), float(w[min(i + 1, len(w) - 1)]))
-        refined = minimize_scalar(
-            lambda w: float(distance(w)), bounds=beside, method="bounded", options={"xatol": 1e-12}
-        )
+        refined = minimize_scalar(distance, bounds=beside, method="bounded", options={"xatol": 1e-12})
         found.append(float(refined.fun))
     return min(found) * graph.extent
 
@@ -166,8 +164,8 @@ def _local(curve: Polynomial) -> Array:
 def _graph(curve: Polynomial) -> _Graph:
     first, last = curve.range
     g = _local(curve)
-    g1 = np.asarray(polynomial.polyder(g), dtype=float)
-    g2 = np.asarray(polynomial.polyder(g1), dtype=float)
+    g1 = np.asarray(polynomial.polyder(g), dtype=np.float64)
+    g2 = np.asarray(polynomial.polyder(g1), dtype=np.float64)
     panels = _FIRST_PANELS
     S = _knots(g1, panels)
     while panels < _MOST_PANELS:
