@@ -31,7 +31,9 @@ The formulation ``paper`` holds joints apart and not what lies between them, so 
 a contact falls between joints and no two N tell it. There u_c = |v_c − v_a| + S·4/3·|v_a − V_c|: its distance from the
 formulation whose error is even in N, and that one's own.
 
-The theory term is |v_b − v_f|, computed and never typed in.  The difference is the sum of its steps,
+The theory term is |v_b − v_f|, computed and never typed in.  Where both solvers are as good as they state,
+|v_c − v_f| ≤ |v_c − v_b| + |v_b − v_f| ≤ u_c + u_b + |v_b − v_f|: u_f is therefore never taken for less than u_b.
+The difference is the sum of its steps,
 
     v_c − v_f = (v_c − v_a) + (v_a − v_b) + (v_b − v_s) + (v_s − v_f),
 
@@ -87,7 +89,7 @@ class Bounds:
 
     Attributes:
         cprbm: the CPRBM's own uncertainty.
-        fea: the finite elements' own, in the chosen theory.
+        fea: the finite elements' own, the larger of those in the chosen theory and in ``bending``.
         bending: the finite elements' own, in the theory ``bending``.
         theory: between the theory ``bending`` and the chosen one.
         round_off: what the certificates leave unsettled.
@@ -244,10 +246,11 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
     factor = SAFETY * richardson(order_of(scene, probe))
     even = values.get("cprbm auto", v_c)
     own = size(v_c - even) + factor * size(even - values["cprbm finer"])
+    bending = factor * size(v_b - values["fea bending finer"])
     bounds = Bounds(
         cprbm=own,
-        fea=factor * size(v_f - values[f"{chosen} finer"]),
-        bending=factor * size(v_b - values["fea bending finer"]),
+        fea=max(factor * size(v_f - values[f"{chosen} finer"]), bending),
+        bending=bending,
         theory=size(v_b - v_f),
         round_off=0.0 if open_everywhere else unsettled,
     )

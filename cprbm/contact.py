@@ -43,6 +43,7 @@ class Group:
         curvature: λ (m,) ↦ blocks of ∂²(λ·c)/∂z².
         keys: what each row is, to recognise it again in the next iteration; −1 for a place that moves.
         arc: arc length on the contact's first beam where each row acts (m,).
+        reach: length of the first beam, before and behind ``arc``, whose joints have these rows and no others.
     """
 
     contact: str
@@ -53,6 +54,7 @@ class Group:
     curvature: Callable[[Array], Blocks]
     keys: tuple[int, ...]
     arc: Array
+    reach: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -70,6 +72,11 @@ class Rows:
     def arc(self) -> Array:
         """Arc length on each contact's first beam (m,)."""
         return np.concatenate([group.arc for group in self.groups]) if self.groups else np.zeros(0)
+
+    @cached_property
+    def reach(self) -> Array:
+        """Length of the first beam before and behind each row whose joints have no others (m,)."""
+        return np.repeat([group.reach for group in self.groups], [len(group.values) for group in self.groups])
 
     @cached_property
     def keys(self) -> tuple[tuple[str, int], ...]:

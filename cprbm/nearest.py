@@ -10,15 +10,28 @@ g           D − ½(t₁+t₂), the gap of the edges; constraint c = −g ≤ 0
 z           local numbers of A (5) and of B (5)
 ==========  ==================================================================================
 
-σ is the foot of the perpendicular, t·r = 0 (i).  A row stands at every local minimum of D along A:
-either within A, where the tangents are parallel, ψ_A − ψ_B = const (ii), or at an end of A; and, with
-the beams' parts exchanged, at the ends of B.  Both conditions hold for every z, which gives s and σ as
-functions of z; so
+σ is the foot of the perpendicular, t·r = 0 (i).  A row stands at every joint of A that is close to B, at the
+ends of A and, with the beams' parts exchanged, of B; and where D has a minimum within A that is deeper than
+the steps of the lines' curvature.  There s moves with the minimum: the tangents are parallel, ψ_A − ψ_B = const
+(ii).  The conditions hold for every z, which gives s and σ as functions of z; so
 
     ∂D/∂z_k = side·n·r_k
     ∂²D/∂z_k∂z_l = side·(n·r_kl − (t·r_k)·dψ_B/dz_l + n·C_A,sk·ds/dz_l − n·C_B,σk·dσ/dz_l)
 
 with dψ_B/dz_l = ψ_B,l + ψ_B'·dσ/dz_l, and nothing divides by D.
+
+Beams that lie on each other over a length share any pressure among A's joints.  A is the beam with the longer
+elements: rows at the joints of both would ask one element for two curvatures.  At a joint stands the mean gap
+over the length of one element of B, and so the force is spread over it: the curvature of B, even over each
+element, becomes continuous in the mean, and the steps from one element to the next no longer press or pull.
+
+Where both are clamped together, touching, equilibrium does not say how clamp and contact share the force: the
+joints beside the clamp can hardly move, and two chains of unlike elements leave it at different slopes, by a
+part of h².  The first m ≈ √N joints have one row together, the mean of theirs, and so an even pressure; the
+slopes cost their force a part of 1/m², the pressure's own slope costs (m/N)².
+
+A row is a weighted sum over places.  Its local numbers are the position of one joint of each beam and the angles
+of the links around: positions of further joints follow from p_{i+1} = p_i + L_i (cos θ_i, sin θ_i).
 """
 
 from __future__ import annotations
@@ -29,7 +42,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from cprbm import smooth
-from cprbm.contact import Blocks, Group
+from cprbm.contact import Group
+from cprbm.gathering import Touches, gathered
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.model import Chain, Model
 from scene import BeamContact, Scene
@@ -37,14 +51,42 @@ from scene.answer import Array, Flags, Ints
 
 FOOT_ITERATIONS = 8
 FOOT_TOLERANCE = 1e-13  # of t·r, units of length
-CLOSEST_ITERATIONS = 12
+CLOSEST_ITERATIONS = 50
 LEAST_CURVATURE = 1e-3  # of D along A, 1/ℓ, below which its minimum has no place of its own
-REACH = 0.1  # gaps wider than this part of the longest beam are no constraints yet
+STEPS = 3.0  # a minimum is less convex than this many steps of the curvature: it belongs to a zone
+STEPS_BETWEEN = 6.0  # the same where it lies below two joints that are closed
+REACH = 0.1  # minima and ends with gaps wider than this part of the longest beam are no constraints yet
+JOINT_REACH = 2.0  # joints with gaps wider than this many h²·(|ψ_A'| + |ψ_B'| + 1/ℓ) are none
 PARALLEL = 1e-3  # a foot whose perpendicular misses by more (sine) is an end, not a foot
+SAME = 1e-3  # lengths that differ by less than this part are one
+PLACE_TOLERANCE = 1e-13  # of a minimum's place, units of length
+SETTLED = 1e-9  # slope of D at a minimum
+BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces A leaves its place to that
+BESIDE_MINIMUM = 2.5  # and to a minimum, from which D rises more than the curvature's steps can undo
 
-ORDER = np.array([0, 5, 1, 6, 2, 3, 4, 7, 8, 9])  # (x, y, θθθ of A, the same of B) to (x, x, y, y, θ of A, θ of B)
+STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
+ON_IT = 1e-9  # gap and slope of two clamped ends, and how far they lie apart along the beams, where they touch
+POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)  # of the mean on either side of a border of B
 
 Lines = tuple[smooth.SmoothLine, smooth.SmoothLine]
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Where rows stand on one beam, and their feet on the other.
+
+    Attributes:
+        s, sigma: arc lengths on the one beam and on the other (k,).
+        keys: of the rows (k,): a joint's number on A, beyond those the ends of B; negative where s moves.
+    """
+
+    s: Array
+    sigma: Array
+    keys: Ints
+
+    def only(self, these: Flags) -> Places:
+        """Some of the places."""
+        return Places(self.s[these], self.sigma[these], self.keys[these])
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +100,7 @@ class Pair:
         across: +1 where B starts on the left of A, −1 on the right.
         offset: ½(t₁+t₂), zero for lines; units of length.
         unit_length: ℓ, m.
+        clamps: for the start and the end of A and of B, whether it is clamped together with an end of the other.
     """
 
     name: str
@@ -67,6 +110,7 @@ class Pair:
     across: float
     offset: float
     unit_length: float
+    clamps: tuple[tuple[bool, bool], tuple[bool, bool]] = ((False, False), (False, False))
 
     def lines(self, state: State, at: Positions) -> Lines:
         """The smooth lines of A and B in a state."""
@@ -77,12 +121,12 @@ class Pair:
 
     def exchanged(self) -> Pair:
         """The same contact with the parts of A and B exchanged."""
-        return Pair(self.name, self.b, self.a, self.across, self.side, self.offset, self.unit_length)
+        return Pair(self.name, self.b, self.a, self.across, self.side, self.offset, self.unit_length, self.clamps[::-1])
 
     @property
     def clamped(self) -> tuple[bool, bool]:
-        """Whether the beam's start and end are clamped in touch with the other: not told."""
-        return (False, False)
+        """Whether A's start and end are clamped in touch with B."""
+        return self.clamps[0]
 
     @property
     def ends(self) -> tuple[float, ...]:
@@ -90,12 +134,15 @@ class Pair:
         return ()
 
     def parting(self, state: State, at: Positions, s: Array) -> Array:
-        """Curvature D″ with which A parts from B, at arc lengths ``s``."""
+        """Curvature D″ with which A parts from B, at arc lengths ``s``; between springs it goes evenly."""
         lines = self.lines(state, at)
         D, sigma, _ = distance_along(self, lines, s)
-        A, B = lines[0].at(s), lines[1].at(sigma)
-        facing = np.sign(np.cos(A.psi - B.psi))
-        return np.asarray(self.side * (facing * A.bend - B.bend / (1.0 - self.side * D * B.bend)))
+        facing = np.sign(np.cos(lines[0].at(s).psi - lines[1].at(sigma).psi))
+        bend_A, bend_B = (
+            np.interp(places, line.chain.s[1:-1], line.at(line.chain.s[1:-1]).bend)
+            for line, places in zip(lines, (s, sigma), strict=True)
+        )
+        return np.asarray(self.side * (facing * bend_A - bend_B / (1.0 - self.side * D * bend_B)))
 
     @property
     def thickness(self) -> float:
@@ -103,11 +150,12 @@ class Pair:
         return self.offset if self.offset > 0.0 else 1.0
 
     def deepest(self, state: State, at: Positions) -> float:
-        """Largest overlap of the two beams anywhere along A, units of length; zero where they are apart."""
+        """Largest overlap of the two beams anywhere along A and at the ends of B, units of length; zero if apart."""
         lines = self.lines(state, at)
-        places = closest_places(self, lines)
-        D, _, foot = distance_along(self, lines, np.concatenate((smooth.halves(self.a), places.s, places.held_s)))
-        return float(np.max(np.where(foot, self.offset - D, 0.0), initial=0.0))
+        s = np.concatenate((smooth.halves(self.a), _minima(self, lines, *_sampled(self, lines))[0]))
+        D, _, foot = distance_along(self, lines, s)
+        E, _, facing = distance_along(self.exchanged(), lines[::-1], self.b.s[[0, -1]])
+        return float(np.max(np.where(np.append(foot, facing), self.offset - np.append(D, E), 0.0), initial=0.0))
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
         """Where the edges touch that touch at arc lengths ``s`` of A, (k, 2), units of length."""
@@ -129,19 +177,90 @@ class Pair:
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
         lines = self.lines(state, at)
-        found = closest_places(self, lines)
-        groups = []
-        if found.s.size:
-            groups.append(self._rows_at(lines, found.s, found.sigma, free=True))
-        if found.held_s.size:
-            groups.append(self._rows_at(lines, found.held_s, found.held_sigma, free=False))
-        if found.across_s.size:
-            rows = self.exchanged()._rows_at(lines[::-1], found.across_s, found.across_sigma, free=False)
-            groups.append(replace(rows, arc=found.across_sigma))
-        return tuple(groups)
+        if self.a.h < self.b.h * (1.0 - SAME):
+            turned = self.exchanged()
+            return tuple(replace(rows, arc=other) for rows, other in turned._rows(lines[::-1], at))
+        return tuple(rows for rows, _ in self._rows(lines, at))
 
-    def _rows_at(self, lines: Lines, s: Array, sigma: Array, *, free: bool) -> Group:
-        """Rows at feet (s, σ); ``free`` where s moves with the minimum, else it is held."""
+    def _rows(self, lines: Lines, at: Positions) -> list[tuple[Group, Array]]:
+        """Rows at A's joints, at minima along A and at both beams' ends; with each group the places on B."""
+        along, across = closest_places(self, lines)
+        inner = (along.keys > 0) & (along.keys <= self.a.n)
+        found = []
+        if np.any(inner):
+            found += self._mean_rows(lines, at, along.only(inner))
+        if not np.all(inner):
+            places = along.only(~inner)
+            found.append((self._rows_at(lines, at, places), places.sigma))
+        if across.s.size:
+            rows = self.exchanged()._rows_at(lines[::-1], at, across)
+            found.append((replace(rows, arc=across.sigma), across.s))
+        return found
+
+    def _rows_at(self, lines: Lines, at: Positions, places: Places) -> Group:
+        """Rows at single places."""
+        touches = self._touches(lines, places.s, places.sigma, places.keys < 0)
+        weights = np.ones((len(places.s), 1))
+        return gathered(self.name, (self.a, self.b), at, touches, weights, places.keys, places.s)
+
+    def _mean_rows(self, lines: Lines, at: Positions, joints: Places) -> list[tuple[Group, Array]]:
+        """Rows of the mean gap around joints of A; those next to a clamp of both beams in one."""
+        s, sigma, weights = self._around(lines, joints)
+        (m, q), chains = s.shape, (self.a, self.b)
+        touches = self._touches(lines, s.ravel(), sigma.ravel(), np.zeros(m * q, dtype=bool))
+        number, alone, found = np.arange(m * q).reshape(m, q), np.ones(m, dtype=bool), []
+        for key, beside in self._beside_clamps(joints.keys):
+            alone[beside] = False
+            tied = touches.only(number[beside].ravel())
+            shares = weights[beside].reshape(1, -1) / len(beside)
+            arc, other = np.mean(joints.s[beside], keepdims=True), np.mean(joints.sigma[beside], keepdims=True)
+            rows = gathered(self.name, chains, at, tied, shares, np.array([key]), arc)
+            found.append((replace(rows, reach=0.5 * float(np.ptp(joints.s[beside]))), other))
+        if np.any(alone):
+            rest = joints.only(alone)
+            own = touches.only(number[alone].ravel())
+            found.append((gathered(self.name, chains, at, own, weights[alone], rest.keys, rest.s), rest.sigma))
+        return found
+
+    def _around(self, lines: Lines, joints: Places) -> tuple[Array, Array, Array]:
+        """Places on A and on B and weights (m, 6) of the mean over one element of B around each joint of A.
+
+        Gauss's points on either side of the border of B's elements that lies within, where the curvature steps.
+        """
+        s, sigma = joints.s, joints.sigma
+        A, B = lines[0].at(s), lines[1].at(sigma)
+        ratio = (B.speed - B.bend * _seen_from(B, A)[1]) / (np.cos(A.psi - B.psi) * A.speed)  # ds/dσ
+        borders = self.b.borders
+        after = np.clip(np.searchsorted(borders, sigma), 1, self.b.n)
+        # the length on A in steps, so that it does not change with the state where it is differentiated
+        stretch = np.round(np.abs(ratio) / STRETCH) * STRETCH
+        half = 0.5 * np.minimum(self.b.sizes[after - 1] * stretch, self.a.sizes[joints.keys - 1])[:, None]
+        ahead, behind = borders[after] - sigma, borders[after - 1] - sigma
+        cut = np.clip((np.where(ahead < -behind, ahead, behind) * ratio)[:, None], -half, half)
+        x, w = 0.5 * (POINTS + 1.0), 0.5 * WEIGHTS
+        off = np.concatenate((-half + (cut + half) * x, cut + (half - cut) * x), axis=1)
+        weights = 0.5 * np.concatenate(((1.0 + cut / half) * w, (1.0 - cut / half) * w), axis=1)
+        at_A = s[:, None] + off
+        _, feet, _ = _feet(self, lines[1], lines[0].at(at_A.ravel()), (sigma[:, None] + off / ratio[:, None]).ravel())
+        at_B = feet.reshape(at_A.shape)
+        # beside an end of B, where it faces no element of B, the joint alone
+        alone = ~np.all((at_B > 0.0) & (at_B < self.b.s[-1]), axis=1)[:, None]
+        return np.where(alone, s[:, None], at_A), np.where(alone, sigma[:, None], at_B), weights
+
+    def _beside_clamps(self, keys: Ints) -> list[tuple[int, Ints]]:
+        """For every end of A that is clamped with B: the key of the row there, and which joints share it."""
+        m = round(np.sqrt(self.a.n))
+        found = []
+        for end, clamped in enumerate(self.clamps[0]):
+            beside = (keys if end == 0 else self.a.n + 1 - keys) <= 2 * m
+            # joints on both sides of the row's end lie close, or the beams part before
+            if clamped and np.sum(beside) == 2 * m < self.a.n:
+                these = np.flatnonzero(beside)
+                found.append((self.a.n + 4 + end, these[:m] if end == 0 else these[m:]))
+        return found
+
+    def _touches(self, lines: Lines, s: Array, sigma: Array, free: Flags) -> Touches:
+        """The constraint at feet (s, σ); where ``free`` (k,) the place moves with the minimum."""
         A, B = lines[0].at(s), lines[1].at(sigma)
         m, k = len(s), smooth.LOCALS
         tangent = np.stack((np.cos(B.psi), np.sin(B.psi)), axis=1)
@@ -151,7 +270,6 @@ class Pair:
         r_z = np.concatenate((smooth.position_slopes(A), -smooth.position_slopes(B)), axis=2)
         n_r = np.einsum("mi,mik->mk", normal, r_z)
         t_r = np.einsum("mi,mik->mk", tangent, r_z)
-        slope = self.side * n_r
 
         # ds/dz and dσ/dz from (i) and (ii)
         zeros = np.zeros((m, k))
@@ -159,14 +277,10 @@ class Pair:
         psi_A = np.concatenate((smooth.angle_slopes(A), zeros), axis=1)
         facing = np.cos(A.psi - B.psi)
         of_foot = -B.speed + distance * B.bend
-        if free:
-            determinant = A.bend * of_foot + B.bend * facing * A.speed
-            one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
-            s_z = (of_foot[:, None] * one + B.bend[:, None] * two) / determinant[:, None]
-            sigma_z = (A.bend[:, None] * two - (facing * A.speed)[:, None] * one) / determinant[:, None]
-        else:
-            s_z = np.zeros((m, 2 * k))
-            sigma_z = -(t_r + distance[:, None] * psi_B) / of_foot[:, None]
+        one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
+        determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.speed, 1.0)
+        s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
+        sigma_z = (two - (facing * A.speed)[:, None] * s_z) / of_foot[:, None]
         turning = psi_B + B.bend[:, None] * sigma_z
         second = np.zeros((m, 2 * k, 2 * k))
         second[:, :k, :k] = smooth.position_curvature(A, normal)
@@ -175,45 +289,13 @@ class Pair:
         n_B = np.concatenate((zeros, np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(B))), axis=1)
         second += -t_r[:, :, None] * turning[:, None, :]
         second += n_A[:, :, None] * s_z[:, None, :] - n_B[:, :, None] * sigma_z[:, None, :]
-        second *= self.side
 
-        # local numbers of a row: joints of A and B, then θ (three of A, three of B)
-        joints = np.stack((self.a.first_joint + A.link, self.b.first_joint + B.link), axis=1)
-        angles = np.concatenate((_angles(self.a, A.link), _angles(self.b, B.link)), axis=1)
-
-        def curvature(multipliers: Array) -> Blocks:
-            pressing = np.flatnonzero(multipliers)
-            matrices = -multipliers[pressing, None, None] * second[pressing][:, ORDER[:, None], ORDER]
-            return Blocks(joints[pressing], angles[pressing], matrices)
-
-        return Group(
-            contact=self.name,
+        return Touches(
             values=self.offset - self.side * distance,
-            joints=joints,
-            angles=angles,
-            slopes=-slope[:, ORDER],
-            curvature=curvature,
-            keys=(-1,) * m,
-            arc=np.asarray(A.s),
+            slopes=-self.side * n_r,
+            second=-self.side * second,
+            links=np.stack((A.link, B.link)),
         )
-
-
-def _angles(chain: Chain, link: Ints) -> Ints:
-    """Links i−1, i, i+1; beyond the beam's ends link i itself, whose share there is zero."""
-    own = np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, chain.n)), axis=1)
-    return np.asarray(chain.first_link + own, dtype=np.intp)
-
-
-@dataclass(frozen=True, slots=True)
-class Places:
-    """Where rows stand: minima within A (s, σ), ends of A, and ends of B with A's and B's parts exchanged."""
-
-    s: Array
-    sigma: Array
-    held_s: Array
-    held_sigma: Array
-    across_s: Array
-    across_sigma: Array
 
 
 def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Flags]:
@@ -247,72 +329,112 @@ def _seen_from(B: smooth.Points, A: smooth.Points) -> tuple[Array, Array]:
     return cos * rx + sin * ry, cos * ry - sin * rx
 
 
-def closest_places(pair: Pair, lines: Lines) -> Places:
-    """All local minima of D along A within reach, and the ends of B that face A."""
-    none = np.zeros(0)
-    reach = pair.offset + REACH
+def closest_places(pair: Pair, lines: Lines) -> tuple[Places, Places]:
+    """Where rows stand on A, and on B with the beams' parts exchanged."""
+    a, b, reach = pair.a, pair.b, pair.offset + REACH
+    D, sigma = _sampled(pair, lines)
+    s, turned = _minima(pair, lines, D, sigma)
+    ends = _facing_ends(pair, lines)
+
+    # D and feet at the joints are every other sample
+    bends = np.abs(lines[0].at(a.s).bend) + np.abs(lines[1].at(sigma[::2]).bend)
+    near = D[::2] - pair.offset < JOINT_REACH * a.h**2 * (1.0 + bends)
+    for places, apart in ((s, BESIDE_MINIMUM), (ends.sigma, BESIDE_END)):
+        for place in places:
+            near[1:-1] &= np.abs(a.s[1:-1] - place) > apart * a.h
+    for end in (0, -1):
+        near[end] = reach > D[end] and not _held_together(a, b, end, float(sigma[end]))
+    joints = np.flatnonzero(near)
+    return (
+        Places(
+            np.concatenate((a.s[joints], s)),
+            np.concatenate((sigma[::2][joints], turned)),
+            np.concatenate((joints, np.full(len(s), -1))),
+        ),
+        ends,
+    )
+
+
+def _facing_ends(pair: Pair, lines: Lines) -> Places:
+    """The ends of B that face A within reach, and their feet on A; the keys follow A's joints."""
+    a, b, reach = pair.a, pair.b, pair.offset + REACH
+    A, ends = lines[0].at(smooth.halves(a)), lines[1].at(b.s[[0, -1]])
+    away = np.array([np.min(np.hypot(A.x - x, A.y - y)) for x, y in zip(ends.x, ends.y, strict=True)])
+    near = np.flatnonzero(away < reach + a.h)
+    if not near.size:
+        return Places(np.zeros(0), np.zeros(0), near)
+    E, foot, facing = distance_along(pair.exchanged(), lines[::-1], ends.s[near])
+    facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
+    for i, end in enumerate(near):
+        facing[i] &= not _held_together(b, a, int(-end), float(foot[i]))
+    return Places(ends.s[near][facing], foot[facing], a.n + 2 + near[facing])
+
+
+def _held_together(one: Chain, other: Chain, end: int, foot: float) -> bool:
+    """Whether an end of ``one`` and what its foot on ``other`` lies on move with one body: their gap is no unknown."""
+    mine = one.start if end == 0 else one.end
+    if mine is None:
+        return False
+    first, last = other.s[1], other.s[-1] - other.s[-2]
+    for its, away, half in ((other.start, foot, first), (other.end, other.s[-1] - foot, last)):
+        if its is None or its.body != mine.body:
+            continue
+        # a welded end moves with the body as far as its half element hardly bends
+        if away <= (half if its.welded and mine.welded else SAME * half):
+            return True
+    return False
+
+
+def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
+    """D at the joints of A and half-way between them, infinite where it is out of reach, and σ, (2N+3,) each."""
     s, grid = smooth.halves(pair.a), smooth.halves(pair.b)
     A, G = lines[0].at(s), lines[1].at(grid)
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
-    limit = reach + pair.a.h + pair.b.h
     rough, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(
-        np.stack((A.x, A.y), axis=1), distance_upper_bound=limit
+        np.stack((A.x, A.y), axis=1), distance_upper_bound=pair.offset + REACH + pair.a.h + pair.b.h
     )
     close = np.flatnonzero(np.isfinite(rough))
-    across_s = across_sigma = none
-    for end in (0, -1):
-        if np.min((A.x - G.x[end]) ** 2 + (A.y - G.y[end]) ** 2) < limit * limit:
-            at_end, foot_of_end = _facing_end(pair, lines, grid[[end]], reach)
-            across_s, across_sigma = np.append(across_s, at_end), np.append(across_sigma, foot_of_end)
-    if not close.size:
-        return Places(none, none, none, none, across_s, across_sigma)
     D, sigma = np.full(len(s), np.inf), np.zeros(len(s))
-    distance, sigma[close], foot = _feet(pair, lines[1], lines[0].at(s[close]), grid[nearest[close]])
-    D[close] = np.where(foot, distance, np.inf)
-    padded = np.concatenate(([np.inf], D, [np.inf]))
-    lowest = (padded[:-2] >= D) & (padded[2:] > D) & (reach > D)
-    inner = lowest.copy()
-    inner[[0, -1]] = False
-    held_s, held_sigma = s[lowest & ~inner], sigma[lowest & ~inner]
-    free_s, free_sigma = none, none
-    if np.any(inner):
-        free_s, free_sigma, minimum = _refined(pair, lines, s[inner], sigma[inner])
-        held_s = np.concatenate((held_s, s[inner][~minimum]))
-        held_sigma = np.concatenate((held_sigma, sigma[inner][~minimum]))
-        free_s, free_sigma = free_s[minimum], free_sigma[minimum]
-    return Places(free_s, free_sigma, held_s, held_sigma, across_s, across_sigma)
+    if close.size:
+        distance, sigma[close], foot = _feet(pair, lines[1], lines[0].at(s[close]), grid[nearest[close]])
+        D[close] = np.where(foot, distance, np.inf)
+    return D, sigma
 
 
-def _facing_end(pair: Pair, lines: Lines, end: Array, reach: float) -> tuple[Array, Array]:
-    """An end of B (1,) and its foot within A, or nothing where it faces no part of A."""
-    E, foot, has_foot = distance_along(pair.exchanged(), lines[::-1], end)
-    facing = has_foot & (foot > 0.0) & (foot < pair.a.s[-1]) & (reach > E)
-    return end[facing], foot[facing]
+def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:
+    """(s, σ) of the minima of D within A that are deeper than the steps of the curvature, from its samples.
 
-
-def _refined(pair: Pair, lines: Lines, s: Array, sigma: Array) -> tuple[Array, Array, Flags]:
-    """Newton on (i) and (ii) from a sampled minimum; the last array says where it ended in a minimum nearby."""
-    s0, reach = s, pair.a.h
+    Newton's method on dD/ds = 0, kept between the samples beside the lowest: where the curvature jumps it alone
+    would not settle.
+    """
+    s = smooth.halves(pair.a)
+    lowest = np.flatnonzero((D[:-2] >= D[1:-1]) & (D[2:] > D[1:-1]) & (pair.offset + REACH > D[1:-1])) + 1
+    low, high, s, sigma = s[lowest - 1], s[lowest + 1], s[lowest], sigma[lowest]
+    if not s.size:
+        return s, sigma
     for _ in range(CLOSEST_ITERATIONS):
         A, B = lines[0].at(s), lines[1].at(sigma)
-        along, across = _seen_from(B, A)
         facing = np.cos(A.psi - B.psi)
-        crossing = np.sin(A.psi - B.psi) * facing  # zero where the tangents are parallel, either way
-        of_foot = -B.speed + across * B.bend
-        # d²D/ds² along the feet, over the speed
-        convex = pair.side * facing * (A.bend + B.bend * facing * A.speed / of_foot) > LEAST_CURVATURE
-        # (ii) and (i) over (s, σ)
-        J11, J12, J21, J22 = A.bend, -B.bend, facing * A.speed, of_foot
-        determinant = J11 * J22 - J12 * J21
-        safe = np.where(np.abs(determinant) > LEAST_CURVATURE, determinant, np.inf)
-        ds = -(J22 * crossing - J12 * along) / safe
-        dsigma = -(J11 * along - J21 * crossing) / safe
-        s = np.minimum(np.maximum(s + np.clip(ds, -reach, reach), 0.0), pair.a.s[-1])
-        sigma = np.minimum(np.maximum(sigma + np.clip(dsigma, -reach, reach), 0.0), pair.b.s[-1])
-        if np.all(np.abs(ds) + np.abs(dsigma) < 1e-13):
+        slope = pair.side * np.sin(A.psi - B.psi)
+        towards = facing * A.speed / (B.speed - B.bend * _seen_from(B, A)[1])  # dσ/ds
+        convex = pair.side * facing * (A.bend - B.bend * towards)
+        low, high = np.where(slope < 0.0, s, low), np.where(slope < 0.0, high, s)
+        ahead = s - slope / np.where(convex > LEAST_CURVATURE, convex, np.inf)
+        newton = (convex > LEAST_CURVATURE) & (ahead >= low) & (ahead <= high)
+        step = np.where(newton, ahead, 0.5 * (low + high)) - s
+        if np.max(np.abs(step)) < PLACE_TOLERANCE:
             break
-    settled = (np.abs(ds) < 1e-9) & (np.abs(determinant) > LEAST_CURVATURE)
-    return s, sigma, convex & settled & (np.abs(s - s0) <= reach)
+        s = s + step
+        _, sigma, _ = _feet(pair, lines[1], lines[0].at(s), sigma + towards * step)
+    steps = smooth.curvature_step(lines[0], A.link) + smooth.curvature_step(lines[1], B.link)
+    # what is held at the joints beside may stay there and what is held at the minimum too: no state is neither
+    joint = np.searchsorted(pair.a.s, s)
+    lowest_gap = pair.side * _seen_from(B, A)[1] - pair.offset
+    beside = np.maximum(D[::2][np.maximum(joint - 1, 0)], D[::2][joint]) - pair.offset
+    steps = steps * np.where(beside + lowest_gap > 0.0, STEPS, STEPS_BETWEEN)
+    deep = convex > np.maximum(LEAST_CURVATURE, steps)
+    settled = np.abs(slope) < SETTLED
+    return s[deep & settled], sigma[deep & settled]
 
 
 def pair_of(scene: Scene, model: Model, name: str) -> Pair:
@@ -325,7 +447,21 @@ def pair_of(scene: Scene, model: Model, name: str) -> Pair:
     half = 0.5 * (a.thickness + b.thickness) if contact.thick else 0.0
     pair = Pair(name, a, b, 1.0, 1.0, half, model.unit_length)
     lines = pair.lines(state, at)
-    return replace(pair, side=_side(pair, lines), across=_side(pair.exchanged(), lines[::-1]))
+    pair = replace(pair, side=_side(pair, lines), across=_side(pair.exchanged(), lines[::-1]))
+    return replace(pair, clamps=(_clamped(pair, lines), _clamped(pair.exchanged(), lines[::-1])))
+
+
+def _clamped(pair: Pair, lines: Lines) -> tuple[bool, bool]:
+    """For the start and the end of A, whether it is clamped beside an end of B, touching and parallel."""
+    ends = pair.a.s[[0, -1]]
+    D, sigma, foot = distance_along(pair, lines, ends)
+    turn = np.sin(lines[0].at(ends).psi - lines[1].at(sigma).psi)
+    at_end = np.minimum(sigma, pair.b.s[-1] - sigma)
+    touching = foot & (np.abs(D - pair.offset) <= ON_IT) & (np.abs(turn) <= ON_IT) & (at_end <= ON_IT)
+    start, end = (
+        bool(touching[i]) and _held_together(pair.a, pair.b, e, float(sigma[i])) for i, e in enumerate((0, -1))
+    )
+    return start, end
 
 
 def _side(pair: Pair, lines: Lines) -> float:

@@ -40,20 +40,23 @@ def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     chain = pair.a
     mine = np.array([name == pair.name for name in point.rows.contact], dtype=bool)
     arcs, forces, overlaps = point.rows.arc[mine], point.lam[mine], point.rows.values[mine]
+    reach = point.rows.reach[mine]
     if not np.any(forces > 0.0):
         return ()
     largest = forces.max()
     # ends that are clamped in touch: no force is needed there
     clamped = chain.s[[0, -1]][list(pair.clamped)]
     arcs, forces = np.append(arcs, clamped), np.append(forces, np.full(len(clamped), largest))
-    overlaps = np.append(overlaps, np.zeros(len(clamped)))
+    overlaps, reach = np.append(overlaps, np.zeros(len(clamped))), np.append(reach, np.zeros(len(clamped)))
     order = np.argsort(arcs)
-    arcs, forces, overlaps = arcs[order], forces[order], overlaps[order]
+    arcs, forces, overlaps, reach = arcs[order], forces[order], overlaps[order], reach[order]
     pressed = np.flatnonzero(forces > 0.0)
     h = float(chain.sizes.max())
     # one zone goes on where each joint has a row, and the beam arches by no more than one force can bend an element
     arched = -overlaps > largest * h**3 / chain.rigidity
-    breaks = np.concatenate(([0], np.cumsum((np.diff(arcs) > CLOSE * h) | arched[1:] | arched[:-1])))
+    breaks = np.concatenate(
+        ([0], np.cumsum((np.diff(arcs) > CLOSE * h + reach[1:] + reach[:-1]) | arched[1:] | arched[:-1]))
+    )
     runs = np.split(arcs[pressed], np.flatnonzero(np.diff(breaks[pressed])) + 1)
     return tuple(_zone(pair, point, chain, run, h) for run in runs if len(run) > 1 or run[0] not in clamped)
 

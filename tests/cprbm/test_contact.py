@@ -6,7 +6,7 @@ from scipy.optimize import minimize
 
 import cprbm
 from cprbm import nearest, smooth
-from cprbm.contact import NO_ROWS
+from cprbm.contact import NO_ROWS, Rows
 from cprbm.equilibrium import LONGEST_TURN, equilibrium, point_at
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.mechanism import mechanism_of
@@ -44,11 +44,15 @@ def test_the_constraint_stands_at_the_smallest_distance_and_not_at_a_sample(seed
             theta[chain.links] += 0.03 * random.standard_normal(2) @ (np.sin(x), np.sin(2.0 * x))
         state = State(theta, bent.bodies)
         at = positions(model, state)
-        places = nearest.closest_places(pair, pair.lines(state, at))
-        (s,), (sigma,) = places.s, places.sigma
+        places, ends = nearest.closest_places(pair, pair.lines(state, at))
+        moving = places.keys < 0
+        (s,), (sigma,) = places.s[moving], places.sigma[moving]
+        assert not ends.s.size
         assert np.min(np.abs(s - smooth.halves(pair.a))) > 1e-3 * pair.a.h
         smallest = smallest_distance(pair.lines(state, at), s + 0.01, sigma - 0.013)
-        (row,) = (group.values[0] for group in pair.groups(state, at))
+        rows = Rows(pair.groups(state, at))
+        row = np.max(rows.values)
+        assert row == rows.values[rows.keys.index(("contact", -1))]
         assert row == pytest.approx(pair.offset - smallest, abs=1e-10)
         assert pair.deepest(state, at) == pytest.approx(max(row, 0.0), abs=1e-10)
 

@@ -1,0 +1,118 @@
+"""Contact rows as weighted sums over places on two beams, over few local numbers.
+
+==========  ==================================================================================
+z           local numbers of a place: x, y of the first joint of its link l, θ_{l−1}, θ_l, θ_{l+1}; of A, then of B
+J           of each row and beam, the first link with a place: its joint's x and y are local numbers of the row
+ζ           local numbers of a row: x, y of joint J and θ_{J−1}, θ_J, ... of A and of B
+c, w        constraint at a place, its weight in the row
+==========  ==================================================================================
+
+A row is Σ w c(z(ζ)), where z is linear in ζ but for the positions of further joints, eq. (6):
+
+    p_l = p_J + Σ_{J≤k<l} L_k (cos θ_k, sin θ_k)
+
+    ∂c/∂ζ = Mᵀ ∂c/∂z,    ∂²c/∂ζ² = Mᵀ ∂²c/∂z² M − Σ_{J≤k<l} ∂c/∂p_l · L_k (cos θ_k, sin θ_k)   on θ_k,    M = ∂z/∂ζ
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cprbm import smooth
+from cprbm.contact import Blocks, Group
+from cprbm.kinematics import Positions
+from cprbm.model import Chain
+from scene.answer import Array, Flags, Ints
+
+
+@dataclass(frozen=True, slots=True)
+class Touches:
+    """The constraint c at k places, each over local numbers of its own.
+
+    Attributes:
+        values: c (k,), units of length.
+        slopes, second: ∂c/∂z (k, 10) and ∂²c/∂z² (k, 10, 10).
+        links: of A and of B in their own numbering, (2, k).
+    """
+
+    values: Array
+    slopes: Array
+    second: Array
+    links: Ints
+
+    def only(self, these: Flags | Ints) -> Touches:
+        """Some of the places."""
+        return Touches(self.values[these], self.slopes[these], self.second[these], self.links[:, these])
+
+
+def gathered(
+    name: str,
+    chains: tuple[Chain, Chain],
+    at: Positions,
+    touches: Touches,
+    weights: Array,
+    keys: Ints,
+    arc: Array,
+) -> Group:
+    """Rows of one contact.
+
+    Args:
+        name: of the contact.
+        chains: A and B.
+        at: the joints.
+        touches: at m·q places, row behind row.
+        weights: w (m, q).
+        keys, arc: of the rows (m,).
+    """
+    m, q = weights.shape
+    links = touches.links.reshape(2, m, q)
+    first = np.min(links, axis=2)
+    widths = np.max(links - first[:, :, None], axis=(1, 2)) + 3
+    angles, lefts = [], []
+    for chain, begin, width in zip(chains, first, widths, strict=True):
+        # beyond a beam's ends the end itself: what is there has no share
+        angles.append(chain.first_link + np.clip(begin[:, None] - 1 + np.arange(width), 0, chain.n))
+        lefts.append(np.repeat(begin, q))
+    M = np.zeros((m * q, 2 * smooth.LOCALS, 4 + int(widths.sum())))
+    turned = np.zeros((m * q, M.shape[2]))
+    place, column = np.arange(m * q), 4
+    for beam, (chain, link, left, width) in enumerate(zip(chains, touches.links, lefts, widths, strict=True)):
+        x = smooth.LOCALS * beam
+        M[:, x, beam] = M[:, x + 1, 2 + beam] = 1.0
+        for i in range(3):
+            M[place, x + 2 + i, column + link - left + i] = 1.0
+        for k in range(width - 3):
+            past = np.flatnonzero(left + k < link)
+            crossed = chain.first_link + left[past] + k
+            dx, dy = at.dx[crossed], at.dy[crossed]
+            M[past, x, column + 1 + k], M[past, x + 1, column + 1 + k] = -dy, dx
+            turned[past, column + 1 + k] = -(touches.slopes[past, x] * dx + touches.slopes[past, x + 1] * dy)
+        column += width
+    share = weights.ravel()
+    slopes = np.einsum("kz,kzj->kj", share[:, None] * touches.slopes, M).reshape(m, q, -1).sum(axis=1)
+    joints = np.stack([chain.first_joint + begin for chain, begin in zip(chains, first, strict=True)], axis=1)
+    over = np.concatenate(angles, axis=1)
+
+    def curvature(multipliers: Array) -> Blocks:
+        pressing = np.flatnonzero(multipliers)
+        mine = (pressing[:, None] * q + np.arange(q)).ravel()
+        matrices = np.swapaxes(M[mine], 1, 2) @ touches.second[mine] @ M[mine]
+        diagonal = np.arange(M.shape[2])
+        matrices[:, diagonal, diagonal] += turned[mine]
+        matrices *= (np.repeat(multipliers[pressing], q) * share[mine])[:, None, None]
+        return Blocks(
+            joints[pressing], over[pressing], matrices.reshape(len(pressing), q, *matrices.shape[1:]).sum(axis=1)
+        )
+
+    return Group(
+        contact=name,
+        values=np.sum(weights * touches.values.reshape(m, q), axis=1),
+        joints=joints,
+        angles=np.asarray(over, dtype=np.intp),
+        slopes=slopes,
+        curvature=curvature,
+        keys=tuple(keys.tolist()),
+        arc=arc,
+    )

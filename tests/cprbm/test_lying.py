@@ -1,0 +1,254 @@
+"""Beams that lie on each other over a length: against an exact solution, and from a point to a length."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import cprbm
+from cprbm import equilibrium as newton
+from cprbm.contact import NO_ROWS
+from cprbm.equilibrium import contact_gradient, contact_rows, equilibrium, point_at, system
+from cprbm.kinematics import State, rest_state
+from cprbm.mechanism import mechanism_of
+from scene.reading import scene_from
+from tests.references.lying import Lying, Strip
+
+# elements of one length where B has four for every five of A
+PAIR = Lying(
+    top=Strip(length=0.0973, thickness=1.03e-3, width=8.7e-3, youngs_modulus=2.03e11),
+    bottom=Strip(length=0.8 * 0.0973, thickness=1.27e-3, width=8.7e-3, youngs_modulus=2.03e11),
+    curvature=1.0 / 0.12,
+    force=45.0,
+)
+LIKE = {n: {"A": n, "B": 4 * n // 5} for n in (20, 40, 80, 160)}
+STEP = 1e-6
+
+
+def scene_of(tip, clamp, center, radius, load, direction, order=("A", "B"), below=PAIR.bottom, turn=0.0):
+    """An arc A from ``clamp`` to ``tip`` above a straight beam B along x, the force on A's tip; all of it turned."""
+    cos, sin = np.cos(turn), np.sin(turn)
+
+    def place(x, y):
+        return [float(cos * x - sin * y), float(sin * x + cos * y)]
+
+    def beam(curve, strip, start, end):
+        welds = {"start": {"joint": "weld", "point": start}, "end": {"joint": "weld", "point": end}}
+        return {"curve": curve, "thickness": strip.thickness, "width": strip.width, "material": "m", **welds}
+
+    arc = {"kind": "arc", "center": place(*center), "start": place(*clamp), "end": place(*tip)}
+    line = {"kind": "line", "start": place(0.0, 0.0), "end": place(below.length, 0.0)}
+    probes = [("T", "displacement"), ("S", "displacement"), ("tip", "rotation"), ("c", "force"), ("c", "centre")]
+    probes += [("c", "ends"), ("R", "reaction"), ("R", "reaction_moment"), ("scene", "potential_energy")]
+    return scene_from(
+        {
+            "name": "lying",
+            "materials": {"m": {"youngs_modulus": below.youngs_modulus, "poisson_ratio": 0.3}},
+            "bodies": {
+                "wall": {"motion": "fixed", "points": {"R": place(*clamp), "Q": place(0.0, 0.0)}},
+                "tip": {"motion": "free", "points": {"T": place(*tip)}},
+                "end": {"motion": "free", "points": {"S": place(below.length, 0.0)}},
+            },
+            "beams": {
+                "A": beam({**arc, "direction": "counterclockwise"}, PAIR.top, "R", "T"),
+                "B": beam(line, below, "Q", "S"),
+            },
+            "contacts": {"c": {"kind": "beam-beam", "between": list(order)}},
+            "loads": {"P": {"kind": "force", "point": "T", "direction": place(*direction)}},
+            "stages": [{"name": "load", "steps": "P", "stations": [load]}],
+            "probes": [{"of": of, "quantity": quantity} for of, quantity in probes],
+        }
+    )
+
+
+def lying(pair=PAIR, **changes):
+    """A and B clamped beside each other, as in the reference."""
+    T, R = pair.distance, 1.0 / pair.curvature
+    angle = pair.curvature * pair.top.length
+    tip = (R * np.sin(angle), T + R * (1.0 - np.cos(angle)))
+    pull = (np.cos(pair.pull), np.sin(pair.pull))
+    return scene_of(tip, (0.0, T), (0.0, T + R), R, pair.force, pull, below=pair.bottom, **changes)
+
+
+def bowl(load, **changes):
+    """A comes down on B from a clamp above it: first at a point, then over a length, with B's free end beyond."""
+    below = replace(PAIR.bottom, length=0.0811, thickness=1.8e-3)
+    x, R = 0.045, 0.12
+    y = 0.5 * (PAIR.top.thickness + below.thickness) + 2e-4 + R
+
+    def height(at):
+        return y - np.sqrt(R**2 - (at - x) ** 2)
+
+    tip = (0.0973, height(0.0973))
+    return scene_of(tip, (0.0, height(0.0)), (x, y), R, load, (0.0, -1.0), below=below, **changes)
+
+
+def test_the_ends_of_the_zone():
+    # reference: tests.references.lying; the clamp is one end, the point of lift-off the other
+    for links in (20, {"A": 40, "B": 32}, {"A": 40, "B": 53}):
+        begin, end = solved(lying(), links).values["c.ends"]
+        assert begin == 0.0
+        assert end == pytest.approx(PAIR.lift_off[0], rel=1e-3)
+
+
+def solved(scene, links):
+    answer = cprbm.answer(scene, cprbm.Settings(links=links))
+    assert answer.completed, answer.sentence
+    return answer.stations[-1]
+
+
+def errors_of(station, pair=PAIR):
+    values, L = station.values, pair.top.length
+    return {
+        "displacement": np.hypot(*(values["T.displacement"] - pair.displacement)) / L,
+        "below": np.hypot(*(values["S.displacement"] - pair.bottom_displacement)) / L,
+        "rotation": abs(values["tip.rotation"][0] - pair.rotation),
+        "energy": abs(values["scene.potential_energy"][0] / pair.potential_energy - 1.0),
+        "force": abs(values["c.force"][0] / np.hypot(*pair.contact_force) - 1.0),
+        "centre": abs(values["c.centre"][0] - pair.contact_centre) / L,
+        "reaction": np.hypot(*(values["R.reaction"] - pair.reaction[0])) / pair.force,
+        "moment": abs(values["R.reaction_moment"][0] / pair.reaction_moment[0] - 1.0),
+    }
+
+
+@pytest.fixture(scope="module")
+def like():
+    return {n: errors_of(solved(lying(), links)) for n, links in LIKE.items()}
+
+
+def test_the_shape_converges_with_the_square_of_the_element(like):
+    # reference: tests.references.lying. The parts of the shape's error that depend on where in its element the
+    # beam lifts off are of the same order as the rest
+    for n, error in like.items():
+        assert error["displacement"] < 0.25 / n**2
+        assert error["below"] < 0.15 / n**2
+        assert error["rotation"] < 0.25 / n**2
+        assert error["moment"] < 0.3 / n**2
+    for n in (20, 40, 80):
+        assert 3.8 < like[n]["energy"] / like[2 * n]["energy"] < 4.2
+
+
+def test_force_and_centre_beside_a_common_clamp_converge(like):
+    # reference: tests.references.lying. With elements of one length clamp and contact share as in the beams
+    for n, error in like.items():
+        assert error["force"] < 4.0 / n**2
+        assert error["centre"] < 3.0 / n**2
+        assert error["reaction"] < 3.0 / n**2
+
+
+@pytest.mark.parametrize(
+    "links", [41, 53, {"A": 40, "B": 83}, {"A": 83, "B": 40}], ids=["41", "53", "fine below", "fine above"]
+)
+def test_elements_of_any_lengths(links):
+    # reference: tests.references.lying. How the clamp and the first elements share the force is of first order
+    n = links if isinstance(links, int) else min(links.values())
+    error = errors_of(solved(lying(), links))
+    assert error["displacement"] < 0.25 / n**2
+    assert error["energy"] < 0.4 / n**2
+    assert error["moment"] < 0.06 / n
+    assert error["force"] < 0.7 / n
+    assert error["centre"] < 0.5 / n
+
+
+@pytest.mark.parametrize(("A", "B"), [(80, 64), (80, 83), (64, 97), (97, 64)])
+def test_the_pressure_along_the_zone(A, B):
+    # reference: q of tests.references.lying, summed over the length for which each row stands
+    mechanism = mechanism_of(lying(), cprbm.Settings(links={"A": A, "B": B}))
+    point = loaded(mechanism, PAIR.force)
+    unit, model = mechanism.problem.model.unit_length, mechanism.problem.model
+    sigma = np.linspace(0.0, PAIR.lift_off[1], 3001)
+    q, s = PAIR.pressure(sigma), PAIR.along_top(sigma)
+    total = np.concatenate(([0.0], np.cumsum(0.5 * (q[1:] + q[:-1]) * np.diff(sigma))))
+    arc, force = point.rows.arc * unit, point.lam * model.unit_force
+    order = np.argsort(arc)
+    arc, force = arc[order], force[order]
+    middle = np.flatnonzero((arc > 0.35 * PAIR.lift_off[0]) & (arc < 0.5 * PAIR.lift_off[0]))
+    assert middle.size > 5
+    borders = 0.5 * (arc[1:] + arc[:-1])
+    expected = np.diff(np.interp(borders, s, total))[middle - 1]
+    assert force[middle] == pytest.approx(expected, rel=0.04)
+
+
+@pytest.mark.parametrize("links", [40, {"A": 40, "B": 32}, {"A": 23, "B": 40}])
+def test_which_beam_is_named_first_changes_no_more_than_the_mesh(links):
+    one, two = (solved(bowl(60.0, order=order), links).values for order in (("A", "B"), ("B", "A")))
+    finer = solved(bowl(60.0), 160).values
+    for name in ("T.displacement", "S.displacement", "c.force", "R.reaction", "scene.potential_energy"):
+        mesh = np.max(np.abs(one[name] - finer[name]))
+        assert np.max(np.abs(one[name] - two[name])) <= 2.0 * mesh, name
+
+
+def test_a_turned_scene_turns_its_answer():
+    flat, turned = (solved(lying(turn=turn), 31).values for turn in (0.0, 0.6458))
+    cos, sin = np.cos(0.6458), np.sin(0.6458)
+    expected = np.array([[cos, -sin], [sin, cos]]) @ flat["T.displacement"]
+    assert turned["T.displacement"] == pytest.approx(expected, abs=1e-13)
+    assert turned["c.force"] == pytest.approx(flat["c.force"], rel=1e-10)
+    assert turned["c.centre"] == pytest.approx(flat["c.centre"], rel=1e-10)
+
+
+@pytest.mark.parametrize("load", [22.0, 24.0, 26.0, 28.0, 30.0, 33.0])
+def test_no_load_falls_between_a_point_and_a_length(load):
+    # loads at which neither a row at the minimum nor rows at the joints around would keep themselves; such a
+    # contact's place is known to an element, and its force with it. Reference: a mesh of many more elements
+    fine = solved(bowl(load), 160).values["c.force"][0]
+    for links in (20, 41, {"A": 30, "B": 43}):
+        station = solved(bowl(load), links)
+        n = links if isinstance(links, int) else min(links.values())
+        assert station.values["c.force"][0] == pytest.approx(fine, rel=0.6 / n)
+        assert station.certificate.penetration < 0.02
+
+
+def loaded(mechanism, load):
+    problem = mechanism.problem
+    start = point_at(problem, {}, rest_state(problem.model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
+    found = equilibrium(problem, {"P": load}, start, 1e-11, 40)
+    assert found.converged
+    return found.point
+
+
+def test_both_forms_of_newtons_system_give_one_answer(monkeypatch):
+    few = solved(lying(), {"A": 37, "B": 41})
+    monkeypatch.setattr(newton, "MANY", 0)
+    many = solved(lying(), {"A": 37, "B": 41})
+    for name, value in few.values.items():
+        assert many.values[name] == pytest.approx(value, rel=1e-8, abs=1e-8 * np.max(np.abs(value))), name
+
+
+@pytest.mark.parametrize("links", [{"A": 23, "B": 31}, {"A": 31, "B": 23}], ids=["rows on A", "rows on B"])
+def test_derivatives_of_gaps_and_of_the_lagrangian(links):
+    mechanism = mechanism_of(lying(), cprbm.Settings(links=links))
+    problem, values = mechanism.problem, {"P": PAIR.force}
+    model, closure = problem.model, problem.closure
+    n, B = model.n_links, 3 * len(model.free_bodies)
+    random = np.random.default_rng(99)
+    state = State(loaded(mechanism, PAIR.force).state.theta + 1e-3 * random.standard_normal(n), np.zeros((2, 3)))
+    mu = random.standard_normal(closure.rows)
+    moved = point_at(problem, values, state, mu, np.zeros(0), NO_ROWS)
+    point = point_at(problem, values, state, mu, 0.5 + random.random(moved.rows.size), moved.rows)
+    coarse = min(links.values())
+    # a row for the joints beside the clamp, rows at joints, and one at an end
+    assert ("c", coarse + 4) in point.rows.keys
+    assert point.rows.size > 8
+    q = np.concatenate((state.theta, state.bodies.ravel()))
+
+    def at(z):
+        there = point_at(problem, values, State(z[:n], z[n:].reshape(-1, 3)), mu, point.lam, point.rows)
+        assert there.rows.keys == point.rows.keys
+        return there.gradient + there.A_E.T @ mu + contact_gradient(model, there), there
+
+    found = system(problem, point, np.zeros(point.rows.size, dtype=bool), 0.0)
+    for _ in range(3):
+        d = random.standard_normal(len(q))
+        d[closure.fixed] = 0.0
+        (plus, ahead), (minus, behind) = at(q + STEP * d), at(q - STEP * d)
+        gaps = (ahead.rows.values - behind.rows.values) / (2 * STEP)
+        assert gaps == pytest.approx(contact_rows(model, point) @ d, rel=1e-6, abs=1e-7)
+        product = (plus - minus) / (2 * STEP)
+        product[closure.fixed] = 0.0
+        low = slice(B, len(found.base) - closure.rows)
+        border, corner = found.factors.border, found.factors.corner
+        s = -np.linalg.solve(corner[low, low], border[:, low].T @ d[:n] + corner[low, :B] @ d[n:])
+        upper = found.factors.tridiagonal.times(d[:n, None])[:, 0] + border[:, :B] @ d[n:] + border[:, low] @ s
+        lower = border[:, :B].T @ d[:n] + corner[:B, :B] @ d[n:] + corner[:B, low] @ s
+        assert np.concatenate((upper, lower)) == pytest.approx(product, rel=1e-5, abs=1e-5 * np.max(np.abs(product)))

@@ -1,0 +1,115 @@
+"""Meshes fitted to contact over a length, coarse meshes to start from, and zones' ends."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+import cprbm
+from cprbm.contact import NO_ROWS
+from cprbm.equilibrium import point_at
+from cprbm.kinematics import State, rest_state
+from cprbm.mechanism import mechanism_of
+from cprbm.model import Fit, build
+from cprbm.refining import all_zones, carried_over, coarser, ends_of, fits, fitted
+from cprbm.settings import Settings
+from cprbm.solver import _March
+from tests.cprbm.scenes import hinge
+from tests.cprbm.test_circle import BEAM, RADIUS, scene_of
+from tests.references.wrapped import Wrapped
+
+
+def marched(links, load=97.0):
+    march = _March(scene_of([load]), (Settings(links=links),))
+    assert march.run()[0].name == "COMPLETED"
+    return march
+
+
+def test_many_links_are_reached_through_quarters_and_few_at_once():
+    assert [s.links for s in coarser(Settings(links=80))] == [80]
+    family = [s.links for s in coarser(Settings(links=1281))]
+    assert family[-1] == 1281
+    assert family[0] <= 80
+    assert all(fine <= 4 * coarse for coarse, fine in pairwise(family))
+
+
+def test_beams_with_few_links_keep_some_and_the_papers_meshes_are_not_coarsened():
+    family = coarser(Settings(links={"beam1": 3000, "beam2": 30}))
+    assert [s.links_of("beam2") for s in family] == [8, 8, 8, 30]
+    assert coarser(Settings(links=3000, formulation="paper")) == (Settings(links=3000, formulation="paper"),)
+
+
+def test_borders_stand_where_zones_end_and_elements_are_even_between():
+    march = marched(40)
+    mechanism, point = march.mechanism, march.point
+    ends = ends_of(mechanism, all_zones(mechanism, point))
+    fit = fitted(mechanism, ends, march.settings)
+    (end,), borders = ends["circle"], fit.borders["beam"]
+    # reference: tests.references.wrapped
+    assert end == pytest.approx(Wrapped(**BEAM, radius=RADIUS, force=97.0).wrap_length / BEAM["length"], abs=2e-4)
+    k = int(np.argmin(np.abs(borders - end)))
+    assert borders[k] == pytest.approx(end, abs=1e-15)
+    assert np.diff(borders[: k + 1]) == pytest.approx(end / k)
+    assert np.diff(borders[k:]) == pytest.approx((1.0 - end) / (40 - k))
+    model = build(march.scene, march.settings, fit)
+    assert model.chains[0].sizes.sum() == pytest.approx(1.0)
+    assert not fits(mechanism, fit)
+    assert fits(mechanism_of(march.scene, march.settings, fit), fit)
+
+
+def test_ends_closer_than_an_element_leave_the_elements_even():
+    march = marched(40)
+    near = {"circle": np.array([0.5, 0.503])}
+    assert fitted(march.mechanism, near, march.settings) == Fit({}, {})
+
+
+def test_a_state_carried_to_its_own_mesh_is_itself():
+    march = marched(40)
+    point = carried_over(march.mechanism, march.point, march.mechanism, march.values)
+    assert point.state.theta == pytest.approx(march.point.state.theta, abs=1e-14)
+    assert point.rows.keys == march.point.rows.keys
+
+
+def test_a_state_carried_to_a_finer_mesh_and_back_turns_no_link_by_more_than_the_coarse_mesh_resolves():
+    march = marched(40)
+    finer = mechanism_of(march.scene, Settings(links=160))
+    there = carried_over(march.mechanism, march.point, finer, march.values)
+    back = carried_over(finer, there, march.mechanism, march.values)
+    assert back.state.theta == pytest.approx(march.point.state.theta, abs=1e-12)
+    # what presses lies in the zone
+    pressing = there.rows.arc[there.lam > 0.0]
+    (zone,) = all_zones(march.mechanism, march.point)["circle"]
+    assert np.all(pressing < zone.end + 1.0 / 160)
+
+
+def test_a_place_is_no_zone():
+    march = _March(hinge(), (Settings(links=40),))
+    march.run()
+    assert all_zones(march.mechanism, march.point) == {}
+
+
+def test_the_fitted_mesh_is_that_of_the_same_beam():
+    # at rest, and bent at random: the smooth line goes through the same places, whatever the elements
+    scene, settings = scene_of([1.0]), Settings(links=30)
+    uneven = Fit({"beam": np.interp(np.arange(31), [0, 11, 30], [0.0, 0.4, 1.0])}, {})
+    for fit in (Fit({}, {}), uneven):
+        mechanism = mechanism_of(scene, settings, fit)
+        model = mechanism.problem.model
+        chain = model.chains[0]
+        state = State(0.8 * np.sin(2.0 * chain.borders), rest_state(model).bodies)
+        point = point_at(mechanism.problem, {}, state, np.zeros(mechanism.problem.closure.rows), np.zeros(0), NO_ROWS)
+        line = mechanism.pairs["circle"].line(point.state, point.at).at(np.array([0.9]))
+        # reference: ∫(cos, sin)(0.8 sin 2s) ds by a fine midpoint sum
+        s = (np.arange(200_000) + 0.5) * 0.9 / 200_000
+        angle = 0.8 * np.sin(2.0 * s)
+        assert line.x[0] == pytest.approx(0.9 * np.mean(np.cos(angle)), abs=3e-4)
+        assert line.y[0] == pytest.approx(0.9 * np.mean(np.sin(angle)), abs=3e-4)
+
+
+def test_an_answer_at_many_links_is_that_of_the_plain_march():
+    scene = scene_of([97.0])
+    nested = cprbm.answer(scene, Settings(links=320)).stations[0]
+    plain = _March(scene, (Settings(links=320),))
+    assert plain.run()[0].name == "COMPLETED"
+    for name, value in plain.reached[0].values.items():
+        assert nested.values[name] == pytest.approx(value, rel=1e-6, abs=1e-6 * np.max(np.abs(value))), name
