@@ -20,9 +20,10 @@ from typing import assert_never
 
 import numpy as np
 
-from scene import Arc, Curve, Line, Polynomial
+from scene import Arc, Line, Polynomial
 from scene.answer import Array, Shape
 from scene.geometry import arc_length, largest_curvature, points_on
+from scene.statement import Curve
 
 
 def length(curve: Curve) -> float:

@@ -18,8 +18,9 @@ from typing import assert_never
 import numpy as np
 
 from cprbm.polynomial import PolynomialLine, polynomial_line
-from scene import Arc, Curve, Line, Polynomial
+from scene import Arc, Line, Polynomial
 from scene.answer import Array
+from scene.statement import Curve
 
 
 @dataclass(frozen=True, slots=True)
