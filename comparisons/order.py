@@ -1,38 +1,56 @@
 """The order of convergence that an error estimate may assume, probe by probe.
 
-Two for all but one thing: where a beam lies on a circle up to a held end, the pressure on the first element and
-the shear of the support are told apart only to one element.  Their sum converges with the second order, each
-alone with the first, and so does the place of the contact's resultant.  Where such a zone ends is known to
-one element as well.
+Two for all but one thing: where a beam lies on a circle, or on another beam clamped beside it, up to a held end, the
+pressure on the first elements and the shear of the support can be told apart to one element and no better, unless a
+method takes care of it.  Their sum converges with the second order, each alone with the first, and so do the place
+of the contact's resultant and the ends of the zone.  Of a method that does better the first order only makes the
+stated uncertainty larger.
 """
 
 from __future__ import annotations
 
-from scene import CircleContact, Probe, Scene
+import math
+
+from scene import BeamContact, CircleContact, Probe, Scene
 from scene.statement import FreeEnd
 
 USUAL, BESIDE_A_HELD_END = 2, 1
+BESIDE = 2.0  # mean thicknesses between the held ends of two beams that are clamped beside each other
 
 
 def order_of(scene: Scene, probe: Probe) -> int:
     """p of the probe's values in both solvers."""
     if probe.quantity in ("force", "centre", "ends"):
-        contact = scene.contacts.get(probe.of)
-        first = isinstance(contact, CircleContact)
+        first = bool(_shared(scene, probe.of))
     elif probe.quantity == "reaction":
-        first = any(
-            isinstance(contact, CircleContact) and probe.of in _held_at(scene, contact.beam)
-            for contact in scene.contacts.values()
-        )
+        first = any(probe.of in _shared(scene, contact) for contact in scene.contacts)
     else:
         first = False
     return BESIDE_A_HELD_END if first else USUAL
 
 
-def _held_at(scene: Scene, beam: str) -> set[str]:
-    """Points at which a beam's ends are held."""
+def _shared(scene: Scene, name: str) -> set[str]:
+    """Points of held ends up to which a contact may reach."""
+    contact = scene.contacts[name]
+    if isinstance(contact, CircleContact):
+        return set(_held(scene, contact.beam))
+    assert isinstance(contact, BeamContact)
+    one, other = (_held(scene, beam) for beam in contact.between)
+    near = BESIDE * 0.5 * sum(scene.beams[beam].thickness for beam in contact.between)
+    return {
+        point
+        for mine, a in one.items()
+        for its, b in other.items()
+        if scene.body_of(mine) == scene.body_of(its) and math.dist(a, b) <= near
+        for point in (mine, its)
+    }
+
+
+def _held(scene: Scene, beam: str) -> dict[str, tuple[float, float]]:
+    """Points at which a beam's ends are held, and where they are at rest."""
     record = scene.beams[beam]
-    return {end.point for end in (record.start, record.end) if not isinstance(end, FreeEnd)}
+    held = [end.point for end in (record.start, record.end) if not isinstance(end, FreeEnd)]
+    return {point: scene.bodies[scene.body_of(point)].points[point] for point in held}
 
 
 def richardson(order: int) -> float:

@@ -42,6 +42,7 @@ ALONE, WITH_CENTRE = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4])
 CLOSEST_ITERATIONS = 12
 LEAST_CURVATURE = 1e-3  # of D along the beam, 1/ℓ, below which its minimum has no place of its own
 STEPS = 3.0  # a minimum is less convex than this many steps of the curvature: it belongs to a zone
+STEPS_BETWEEN = 6.0  # and than this many where it lies below two closed joints, which then press in its place
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 ON_IT = 1e-9  # gap of a clamped end, and how far its normal passes from the centre, where it is clamped on the circle
 JOINT_REACH = 2.0  # joints farther than this many h²·(1/R + 1/ℓ) are none
@@ -221,7 +222,12 @@ class Circle:
             s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
             if np.max(np.abs(step)) < 1e-13:
                 break
-        deep = D_ss > np.maximum(LEAST_CURVATURE, STEPS * smooth.curvature_step(line, A.link))
+        # what is held at the joints beside may stay there and what is held at the minimum too: no state is neither
+        joint = np.clip(np.searchsorted(self.a.s, s), 1, self.a.n + 1)
+        beside = np.maximum(*(self.distance(line.at(self.a.s[j])) for j in (joint - 1, joint))) - self.offset
+        lowest = rho - self.radius - self.offset
+        steps = np.where(beside + lowest > 0.0, STEPS, STEPS_BETWEEN) * smooth.curvature_step(line, A.link)
+        deep = D_ss > np.maximum(LEAST_CURVATURE, steps)
         return s, deep & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
 
     def passed(self, before: Positions, after: Positions) -> bool:

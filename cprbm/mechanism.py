@@ -28,11 +28,13 @@ class Mechanism:
         problem: with every contact.
         pairs: smooth beams of each contact, which measure overlap whatever the formulation.
         boundaries: of the formulation ``paper``; empty for ``auto``.
+        fit: what the mesh was made for.
     """
 
     problem: Problem
     pairs: dict[str, Pair | Circle]
     boundaries: dict[str, FittedBoundary]
+    fit: Fit
 
     def without(self, contact: str) -> Problem:
         """The problem in which ``contact`` holds nothing apart."""
@@ -82,4 +84,4 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism
         name: boundaries[name].groups if boundaries else pair.groups for name, pair in pairs.items()
     }
     problem = Problem(model, closure_of(model), dead_loads(scene, model), _formulation(parts))
-    return Mechanism(problem, pairs, boundaries)
+    return Mechanism(problem, pairs, boundaries, fit)

@@ -128,11 +128,6 @@ class Pair:
         """Whether A's start and end are clamped in touch with B."""
         return self.clamps[0]
 
-    @property
-    def ends(self) -> tuple[float, ...]:
-        """Arc lengths of A at which zones end on this mesh: meshes are not fitted to them."""
-        return ()
-
     def parting(self, state: State, at: Positions, s: Array) -> Array:
         """Curvature D″ with which A parts from B, at arc lengths ``s``; between springs it goes evenly."""
         lines = self.lines(state, at)

@@ -26,10 +26,6 @@ class Touching(Protocol):
         """Whether the beam's start and end are clamped in touch with the other."""
 
     @property
-    def ends(self) -> tuple[float, ...]:
-        """Arc lengths of the first beam at which zones end on this mesh."""
-
-    @property
     def thickness(self) -> float:
         """What an overlap is measured by."""
 

@@ -93,11 +93,11 @@ def fitted(mechanism: Mechanism, ends: Mapping[str, Array], settings: Settings) 
 
 def fits(mechanism: Mechanism, fit: Fit) -> bool:
     """Whether the mechanism's mesh was made for (nearly) the same ends."""
-    for name, pair in mechanism.pairs.items():
-        wanted = fit.ends.get(name, np.zeros(0)) * pair.a.s[-1]
-        if len(wanted) != len(pair.ends) or np.any(np.abs(wanted - pair.ends) > MOVED * pair.a.h):
-            return False
-    return True
+    made = mechanism.fit.ends
+    return made.keys() == fit.ends.keys() and all(
+        len(made[name]) == len(ends) and np.all(np.abs(made[name] - ends) <= MOVED / mechanism.pairs[name].a.n)
+        for name, ends in fit.ends.items()
+    )
 
 
 def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict[str, float]) -> Point:

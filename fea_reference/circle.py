@@ -41,9 +41,8 @@ from scene.answer import Array
 from scene.statement import CircleContact, Scene
 
 _LAYERS = 32.0  # of the first penalty, in a beam's length
-# Layers in an element: its cubic leaves the circle by a share of h⁴, which a clamp's own element does not make up for.
-_RESOLVED = 3.0
-# Layers in a beam's length: what they leave, of second order, is below 1e-6, and more of them only cost iterations.
+_RESOLVED = 3.0  # layers in an element: what they leave is of second order in their width
+# Layers in a beam's length: what they leave is below 1e-7, and thinner ones make more of a clamp's place being rounded.
 _THINNEST = 800.0
 
 
@@ -155,14 +154,14 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
 
 
 def resting_pressure(model: Model, touch: Touch, circle: Circle, z: State) -> float:
-    """N/(R + T), of the mean tension along the zone; zero where the beam is pushed along instead."""
+    """N/(R + T), the median along the zone, which its end cannot spoil; zero where the beam is compressed."""
     if not touch.closed:
         return 0.0
     beam = model.beams[circle.first]
     low, high = touch.zones.intervals.T
     e, _ = model.line(beam, z).locate(0.5 * (low + high))
     axial = z[model.element_dofs[6, e + beam.elements.start]]
-    return max(0.0, float(axial @ (high - low) / (high - low).sum())) / (circle.radius + circle.distance)
+    return max(0.0, float(np.median(axial))) / (circle.radius + circle.distance)
 
 
 def _clearance(line: NeutralLine, c: Array, reach: float, zeta: Array) -> tuple[Array, Array, Array]:

@@ -4,21 +4,31 @@
 symbol  meaning
 ======  =====================================================================================
 ε       penalty stiffness per unit length of the first beam
-p       line pressure ε⟨−g⟩
+δ       lead: the gap at which the pressure begins
+p       line pressure ε⟨δ − g⟩
+N, EI   axial force and bending stiffness of either beam
+κ       curvature of the first where it lies on the second, positive where that is convex
 r, p_τ  x − x_m, and τ·δr
 k       n·δx_m'
 J, a    |x_m'| and n·x_m'';  Z = J² − d a
 ======  =====================================================================================
 
-Energy Π_c = ∫ ½ ε ⟨−g⟩² ds over the first beam's undeformed arc length.  At the closest point
+Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the first beam's undeformed arc length.  At the closest point
 
     δg = side n·δr,     δ²g = side { n·δ²r − [ a p_τ² + d k² + 2 J p_τ k ] / Z }
 
 (Konyukhov and Schweizerhof, Computational Contact Mechanics, ch. 5, in the plane).  The integral runs over
-the exact intervals on which g < 0, so the pressure vanishes at their moving ends, which therefore add nothing
+the exact intervals on which g < δ, so the pressure vanishes at their moving ends, which therefore add nothing
 to either derivative, and what is integrated is smooth in between.  It does not vanish where an interval ends
-because the second beam does; there ½ ε g²/|x'·τ| along τ is missing, x' by arc length.  So a beam whose end
+because the second beam does; there ½ ε (δ − g)²/|x'·τ| along τ is missing, x' by arc length.  So a beam whose end
 lies over the inside of the other is the first, and what is missing all the same is measured.
+
+Beams that lie on each other are parallel, and each is in balance across.  Per length of the first that is
+p = N₁ κ − EI₁ κ'' and −p = N₂ κ − EI₂ κ'', but for the thickness over the radius in what belongs to κ''.  Hence
+
+    p = κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂),
+
+and δ = p/ε lets it act where the gap is zero; see :mod:`fea_reference.circle` for what it would do otherwise.
 """
 
 from __future__ import annotations
@@ -28,14 +38,15 @@ from dataclasses import replace
 import numpy as np
 
 from fea_reference.hermite import NeutralLine, along, apart, shape_slopes, shapes, twice_along
-from fea_reference.model import Model
+from fea_reference.model import BeamPart, Model
 from fea_reference.projection import project
 from fea_reference.state import State
-from fea_reference.touch import Pair, Touch
+from fea_reference.touch import Pair, Penalty, Touch
 from fea_reference.zones import Zones, ends_over, find, side_of
 from scene.statement import BeamContact, Scene
 
 _AT_END = 1e-6  # elements
+_LAYERS = 32.0  # the widest in a beam's length
 
 
 def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
@@ -53,12 +64,18 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         first, second = model.beams[i], model.beams[j]
         mean = 0.5 * (first.thickness + second.thickness)
         side = side_of(model.line(first, model.start), model.line(second, model.start))
-        stiffness = min(
-            beam.bending / max(model.elements.length[beam.elements.start], 0.5 * mean) ** 4 for beam in (first, second)
-        )
         distance, scale = (mean, mean) if contact.thick else (0.0, 1.0)
-        found.append(Pair(name, i, j, turned, side, distance, scale, stiffness))
+        penalties = [_penalties(model, beam, mean) for beam in (first, second)]
+        loosest, stiffness, stiffest = map(min, zip(*penalties, strict=True))
+        found.append(Pair(name, i, j, turned, side, distance, scale, loosest, stiffness, stiffest))
     return tuple(found)
+
+
+def _penalties(model: Model, beam: BeamPart, thickness: float) -> tuple[float, float, float]:
+    """EI over the fourth power of the widest layer, of the first, and of the thinnest."""
+    h = float(model.elements.length[beam.elements.start])
+    first = max(h, 0.5 * thickness)
+    return beam.bending / max(first, beam.length / _LAYERS) ** 4, beam.bending / first**4, beam.bending / h**4
 
 
 def zones_of(model: Model, pair: Pair, z: State) -> Zones:
@@ -67,7 +84,7 @@ def zones_of(model: Model, pair: Pair, z: State) -> Zones:
     return find(first, second, pair.side, pair.distance)
 
 
-def touch(model: Model, pair: Pair, stiffness: float, quadrature: int, z: State, held: float | None = None) -> Touch:
+def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State, held: float | None = None) -> Touch:
     """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval.
 
     A ``held`` contact acts, in tension too, where the gap is least by up to that depth: while Newton's method
@@ -75,10 +92,12 @@ def touch(model: Model, pair: Pair, stiffness: float, quadrature: int, z: State,
     """
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
     line, line_m = model.line(beam, z), model.line(beam_m, z)
-    zones = find(line, line_m, pair.side, pair.distance)
+    distance = pair.distance + penalty.lead
+    zones = find(line, line_m, pair.side, distance)
+    least = zones.least + penalty.lead
     if held is not None:
-        shifted = find(line, line_m, pair.side, pair.distance + zones.least + held)
-        zones = replace(shifted, least=zones.least)
+        zones = find(line, line_m, pair.side, distance + zones.least + held)
+    zones = replace(zones, least=least)
 
     points, weights = np.polynomial.legendre.leggauss(quadrature)
     share = 0.5 * (points + 1.0)
@@ -99,7 +118,7 @@ def touch(model: Model, pair: Pair, stiffness: float, quadrature: int, z: State,
     d = (n * apart(line, zeta, line_m, zeta_m)).sum(axis=0)
     a = (n * x_m2).sum(axis=0)
     Z = J**2 - d * a
-    g = pair.side * d - pair.distance
+    g = pair.side * d - distance
 
     H, H_m, H_m1 = shapes(xi), shapes(xi_m), shape_slopes(xi_m)
     d_q = np.concatenate([along(n, H, line, e), -along(n, H_m, line_m, e_m)])
@@ -110,7 +129,7 @@ def touch(model: Model, pair: Pair, stiffness: float, quadrature: int, z: State,
     d_qq[:7, :7] += twice_along(n, H, line, e)
     d_qq[7:, 7:] -= twice_along(n, H_m, line_m, e_m)
 
-    weight = stiffness * ds
+    weight = penalty.stiffness * ds
     dofs = np.concatenate(
         [model.element_dofs[:, e + beam.elements.start], model.element_dofs[:, e_m + beam_m.elements.start]]
     )
@@ -127,11 +146,33 @@ def touch(model: Model, pair: Pair, stiffness: float, quadrature: int, z: State,
         x_m=x_m,
         force=-weight * g * normal,
         normal=normal,
-        missing=_missing(line, line_m, pair, stiffness, zones),
+        missing=_missing(line, line_m, pair, penalty, zones),
     )
 
 
-def _missing(first: NeutralLine, second: NeutralLine, pair: Pair, stiffness: float, zones: Zones) -> float:
+def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
+    """κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂) where the zone meets an end of the first beam, where it matters; else the median.
+
+    Zero where the beams pull apart.
+    """
+    if not touch.closed:
+        return 0.0
+    beam, beam_m = model.beams[pair.first], model.beams[pair.second]
+    middle, middle_m = touch.zones.intervals.mean(axis=1), touch.zones.zeta_m.mean(axis=1)
+    line, line_m = model.line(beam, z), model.line(beam_m, z)
+    e = line.locate(middle)[0] + beam.elements.start
+    e_m = line_m.locate(middle_m)[0] + beam_m.elements.start
+    _, speed, bent = line_m.at(middle_m)
+    J = np.hypot(speed[0], speed[1])
+    of_second = -pair.side * (speed[0] * bent[1] - speed[1] * bent[0]) / J**3
+    kappa = of_second / (1.0 + pair.distance * of_second)  # parallel curves
+    axial, axial_m = z[model.element_dofs[6, e]], z[model.element_dofs[6, e_m]]
+    pressure = kappa * (axial * beam_m.bending - axial_m * beam.bending) / (beam.bending + beam_m.bending)
+    at_end = np.array([touch.zones.intervals[0, 0] <= _AT_END, touch.zones.intervals[-1, 1] >= line.n - _AT_END])
+    return max(0.0, float(np.median(pressure[[0, -1]][at_end] if at_end.any() else pressure)))
+
+
+def _missing(first: NeutralLine, second: NeutralLine, pair: Pair, penalty: Penalty, zones: Zones) -> float:
     """½ ε g²/|x'·τ|, summed over the intervals' ends that are across from an end of the second beam."""
     zeta, zeta_m = zones.intervals.ravel(), zones.zeta_m.ravel()
     across = np.minimum(zeta_m, second.n - zeta_m) <= _AT_END
@@ -140,6 +181,6 @@ def _missing(first: NeutralLine, second: NeutralLine, pair: Pair, stiffness: flo
     _, x_m1, _ = second.at(zeta_m)
     tau = x_m1 / np.hypot(x_m1[0], x_m1[1])
     n = np.stack([-tau[1], tau[0]])
-    g = np.minimum(pair.side * (n * apart(first, zeta, second, zeta_m)).sum(axis=0) - pair.distance, 0.0)
+    g = np.minimum(pair.side * (n * apart(first, zeta, second, zeta_m)).sum(axis=0) - pair.distance - penalty.lead, 0.0)
     ahead = np.abs((x1 * tau).sum(axis=0)) / first.lengths[first.locate(zeta)[0]]
-    return float((0.5 * stiffness * g**2 / np.maximum(ahead, 1e-3)).sum())
+    return float((0.5 * penalty.stiffness * g**2 / np.maximum(ahead, 1e-3)).sum())

@@ -26,8 +26,15 @@ def zones_of(model: Model, what: Contact, z: State) -> Zones:
 def touch(model: Model, what: Contact, penalty: Penalty, quadrature: int, z: State, held: float | None = None) -> Touch:
     """The penalty's energy derivatives, see :func:`fea_reference.contact.touch`; only beams are ever held."""
     if isinstance(what, Pair):
-        return contact.touch(model, what, penalty.stiffness, quadrature, z, held)
+        return contact.touch(model, what, penalty, quadrature, z, held)
     return circle.touch(model, what, penalty, quadrature, z)
+
+
+def resting_pressure(model: Model, one: Touch, z: State) -> float:
+    """The line pressure that the axial forces give where a beam lies on what it touches, on average."""
+    if isinstance(one.pair, Pair):
+        return contact.resting_pressure(model, one, one.pair, z)
+    return circle.resting_pressure(model, one, one.pair, z)
 
 
 def passed_through(model: Model, what: Contact, before: State, after: State) -> bool:

@@ -39,22 +39,23 @@ _READ = np.array([0.0, 1.0, 2.0])  # elements beyond s_e
 
 def ends(model: Model, system: System, touch: Touch) -> Array:
     """Places ζ (2,) on the first beam where the contact's first zone begins and its last one ends."""
-    zones = touch.zones
     weight = np.hypot(*touch.force)
     middle = float(weight @ touch.zeta / weight.sum())
-    first = _continued(model, system, touch, float(zones.intervals[0, 0]), -1.0)
-    last = _continued(model, system, touch, float(zones.intervals[-1, 1]), 1.0)
+    first = _continued(model, system, touch, 0, -1.0)
+    last = _continued(model, system, touch, -1, 1.0)
     return np.array([first, last]) if first <= last else np.array([middle, middle])
 
 
-def _continued(model: Model, system: System, touch: Touch, zeta: float, outwards: float) -> float:
-    """Where the zone that the pressure leaves at ``zeta`` ends, its free side lying ``outwards``."""
+def _continued(model: Model, system: System, touch: Touch, at: int, outwards: float) -> float:
+    """Where the zone ends that the pressure leaves in the interval ``at``, its free side lying ``outwards``."""
+    side = 0 if outwards < 0.0 else 1
+    zeta, facing = float(touch.zones.intervals[at, side]), float(touch.zones.zeta_m[at, side])
     n = model.line(model.beams[touch.pair.first], system.z).n
     room = (n - zeta) if outwards > 0.0 else zeta
     if room <= _AT_END:
         return zeta
     beyond = zeta + outwards * _READ * min(1.0, room / _READ[-1])
-    chi = _relative_curvature(model, system, touch, beyond)
+    chi = _relative_curvature(model, system, touch, beyond, facing)
     if chi is None:
         return zeta
     # χ along the way inwards, by a parabola through the three.
@@ -66,8 +67,8 @@ def _continued(model: Model, system: System, touch: Touch, zeta: float, outwards
     return float(zeta + outwards * inwards.max()) if inwards.size else zeta
 
 
-def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array) -> Array | None:
-    """χ at places ``zeta`` (k,) of the first beam; None where the other beam does not reach."""
+def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array, facing: float) -> Array | None:
+    """χ at places ``zeta`` (k,) of the first beam, near ``facing`` of the other; None where that does not reach."""
     z, pair = system.z, touch.pair
     beam = model.beams[pair.first]
     line = model.line(beam, z)
@@ -79,8 +80,7 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array)
         return np.asarray(turning * own + 1.0 / (pair.radius + pair.distance))
     other = model.beams[pair.second]
     line_m = model.line(other, z)
-    middle = 0.5 * (touch.zeta_m.min() + touch.zeta_m.max())
-    zeta_m, found = project(line_m, x, np.full(zeta.shape, middle))
+    zeta_m, found = project(line_m, x, np.full(zeta.shape, facing))
     if not found.all():
         return None
     tangent_m = line_m.at(zeta_m)[1]

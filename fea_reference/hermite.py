@@ -5,12 +5,13 @@ symbol  meaning
 ======  ======================================================================
 ζ       place on the beam: element number plus ξ in [0, 1] within the element
 H       the four cubic shape functions of (x₁, m t₁, x₂, m t₂)
-m       length of the element as it lies, L (1 + c N): its speed by ξ at both nodes
+m       speed of the cubic at both nodes, L (1 + c N + (θ₂ − θ₁)²/48)
 t, n    unit tangent (cos θ, sin θ) at a node, and its normal (−sin θ, cos θ)
 ======  ======================================================================
 
-A speed that left out the stretch c N would bulge every element by h² κ c N/8, beside which the cubic's own
-distance from a circle, of order h⁴, is nothing.
+With that speed an element whose nodes lie on an arc leaves it by a share of h⁶ only: an arc of angle 2α needs
+m = 4 R tan(α/2) = 2 R α (1 + α²/12 + ...) (the handles of Bézier's arc).  A speed of L alone would bulge the element by
+h² κ c N/8 and h⁴ κ³/384, for which a stiff contact beside a clamp would have the clamp pay.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from fea_reference.state import summed
 from scene.answer import Array
 
 Index = NDArray[np.int64]
+_ARC = 24.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +33,9 @@ class NeutralLine:
     """A beam of n elements as it lies.
 
     ``points`` (2, n+1) and what their rounding left, ``rest`` (2, n+1); ``angles`` (n+1,); the elements'
-    undeformed ``lengths`` (n,), their ``speeds`` m and what these ``give`` by N (n,); ``tangents`` and ``normals``
-    (2, n+1); and the coefficients ``cubic`` (3, 2, n) of ξ, ξ², ξ³ of every element, from its first node.
+    undeformed ``lengths`` (n,), their ``speeds`` m, what these ``give`` by N and, ``arching``, change by θ₂ (n,);
+    ``tangents`` and ``normals`` (2, n+1); and the coefficients ``cubic`` (3, 2, n) of ξ, ξ², ξ³ of every element,
+    from its first node.
     """
 
     points: Array
@@ -41,6 +44,7 @@ class NeutralLine:
     lengths: Array
     speeds: Array
     give: Array
+    arching: Array
     tangents: Array
     normals: Array
     cubic: Array
@@ -55,10 +59,13 @@ class NeutralLine:
         step, error = summed(points[:, 1:], -points[:, :-1])
         step = step + (error + np.diff(rest, axis=1))
         give = compliance * lengths
-        speeds = lengths + give * axial
+        turned = np.diff(angles)
+        speeds = lengths * (1.0 + turned**2 / (2.0 * _ARC)) + give * axial
         t1, t2 = speeds * tangents[:, :-1], speeds * tangents[:, 1:]
         cubic = np.stack([t1, 3.0 * step - 2.0 * t1 - t2, t1 + t2 - 2.0 * step])
-        return cls(points, rest, angles, lengths, speeds, give, tangents, np.stack([-sin, cos]), cubic)
+        return cls(
+            points, rest, angles, lengths, speeds, give, lengths * turned / _ARC, tangents, np.stack([-sin, cos]), cubic
+        )
 
     @property
     def n(self) -> int:
@@ -118,14 +125,24 @@ def along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
     first = H[1] * (v * line.normals[:, e]).sum(axis=0)
     second = H[3] * (v * line.normals[:, e + 1]).sum(axis=0)
     ahead = H[1] * (v * line.tangents[:, e]).sum(axis=0) + H[3] * (v * line.tangents[:, e + 1]).sum(axis=0)
-    m = line.speeds[e]
-    return np.stack([H[0] * v[0], H[0] * v[1], m * first, H[2] * v[0], H[2] * v[1], m * second, line.give[e] * ahead])
+    m, turn = line.speeds[e], line.arching[e] * ahead
+    return np.stack(
+        [H[0] * v[0], H[0] * v[1], m * first - turn, H[2] * v[0], H[2] * v[1], m * second + turn, line.give[e] * ahead]
+    )
 
 
 def twice_along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
-    """Second derivatives of v·x by the same, (7, 7, k): by θ₁ and θ₂ twice, and by each of them and N."""
+    """Second derivatives of v·x by the same, (7, 7, k): of m (H₂ t₁ + H₄ t₂) by θ₁, θ₂ and N, a product."""
+    first = H[1] * (v * line.normals[:, e]).sum(axis=0)
+    second = H[3] * (v * line.normals[:, e + 1]).sum(axis=0)
+    before = H[1] * (v * line.tangents[:, e]).sum(axis=0)
+    behind = H[3] * (v * line.tangents[:, e + 1]).sum(axis=0)
+    m, arching, give = line.speeds[e], line.arching[e], line.give[e]
+    bow = line.lengths[e] / _ARC * (before + behind)
     both = np.zeros((7, 7, v.shape[1]))
-    for i, h, node in ((2, H[1], e), (5, H[3], e + 1)):
-        both[i, i] = -line.speeds[e] * h * (v * line.tangents[:, node]).sum(axis=0)
-        both[i, 6] = both[6, i] = line.give[e] * h * (v * line.normals[:, node]).sum(axis=0)
+    both[2, 2] = bow - 2.0 * arching * first - m * before
+    both[5, 5] = bow + 2.0 * arching * second - m * behind
+    both[2, 5] = both[5, 2] = arching * (first - second) - bow
+    both[2, 6] = both[6, 2] = give * first
+    both[5, 6] = both[6, 5] = give * second
     return both

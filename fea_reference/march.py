@@ -10,8 +10,7 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
 from fea_reference.advance import advance
-from fea_reference.circle import resting_pressure
-from fea_reference.contacts import passed_through, zones_of
+from fea_reference.contacts import passed_through, resting_pressure, zones_of
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.settings import Settings
@@ -26,7 +25,7 @@ _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow a
 _CUTS = 10  # in a row, each to a quarter
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _TIGHTENINGS = 25
-_LED = 1e-3  # of a known pressure, that may be another than the one led with
+_LED = 1e-5  # of a known pressure, that may be another than the one led with
 _SLACK = 1.3  # on the penalty foreseen for the penetration asked
 
 
@@ -65,8 +64,8 @@ class March:
         self.iterations = 0
         self._watch_what_touches(load)
         if self.values[load] != target:
-            self._loosen()
-        stride, cuts = np.inf, 0
+            self._loosen(Circle)
+        stride, cuts, searching = np.inf, 0, False
         reason = (Ending.STEP_TOO_SMALL, "")
         while self.values[load] != target:
             if cuts > _CUTS:
@@ -86,6 +85,8 @@ class March:
             trouble = self._step(load, value, rate)
             if trouble is None:
                 stride, cuts = 2.0 * size, 0
+            elif not searching and self._loosen(Pair):
+                searching = True
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
         self._tighten()
@@ -183,34 +184,39 @@ class March:
                 self.closing[pair.name] = float(self.values[load]) * self.model.loads[load].unit
         self.system = assemble(self.model, self.penalties, self.settings.quadrature, self.values, self.system.z)
 
-    def _loosen(self) -> None:
-        """Go back to the circles' first penalties: the ends of a zone move by a layer's width per iteration."""
+    def _loosen(self, kind: type[Circle | Pair]) -> bool:
+        """Go back to the loosest penalties: the ends of a zone move by a layer's width per iteration.
+
+        Returns whether it could be done.  Circles do it before every station, beams only if a step fails, since most
+        of them touch in a point.
+        """
         looser = {
-            pair: Penalty(pair.stiffness) if isinstance(pair, Circle) else now for pair, now in self.penalties.items()
+            pair: Penalty(pair.loosest) if isinstance(pair, kind) and pair.loosest < now.stiffness else now
+            for pair, now in self.penalties.items()
         }
         if looser == self.penalties:
-            return
+            return False
         solved = equilibrium(self.model, self.settings, looser, self.values, self.system.z, self._depths())
         self.iterations += solved.iterations
         if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
             self.system, self.penalties = solved.system, looser
+            return True
+        return False
 
     def _tighten(self) -> None:
         """Raise penalties, each time from the last equilibrium, until none is too soft."""
         most = _TIGHTEN
         for _ in range(_TIGHTENINGS):
             factors = {one.pair: self._too_soft(one) for one in self.system.touches}
-            pressures = {one.pair: self._known_pressure(one) for one in self.system.touches}
+            pressures = {one.pair: resting_pressure(self.model, one, self.system.z) for one in self.system.touches}
             if max(factors.values(), default=1.0) <= 1.0 and not self._misled(pressures):
                 return
-            tighter, depths = dict(self.penalties), self._depths()
+            tighter = dict(self.penalties)
             for pair, wanted in factors.items():
                 factor = min(wanted, most)
                 stiffness = factor * self.penalties[pair].stiffness
                 tighter[pair] = Penalty(stiffness, pressures[pair] / stiffness)
-                if pair in depths:
-                    depths[pair] *= factor ** (-2.0 / 3.0)
-            solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, depths)
+            solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, {})
             self.iterations += solved.iterations
             if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
                 self.system, self.penalties = solved.system, tighter
@@ -219,36 +225,35 @@ class March:
                 most = max(most**0.4, 1.2)
 
     def _too_soft(self, one: Touch) -> float:
-        """The factor by which a penalty falls short of the penetration asked, or of what its circle wants.
+        """The factor by which a penalty falls short of the penetration asked, or of the stiffest one.
 
         The penetration of a contact in a point falls with the penalty to the power −2/3, in an area with −1.
         """
         ratio = one.penetration / (self.settings.penetration * one.pair.scale)
         wanted = _SLACK * ratio**1.5 if ratio > 1.0 else 1.0
-        if isinstance(one.pair, Circle) and one.closed:
+        if one.closed:
             wanted = max(wanted, one.pair.stiffest / self.penalties[one.pair].stiffness)
         return wanted
 
-    def _known_pressure(self, one: Touch) -> float:
-        """The line pressure that the beam's tension gives where it lies on a circle; of beams none is known."""
-        if not isinstance(one.pair, Circle):
-            return 0.0
-        return resting_pressure(self.model, one, one.pair, self.system.z)
-
     def _misled(self, pressures: Mapping[Contact, float]) -> bool:
-        """Whether a lead belongs to another pressure than that of its beam's tension."""
+        """Whether a lead belongs to another pressure than the axial forces give."""
         return any(
             abs(pressure - self.penalties[pair].lead * self.penalties[pair].stiffness) > _LED * pressure
             for pair, pressure in pressures.items()
         )
 
     def _depths(self) -> dict[Contact, float]:
-        """The penetrations of the closed contacts of beams; of those just closed, what they will be allowed."""
+        """The penetrations of the closed contacts of beams; of those just closed, what they will be allowed.
+
+        A contact in search of its zone is none of them: its penalty is soft enough to be let go.
+        """
         allowed = self.settings.penetration
         return {
             one.pair: max(one.penetration, allowed * one.pair.scale)
             for one in self.system.touches
-            if isinstance(one.pair, Pair) and one.zones.least <= 1e-9 * one.pair.scale
+            if isinstance(one.pair, Pair)
+            and one.zones.least <= 1e-9 * one.pair.scale
+            and self.penalties[one.pair].stiffness >= one.pair.stiffness
         }
 
     def _moved(self, system: System, z: State) -> float:

@@ -37,7 +37,8 @@ class System:
         scale: the largest generalised force that balances; where there is none but round-off, EI/length².
         floor: round-off of the residual.  An element's end force is 12 EI/h² times the angle between its
             tangents and its chord; the chord's own angle is rounded, and so the force is to 12 EI/h² times the
-            spacing of machine numbers there.  A penalty ε adds ε h times what the gap is rounded to.
+            spacing of machine numbers there.  A penalty ε adds ε times an element's share of the zone,
+            times what the gap is rounded to.
     """
 
     z: State
@@ -91,7 +92,7 @@ def assemble(
 
 
 def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
-    """Of a contact's force on a node: ε h times what the gap is rounded to.
+    """Of a contact's force on a node: ε times what lies in an element of the zone, times what the gap is rounded to.
 
     Within an element that is a share of the element's length, across a pair also of the beams' distance; where a
     circle moves with its body, of the longest beam.
@@ -102,7 +103,8 @@ def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
         lengths = h + float(model.elements.length[model.beams[pair.second].elements.start]) + pair.distance
     else:
         lengths = h if model.bodies[pair.body].dofs is None else 1.0
-    return float(np.finfo(float).eps) * stiffness * h * lengths if touch.closed else 0.0
+    widest = h * float(np.diff(touch.zones.intervals, axis=1).max(initial=0.0))
+    return float(np.finfo(float).eps) * stiffness * widest * lengths
 
 
 def load_direction(model: Model, load: int, z: State) -> Array:

@@ -19,8 +19,10 @@ class Pair:
         side: of the second on which the first lies.
         distance: T, of the neutral lines when they touch.
         scale: what penetration is measured by: the mean thickness, or the longest beam for lines.
-        stiffness: the penalty to begin with, the softer beam's EI over its element's length (or half of the
-            mean thickness, if that is more) to the fourth.
+        loosest, stiffness, stiffest: the penalty with which to look for a zone that is far from where it was, to
+            begin with, and to end with if the penetration asks for no more: each the softer beam's EI over the
+            fourth power of a layer's width.  The widest is a share of the beam's length, so that finer elements make
+            the search no harder, the thinnest a finer element's length, so that what it spoils vanishes with it.
     """
 
     name: str
@@ -30,7 +32,9 @@ class Pair:
     side: float
     distance: float
     scale: float
+    loosest: float
     stiffness: float
+    stiffest: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,12 +47,11 @@ class Circle:
         radius: of the circle.
         distance: T, of the neutral line from the circle when they touch.
         scale: what penetration is measured by: the thickness, or the longest beam for a line.
-        stiffness: the penalty to begin with, EI over the fourth power of the width of the layer in which the
+        loosest: the penalty to begin with, EI over the fourth power of the width of the layer in which the
             pressure builds up at a zone's end: a share of the beam's length (or the radius, if that is less), so
             that finer elements make the search for the zone no harder.
         stiffest: the penalty to end with, if the penetration asks for no more: its layer is a fixed share of an
-            element, so that what layer and element spoil (a share of the contact's force that the clamp beside it
-            takes over) vanishes evenly with the element.
+            element, so that what it spoils vanishes evenly with the element.
     """
 
     name: str
@@ -58,8 +61,13 @@ class Circle:
     radius: float
     distance: float
     scale: float
-    stiffness: float
+    loosest: float
     stiffest: float
+
+    @property
+    def stiffness(self) -> float:
+        """The penalty to begin with."""
+        return self.loosest
 
 
 Contact = Pair | Circle

@@ -80,6 +80,21 @@ def test_an_uncertainty_that_vanishes_by_accident_is_a_quarter_of_the_stages_lar
     assert stated[3] > stated[4]
 
 
+def test_the_fea_is_never_taken_for_better_than_in_the_cprbms_own_theory(hinge):
+    """In ``bending`` the planted error is twenty times that in the chosen theory."""
+
+    def fea(scene, choices):
+        return MadeUp("fea", -2e-3 if choices.kinematics == "bending" else -1e-4)(scene, choices)
+
+    runs = paired(hinge, Choices(elements=40), Solvers(MadeUp("cprbm", 1e-3), fea))
+    for row in rows_of(hinge, runs):
+        if row.bounds is not None:
+            assert row.bounds.fea >= row.bounds.bending
+    row = rows_by_name(hinge, runs)["BD.rotation"]
+    assert row.bounds is not None
+    assert row.bounds.fea == row.bounds.bending > 0.0
+
+
 @pytest.mark.parametrize(("formulation", "step"), [("auto", 0.0), ("paper", -1e-3)])
 def test_the_contact_model_is_the_distance_of_paper_from_auto(hinge, formulation, step):
     """Rotation 0.9·m·f before contact: f is 1.002 in ``auto``, 1.003 in ``paper`` and 1.005 for the FEA above."""

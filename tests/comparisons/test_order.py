@@ -5,6 +5,7 @@ import pytest
 from comparisons.order import order_of, richardson
 from scene import Probe
 from tests.cprbm.test_circle import scene_of
+from tests.cprbm.test_lying import lying
 
 
 def test_the_ends_of_a_contact_with_a_circle_are_of_first_order_and_of_another_beam_of_second(hinge):
@@ -18,6 +19,14 @@ def test_the_ends_of_a_contact_with_a_circle_are_of_first_order_and_of_another_b
 )
 def test_the_share_of_a_clamp_beside_a_circle_is_of_first_order(probe, order):
     scene = scene_of([1.0])
+    assert order_of(scene, next(p for p in scene.probes if p.name == probe)) == order
+
+
+@pytest.mark.parametrize(
+    ("probe", "order"), [("c.force", 1), ("c.centre", 1), ("R.reaction", 1), ("T.displacement", 2)]
+)
+def test_the_share_of_a_clamp_that_two_touching_beams_have_in_common_is_of_first_order(probe, order):
+    scene = lying()
     assert order_of(scene, next(p for p in scene.probes if p.name == probe)) == order
 
 

@@ -220,6 +220,18 @@ def test_a_word_follows_its_definition(difference, same_theory, c, f, b, theory,
         assert said is Word.AGREE
 
 
+@settings(max_examples=300)
+@given(SHARES, SHARES, SHARES, SHARES, SHARES, st.sampled_from([-1.0, 1.0]), st.sampled_from([-1.0, 1.0]))
+def test_what_agrees_within_one_theory_does_not_differ_by_the_step_between_them(own, c, f, b, step, first, second):
+    """v_c − v_f is the sum of v_c − v_b and of v_b − v_f, and the second is known."""
+    from comparisons import cases
+
+    difference, same_theory = abs(first * own + second * step), own
+    bounds = Bounds(c, max(f, b), b, step, 1e-15)  # as rows_of makes them
+    said = judged(cases.opened("hinge"), (row(difference, same_theory, bounds),)).word
+    assert (said is Word.DIFFER) is (same_theory > c + b + 1e-15)
+
+
 def test_differing_weighs_more_than_undecided(hinge):
     differing = row(0.01, 0.01, Bounds(1e-3, 1e-3, 1e-3, 1e-3, 0.0))
     blurred = row(0.01, 0.01, Bounds(0.1, 0.1, 0.1, 0.1, 0.0))

@@ -110,24 +110,22 @@ def test_a_beam_wraps_round_a_circle(force, radius):
     assert values["tip.displacement"] + (1.0, 0.0) == pytest.approx(tip, abs=2e-6)
     assert values["end.rotation"][0] == pytest.approx(rotation, abs=2e-6)
     assert values["root.reaction_moment"][0] == pytest.approx(1 / radius, rel=1e-3)
-    # What the penalty lets in takes the pressure off a layer beside the clamp, and gives it to the clamp.
-    assert values["contact.force"][0] == pytest.approx(np.hypot(*pushed), rel=2e-2)
-    assert values["root.reaction"] == pytest.approx(np.array([0.0, force]) - pushed, abs=2e-2 * force)
+    assert values["contact.force"][0] == pytest.approx(np.hypot(*pushed), rel=1e-5)
+    assert values["root.reaction"] == pytest.approx(np.array([0.0, force]) - pushed, abs=2e-5 * force)
     places = got.stations[-1].touching["contact"]
     assert np.hypot(places[:, 0], places[:, 1] + radius) == pytest.approx(
         np.full(len(places), radius - T / 2), rel=1e-5
     )
 
 
-def test_the_clamp_takes_less_of_a_finer_mesh():
-    """What the clamp's own element spoils vanishes evenly with it: of first order where its layer is a fixed share."""
+def test_the_clamp_takes_nothing_of_the_pressure():
+    """Beside the clamp the beam neither sinks in nor bulges: all of the resultant is the circle's."""
     tip, _, pushed = wrapped(FORCE, RADIUS)
-    exact = np.hypot(*pushed)
-    found = [solved(on_circle((FORCE,)), elements=n).stations[0].values for n in (60, 120, 240)]
-    errors = np.array([values["contact.force"][0] - exact for values in found]) / exact
-    assert errors[0] < 2e-3
-    assert np.log2(errors[:-1] / errors[1:]) == pytest.approx([1.0, 1.0], abs=0.1)
-    assert all(np.abs(values["tip.displacement"] + (1.0, 0.0) - tip).max() < 1e-6 for values in found)
+    for n in (20, 60):
+        values = solved(on_circle((FORCE,)), elements=n).stations[0].values
+        assert values["contact.force"][0] == pytest.approx(np.hypot(*pushed), rel=5e-5)
+        assert values["root.reaction"] == pytest.approx(np.array([0.0, FORCE]) - pushed, abs=1e-4 * FORCE)
+        assert values["tip.displacement"] + (1.0, 0.0) == pytest.approx(tip, abs=1e-4)
 
 
 def test_more_than_half_a_circle():
@@ -147,7 +145,7 @@ def test_more_than_half_a_circle():
     values = got.stations[-1].values
     assert values["tip.displacement"] + (1.0, 0.0) == pytest.approx(tip, abs=1e-5)
     assert values["end.rotation"][0] == pytest.approx(rotation, abs=1e-6)
-    assert values["contact.force"][0] == pytest.approx(np.hypot(*pushed), rel=2e-2)
+    assert values["contact.force"][0] == pytest.approx(np.hypot(*pushed), rel=1e-4)
 
 
 def test_unloading_is_the_way_back():
@@ -158,8 +156,12 @@ def test_unloading_is_the_way_back():
 
 
 def test_the_search_for_the_zone_does_not_feel_the_mesh():
-    iterations = [solved(on_circle((FORCE,)), elements=n).stations[0].certificate.iterations for n in (40, 160, 640)]
-    assert max(iterations) <= 1.2 * min(iterations)
+    """From the mesh on whose penalty is the stiffest of all, iterations stay; from coarse ones they grow little."""
+    coarse, *fine = (
+        solved(on_circle((FORCE,)), elements=n).stations[0].certificate.iterations for n in (40, 320, 1280)
+    )
+    assert max(fine) <= 1.1 * min(fine)
+    assert max(fine) <= 1.5 * coarse
 
 
 @pytest.mark.parametrize("thick", [True, False])

@@ -12,6 +12,7 @@ from fea_reference.element import forces
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.system import assemble
+from fea_reference.touch import Penalty
 from scene import read
 from tests.fea_reference.cantilever import cantilever, force
 
@@ -83,7 +84,7 @@ def test_the_contacts_derivatives(hinge, shift, thicker):
     pair = replace(pair, distance=thicker * pair.distance)
 
     def gathered(z):
-        one = touch(model, pair, 1.0, 12, State.of(z))
+        one = touch(model, pair, Penalty(1.0), 12, State.of(z))
         beam = model.line(model.beams[0], State.of(z))
         gradient, hessian = np.zeros(model.size), np.zeros((model.size, model.size))
         for dofs, g, H in zip(one.dofs.T, one.gradient.T, one.hessian.T, strict=True):
@@ -112,7 +113,7 @@ def test_the_contact_does_not_see_its_quadrature(hinge):
     """Doubling the rule: the integral runs over the zone itself, so the forces stay."""
     for shift in (0.00052, 0.0008, 0.0015):
         model, z, pair = deep(hinge, shift)
-        once, twice = (touch(model, pair, 1.0, q, State.of(z)).force.sum(axis=1) for q in (6, 12))
+        once, twice = (touch(model, pair, Penalty(1.0), q, State.of(z)).force.sum(axis=1) for q in (6, 12))
         assert np.hypot(*twice) > 0.0
         assert once == pytest.approx(twice, rel=1e-9)
 
@@ -120,7 +121,7 @@ def test_the_contact_does_not_see_its_quadrature(hinge):
 def test_the_contact_is_balanced(hinge):
     """Its generalised forces add up to no force and no moment."""
     model, z, pair = deep(hinge, 0.0008)
-    one = touch(model, pair, 1.0, 6, State.of(z))
+    one = touch(model, pair, Penalty(1.0), 6, State.of(z))
     nodes = [i + j + k for i in (0, 7) for j in (0, 3) for k in range(3)]  # all but the axial forces
     pull = one.gradient[nodes].reshape(4, 3, -1)
     total = pull[:, :2].sum(axis=0)

@@ -104,9 +104,13 @@ def hinge_ratios():
 
 @pytest.fixture(scope="module")
 def wrapped_ratios():
-    """Contact over a length, whose end falls anywhere between joints."""
+    """Contact over a length, whose end falls anywhere between joints.
+
+    With fewer than about 60 elements a cubic does not follow the circle within the penetration that is allowed,
+    and the penalty that enforces it spoils n and 2n alike: there the finite elements' statement is not true.
+    """
     found: dict[str, list[tuple[float, str]]] = {"cprbm": [], "fea": []}
-    for links, elements in ((20, 20), (33, 20), (64, 20)):
+    for links, elements in ((20, 64), (51, 80)):
         choices = Choices(links=links, elements=elements, kinematics="bending")
         measured(cases.opened("wrapped"), choices, lambda row: wrapped_truth(row.probe.name, row.station), found)
     return found
@@ -128,7 +132,8 @@ def wrapped_truth(probe: str, load: float):
     }[probe]()
 
 
-@pytest.mark.parametrize(("case", "solver"), [("hinge", "cprbm"), ("hinge", "fea"), ("wrapped", "cprbm")])
+@pytest.mark.parametrize("solver", ["cprbm", "fea"])
+@pytest.mark.parametrize("case", ["hinge", "wrapped"])
 def test_the_true_error_lies_within_the_stated_one(request, case, solver):
     ratios = request.getfixturevalue(f"{case}_ratios")[solver]
     outside = [f"{where}: {ratio:.2f}" for ratio, where in ratios if ratio > 1.0]
@@ -136,7 +141,8 @@ def test_the_true_error_lies_within_the_stated_one(request, case, solver):
     assert len(outside) <= 0.05 * len(ratios), outside
 
 
-@pytest.mark.parametrize(("case", "solver"), [("hinge", "cprbm"), ("hinge", "fea"), ("wrapped", "cprbm")])
+@pytest.mark.parametrize("solver", ["cprbm", "fea"])
+@pytest.mark.parametrize("case", ["hinge", "wrapped"])
 def test_the_stated_error_is_no_excuse(request, case, solver):
     assert np.median([ratio for ratio, _ in request.getfixturevalue(f"{case}_ratios")[solver]]) >= 0.1
 
