@@ -9,6 +9,8 @@ s       arc length from the beam's start, m
 R       radius of an arc, m
 φ       angle that an arc turns through, counter-clockwise
 ======  ===================================================
+
+Of a polynomial they are what the scene's own geometry says, :mod:`scene.geometry`.
 """
 
 from __future__ import annotations
@@ -18,33 +20,40 @@ from typing import assert_never
 
 import numpy as np
 
-from scene import Arc, Line
+from scene import Arc, Line, Polynomial
 from scene.answer import Array, Shape
+from scene.geometry import arc_length, largest_curvature, points_on
+from scene.statement import Curve
 
 
-def length(curve: Line | Arc) -> float:
+def length(curve: Curve) -> float:
     """Arc length of a curve, m."""
     match curve:
         case Line():
             return math.dist(curve.start, curve.end)
         case Arc():
             return radius(curve) * abs(_turn(curve))
+        case Polynomial():
+            return arc_length(curve)
         case _:
             assert_never(curve)
 
 
-def radius(curve: Line | Arc) -> float:
-    """Radius of curvature of a curve, m; infinite for a line."""
+def radius(curve: Curve) -> float:
+    """Smallest radius of curvature of a curve, m; infinite for a line."""
     match curve:
         case Line():
             return math.inf
         case Arc():
             return math.dist(curve.start, curve.center)
+        case Polynomial():
+            curvature = largest_curvature(curve)
+            return 1.0 / curvature if curvature > 0.0 else math.inf
         case _:
             assert_never(curve)
 
 
-def points(curve: Line | Arc, s: Array) -> Array:
+def points(curve: Curve, s: Array) -> Array:
     """Points (n, 2) of a curve at the arc lengths ``s`` (n,), m."""
     match curve:
         case Line():
@@ -55,6 +64,8 @@ def points(curve: Line | Arc, s: Array) -> Array:
             first = math.atan2(curve.start[1] - centre[1], curve.start[0] - centre[0])
             angle = first + math.copysign(1.0, _turn(curve)) * np.asarray(s) / radius(curve)
             return np.asarray(centre + radius(curve) * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+        case Polynomial():
+            return points_on(curve, np.asarray(s) / arc_length(curve))
         case _:
             assert_never(curve)
 

@@ -4,6 +4,7 @@
 s       arc length from the beam's start, m
 x, y    position, m
 θ       tangent angle, rad, continuous along the beam
+κ       curvature dθ/ds, 1/m
 ℓ       length, m
 ======  ===========================================================
 """
@@ -12,15 +13,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import assert_never
 
 import numpy as np
 
-from scene import Arc, Line
+from cprbm.polynomial import PolynomialLine, polynomial_line
+from scene import Arc, Line, Polynomial
 from scene.answer import Array
+from scene.statement import Curve
 
 
 @dataclass(frozen=True, slots=True)
-class NeutralLine:
+class EvenLine:
     """A curve of constant curvature: a straight line or a circular arc.
 
     Attributes:
@@ -46,16 +50,35 @@ class NeutralLine:
         chord = s * np.sinc(half / np.pi)
         return self.x0 + chord * np.cos(self.theta0 + half), self.y0 + chord * np.sin(self.theta0 + half)
 
+    def chords(self, s: Array) -> tuple[Array, Array]:
+        """Lengths, m, and directions, rad, of the chords between places ``s`` (n,): two arrays (n−1,)."""
+        x, y = self.position(s)
+        # a chord of constant curvature has its middle's direction
+        return np.hypot(np.diff(x), np.diff(y)), self.angle(0.5 * (s[1:] + s[:-1]))
 
-def neutral_line(curve: Line | Arc) -> NeutralLine:
+
+NeutralLine = EvenLine | PolynomialLine
+
+
+def neutral_line(curve: Curve) -> NeutralLine:
     """Arc-length form of a scene's curve."""
-    (xa, ya), (xb, yb) = curve.start, curve.end
-    if isinstance(curve, Line):
-        return NeutralLine(xa, ya, math.atan2(yb - ya, xb - xa), 0.0, math.hypot(xb - xa, yb - ya))
-    xc, yc = curve.center
+    match curve:
+        case Line():
+            (xa, ya), (xb, yb) = curve.start, curve.end
+            return EvenLine(xa, ya, math.atan2(yb - ya, xb - xa), 0.0, math.hypot(xb - xa, yb - ya))
+        case Arc():
+            return _arc(curve)
+        case Polynomial():
+            return polynomial_line(curve)
+        case _:
+            assert_never(curve)
+
+
+def _arc(curve: Arc) -> EvenLine:
+    (xa, ya), (xb, yb), (xc, yc) = curve.start, curve.end, curve.center
     radius = math.hypot(xa - xc, ya - yc)
     turn = math.atan2(yb - yc, xb - xc) - math.atan2(ya - yc, xa - xc)
     sense = 1.0 if curve.direction == "counterclockwise" else -1.0
     turn = sense * ((sense * turn) % (2.0 * math.pi))
     start_angle = math.atan2(ya - yc, xa - xc) + sense * 0.5 * math.pi
-    return NeutralLine(xa, ya, start_angle, sense / radius, abs(turn) * radius)
+    return EvenLine(xa, ya, start_angle, sense / radius, abs(turn) * radius)

@@ -24,6 +24,7 @@ import numpy as np
 from frozendict import frozendict
 
 from cprbm.curves import NeutralLine, neutral_line
+from cprbm.pieces import Pieces, pieces
 from cprbm.settings import Settings
 from scene import BeamEnd, CircleContact, FreeEnd, Scene, WeldedEnd
 from scene.answer import Array
@@ -57,6 +58,9 @@ class Chain:
         s: arc length of the joints (N+2,).
         lengths: of the links (N+1,), eq. (6).
         rest: stress-free link angles (N+1,).
+        turns: stress-free turning of the neutral line along the elements, rad (N,).
+        lean: (2, N+1), cos and sin of its stress-free tangent at the borders against the links there.
+        pieces: of the neutral line, that the links carry; None of a straight one.
         rigidity: E·I, units of S and of length.
         thickness: units of length.
         stress_unit: E·t/2 in Pa; times a spring's change of angle over h_i in units of length⁻¹ per metre.
@@ -74,6 +78,9 @@ class Chain:
     s: Array
     lengths: Array
     rest: Array
+    turns: Array
+    lean: Array
+    pieces: Pieces | None
     rigidity: float
     thickness: float
     stress_unit: float
@@ -202,9 +209,8 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
         line, n = lines[name], settings.links_of(name)
         edges = line.length * fit.borders.get(name, np.arange(n + 1) / n)
         s = np.concatenate(([0.0], 0.5 * (edges[1:] + edges[:-1]), [line.length]))
-        x, y = line.position(s)
-        dx, dy = np.diff(x), np.diff(y)
-        middle = line.angle(0.5 * (s[1:] + s[:-1]))  # a chord of constant curvature has its middle's direction
+        chords, directions = line.chords(s)
+        tangents = line.angle(edges)
         chains.append(
             Chain(
                 name=name,
@@ -216,8 +222,11 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
                 sizes=np.diff(edges) / unit_length,
                 borders=edges / unit_length,
                 s=s / unit_length,
-                lengths=np.hypot(dx, dy) / unit_length,
-                rest=middle,
+                lengths=chords / unit_length,
+                rest=directions,
+                turns=np.diff(tangents),
+                lean=np.stack((np.cos(tangents - directions), np.sin(tangents - directions))),
+                pieces=pieces(line, s, directions),
                 rigidity=rigidities[name] / unit_length / unit_moment,
                 thickness=beam.thickness / unit_length,
                 stress_unit=0.5 * scene.materials[beam.material].youngs_modulus * beam.thickness / unit_length,

@@ -4,12 +4,12 @@
 s, t        arc length from the beam's start and from the start of link i
 e_i, n_i    direction of link i and its left normal
 a, w        coordinates of a point along e_i and n_i from joint i
-δ_i         change of angle at spring i, eq. (4); κ⁰ stress-free curvature
-Θ           κ⁰h + δ, turning of the beam along an element of length h
+δ_i         change of angle at spring i, eq. (4)
+Θ, Θ⁰       turning of the beam along an element of length h, Θ⁰ + δ; stress-free
 u, ξ        arc length from the border of the element that lies on the link; u/h ≤ ½
 φ           Θξ, turning between the border and the point
 A, W        coordinates of the arc from the border, along its tangent and towards the inside
-R           radius of the arc times Θ/h; x = κ⁰h/2
+R           radius of the arc times Θ/h; x = Θ⁰/2
 ==========  ==============================================================================
 
 Every link carries its own piece of the stress-free neutral line.  A spring gathers the turning of
@@ -19,12 +19,16 @@ both links at the element's borders.  The border lies on the link's own piece, s
     A = h R sin φ/Θ,    W = h R (1 − cos φ)/Θ,    R = (Θ/2) cot(Θ/2) sin x/x + Θ (1 − cos x)/(2x)
     C(s) = p_i + (a⁰ ∓ (A − A⁰))·e + (w⁰ + W − W⁰)·n      (− before the border, + after it)
 
-where A⁰, W⁰ belong to δ = 0, and e, n are turned with the piece's tangent at the border.  R is such that the
-arcs of a chain that turns evenly lie on one circle, at the joints as well as at the borders: a polygon round
-a circle closes all its gaps at once, and what each contact force is follows from equilibrium even where a gap
-hardly yields, beside a clamp.  At rest C is the true neutral line.  A force at C(s) does the same work
-on the springs as on a beam whose curvature is even over each element, wherever in the element it acts:
-this keeps the error of a contact force even in N.
+where A⁰, W⁰ belong to δ = 0, and e, n are turned with the piece's tangent at the border.  R is such that
+the pieces of neighbouring links meet at the joint, and the arcs of a chain that turns evenly lie on one circle, at
+the joints as well as at the borders: a polygon round a circle closes all its gaps at once, and what each contact
+force is follows from equilibrium even where a gap hardly yields, beside a clamp.  At rest C is the true neutral
+line.  A force at C(s) does the same work on the springs as on a beam whose curvature is even over each element,
+wherever in the element it acts: this keeps the error of a contact force even in N.
+
+Where the stress-free curvature varies, what is added to the piece is still the difference of two arcs, and the
+pieces meet as before.  Their tangents there differ by ½ε²δ, with ε the excess of turning in one half of the
+element, κ⁰′h²/8: of fifth order in h.
 """
 
 from __future__ import annotations
@@ -56,7 +60,7 @@ class Points:
         cos, sin: of the link's angle: e = (cos, sin), n = (−sin, cos).
         a, w, a1, w1: coordinates in the link's frame and their derivatives over s.
         before: whether each lies before the border, in the element of the link's first joint.
-        h, turn, ratio, xi: of its element h, Θ, κ⁰h; ξ.
+        h, turn, ratio, xi: of its element h, Θ, Θ⁰; ξ.
         lean: (2, k), cos and sin of the tangent at the border against the link.
     """
 
@@ -97,14 +101,14 @@ class SmoothLine:
 
     Attributes:
         chain: the beam.
-        curvature: κ⁰ over units of length.
+        unit_length: ℓ, m.
         theta, cos, sin: angles of the links (N+1,).
         turns: δ of the springs (N,).
         x, y: joints (N+2,).
     """
 
     chain: Chain
-    curvature: float
+    unit_length: float
     theta: Array
     cos: Array
     sin: Array
@@ -114,7 +118,7 @@ class SmoothLine:
 
     def at(self, s: Array) -> Points:
         """Points at arc lengths ``s`` (k,), units of length; beyond the ends the end itself."""
-        chain, curved = self.chain, self.curvature != 0.0
+        chain = self.chain
         s = np.minimum(np.maximum(s, 0.0), chain.s[-1])
         link = np.minimum(np.searchsorted(chain.s, s, side="right") - 1, chain.n)
         t = s - chain.s[link]
@@ -124,32 +128,24 @@ class SmoothLine:
         h, sign = chain.sizes[spring], np.where(before, -1.0, 1.0)
         cos, sin = self.cos[link], self.sin[link]
         xi = np.abs(off) / h
-        ratio = self.curvature * h
+        ratio = chain.turns[spring]
         turn = ratio + self.turns[spring]
         R, phi = _radius(turn, ratio), turn * xi
         R_cos, R_sin = R * np.cos(phi), R * np.sin(phi)
         # A − A⁰ and W − W⁰ and their derivatives over u
         A, W = h * xi * R * _series(SINE, phi * phi), h * xi * R * phi * _series(VERSINE, phi * phi)
         A_u, W_u, A_uu, W_uu = R_cos, R_sin, -turn / h * R_sin, turn / h * R_cos
-        nothing = np.zeros(len(s))
-        a, w, a1, w1, a2, w2 = t, nothing, nothing + 1.0, nothing, nothing, nothing
-        lean = np.stack((np.ones(len(s)), np.zeros(len(s))))
-        if curved:
+        lean = chain.lean[:, link]
+        if chain.pieces is None:
+            nothing = np.zeros(len(s))
+            a, w, a1, w1, a2, w2 = t, nothing, nothing + 1.0, nothing, nothing, nothing
+            A, A_u = A - h * xi, A_u - 1.0
+        else:
+            a, w, a1, w1, a2, w2 = chain.pieces.seen(link, s, t, self.unit_length)
             phi = ratio * xi
             A, W = A - h * xi * _series(SINE, phi * phi), W - h * xi * phi * _series(VERSINE, phi * phi)
             A_u, W_u = A_u - np.cos(phi), W_u - np.sin(phi)
-            A_uu, W_uu = A_uu + self.curvature * np.sin(phi), W_uu - self.curvature * np.cos(phi)
-            rest = chain.rest[link]
-            first = chain.line.theta0 + self.curvature * chain.s[link] - rest
-            half = 0.5 * self.curvature * t
-            chord = t * np.sinc(half / np.pi)
-            a, w = chord * np.cos(first + half), chord * np.sin(first + half)
-            a1, w1 = np.cos(first + 2.0 * half), np.sin(first + 2.0 * half)
-            a2, w2 = -self.curvature * w1, self.curvature * a1
-            leaning = chain.line.theta0 + self.curvature * chain.borders[link] - rest
-            lean = np.stack((np.cos(leaning), np.sin(leaning)))
-        else:
-            A, A_u = A - h * xi, A_u - 1.0
+            A_uu, W_uu = A_uu + ratio / h * np.sin(phi), W_uu - ratio / h * np.cos(phi)
         along, across = _leant(lean, sign * A, W)
         a, w = a + along, w + across
         along, across = _leant(lean, A_u, sign * W_u)
@@ -185,7 +181,7 @@ def smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -
     theta = state.theta[chain.links]
     return SmoothLine(
         chain=chain,
-        curvature=chain.line.curvature * unit_length,
+        unit_length=unit_length,
         theta=theta,
         cos=np.cos(theta),
         sin=np.sin(theta),

@@ -14,6 +14,7 @@ from scene.answer import Array, Certificate
 
 _VIOLATION = 1e-9
 _BALANCE = 1e-8
+_RESOLVED = 0.05  # of the thickness: overlap with a circle, whose penalty is as stiff as the elements can follow
 _NOTHING = 10.0  # floors: forces below this are round-off themselves
 _MISSING = 1e-3  # of a contact's resultant
 
@@ -42,8 +43,11 @@ def certify(march: March) -> Certificate:
         failures.append(f"the unbalanced force is {residual:.1e} of the largest")
     if not violation <= max(_VIOLATION, system.floor):
         failures.append(f"a joint or an element's length is violated by {violation:.1e} of the longest beam")
-    if not penetration <= settings.penetration:
-        failures.append(f"the beams of a contact overlap by {penetration:.1e}; {settings.penetration:.1e} was asked")
+    for one in system.touches:
+        allowed = settings.penetration if isinstance(one.pair, Pair) else max(settings.penetration, _RESOLVED)
+        overlap = one.penetration / one.pair.scale
+        if not overlap <= allowed:
+            failures.append(f"what touches in {one.pair.name} overlaps by {overlap:.1e}; {allowed:.1e} was asked")
     if not force <= balance:
         failures.append(f"the forces of loads and supports leave {force:.1e} of the largest")
     if not moment <= balance:

@@ -42,13 +42,15 @@ from scene.statement import CircleContact, Scene
 
 _LAYERS = 32.0  # of the first penalty, in a beam's length
 _RESOLVED = 3.0  # layers in an element: what they leave is of second order in their width
-# Layers in a beam's length: what they leave is below 1e-7, and thinner ones make more of a clamp's place being rounded.
-_THINNEST = 800.0
+# Layers in a beam's length at the standard penetration: what they leave is below 1e-7, and thinner ones make more of a
+# clamp's place being rounded. Penetration goes with the fourth power of the layer: who asks for less gets thinner ones.
+_THINNEST, _STANDARD = 800.0, 1e-4
 
 
-def circles(scene: Scene, model: Model) -> tuple[Circle, ...]:
-    """The scene's contacts of a beam with a circle."""
+def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...]:
+    """The scene's contacts of a beam with a circle, ``penetration`` as in the settings."""
     found = []
+    thinnest = _THINNEST * (_STANDARD / penetration) ** 0.25
     beams = [beam.name for beam in model.beams]
     bodies = [body.name for body in model.bodies]
     for name, contact in scene.contacts.items():
@@ -72,7 +74,7 @@ def circles(scene: Scene, model: Model) -> tuple[Circle, ...]:
                 half if contact.thick else 0.0,
                 beam.thickness if contact.thick else 1.0,
                 beam.bending / layer**4,
-                beam.bending / max(h / _RESOLVED, beam.length / _THINNEST) ** 4,
+                beam.bending / max(h / _RESOLVED, beam.length / thinnest) ** 4,
             )
         )
     return tuple(found)

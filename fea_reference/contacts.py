@@ -11,9 +11,9 @@ from fea_reference.zones import Zones
 from scene.statement import Scene
 
 
-def contacts(scene: Scene, model: Model) -> tuple[Contact, ...]:
+def contacts(scene: Scene, model: Model, penetration: float) -> tuple[Contact, ...]:
     """What may touch, in the scene's order."""
-    every: tuple[Contact, ...] = (*contact.pairs(scene, model), *circle.circles(scene, model))
+    every: tuple[Contact, ...] = (*contact.pairs(scene, model), *circle.circles(scene, model, penetration))
     found = {one.name: one for one in every}
     return tuple(found[name] for name in scene.contacts)
 

@@ -15,8 +15,9 @@ import math
 
 import numpy as np
 
+from fea_reference import polynomial
 from scene.answer import Array
-from scene.statement import Arc, Curve, Line
+from scene.statement import Arc, Curve, Line, Polynomial
 
 
 def length(curve: Curve) -> float:
@@ -26,6 +27,8 @@ def length(curve: Curve) -> float:
             return math.dist(curve.start, curve.end)
         case Arc():
             return math.dist(curve.center, curve.start) * abs(_turning(curve))
+        case Polynomial():
+            return polynomial.length(curve)
 
 
 def sample(curve: Curve, fractions: Array) -> tuple[Array, Array]:
@@ -44,6 +47,8 @@ def sample(curve: Curve, fractions: Array) -> tuple[Array, Array]:
             polar = math.atan2(start[1] - centre[1], start[0] - centre[0]) + turning * fractions
             points = centre + radius * np.stack([np.cos(polar), np.sin(polar)], axis=1)
             return points, polar + math.copysign(math.pi / 2, turning)
+        case Polynomial():
+            return polynomial.sample(curve, fractions)
 
 
 def _turning(arc: Arc) -> float:

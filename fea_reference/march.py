@@ -227,8 +227,11 @@ class March:
     def _too_soft(self, one: Touch) -> float:
         """The factor by which a penalty falls short of the penetration asked, or of the stiffest one.
 
-        The penetration of a contact in a point falls with the penalty to the power −2/3, in an area with −1.
+        The penetration of a contact in a point falls with the penalty to the power −2/3, in an area with −1.  On a
+        circle a penalty stiffer than the elements can follow spoils more than the overlap that it leaves.
         """
+        if isinstance(one.pair, Circle):
+            return max(1.0, one.pair.stiffest / self.penalties[one.pair].stiffness) if one.closed else 1.0
         ratio = one.penetration / (self.settings.penetration * one.pair.scale)
         wanted = _SLACK * ratio**1.5 if ratio > 1.0 else 1.0
         if one.closed:

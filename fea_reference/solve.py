@@ -30,7 +30,7 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     """
     began = time.perf_counter()
     model = build(scene, settings)
-    march = begin(model, settings, contacts(scene, model))
+    march = begin(model, settings, contacts(scene, model, settings.penetration))
     stations: list[StationAnswer] = []
     events: list[Event] = []
     ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value

@@ -50,7 +50,7 @@ class Circle:
         loosest: the penalty to begin with, EI over the fourth power of the width of the layer in which the
             pressure builds up at a zone's end: a share of the beam's length (or the radius, if that is less), so
             that finer elements make the search for the zone no harder.
-        stiffest: the penalty to end with, if the penetration asks for no more: its layer is a fixed share of an
+        stiffest: the penalty to end with, whatever the penetration: its layer is a fixed share of an
             element, so that what it spoils vanishes evenly with the element.
     """
 

@@ -4,23 +4,28 @@ Bounds stand on dimensionless numbers only.  With thickness t, arc length L, cur
 
 * 1e-5 ≤ t/L ≤ 0.2: above, no beam theory holds; below, EI/L³ leaves nothing above round-off;
 * t κ / 2 < 0.5: the inner edge keeps at least half of the neutral line's length;
-* L ≥ 1e-6 of the largest coordinate: nearer to nothing, positions lose the digits the other checks ask for.
+* L ≥ 1e-6 of the largest coordinate: nearer to nothing, positions lose the digits the other checks ask for;
+  and of a polynomial's largest term, for the same reason;
+* |f'| ≤ 1e3 and degree ≤ 20 of a polynomial f: beyond, it is no good way to write the curve.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import hypot
+from math import hypot, inf, isfinite
 
 import numpy as np
 
+from scene import polynomial
 from scene.geometry import arc_length, closest_pair, largest_curvature, points_on, scaled, tangents_on
 from scene.mistakes import Mistake
-from scene.statement import Arc, Beam, BeamContact, Curve, FreeEnd, Point, Scene
+from scene.statement import Arc, Beam, BeamContact, Curve, FreeEnd, Point, Polynomial, Scene
 
 THINNEST, THICKEST = 1e-5, 0.2
 MOST_CURVED = 0.5
 SHORTEST = 1e-6
+STEEPEST = 1e3
+HIGHEST_DEGREE = 20
 MEETING = 1e-6  # of the beam's length, or of the arc's radius
 OVERLAP = 1e-6  # of the mean thickness
 CROSSING_ANGLE = 1e-3  # rad; lines that meet at less are taken as tangent
@@ -28,7 +33,7 @@ JOINED = 5.0  # mean thicknesses beside a shared end in which an overlap is no m
 
 
 def wrong_curves(scene: Scene) -> Iterator[Mistake]:
-    """Curves without length, arcs whose ends lie on no common circle."""
+    """Curves without length, arcs whose ends lie on no common circle, polynomials that state no curve."""
     for name, beam in scene.beams.items():
         mistake = _wrong_curve(f"beams.{name}.curve", beam.curve)
         if mistake is not None:
@@ -107,6 +112,8 @@ def is_beam(beam: Beam) -> bool:
 
 
 def _wrong_curve(key: str, curve: Curve) -> Mistake | None:
+    if isinstance(curve, Polynomial) and (mistake := _wrong_polynomial(key, curve)) is not None:
+        return mistake
     if curve.start == curve.end:
         return Mistake(key, f"a start and an end at the same place {_at(curve.start)} m", "two different places")
     if isinstance(curve, Arc):
@@ -126,6 +133,33 @@ def _wrong_curve(key: str, curve: Curve) -> Mistake | None:
             key,
             f"a length of {length:.3g} m at coordinates up to {largest:.3g} m",
             f"a length of at least {SHORTEST:g} of the largest coordinate",
+        )
+    if isinstance(curve, Polynomial) and not SHORTEST * polynomial.terms(curve) <= length:
+        return Mistake(
+            f"{key}.coefficients",
+            f"a term of {polynomial.terms(curve):.3g} m in a curve of {length:.3g} m",
+            f"a length of at least {SHORTEST:g} of the largest term",
+        )
+    return None
+
+
+def _wrong_polynomial(key: str, curve: Polynomial) -> Mistake | None:
+    """What is wrong with a polynomial before its length can be asked."""
+    degree = len(curve.coefficients) - 1
+    if degree > HIGHEST_DEGREE:
+        allowed = f"at most {HIGHEST_DEGREE + 1} of them"
+        return Mistake(f"{key}.coefficients", f"{degree + 1} coefficients", allowed)
+    first, last = curve.range
+    if first == last:
+        found = f"a range from {first:g} m to the same {last:g} m"
+        return Mistake(f"{key}.range", found, "two different values")
+    slope = polynomial.steepest(curve) if isfinite(polynomial.terms(curve)) and isfinite(last - first) else inf
+    if not slope <= STEEPEST:
+        other = {"x": "y", "y": "x"}[curve.axis]
+        return Mistake(
+            f"{key}.coefficients",
+            f"a slope of up to {slope:.3g} in the range",
+            f"a slope of at most {STEEPEST:g} (a steeper curve may be a function of {other})",
         )
     return None
 

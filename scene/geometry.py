@@ -20,7 +20,8 @@ from math import atan2, hypot, tau
 import numpy as np
 from numpy.typing import NDArray
 
-from scene.statement import Arc, Curve, Point
+from scene import polynomial
+from scene.statement import Arc, Curve, Point, Polynomial
 
 Array = NDArray[np.float64]
 _SAMPLES = 1001  # per curve: 1e-3 of the length between neighbours, the rest is refinement
@@ -46,6 +47,8 @@ def arc_angle(arc: Arc) -> float:
 
 def arc_length(curve: Curve) -> float:
     """Arc length L of the neutral line, m."""
+    if isinstance(curve, Polynomial):
+        return polynomial.length(curve)
     if isinstance(curve, Arc):
         return abs(arc_angle(curve)) * _radius(curve)
     return hypot(curve.end[0] - curve.start[0], curve.end[1] - curve.start[1])
@@ -53,11 +56,15 @@ def arc_length(curve: Curve) -> float:
 
 def largest_curvature(curve: Curve) -> float:
     """Largest absolute curvature of the neutral line, 1/m."""
+    if isinstance(curve, Polynomial):
+        return polynomial.largest_curvature(curve)
     return 1.0 / _radius(curve) if isinstance(curve, Arc) else 0.0
 
 
 def points_on(curve: Curve, u: Array) -> Array:
     """p(u) (n, 2), m, at the fractions ``u`` (n,)."""
+    if isinstance(curve, Polynomial):
+        return polynomial.points(curve, u)
     if isinstance(curve, Arc):
         angle = _angle(curve, curve.start) + arc_angle(curve) * u
         radius = _radius(curve)
@@ -131,6 +138,8 @@ def _refined(
 
 def distance_to(curve: Curve, point: Point) -> float:
     """Distance of the neutral line's nearest point from ``point``, m."""
+    if isinstance(curve, Polynomial):
+        return polynomial.distance_to(curve, point)
     ends = min(_apart(curve.start, point), _apart(curve.end, point))
     if isinstance(curve, Arc):
         turn, towards = arc_angle(curve), _angle(curve, point)
@@ -146,6 +155,8 @@ def distance_to(curve: Curve, point: Point) -> float:
 
 def tangents_on(curve: Curve, u: Array) -> Array:
     """Unit tangents (n, 2) at the fractions ``u`` (n,), from start to end."""
+    if isinstance(curve, Polynomial):
+        return polynomial.tangents(curve, u)
     if isinstance(curve, Arc):
         turn = np.sign(arc_angle(curve))
         angle = _angle(curve, curve.start) + arc_angle(curve) * u
@@ -156,6 +167,8 @@ def tangents_on(curve: Curve, u: Array) -> Array:
 
 def scaled(curve: Curve, size: float) -> Curve:
     """The same curve with every coordinate divided by ``size``."""
+    if isinstance(curve, Polynomial):
+        return polynomial.scaled(curve, size)
     lengths = {
         name: (getattr(curve, name)[0] / size, getattr(curve, name)[1] / size)
         for name in (("start", "end", "center") if isinstance(curve, Arc) else ("start", "end"))

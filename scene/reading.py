@@ -30,6 +30,9 @@ _ALLOWED = {
     "string_pattern_mismatch": "a name of letters, digits, '_' and '-' that starts with a letter or '_'",
 }
 
+_CURVES = {"line", "arc", "polynomial"}
+_JOINTS = {"weld", "pin", "free"}
+
 
 def read(path: str | Path) -> Scene:
     """Read a scene file.
@@ -177,4 +180,4 @@ def _is_tag(loc: tuple[int | str, ...], depth: int) -> bool:
     if loc[0] == "contacts":
         return depth == 2 and loc[2] in {"beam-beam", "beam-circle"}
     in_beam = loc[0] == "beams" and depth == 3
-    return in_beam and loc[2] in {"curve", "start", "end"} and loc[3] in {"line", "arc", "weld", "pin", "free"}
+    return in_beam and loc[3] in {"curve": _CURVES, "start": _JOINTS, "end": _JOINTS}.get(str(loc[2]), set())

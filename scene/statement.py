@@ -65,7 +65,36 @@ class Arc(Record):
     direction: Literal["counterclockwise", "clockwise"]
 
 
-Curve = Annotated[Line | Arc, Field(discriminator="kind")]
+class Polynomial(Record):
+    """A neutral line y = f(x) (``axis`` is ``x``) or x = f(y) (``axis`` is ``y``), metres.
+
+    ``coefficients`` of f, lowest power first, f in metres for a variable in metres; ``range`` is where the variable
+    begins and ends, so that a beam may run against its axis.
+    """
+
+    kind: Literal["polynomial"]
+    axis: Literal["x", "y"]
+    coefficients: Annotated[tuple[float, ...], Field(min_length=2)]
+    range: tuple[float, float]
+
+    @property
+    def start(self) -> Point:
+        """Where the line begins, metres."""
+        return self._at(self.range[0])
+
+    @property
+    def end(self) -> Point:
+        """Where the line ends, metres."""
+        return self._at(self.range[1])
+
+    def _at(self, variable: float) -> Point:
+        value = 0.0
+        for coefficient in reversed(self.coefficients):
+            value = value * variable + coefficient
+        return (variable, value) if self.axis == "x" else (value, variable)
+
+
+Curve = Annotated[Line | Arc | Polynomial, Field(discriminator="kind")]
 
 
 class WeldedEnd(Record):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from comparisons.geometry import length, nearest, points, radius
-from scene import Arc, Line, Shape
+from scene import Arc, Line, Polynomial, Shape
 from scene.answer import frozen_array
 
 HALF = Arc(kind="arc", center=(0.0, 0.0), start=(-2.0, 0.0), end=(2.0, 0.0), direction="counterclockwise")
@@ -36,6 +36,18 @@ def test_points_go_clockwise():
     np.testing.assert_allclose(
         points(QUARTER, np.array([0.25 * math.pi])), [[1 + math.sqrt(0.5), -math.sqrt(0.5)]], atol=1e-15
     )
+
+
+def test_a_parabola():
+    # reference: y = x²/2 has the arc length ½(x √(1 + x²) + arsinh x) from its vertex, where its radius is one
+    parabola = Polynomial(kind="polynomial", axis="x", coefficients=(0.0, 0.0, 0.5), range=(2.0, -1.0))
+    to_vertex, beyond = (0.5 * (x * math.hypot(1.0, x) + math.asinh(x)) for x in (2.0, 1.0))
+    assert length(parabola) == pytest.approx(to_vertex + beyond, rel=1e-14)
+    assert radius(parabola) == pytest.approx(1.0, rel=1e-12)
+    found = points(parabola, np.array([0.0, to_vertex, to_vertex + beyond]))
+    np.testing.assert_allclose(found, [[2, 2], [0, 0], [-1, 0.5]], atol=1e-13)
+    level = parabola.model_copy(update={"coefficients": (3.0, 0.0)})
+    assert radius(level) == math.inf
 
 
 def test_nearest_measures_along_the_line_and_not_along_its_chord():

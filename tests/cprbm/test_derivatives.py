@@ -11,15 +11,26 @@ from cprbm.equilibrium import contact_gradient, contact_rows, equilibrium, measu
 from cprbm.kinematics import State, positions, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.settings import Settings
-from tests.cprbm.scenes import hinge
+from tests.cprbm.scenes import hinge, hinge_data
 
 STEP = 1e-6
 
 
-@pytest.fixture(params=["auto", "paper"])
+def bows():
+    """The hinge with a parabola and a curve of fourth degree in place of its half circles."""
+    ends, reach = (0.001, 0.051), np.polynomial.Polynomial([-0.026 / 0.025, 1.0 / 0.025])
+    beams = hinge_data()["beams"]
+    for name, f in (("beam1", 0.00125 + 0.025 * reach**2), ("beam2", -0.00125 - 0.0175 * reach**2 - 0.0075 * reach**4)):
+        coefficients = [float(coefficient) for coefficient in f.coef]
+        beams[name]["curve"] = {"kind": "polynomial", "axis": "x", "coefficients": coefficients, "range": list(ends)}
+    return hinge(beams=beams)
+
+
+@pytest.fixture(params=[("auto", hinge), ("paper", hinge), ("auto", bows), ("paper", bows)])
 def bent(request):
     """A mechanism close to contact, bent at random, with multipliers."""
-    mechanism = mechanism_of(hinge(), Settings(links={"beam1": 23, "beam2": 29}, formulation=request.param))
+    formulation, scene = request.param
+    mechanism = mechanism_of(scene(), Settings(links={"beam1": 23, "beam2": 29}, formulation=formulation))
     problem = mechanism.problem
     model = problem.model
     start = point_at(problem, {}, rest_state(model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
@@ -109,8 +120,9 @@ def test_turning_a_mechanism_that_nothing_holds_costs_nothing():
     assert np.max(np.abs(strain_gradient(model, turned))) < 1e-12
 
 
-def test_smooth_lines_are_true_at_rest_and_have_consistent_derivatives():
-    model = mechanism_of(hinge(), Settings(links=11)).problem.model
+@pytest.mark.parametrize("scene", [hinge, bows])
+def test_smooth_lines_are_true_at_rest_and_have_consistent_derivatives(scene):
+    model = mechanism_of(scene(), Settings(links=11)).problem.model
     chain = model.chains[1]
     state = rest_state(model)
     s = np.linspace(0.0, chain.s[-1], 57)
@@ -142,6 +154,26 @@ def test_smooth_lines_have_one_tangent_at_every_joint():
         return np.max(np.abs(left.psi - right.psi))
 
     assert kink(20) < 1e-10
+
+
+def test_where_the_rest_curvature_varies_the_kinks_at_the_joints_are_of_fifth_order():
+    """And no gap is left: both pieces end at the joint itself."""
+
+    def at_joints(links):
+        model = mechanism_of(bows(), Settings(links=links)).problem.model
+        chain = model.chains[1]
+        state = State(model.rest + 0.8 * np.cos(np.linspace(0.0, 3.0, model.n_links)), np.zeros((1, 3)))
+        at = positions(model, state)
+        inner = chain.s[1:-1]
+        left = smooth.smooth_line(chain, model.unit_length, state, at).at(inner - 1e-13)
+        right = smooth.smooth_line(chain, model.unit_length, state, at).at(inner + 1e-13)
+        assert left.x == pytest.approx(right.x, abs=1e-12)
+        assert left.y == pytest.approx(right.y, abs=1e-12)
+        return np.max(np.abs(left.psi - right.psi))
+
+    coarse, fine = at_joints(20), at_joints(40)
+    assert coarse < 1e-4
+    assert np.log2(coarse / fine) == pytest.approx(5.0, abs=0.5)
 
 
 def test_pulled_back_forces_and_their_second_derivatives():

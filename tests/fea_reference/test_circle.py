@@ -232,7 +232,7 @@ def test_the_contacts_derivatives(body, depth):
     model = build(
         scene := on_circle((1.0,), body=body, center=(0.4, -0.2), circle=0.2 - T / 2 + depth), Settings(elements=9)
     )
-    (circle,) = circles(scene, model)
+    (circle,) = circles(scene, model, 1e-4)
     rng = np.random.default_rng(5)
     z = model.start.values + 0.02 * depth * rng.standard_normal(model.size)
 
@@ -263,7 +263,7 @@ def test_a_circle_is_not_stepped_over():
     """A circle far smaller than the step of the tip, in its way."""
     scene = on_circle((FORCE,), center=(0.9, -0.2), circle=0.002)
     model = build(scene, Settings(elements=20))
-    (circle,) = circles(scene, model)
+    (circle,) = circles(scene, model, 1e-4)
     turned = model.start.values.copy()
     turned[model.node_dofs[1]] = -turned[model.node_dofs[0]]
     assert passed(model, circle, model.start, State.of(turned))

@@ -42,7 +42,7 @@ def test_of_the_hinge(station):
     scene = read(HINGE)
     settings = Settings(elements=12, kinematics="bending", penetration=1e-2)
     model = build(scene, settings)
-    march = begin(model, settings, contacts(scene, model))
+    march = begin(model, settings, contacts(scene, model, settings.penetration))
     march.reach(0, station / model.loads[0].unit)
     assert smallest_curvature(model, march.system) == pytest.approx(dense(model, march.system), rel=1e-3)
 

@@ -20,7 +20,9 @@ scalars = st.one_of(
     st.floats(),
     st.sampled_from([1e-308, 1e-200, 1e-9, 1e9, 1e154, 1e308, 10**400]),
     st.text(max_size=6),
-    st.sampled_from(["A", "B", "AC", "beam1", "beam2", "scene", "contact", "line", "arc", "free", "force", "M"]),
+    st.sampled_from(
+        ["A", "B", "AC", "beam1", "beam2", "scene", "contact", "line", "arc", "polynomial", "free", "force", "M"]
+    ),
     st.dates(),
 )
 values = st.recursive(
@@ -94,6 +96,40 @@ def test_random_numbers_in_the_geometry(edits):
     data = copy.deepcopy(HINGE)
     for path, value in edits:
         _put(data, path, lambda place, key, value=value: place.__setitem__(key, value))
+    _scene_or_error(data)
+
+
+numbers = st.one_of(
+    st.floats(allow_nan=False),
+    st.floats(-3.0, 3.0),
+    st.sampled_from([0.0, 1e-308, 1e-160, 1e-9, 1e3, 1e9, 1e154, 1e308, -1e308, math.inf]),
+)
+
+
+@settings(max_examples=250, deadline=None, derandomize=True)
+@given(
+    axis=st.sampled_from(["x", "y"]),
+    coefficients=st.lists(numbers, max_size=24),
+    ends=st.tuples(numbers, numbers),
+    free=st.booleans(),
+)
+def test_random_polynomials_in_the_hinge(axis, coefficients, ends, free):
+    """With a free end, or with the points of the bodies put where the curve begins and ends."""
+    data = copy.deepcopy(HINGE)
+    data["beams"]["beam1"]["curve"] = {
+        "kind": "polynomial",
+        "axis": axis,
+        "coefficients": coefficients,
+        "range": list(ends),
+    }
+    if free:
+        data["beams"]["beam1"]["end"] = {"joint": "free"}
+    else:
+        for body, point, v in (("AC", "A", ends[0]), ("BD", "B", ends[1])):
+            value = 0.0
+            for coefficient in reversed(coefficients):
+                value = value * v + coefficient
+            data["bodies"][body]["points"][point] = [v, value] if axis == "x" else [value, v]
     _scene_or_error(data)
 
 

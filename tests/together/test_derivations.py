@@ -11,6 +11,7 @@ import pytest
 
 import cprbm
 import fea_reference
+from comparisons import geometry
 from cprbm.curves import neutral_line
 from cprbm.kinematics import positions, rest_state
 from cprbm.mechanism import mechanism_of
@@ -18,7 +19,7 @@ from cprbm.nearest import distance_along
 from fea_reference import curves
 from fea_reference.model import build
 from fea_reference.projection import project
-from scene import Arc, Line
+from scene import Arc, Line, Polynomial
 from tests.cprbm.scenes import hinge, hinge_data
 
 RANDOM = np.random.default_rng(20261121)
@@ -32,6 +33,13 @@ def random_curves():
         for direction in ("counterclockwise", "clockwise"):
             yield Arc(kind="arc", center=tuple(map(float, center)), start=ends[0], end=ends[1], direction=direction)
         yield Line(kind="line", start=ends[0], end=ends[1])
+        size, degree = RANDOM.uniform(0.01, 3.0), RANDOM.integers(1, 8)
+        # f/size is a polynomial of v/size with coefficients of order one
+        coefficients = RANDOM.normal(size=degree + 1) * size ** (1.0 - np.arange(degree + 1))
+        first = size * RANDOM.uniform(-1.0, 1.0)
+        for axis, last in (("x", first + size), ("y", first - size)):
+            span = float(first), float(last)
+            yield Polynomial(kind="polynomial", axis=axis, coefficients=tuple(map(float, coefficients)), range=span)
 
 
 @pytest.mark.parametrize("curve", list(random_curves()))
@@ -49,6 +57,11 @@ def test_curves(curve):
     x, y = ours.position(fine)
     assert np.sum(np.hypot(np.diff(x), np.diff(y))) == pytest.approx(ours.length, rel=1e-7)
     assert (x[-1], y[-1]) == pytest.approx(curve.end, abs=1e-12 * scale)
+    # and the harness's
+    assert geometry.length(curve) == pytest.approx(ours.length, rel=1e-13)
+    assert geometry.points(curve, s) == pytest.approx(theirs, abs=1e-13 * scale)
+    curvature = np.diff(ours.angle(fine)) / np.diff(fine)
+    assert 1.0 / geometry.radius(curve) == pytest.approx(np.max(np.abs(curvature)), rel=1e-3, abs=1e-9 / ours.length)
 
 
 def test_bending_stiffness():
