@@ -145,7 +145,7 @@ def test_the_whole_tangent_with_guides_drives_and_loads():
 def test_the_smallest_curvature_is_on_what_guides_and_drives_leave_free(stations):
     scene, settings = gripper_like(), Settings(elements=10, kinematics="bending")
     model = build(scene, settings)
-    march = begin(model, settings, contacts(scene, model))
+    march = begin(model, settings, contacts(scene, model, settings.penetration))
     names = [part.name for part in model.stepped]
     asked = [(names.index(stage.steps), value) for stage in scene.stages for value in stage.stations]
     for number, value in asked[:stations]:
