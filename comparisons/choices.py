@@ -47,6 +47,12 @@ class Choices:
             penetration=self.penetration / 16.0,
         )
 
+    def beside(self) -> Choices:
+        """The same with a seventh more links: joints stand elsewhere, and the error is hardly another."""
+        if isinstance(self.links, int):
+            return replace(self, links=_seventh_more(self.links))
+        return replace(self, links={beam: _seventh_more(number) for beam, number in self.links.items()})
+
     def within(self, kinematics: Kinematics) -> Choices:
         """The same with another beam theory of the finite elements."""
         return replace(self, kinematics=kinematics)
@@ -68,6 +74,10 @@ def check(choices: Choices, scene: Scene) -> None:
             mistakes.append(Mistake(key, found, allowed))
     if mistakes:
         raise SceneError(mistakes)
+
+
+def _seventh_more(count: int) -> int:
+    return count + max(1, round(count / 7))
 
 
 def _twice(count: Count) -> Count:

@@ -11,6 +11,7 @@ v_b, V_b    the same in the theory ``bending``, the CPRBM's own
 v_s         at n in the theory ``stretch``
 p           order of convergence that the error estimate assumes, 2; see :mod:`comparisons.order`
 S           safety factor of the error estimate, 1.25
+w           the CPRBM's value at N + N/7 links, where there is contact
 d           v_c − v_f, the difference
 u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (or n), and no less than F times the
             probe's largest in the stage
@@ -26,6 +27,9 @@ An error changes its sign somewhere along a stage, and where v − V passes thro
 error: C is then small, and what the estimate leaves out (terms of higher order, contact that falls otherwise
 between joints) is all that is left.  S = 1 + F allows an estimate to be wrong by its share F.  By how much it is
 wrong does not pass through zero with it, and that share of the stage's largest is kept at every station.
+
+Where a contact falls between joints can make the CPRBM's error uneven in N, and two N may meet by accident: what
+the even law through v and V does not foretell of w, times S, is added to u_c.
 
 The formulation ``paper`` holds joints apart and not what lies between them, so that its error depends on where
 a contact falls between joints and no two N tell it. There u_c = |v_c − v_a| + S·4/3·|v_a − V_c|: its distance from the
@@ -245,9 +249,12 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
         return norm(probe.quantity, difference[counts])
 
     open_everywhere = probe.quantity == "force" and not any(found.any() for found in values.values())
-    factor = SAFETY * richardson(order_of(scene, probe))
+    order = order_of(scene, probe)
+    factor = SAFETY * richardson(order)
     even = values.get("cprbm auto", v_c)
     own = size(v_c - even) + factor * size(even - values["cprbm finer"])
+    if "cprbm beside" in values:
+        own += SAFETY * size(_unforeseen(even, values["cprbm finer"], values["cprbm beside"], runs.ratio, order))
     bending = factor * size(v_b - values["fea bending finer"])
     bounds = Bounds(
         cprbm=own,
@@ -266,6 +273,13 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
         steps=_steps(probe.quantity, [step[counts] for step in ladder]),
         contact_model=None if formulations is None else size(formulations[0] - formulations[1]),
     )
+
+
+def _unforeseen(v: Array, V: Array, beside: Array, ratio: float, order: int) -> Array:
+    """What the even law through v and V does not foretell of the value beside, as at N links."""
+    error = richardson(order) * (v - V)
+    foretold = v - error + error * ratio**order
+    return np.asarray((beside - foretold) / ratio**order)
 
 
 def _none_small_by_accident(rows: tuple[Row, ...]) -> tuple[Row, ...]:

@@ -1,9 +1,9 @@
 """One scene to both solvers: the only module that knows them, and it imports each where it is used.
 
 What is run for a comparison: the CPRBM at N and 2N links (in the formulation ``paper``, whose error is uneven in
-N, at N in ``paper``, and at N and 2N in ``auto``); the finite elements at n and 2n in the theory that
-was chosen and in ``bending``, the CPRBM's own; and at n in the theory between the two, if there is one, so
-that the step from one theory to the next can be split.
+N, at N in ``paper``, and at N and 2N in ``auto``) and, where there is contact, at N + N/7; the finite elements
+at n and 2n in the theory that was chosen and in ``bending``, the CPRBM's own; and at n in the theory between the
+two, if there is one, so that the step from one theory to the next can be split.
 
 Where ``auto`` was chosen and every contact says what ``paper`` must be told, that is run at N as well.  It shows
 what the contact's formulation makes of the answer and takes no part in the verdict.
@@ -80,6 +80,7 @@ class Runs:
         auto: the CPRBM at N links in the formulation ``auto``, if another was chosen.
         paper: the same in the formulation ``paper``, if ``auto`` was chosen and the other could be asked;
             nothing rests on it.
+        beside: the CPRBM in ``auto`` at N + N/7 links, if there is contact; ``ratio`` is N over that number.
     """
 
     kinematics: Kinematics
@@ -87,6 +88,8 @@ class Runs:
     fea: Mapping[Kinematics, tuple[Answer, ...]]
     auto: Answer | None = None
     paper: Answer | None = None
+    beside: Answer | None = None
+    ratio: float = 1.0
 
     @property
     def reference(self) -> Answer:
@@ -108,6 +111,8 @@ class Runs:
                 yield f"{name} finer" if level else name, answer
         if self.auto is not None:
             yield "cprbm auto", self.auto
+        if self.beside is not None:
+            yield "cprbm beside", self.beside
 
 
 def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1) -> Runs:
@@ -125,7 +130,8 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1
     check(choices, scene)
     even = replace(choices, formulation="auto")
     extra = [] if even == choices else [(solvers.cprbm, even)]
-    jobs = [(solvers.cprbm, choices), (solvers.cprbm, even.finer()), *extra]
+    beside = [(solvers.cprbm, even.beside())] if scene.contacts else []
+    jobs = [(solvers.cprbm, choices), (solvers.cprbm, even.finer()), *extra, *beside]
     first = len(jobs)
     places: list[tuple[Kinematics, int]] = []
     for kinematics in KINEMATICS[: KINEMATICS.index(choices.kinematics) + 1]:
@@ -138,9 +144,19 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1
     fea: dict[Kinematics, tuple[Answer, ...]] = {}
     for (kinematics, _), answer in zip(places, answers[first:], strict=True):
         fea[kinematics] = (*fea.get(kinematics, ()), answer)
-    if extra:
-        return Runs(choices.kinematics, (answers[0], answers[1]), frozendict(fea), auto=answers[2])
-    return Runs(choices.kinematics, (answers[0], answers[1]), frozendict(fea), paper=_paper(scene, choices, solvers))
+    return Runs(
+        choices.kinematics,
+        (answers[0], answers[1]),
+        frozendict(fea),
+        auto=answers[2] if extra else None,
+        paper=None if extra else _paper(scene, choices, solvers),
+        beside=answers[first - 1] if beside else None,
+        ratio=_links(even) / _links(even.beside()),
+    )
+
+
+def _links(choices: Choices) -> int:
+    return choices.links if isinstance(choices.links, int) else sum(choices.links.values())
 
 
 def _paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:

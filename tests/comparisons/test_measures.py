@@ -80,6 +80,34 @@ def test_an_uncertainty_that_vanishes_by_accident_is_a_quarter_of_the_stages_lar
     assert stated[3] > stated[4]
 
 
+def test_an_error_that_is_uneven_in_n_is_stated_though_two_n_meet_by_accident(hinge, right):
+    """At 40 and at 80 links one value, at 46 another: an estimate from two numbers alone would be nothing."""
+
+    def uneven(scene, choices):
+        return MadeUp("cprbm", 0.0, stiffness=1.0 if choices.links in (40, 80) else 1.01)(scene, choices)
+
+    row = rows_by_name(hinge, paired(hinge, Choices(), Solvers(uneven, right.fea)))["BD.rotation"]
+    assert row.bounds is not None
+    # once the contact is closed the made-up rotation is 0.8 times the reach, and a constant; S times what is not
+    # foretold, as at 40 links: the error is of second order
+    apart = 0.8 * 0.67 * (1.0 - 1.0 / 1.01)
+    assert row.bounds.cprbm == pytest.approx(1.25 * apart * (46 / 40) ** 2, rel=1e-9)
+
+
+def test_an_even_error_is_foretold_at_the_links_beside(hinge, right):
+    runs = paired(hinge, Choices(), right)
+    assert runs.beside is not None
+    assert runs.ratio == pytest.approx(40 / 46)
+    for with_it, without in zip(rows_of(hinge, runs), rows_of(hinge, replace(runs, beside=None)), strict=True):
+        if with_it.bounds is not None and without.bounds is not None:
+            assert with_it.bounds.cprbm == pytest.approx(without.bounds.cprbm, rel=0.02, abs=1e-12 * with_it.scale)
+
+
+def test_a_scene_without_contact_has_no_run_beside(hinge, right):
+    probes = tuple(probe for probe in hinge.probes if probe.of != "contact")
+    assert paired(hinge.model_copy(update={"contacts": {}, "probes": probes}), Choices(), right).beside is None
+
+
 def test_the_fea_is_never_taken_for_better_than_in_the_cprbms_own_theory(hinge):
     """In ``bending`` the planted error is twenty times that in the chosen theory."""
 

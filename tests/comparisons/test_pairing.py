@@ -26,6 +26,7 @@ def test_every_run_is_asked_for_once(hinge, right):
     assert [(choices.links, choices.formulation) for name, choices in asked if name == "cprbm"] == [
         (40, "auto"),
         (80, "auto"),
+        (46, "auto"),
         (40, "paper"),
     ]
     assert [
