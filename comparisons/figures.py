@@ -20,7 +20,7 @@ from comparisons.pairing import Runs
 from comparisons.scales import norm
 from comparisons.sheets import last_rows
 from comparisons.verdict import Comparison
-from scene import Ending, Scene, StationAnswer
+from scene import CircleContact, Ending, Scene, StationAnswer
 from scene.statement import FreeEnd
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ _STYLE: dict[Any, Any] = {  # the stubs name every key of every version
     "legend.frameon": False,
     "savefig.dpi": 150.0,
 }
+FEW_PLACES = 8  # of contact, that are drawn large
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,9 +136,18 @@ def _decades(axes: Axes, values: Sequence[float]) -> None:
 def _shapes(scene: Scene, runs: Runs) -> Picture:
     """The mechanism before and after, in the manner of the paper's Fig. 8."""
     from matplotlib.figure import Figure
+    from matplotlib.patches import Circle
 
     figure = Figure(figsize=(6.4, 6.0), layout="constrained")
     axes = figure.add_subplot()
+    for contact in scene.contacts.values():
+        if isinstance(contact, CircleContact):
+            (x, y), stands = contact.center, scene.bodies[contact.body].motion == "fixed"
+            style = "-" if stands else "--"  # one that moves is shown where it began
+            # an artist, no patch: a large circle must not make the beams small
+            axes.add_artist(
+                Circle((1e3 * x, 1e3 * y), 1e3 * contact.radius, fill=False, edgecolor=_GREY, linestyle=style)
+            )
     cprbm, fea = runs.cprbm[0].stations[-1], runs.reference.stations[-1]
     ends: dict[str, list[tuple[float, float]]] = {}
     for place, beam in enumerate(scene.beams.values()):
@@ -159,7 +169,9 @@ def _shapes(scene: Scene, runs: Runs) -> Picture:
         for place, spots in enumerate(station.touching.values()):
             label = f"contact, {name}" if place == 0 else None
             x, y = 1e3 * spots.T
-            axes.plot(x, y, marker, color=colour, markersize=9, markerfacecolor="none", linestyle="", label=label)
+            # the many places of a zone would hide the beam behind them
+            size = 9.0 if len(spots) <= FEW_PLACES else 2.5
+            axes.plot(x, y, marker, color=colour, markersize=size, markerfacecolor="none", linestyle="", label=label)
     for body in scene.bodies.values():
         for name, (x, y) in body.points.items():
             axes.annotate(name, (1e3 * x, 1e3 * y), textcoords="offset points", xytext=(-4, 7), ha="right")

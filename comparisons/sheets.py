@@ -157,7 +157,7 @@ def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
         ("probe", "unit", "CPRBM", "FEA", "difference", "u CPRBM", "u FEA", "theory"),
         tuple(body),
         f"FEA: theory {runs.kinematics}. Fractions of the FEA's value, or of the probe's largest value where "
-        "that may vanish; uncertainties from two discretisations of each solver.",
+        "that may vanish; uncertainties from further discretisations of each solver.",
     )
 
 
