@@ -199,7 +199,11 @@ class Circle:
         near[-1] &= self.a.end is None or self.a.end.body != self.body
         padded = np.concatenate(([np.inf], D, [np.inf]))
         lowest = (padded[:-2] >= D) & (padded[2:] > D) & (D < REACH)
-        lowest[[0, -1]] = False
+        # at an end that is lowest the minimum lies within if the way to it rises
+        ends = line.at(s[[0, -1]])
+        rising = (ends.x - self.x) * np.cos(ends.psi) + (ends.y - self.y) * np.sin(ends.psi)
+        lowest[0] &= rising[0] < 0.0
+        lowest[-1] &= rising[1] > 0.0
         places, convex = self._refined(line, s[lowest])
         held = np.concatenate((s[near], self.ends))
         free = places[convex]

@@ -5,18 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
+from cprbm import smooth
 from cprbm.boundary import FittedBoundary, fitted_boundary
 from cprbm.circle import Circle, circle_of
 from cprbm.closure import closure_of
 from cprbm.contact import Formulation, Group, Rows
 from cprbm.energy import dead_loads
-from cprbm.equilibrium import Problem
+from cprbm.equilibrium import Point, Problem
 from cprbm.holding import holds_of
-from cprbm.kinematics import Positions, State
+from cprbm.kinematics import Positions, State, positions
 from cprbm.model import EVEN, Fit, build
 from cprbm.nearest import Pair, pair_of
 from cprbm.settings import Settings
 from scene import BeamContact, Scene
+
+BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle
+WAY = 0.02  # of the longest beam, by which a way of one radian may differ from the unknowns' even one
 
 Groups = Callable[[State, Positions], tuple[Group, ...]]
 
@@ -51,10 +57,30 @@ class Mechanism:
         groups = self._groups(contact)(state, at)
         return max((float(group.values.max()) for group in groups), default=float("-inf"))
 
-    def passed(self, before: Positions, after: Positions) -> str:
+    def passed(self, before: Point, after: Point) -> str:
         """Name of a contact with a circle that its beam has swept over between two states; empty if none."""
-        circles = (pair for pair in self.pairs.values() if isinstance(pair, Circle))
-        return next((circle.name for circle in circles if circle.passed(before, after)), "")
+        for circle in self.pairs.values():
+            if not isinstance(circle, Circle):
+                continue
+            if circle.passed(before.at, after.at) or self._overlapped_between(circle, before.state, after.state):
+                return circle.name
+        return ""
+
+    def _overlapped_between(self, circle: Circle, before: State, after: State) -> bool:
+        """Whether the beam lay deep in the circle on the way from one state to another, the unknowns going evenly."""
+        turned = float(np.max(np.abs(after.theta - before.theta)))
+        # the real way differs by the square of the step
+        allowed = 0.5 * circle.offset + WAY * turned**2
+        for part in BETWEEN:
+            state = State(
+                before.theta + part * (after.theta - before.theta),
+                before.bodies + part * (after.bodies - before.bodies),
+            )
+            at = positions(self.problem.model, state)
+            places = circle.line(state, at).at(smooth.halves(circle.a))
+            if np.max(circle.offset - circle.placed(at).distance(places)) > allowed:
+                return True
+        return False
 
     def _groups(self, contact: str) -> Groups:
         return self.boundaries[contact].groups if self.boundaries else self.pairs[contact].groups

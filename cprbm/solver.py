@@ -175,7 +175,7 @@ class _March:
                     Ending.STEP_TOO_SMALL,
                     f"a link turned by {turned:.2f} rad in one load step",
                 )
-            elif ending is Ending.COMPLETED and (crossed := self.mechanism.passed(self.point.at, found.point.at)):
+            elif ending is Ending.COMPLETED and (crossed := self.mechanism.passed(self.point, found.point)):
                 ending, sentence = Ending.BEAMS_CROSSED, f"in contact '{crossed}' the beam went across the circle"
             elif certificate.failures:
                 sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
