@@ -22,6 +22,7 @@ from cprbm.settings import Settings
 from scene import BeamContact, Scene
 
 BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle
+SHALLOW = 0.05  # of the radius: an overlap between rows of a coarse mesh
 WAY = 0.02  # of the longest beam, by which a way of one radian may differ from the unknowns' even one
 
 Groups = Callable[[State, Positions], tuple[Group, ...]]
@@ -70,7 +71,7 @@ class Mechanism:
         """Whether the beam lay deep in the circle on the way from one state to another, the unknowns going evenly."""
         turned = float(np.max(np.abs(after.theta - before.theta)))
         # the real way differs by the square of the step
-        allowed = 0.5 * circle.offset + WAY * turned**2
+        allowed = 0.5 * circle.offset + SHALLOW * circle.radius + WAY * turned**2
         for part in BETWEEN:
             state = State(
                 before.theta + part * (after.theta - before.theta),

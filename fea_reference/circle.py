@@ -40,6 +40,9 @@ from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative
 from scene.answer import Array
 from scene.statement import CircleContact, Scene
 
+_BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states
+_SHALLOW = 0.05  # of the radius: an overlap that a penalty may leave
+_SAGITTA = 0.15  # of the square of a way along an arc, by which its chord may leave it
 _LAYERS = 32.0  # of the first penalty, in a beam's length
 _RESOLVED = 3.0  # layers in an element: what they leave is of second order in their width
 # Layers in a beam's length at the standard penetration: what they leave is below 1e-7, and thinner ones make more of a
@@ -91,17 +94,21 @@ def centre(model: Model, circle: Circle, z: State) -> Array:
 
 
 def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
-    """Whether a beam that goes straight from one state to another sweeps over the circle's centre.
+    """Whether a beam that goes straight from one state to another sweeps over the circle's centre or cuts its inside.
 
-    It does if the loop of its old place, its end's way, its new place backwards and its start's way winds
-    round the centre.
+    It sweeps over the centre if the loop of its old place, its end's way, its new place backwards and its start's
+    way winds round that.  On the way it may lie in the circle by what the straight way of a turning beam leaves out.
     """
     beam = model.beams[circle.first]
     old, new = (model.line(beam, z).points - centre(model, circle, z)[:, None] for z in (before, after))
     loop = np.concatenate([old, new[:, ::-1], old[:, :1]], axis=1)
     a, b = loop[:, :-1], loop[:, 1:]
     winding = np.arctan2(a[0] * b[1] - a[1] * b[0], (a * b).sum(axis=0)).sum()
-    return bool(abs(winding) > np.pi)
+    if abs(winding) > np.pi:
+        return True
+    way = np.hypot(*(new - old)).max()
+    allowed = (1.0 - _SHALLOW) * circle.radius + 0.5 * circle.distance - _SAGITTA * way**2
+    return any(np.hypot(*(old + part * (new - old))).min() < allowed for part in _BETWEEN)
 
 
 def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: State) -> Touch:

@@ -276,3 +276,14 @@ def test_a_pin_as_thin_as_the_beam_presses_at_one_place_however_coarse_the_eleme
     assert coarse.values["circle.force"] == pytest.approx(fine.values["circle.force"], rel=0.03)
     assert coarse.values["circle.ends"] == pytest.approx(fine.values["circle.ends"], abs=2e-3 * BEAM["length"])
     assert np.ptp(coarse.values["circle.ends"]) == 0.0
+
+
+@pytest.mark.parametrize("links", [20, 33, 120])
+def test_a_tip_that_would_cut_through_a_circle_in_one_step_comes_to_lie_on_it(links):
+    # without contact the tip is on the other side at this load, having passed beside the centre. reference for the
+    # place: the side of a tip touches where it is normal to the radius, just before the end; of the force: finer links
+    length = BEAM["length"]
+    circle = {"radius": 0.143 * length, "center": [0.94 * length, -(0.31 * length + BEAM["thickness"] / 2.0)]}
+    values, fine = (solved(77.0, n, angle=-1.684, **circle).values for n in (links, 320))
+    assert values["circle.ends"][0] > 0.98 * length
+    assert values["circle.force"] == pytest.approx(fine["circle.force"], rel=1e-3)

@@ -12,6 +12,7 @@ from fea_reference.state import State
 from fea_reference.touch import Penalty
 from scene import Ending, Scene, Stage
 from scene.statement import Force
+from tests.cprbm import test_circle as cprbm_circle
 
 T, WIDTH = 0.01, 0.05
 YOUNG = 12 / (WIDTH * T**3)  # so that EI = 1
@@ -270,3 +271,15 @@ def test_a_circle_is_not_stepped_over():
     assert not passed(model, circle, model.start, model.start)
     got = solved(scene, elements=40, kinematics="stretch")
     assert got.stations[0].values["contact.force"][0] > 0.0
+
+
+@pytest.mark.parametrize("elements", [40, 80, 160])
+def test_a_tip_that_would_cut_through_a_circle_in_one_step_comes_to_lie_on_it(elements):
+    """Without contact the tip is on the other side at this load; the place and the force are those of other meshes."""
+    length = cprbm_circle.BEAM["length"]
+    center = [0.94 * length, -(0.31 * length + cprbm_circle.BEAM["thickness"] / 2.0)]
+    scene = cprbm_circle.scene_of([77.0], radius=0.143 * length, center=center, angle=-1.684)
+    found = [answer(scene, Settings(elements=n, kinematics="bending")) for n in (elements, 320)]
+    coarse, fine = (one.stations[0].values for one in found)
+    assert coarse["circle.ends"][0] > 0.98 * length
+    assert coarse["circle.force"] == pytest.approx(fine["circle.force"], rel=1e-4)
