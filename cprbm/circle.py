@@ -88,6 +88,12 @@ class Circle:
         """D at some points of the beam."""
         return np.hypot(points.x - self.x, points.y - self.y) - self.radius
 
+    def _away(self, points: smooth.Points) -> tuple[Array, Array]:
+        """ρ (k,) and n (k, 2) at some points of the beam."""
+        r = np.stack((points.x - self.x, points.y - self.y), axis=1)
+        rho = np.hypot(r[:, 0], r[:, 1])
+        return rho, r / rho[:, None]
+
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
         return self.placed(at)._groups(state, at)
@@ -98,9 +104,7 @@ class Circle:
         if not s.size:
             return ()
         A = line.at(s)
-        rx, ry = A.x - self.x, A.y - self.y
-        rho = np.hypot(rx, ry)
-        n = np.stack((rx / rho, ry / rho), axis=1)
+        rho, n = self._away(A)
         across = np.stack((-n[:, 1], n[:, 0]), axis=1)
         C_z, C_sz = smooth.position_slopes(A), smooth.tangent_slopes(A)
         second = smooth.position_curvature(A, n)
@@ -128,51 +132,33 @@ class Circle:
         keys = np.where(free, -1, np.searchsorted(self.a.s, s))
         at_ends = np.isin(s, self.ends)
         keys[at_ends] = self.a.n + 2 + np.arange(np.sum(at_ends))
-        every, alone = (joints, angles, second), np.ones(len(s), dtype=bool)
-        groups = []
-        for two in self._beside_clamps(keys):
-            alone[two] = False
-            i, j = two
 
-            def together(multipliers: Array, i: int = i, j: int = j) -> Blocks:
-                pressing = np.full(2, multipliers[0])
-                return Blocks(every[0][[i, j]], every[1][[i, j]], -pressing[:, None, None] * every[2][[i, j]])
+        def rows(these: Ints) -> Group:
+            """Rows (m,) each of which is the sum of those at q places, ``these`` (m, q)."""
+            (m, q), p = these.shape, joints.shape[1]
+            x, y, turns = np.split(slopes[these], (p, 2 * p), axis=2)
 
-            p = joints.shape[1]
-            x, y, turns = np.split(slopes[two], (p, 2 * p), axis=1)
-            groups.append(
-                Group(
-                    contact=self.name,
-                    values=values[[i]] + values[[j]],
-                    joints=joints[two].reshape(1, -1),
-                    angles=angles[two].reshape(1, -1),
-                    slopes=np.concatenate([part.reshape(1, -1) for part in (x, y, turns)], axis=1),
-                    curvature=together,
-                    keys=(int(keys[j]),),
-                    arc=0.5 * (s[[i]] + s[[j]]),
-                )
-            )
-        if not np.any(alone):
-            return tuple(groups)
-        joints, angles, second = joints[alone], angles[alone], second[alone]
+            def curvature(multipliers: Array) -> Blocks:
+                pressing = np.flatnonzero(multipliers)
+                places = these[pressing].ravel()
+                weights = np.repeat(multipliers[pressing], q)
+                return Blocks(joints[places], angles[places], -weights[:, None, None] * second[places])
 
-        def curvature(multipliers: Array) -> Blocks:
-            pressing = np.flatnonzero(multipliers)
-            return Blocks(joints[pressing], angles[pressing], -multipliers[pressing, None, None] * second[pressing])
-
-        groups.append(
-            Group(
+            return Group(
                 contact=self.name,
-                values=values[alone],
-                joints=joints,
-                angles=angles,
-                slopes=slopes[alone],
+                values=np.sum(values[these], axis=1),
+                joints=joints[these].reshape(m, -1),
+                angles=angles[these].reshape(m, -1),
+                slopes=np.concatenate([part.reshape(m, -1) for part in (x, y, turns)], axis=1),
                 curvature=curvature,
-                keys=tuple(keys[alone].tolist()),
-                arc=s[alone],
+                keys=tuple(keys[these[:, -1]].tolist()),
+                arc=np.mean(s[these], axis=1),
             )
-        )
-        return tuple(groups)
+
+        together = self._beside_clamps(keys)
+        alone = np.setdiff1d(np.arange(len(s)), np.concatenate([np.zeros(0, dtype=np.intp), *together]))
+        groups = [rows(two[None]) for two in together]
+        return (*groups, rows(alone[:, None])) if alone.size else tuple(groups)
 
     def _beside_clamps(self, keys: Ints) -> list[Ints]:
         """For every end that is clamped on the circle, which two rows stand at the springs next to it."""
@@ -216,9 +202,7 @@ class Circle:
             return s, np.zeros(0, dtype=bool)
         for _ in range(CLOSEST_ITERATIONS):
             A = line.at(s)
-            rx, ry = A.x - self.x, A.y - self.y
-            rho = np.hypot(rx, ry)
-            n = np.stack((rx / rho, ry / rho), axis=1)
+            rho, n = self._away(A)
             q_s = A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi))
             slope = A.speed * (n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi))
             D_ss = self._convexity(A, n, q_s, rho)

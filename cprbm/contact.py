@@ -93,6 +93,13 @@ class Rows:
         """Number of constraints m."""
         return len(self.values)
 
+    def nearest(self, contact: str, arc: float, reach: float = np.inf) -> Ints:
+        """Number of the row of a contact that is nearest to an arc length, (1,); (0,) where none is within reach."""
+        mine = np.array([name == contact for name in self.contact], dtype=bool)
+        away = np.abs(self.arc - arc)
+        near = np.flatnonzero(mine & (away <= reach))
+        return near[np.argsort(away[near], kind="stable")[:1]]
+
     def shares(self, multipliers: Array) -> list[tuple[Group, Array]]:
         """Every group with its part of the multipliers (m,)."""
         ends = np.cumsum([len(group.values) for group in self.groups])

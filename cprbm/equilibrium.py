@@ -171,9 +171,7 @@ def carried(before: Rows, lam: Array, rows: Rows, model: Model) -> Array:
         if key in by_key:
             forces[by_key[key]] += force
             continue
-        near = [i for i in range(rows.size) if rows.contact[i] == contact and abs(rows.arc[i] - arc) <= reach]
-        if near:
-            forces[min(near, key=lambda i: abs(rows.arc[i] - arc))] += force
+        forces[rows.nearest(contact, arc, reach)] += force
     return forces
 
 

@@ -104,9 +104,10 @@ def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict
     """A state of one mesh on another, with its forces: a guess."""
     old, new = before.problem.model, after.problem.model
     theta = new.rest.copy()
+    # each link has the beam's tangent at the border that lies on it
     for source, target in zip(old.chains, new.chains, strict=True):
         turned = point.state.theta[source.links] - source.rest
-        theta[target.links] += np.interp(_middles(target), _middles(source), turned)
+        theta[target.links] += np.interp(target.borders, source.borders, turned)
     state = State(theta, point.state.bodies)
     at = positions(new, state)
     rows = after.problem.formulation(state, at)
@@ -120,11 +121,6 @@ def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict
             lam[mine] = _pressure(point, name, zones[name], (before.pairs[name].a, after.pairs[name].a), group.arc)
     _add_single(point, zones, rows, lam, 2.0 * max(chain.h for chain in old.chains))
     return point_at(after.problem, values, state, point.mu, lam, rows)
-
-
-def _middles(chain: Chain) -> Array:
-    """Where each link has the beam's tangent: its border."""
-    return chain.borders
 
 
 def _elements(chain: Chain, arc: Array) -> Array:
@@ -153,6 +149,4 @@ def _add_single(point: Point, zones: Mapping[str, tuple[Zone, ...]], rows: Rows,
     for force, arc, contact in zip(point.lam, point.rows.arc, point.rows.contact, strict=True):
         if force <= 0.0 or any(zone.begin - reach <= arc <= zone.end + reach for zone in zones.get(contact, ())):
             continue
-        mine = [i for i in range(rows.size) if rows.contact[i] == contact]
-        if mine:
-            lam[min(mine, key=lambda i: abs(rows.arc[i] - arc))] += force
+        lam[rows.nearest(contact, arc)] += force

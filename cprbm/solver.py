@@ -122,24 +122,23 @@ class _March:
     def _fitted(self, certificate: Certificate) -> tuple[Mechanism, Point, Certificate] | None:
         """The present state on the mesh that was asked, its borders where zones of contact end."""
         mechanism, point, iterations = self.mechanism, self.point, certificate.iterations
-        for settings in self.family:
-            if settings is not self.family[-1] and not all_zones(mechanism, point):
+        asked, now = self.family[-1], self.settings
+        for settings in (*self.family[1:-1], *[asked] * FITS):
+            zones = all_zones(mechanism, point)
+            if settings is not asked and not zones:
                 continue  # a few places need no mesh between the coarsest and the finest
-            solved, passes = settings is self.settings, 0
-            while passes < (FITS if settings is self.family[-1] else 1):
-                fit = fitted(mechanism, ends_of(mechanism, all_zones(mechanism, point)), settings)
-                if solved and (fits(mechanism, fit) or settings is not self.family[-1]):
-                    break
-                target = mechanism_of(self.scene, settings, fit)
-                start = carried_over(mechanism, point, target, self.values)
-                found = equilibrium(target.problem, self.values, start, settings.tolerance, settings.iterations)
-                turned = float(np.max(np.abs(found.point.state.theta - start.state.theta)))
-                if not found.converged or turned > FOLLOWED:
-                    return None
-                mechanism, point, iterations = target, found.point, iterations + found.iterations
-                solved, passes = True, passes + 1
+            fit = fitted(mechanism, ends_of(mechanism, zones), settings)
+            if settings is now and fits(mechanism, fit):
+                break
+            target = mechanism_of(self.scene, settings, fit)
+            start = carried_over(mechanism, point, target, self.values)
+            found = equilibrium(target.problem, self.values, start, settings.tolerance, settings.iterations)
+            turned = float(np.max(np.abs(found.point.state.theta - start.state.theta)))
+            if not found.converged or turned > FOLLOWED:
+                return None
+            mechanism, point, now, iterations = target, found.point, settings, iterations + found.iterations
         if mechanism is not self.mechanism:
-            certificate, ending = certify(mechanism, settings, found)
+            certificate, ending = certify(mechanism, asked, found)
             if ending is not Ending.COMPLETED:
                 return None
         return mechanism, point, replace(certificate, iterations=iterations)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from comparisons.choices import KINEMATICS, Kinematics
-from comparisons.cli.options import counts, output, positive, whole
+from comparisons.cli.options import counts, folder, output, positive, whole
 
 if TYPE_CHECKING:
     from comparisons.benchmark import Method
@@ -50,12 +50,7 @@ NOT_COMPLETED = 1
     help="Beam theory of the finite elements; 'bending' is the CPRBM's own.",
 )
 @output
-@click.option(
-    "--out",
-    type=click.Path(file_okay=False, path_type=Path),
-    metavar="DIR",
-    help="Folder for the numbers and the figure.",
-)
+@folder("Folder for the numbers and the figure.")
 @click.pass_obj
 def command(
     planted: object,

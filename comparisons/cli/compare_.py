@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from comparisons.choices import Kinematics
-from comparisons.cli.options import numerical, output
+from comparisons.cli.options import folder, numerical, output
 
 if TYPE_CHECKING:
     from comparisons.verdict import Comparison
@@ -20,12 +20,7 @@ if TYPE_CHECKING:
 @click.argument("asked", nargs=-1, required=True, metavar="CASE|FILE.toml...|all")
 @numerical
 @output
-@click.option(
-    "--out",
-    type=click.Path(file_okay=False, path_type=Path),
-    metavar="DIR",
-    help="Folder of the report; 'report' for 'compare all', else none unless given.",
-)
+@folder("Folder of the report; 'report' for 'compare all', else none unless given.")
 @click.pass_obj
 def command(
     planted: object,

@@ -112,3 +112,8 @@ def output(command: Decorated) -> Decorated:
         "--json", "json_file", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE",
         help="Write the numbers as JSON; '-' is standard output, and then nothing else is printed there.",
     )(command)  # fmt: skip
+
+
+def folder(text: str) -> Callable[[Decorated], Decorated]:
+    """``--out``, with the help ``text`` of what is put there."""
+    return click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help=text)

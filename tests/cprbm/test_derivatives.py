@@ -142,31 +142,25 @@ def test_smooth_lines_are_true_at_rest_and_have_consistent_derivatives(scene):
     assert (ahead.psi - behind.psi) / (2 * STEP) == pytest.approx(here.bend, rel=1e-6)
 
 
-def test_smooth_lines_have_one_tangent_at_every_joint():
-    def kink(links):
-        model = mechanism_of(hinge(), Settings(links=links)).problem.model
-        chain = model.chains[0]
-        state = State(model.rest + 0.8 * np.cos(np.linspace(0.0, 3.0, model.n_links)), np.zeros((1, 3)))
-        at = positions(model, state)
-        inner = chain.s[1:-1]
-        left = smooth.smooth_line(chain, model.unit_length, state, at).at(inner - 1e-12)
-        right = smooth.smooth_line(chain, model.unit_length, state, at).at(inner + 1e-12)
-        return np.max(np.abs(left.psi - right.psi))
+def on_both_sides_of_joints(scene, beam, links, aside):
+    """Points of a bent beam's smooth line just before and just behind its inner joints."""
+    model = mechanism_of(scene, Settings(links=links)).problem.model
+    chain = model.chains[beam]
+    state = State(model.rest + 0.8 * np.cos(np.linspace(0.0, 3.0, model.n_links)), np.zeros((1, 3)))
+    line = smooth.smooth_line(chain, model.unit_length, state, positions(model, state))
+    return line.at(chain.s[1:-1] - aside), line.at(chain.s[1:-1] + aside)
 
-    assert kink(20) < 1e-10
+
+def test_smooth_lines_have_one_tangent_at_every_joint():
+    left, right = on_both_sides_of_joints(hinge(), 0, 20, 1e-12)
+    assert np.max(np.abs(left.psi - right.psi)) < 1e-10
 
 
 def test_where_the_rest_curvature_varies_the_kinks_at_the_joints_are_of_fifth_order():
     """And no gap is left: both pieces end at the joint itself."""
 
     def at_joints(links):
-        model = mechanism_of(bows(), Settings(links=links)).problem.model
-        chain = model.chains[1]
-        state = State(model.rest + 0.8 * np.cos(np.linspace(0.0, 3.0, model.n_links)), np.zeros((1, 3)))
-        at = positions(model, state)
-        inner = chain.s[1:-1]
-        left = smooth.smooth_line(chain, model.unit_length, state, at).at(inner - 1e-13)
-        right = smooth.smooth_line(chain, model.unit_length, state, at).at(inner + 1e-13)
+        left, right = on_both_sides_of_joints(bows(), 1, links, 1e-13)
         assert left.x == pytest.approx(right.x, abs=1e-12)
         assert left.y == pytest.approx(right.y, abs=1e-12)
         return np.max(np.abs(left.psi - right.psi))

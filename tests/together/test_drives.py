@@ -20,6 +20,14 @@ def scene():
     return gripper_like()
 
 
+def agreed(scene):
+    """Both solvers' answers at standard choices, which must agree."""
+    runs = paired(scene, Choices(), Solvers())
+    verdict = compared(scene, runs).verdict
+    assert verdict.word is Word.AGREE, verdict.sentence
+    return runs.cprbm[0], runs.reference
+
+
 def test_the_verdict_is_agree(scene):
     """Slide, driven point, driven rotation and a load on the slide, in all three theories."""
     found = compared(scene, paired(scene, Choices(), Solvers()))
@@ -68,11 +76,7 @@ def test_a_figure_has_one_axis_of_load(scene):
 
 def test_a_driven_circle_presses_a_beam_and_lets_it_go():
     """Open stations without any force among them; the drive pushes with what the wall holds against."""
-    scene = punched()
-    runs = paired(scene, Choices(), Solvers())
-    found = compared(scene, runs)
-    assert found.verdict.word is Word.AGREE, found.verdict.sentence
-    for answer in (runs.cprbm[0], runs.reference):
+    for answer in agreed(punched()):
         first, *pressed, last = answer.stations
         for station in (first, last):
             assert station.values["circle.force"][0] == 0.0
@@ -87,11 +91,7 @@ def test_a_driven_circle_presses_a_beam_and_lets_it_go():
 
 def test_a_drive_goes_through_a_limit_point():
     """The push grows, falls and becomes a pull; a load would have jumped. Both supports share it."""
-    scene = snapping()
-    runs = paired(scene, Choices(), Solvers())
-    found = compared(scene, runs)
-    assert found.verdict.word is Word.AGREE, found.verdict.sentence
-    for answer in (runs.cprbm[0], runs.reference):
+    for answer in agreed(snapping()):
         pushes = [station.values["T.reaction"][1] for station in answer.stations]
         assert pushes[1] < pushes[0] < pushes[2] < 0.0 < pushes[3]
         for station, push in zip(answer.stations, pushes, strict=True):
