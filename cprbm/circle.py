@@ -30,7 +30,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cprbm import smooth
+from cprbm import smooth, wells
 from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.model import EVEN, Chain, Fit, Model
@@ -40,9 +40,7 @@ from scene.answer import Array, Flags, Ints
 # local numbers (x, y, θθθ, centre) to (x of joints, y of joints, θθθ)
 ALONE, WITH_CENTRE = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4])
 CLOSEST_ITERATIONS = 12
-LEAST_CURVATURE = 1e-3  # of D along the beam, 1/ℓ, below which its minimum has no place of its own
-STEPS = 3.0  # a minimum is less convex than this many steps of the curvature: it belongs to a zone
-STEPS_BETWEEN = 6.0  # and than this many where it lies below two closed joints, which then press in its place
+BESIDE_MINIMUM = 2.5  # a joint closer than this many h to a minimum with a place of its own leaves it to that
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 ON_IT = 1e-9  # gap of a clamped end, and how far its normal passes from the centre, where it is clamped on the circle
 JOINT_REACH = 2.0  # joints farther than this many h²·(1/R + 1/ℓ) are none
@@ -177,23 +175,26 @@ class Circle:
     def _places(self, line: smooth.SmoothLine) -> tuple[Array, Flags]:
         """Arc lengths of the rows, and which of them move with a minimum."""
         s = smooth.halves(self.a)
-        D = self.distance(line.at(s)) - self.offset
+        A = line.at(s)
+        rho, n = self._away(A)
+        D = rho - self.radius - self.offset
         near = np.zeros(len(s), dtype=bool)
         near[::2] = D[::2] < JOINT_REACH * self.a.h**2 * (1.0 / self.radius + 1.0)
         # an end that the circle's own body holds cannot move against it: its gap is no unknown
         near[0] &= self.a.start.body != self.body
         near[-1] &= self.a.end is None or self.a.end.body != self.body
-        padded = np.concatenate(([np.inf], D, [np.inf]))
-        lowest = (padded[:-2] >= D) & (padded[2:] > D) & (D < REACH)
         # at an end that is lowest the minimum lies within if the way to it rises
-        ends = line.at(s[[0, -1]])
-        rising = (ends.x - self.x) * np.cos(ends.psi) + (ends.y - self.y) * np.sin(ends.psi)
-        lowest[0] &= rising[0] < 0.0
-        lowest[-1] &= rising[1] > 0.0
-        places, convex = self._refined(line, s[lowest])
+        slope = n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi)
+        fence = [np.inf if slope[0] < 0.0 else -np.inf], [np.inf if slope[-1] > 0.0 else -np.inf]
+        lowest = wells.lowest(np.concatenate((fence[0], D, fence[1])), REACH) - 1
+        q_s = A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi))
+        lowest = lowest[wells.isolated(self._convexity(A, n, q_s, rho)[::2], lowest)]
+        places, free = self._refined(line, s[lowest])
+        places = places[free]
+        for place in places:
+            near &= np.abs(s - place) > BESIDE_MINIMUM * self.a.h
         held = np.concatenate((s[near], self.ends))
-        free = places[convex]
-        return np.concatenate((held, free)), np.concatenate((np.zeros(len(held), bool), np.ones(len(free), bool)))
+        return np.concatenate((held, places)), np.arange(len(held) + len(places)) >= len(held)
 
     def _refined(self, line: smooth.SmoothLine, s: Array) -> tuple[Array, Flags]:
         """Newton's method on D_s = 0; the flags say where it found a minimum nearby that is no part of a zone."""
@@ -206,17 +207,12 @@ class Circle:
             q_s = A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi))
             slope = A.speed * (n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi))
             D_ss = self._convexity(A, n, q_s, rho)
-            step = -slope / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
+            step = -slope / np.where(D_ss > wells.LEAST_CURVATURE, D_ss, np.inf)
             s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
             if np.max(np.abs(step)) < 1e-13:
                 break
-        # what is held at the joints beside may stay there and what is held at the minimum too: no state is neither
-        joint = np.clip(np.searchsorted(self.a.s, s), 1, self.a.n + 1)
-        beside = np.maximum(*(self.distance(line.at(self.a.s[j])) for j in (joint - 1, joint))) - self.offset
-        lowest = rho - self.radius - self.offset
-        steps = np.where(beside + lowest > 0.0, STEPS, STEPS_BETWEEN) * smooth.curvature_step(line, A.link)
-        deep = D_ss > np.maximum(LEAST_CURVATURE, steps)
-        return s, deep & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
+        settled = (D_ss > wells.LEAST_CURVATURE) & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
+        return s, settled
 
     def passed(self, before: Positions, after: Positions) -> bool:
         """Whether the beam has swept over the circle's centre between two states.

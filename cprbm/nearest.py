@@ -41,7 +41,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cprbm import smooth
+from cprbm import smooth, wells
 from cprbm.contact import Group
 from cprbm.gathering import Touches, gathered
 from cprbm.kinematics import Positions, State, positions, rest_state
@@ -52,9 +52,6 @@ from scene.answer import Array, Flags, Ints
 FOOT_ITERATIONS = 8
 FOOT_TOLERANCE = 1e-13  # of t·r, units of length
 CLOSEST_ITERATIONS = 50
-LEAST_CURVATURE = 1e-3  # of D along A, 1/ℓ, below which its minimum has no place of its own
-STEPS = 3.0  # a minimum is less convex than this many steps of the curvature: it belongs to a zone
-STEPS_BETWEEN = 6.0  # the same where it lies below two joints that are closed
 REACH = 0.1  # minima and ends with gaps wider than this part of the longest beam are no constraints yet
 JOINT_REACH = 2.0  # joints with gaps wider than this many h²·(|ψ_A'| + |ψ_B'| + 1/ℓ) are none
 PARALLEL = 1e-3  # a foot whose perpendicular misses by more (sine) is an end, not a foot
@@ -129,9 +126,13 @@ class Pair:
         return self.clamps[0]
 
     def parting(self, state: State, at: Positions, s: Array) -> Array:
-        """Curvature D″ with which A parts from B, at arc lengths ``s``; between springs it goes evenly."""
+        """Curvature D″ with which A parts from B, at arc lengths ``s``."""
         lines = self.lines(state, at)
         D, sigma, _ = distance_along(self, lines, s)
+        return self.parting_at(lines, s, sigma, D)
+
+    def parting_at(self, lines: Lines, s: Array, sigma: Array, D: Array) -> Array:
+        """D″ at arc lengths ``s`` of A whose feet are at ``sigma``; between springs the curvature goes evenly."""
         facing = np.sign(np.cos(lines[0].at(s).psi - lines[1].at(sigma).psi))
         bend_A, bend_B = (
             np.interp(places, line.chain.s[1:-1], line.at(line.chain.s[1:-1]).bend)
@@ -403,7 +404,11 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
     would not settle.
     """
     s = smooth.halves(pair.a)
-    lowest = np.flatnonzero((D[:-2] >= D[1:-1]) & (D[2:] > D[1:-1]) & (pair.offset + REACH > D[1:-1])) + 1
+    lowest = wells.lowest(D, pair.offset + REACH)
+    if lowest.size:
+        parting, near = np.full(pair.a.n + 2, np.inf), np.isfinite(D[::2])
+        parting[near] = pair.parting_at(lines, pair.a.s[near], sigma[::2][near], D[::2][near])
+        lowest = lowest[wells.isolated(parting, lowest)]
     low, high, s, sigma = s[lowest - 1], s[lowest + 1], s[lowest], sigma[lowest]
     if not s.size:
         return s, sigma
@@ -414,22 +419,15 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
         towards = facing * A.speed / (B.speed - B.bend * _seen_from(B, A)[1])  # dσ/ds
         convex = pair.side * facing * (A.bend - B.bend * towards)
         low, high = np.where(slope < 0.0, s, low), np.where(slope < 0.0, high, s)
-        ahead = s - slope / np.where(convex > LEAST_CURVATURE, convex, np.inf)
-        newton = (convex > LEAST_CURVATURE) & (ahead >= low) & (ahead <= high)
+        ahead = s - slope / np.where(convex > wells.LEAST_CURVATURE, convex, np.inf)
+        newton = (convex > wells.LEAST_CURVATURE) & (ahead >= low) & (ahead <= high)
         step = np.where(newton, ahead, 0.5 * (low + high)) - s
         if np.max(np.abs(step)) < PLACE_TOLERANCE:
             break
         s = s + step
         _, sigma, _ = _feet(pair, lines[1], lines[0].at(s), sigma + towards * step)
-    steps = smooth.curvature_step(lines[0], A.link) + smooth.curvature_step(lines[1], B.link)
-    # what is held at the joints beside may stay there and what is held at the minimum too: no state is neither
-    joint = np.searchsorted(pair.a.s, s)
-    lowest_gap = pair.side * _seen_from(B, A)[1] - pair.offset
-    beside = np.maximum(D[::2][np.maximum(joint - 1, 0)], D[::2][joint]) - pair.offset
-    steps = steps * np.where(beside + lowest_gap > 0.0, STEPS, STEPS_BETWEEN)
-    deep = convex > np.maximum(LEAST_CURVATURE, steps)
-    settled = np.abs(slope) < SETTLED
-    return s[deep & settled], sigma[deep & settled]
+    settled = (convex > wells.LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
+    return s[settled], sigma[settled]
 
 
 def pair_of(scene: Scene, model: Model, name: str) -> Pair:

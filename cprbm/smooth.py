@@ -191,16 +191,6 @@ def smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -
     )
 
 
-def curvature_step(line: SmoothLine, link: Ints) -> Array:
-    """Largest step of the change of curvature between elements that meet at or beside a link, (k,)."""
-    n = line.chain.n
-    steps = np.zeros(n + 1)  # at border i, between the elements of springs i and i+1
-    steps[1:n] = np.abs(np.diff(line.turns / line.chain.sizes))
-    return np.asarray(
-        np.maximum(steps[link], np.maximum(steps[np.maximum(link - 1, 0)], steps[np.minimum(link + 1, n)]))
-    )
-
-
 def halves(chain: Chain) -> Array:
     """Arc lengths of the joints and of the places half-way between them, (2N+3,)."""
     s = np.empty(2 * chain.n + 3)
