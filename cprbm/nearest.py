@@ -398,10 +398,10 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
 
 
 def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:
-    """(s, σ) of the minima of D within A that are deeper than the steps of the curvature, from its samples.
+    """(s, σ) of the minima of D within A that have a place of their own, from its samples.
 
-    Newton's method on dD/ds = 0, kept between the samples beside the lowest: where the curvature jumps it alone
-    would not settle.
+    Newton's method on dD/ds = 0 and on (i), kept between the samples beside the lowest: where the curvature jumps
+    it alone would not settle.
     """
     s = smooth.halves(pair.a)
     lowest = wells.lowest(D, pair.offset + REACH)
@@ -414,18 +414,20 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
         return s, sigma
     for _ in range(CLOSEST_ITERATIONS):
         A, B = lines[0].at(s), lines[1].at(sigma)
-        facing = np.cos(A.psi - B.psi)
-        slope = pair.side * np.sin(A.psi - B.psi)
-        towards = facing * A.speed / (B.speed - B.bend * _seen_from(B, A)[1])  # dσ/ds
+        along, across = _seen_from(B, A)
+        facing, shortened = np.cos(A.psi - B.psi), B.speed - B.bend * across
+        # what is left to the foot, and the slope there
+        left = along / shortened
+        slope = pair.side * (np.sin(A.psi - B.psi) - facing * B.bend * left)
+        towards = facing * A.speed / shortened  # dσ/ds
         convex = pair.side * facing * (A.bend - B.bend * towards)
         low, high = np.where(slope < 0.0, s, low), np.where(slope < 0.0, high, s)
         ahead = s - slope / np.where(convex > wells.LEAST_CURVATURE, convex, np.inf)
         newton = (convex > wells.LEAST_CURVATURE) & (ahead >= low) & (ahead <= high)
         step = np.where(newton, ahead, 0.5 * (low + high)) - s
-        if np.max(np.abs(step)) < PLACE_TOLERANCE:
+        if np.all((np.abs(step) < PLACE_TOLERANCE) & (np.abs(along) < FOOT_TOLERANCE)):
             break
-        s = s + step
-        _, sigma, _ = _feet(pair, lines[1], lines[0].at(s), sigma + towards * step)
+        s, sigma = s + step, np.clip(sigma + left + towards * step, 0.0, pair.b.s[-1])
     settled = (convex > wells.LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
     return s[settled], sigma[settled]
 
