@@ -40,6 +40,7 @@ from scene.answer import Array, Flags, Ints
 # local numbers (x, y, θθθ, centre) to (x of joints, y of joints, θθθ)
 ALONE, WITH_CENTRE = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4])
 CLOSEST_ITERATIONS = 12
+LEAST_CURVATURE = 1e-6  # of D, 1/ℓ, below which its minimum has no place of its own
 BESIDE_MINIMUM = 2.5  # a joint closer than this many h to a minimum with a place of its own leaves it to that
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 ON_IT = 1e-9  # gap of a clamped end, and how far its normal passes from the centre, where it is clamped on the circle
@@ -181,20 +182,23 @@ class Circle:
         near = np.zeros(len(s), dtype=bool)
         near[::2] = D[::2] < JOINT_REACH * self.a.h**2 * (1.0 / self.radius + 1.0)
         # an end that the circle's own body holds cannot move against it: its gap is no unknown
-        near[0] &= self.a.start.body != self.body
-        near[-1] &= self.a.end is None or self.a.end.body != self.body
+        held = self.a.start.body == self.body, self.a.end is not None and self.a.end.body == self.body
+        near[[0, -1]] &= ~np.array(held)
         # at an end that is lowest the minimum lies within if the way to it rises
         slope = n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi)
-        fence = [np.inf if slope[0] < 0.0 else -np.inf], [np.inf if slope[-1] > 0.0 else -np.inf]
-        lowest = wells.lowest(np.concatenate((fence[0], D, fence[1])), REACH) - 1
+        fence = [
+            np.inf if inwards and not fixed else -np.inf
+            for inwards, fixed in zip((slope[0] < 0.0, slope[-1] > 0.0), held, strict=True)
+        ]
+        lowest = wells.lowest(np.concatenate((fence[:1], D, fence[1:])), REACH) - 1
         q_s = A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi))
-        lowest = lowest[wells.isolated(self._convexity(A, n, q_s, rho)[::2], lowest)]
+        lowest = lowest[wells.isolated(self._convexity(A, n, q_s, rho)[::2], lowest, LEAST_CURVATURE)]
         places, free = self._refined(line, s[lowest])
         places = places[free]
         for place in places:
-            near &= np.abs(s - place) > BESIDE_MINIMUM * self.a.h
-        held = np.concatenate((s[near], self.ends))
-        return np.concatenate((held, places)), np.arange(len(held) + len(places)) >= len(held)
+            near &= np.abs(s - place) > BESIDE_MINIMUM * self.a.size_at(place)
+        fixed = np.concatenate((s[near], self.ends))
+        return np.concatenate((fixed, places)), np.arange(len(fixed) + len(places)) >= len(fixed)
 
     def _refined(self, line: smooth.SmoothLine, s: Array) -> tuple[Array, Flags]:
         """Newton's method on D_s = 0; the flags say where it found a minimum nearby that is no part of a zone."""
@@ -207,11 +211,11 @@ class Circle:
             q_s = A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi))
             slope = A.speed * (n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi))
             D_ss = self._convexity(A, n, q_s, rho)
-            step = -slope / np.where(D_ss > wells.LEAST_CURVATURE, D_ss, np.inf)
+            step = -slope / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
             s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
             if np.max(np.abs(step)) < 1e-13:
                 break
-        settled = (D_ss > wells.LEAST_CURVATURE) & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
+        settled = (D_ss > LEAST_CURVATURE) & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
         return s, settled
 
     def passed(self, before: Positions, after: Positions) -> bool:

@@ -92,6 +92,10 @@ class Chain:
         """This beam's links in the shared numbering."""
         return slice(self.first_link, self.first_link + self.n + 1)
 
+    def size_at(self, arc: Array) -> Array:
+        """h of the elements at arc lengths ``arc`` (k,), units of length."""
+        return np.asarray(self.sizes[np.clip(np.searchsorted(self.borders, arc) - 1, 0, self.n - 1)])
+
     @property
     def joints(self) -> slice:
         """This beam's joints in the shared numbering."""

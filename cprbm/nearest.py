@@ -52,6 +52,7 @@ from scene.answer import Array, Flags, Ints
 FOOT_ITERATIONS = 8
 FOOT_TOLERANCE = 1e-13  # of t·r, units of length
 CLOSEST_ITERATIONS = 50
+LEAST_CURVATURE = 1e-3  # of D, 1/ℓ: elements that end elsewhere on either beam leave as much in a zone
 REACH = 0.1  # minima and ends with gaps wider than this part of the longest beam are no constraints yet
 JOINT_REACH = 2.0  # joints with gaps wider than this many h²·(|ψ_A'| + |ψ_B'| + 1/ℓ) are none
 PARALLEL = 1e-3  # a foot whose perpendicular misses by more (sine) is an end, not a foot
@@ -119,6 +120,11 @@ class Pair:
     def exchanged(self) -> Pair:
         """The same contact with the parts of A and B exchanged."""
         return Pair(self.name, self.b, self.a, self.across, self.side, self.offset, self.unit_length, self.clamps[::-1])
+
+    @property
+    def shared(self) -> int:
+        """m, how many of A's joints beside a clamp of both beams have one row together."""
+        return round(np.sqrt(self.a.n))
 
     @property
     def clamped(self) -> tuple[bool, bool]:
@@ -245,7 +251,7 @@ class Pair:
 
     def _beside_clamps(self, keys: Ints) -> list[tuple[int, Ints]]:
         """For every end of A that is clamped with B: the key of the row there, and which joints share it."""
-        m = round(np.sqrt(self.a.n))
+        m = self.shared
         found = []
         for end, clamped in enumerate(self.clamps[0]):
             beside = (keys if end == 0 else self.a.n + 1 - keys) <= 2 * m
@@ -337,7 +343,7 @@ def closest_places(pair: Pair, lines: Lines) -> tuple[Places, Places]:
     near = D[::2] - pair.offset < JOINT_REACH * a.h**2 * (1.0 + bends)
     for places, apart in ((s, BESIDE_MINIMUM), (ends.sigma, BESIDE_END)):
         for place in places:
-            near[1:-1] &= np.abs(a.s[1:-1] - place) > apart * a.h
+            near[1:-1] &= np.abs(a.s[1:-1] - place) > apart * a.size_at(place)
     for end in (0, -1):
         near[end] = reach > D[end] and not _held_together(a, b, end, float(sigma[end]))
     joints = np.flatnonzero(near)
@@ -406,9 +412,12 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
     s = smooth.halves(pair.a)
     lowest = wells.lowest(D, pair.offset + REACH)
     if lowest.size:
+        # the joints beside a common clamp press together, a place of its own among them would part them
+        beside = [pair.shared if clamped else 0 for clamped in pair.clamped]
+        lowest = lowest[(lowest > 4 * beside[0]) & (lowest < 2 * (pair.a.n + 1) - 4 * beside[1])]
         parting, near = np.full(pair.a.n + 2, np.inf), np.isfinite(D[::2])
         parting[near] = pair.parting_at(lines, pair.a.s[near], sigma[::2][near], D[::2][near])
-        lowest = lowest[wells.isolated(parting, lowest)]
+        lowest = lowest[wells.isolated(parting, lowest, LEAST_CURVATURE)]
     low, high, s, sigma = s[lowest - 1], s[lowest + 1], s[lowest], sigma[lowest]
     if not s.size:
         return s, sigma
@@ -422,13 +431,13 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
         towards = facing * A.speed / shortened  # dσ/ds
         convex = pair.side * facing * (A.bend - B.bend * towards)
         low, high = np.where(slope < 0.0, s, low), np.where(slope < 0.0, high, s)
-        ahead = s - slope / np.where(convex > wells.LEAST_CURVATURE, convex, np.inf)
-        newton = (convex > wells.LEAST_CURVATURE) & (ahead >= low) & (ahead <= high)
+        ahead = s - slope / np.where(convex > LEAST_CURVATURE, convex, np.inf)
+        newton = (convex > LEAST_CURVATURE) & (ahead >= low) & (ahead <= high)
         step = np.where(newton, ahead, 0.5 * (low + high)) - s
         if np.all((np.abs(step) < PLACE_TOLERANCE) & (np.abs(along) < FOOT_TOLERANCE)):
             break
         s, sigma = s + step, np.clip(sigma + left + towards * step, 0.0, pair.b.s[-1])
-    settled = (convex > wells.LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
+    settled = (convex > LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
     return s[settled], sigma[settled]
 
 

@@ -10,6 +10,10 @@ A set of pressing joints that starts wrong by half a beam is put right only by a
 mesh has few joints, and says where the zone ends on the next.  And a force at a zone's end that must be shared by
 the two joints beside it bends the beam by a part of h² that depends on where between them the end falls.
 With a border at every end of a zone and a row there, and the elements between even, it is shared by none.
+
+A beam that is held at one place and pressed at another, s further on, says the force there by the curvature between:
+even over each element, it is wrong by a part (h/s)².  So a span between marks (held ends, places and ends of contact)
+has a stated share of the beam's elements, however short it is.
 """
 
 from __future__ import annotations
@@ -32,6 +36,8 @@ FACTOR = 4
 FEWEST = 8  # links of a beam in a coarser mesh
 BESIDE = 0.6  # elements beyond a zone's end up to which a joint presses
 LEAST = 1e-3  # of the largest pressure, on a joint within a zone
+SHARE = 4  # a span between marks has one of so many of the beam's elements at least
+SHORTEST = 0.1  # elements: marks closer than this leave the elements even
 MOVED = 0.02  # elements: ends that have moved less since the mesh was made are where the mesh has them
 
 
@@ -56,17 +62,23 @@ def _fewer(links: int) -> int:
 
 
 def all_zones(mechanism: Mechanism, point: Point) -> dict[str, tuple[Zone, ...]]:
-    """The zones of every contact that is closed over a length."""
+    """The zones of every contact that is closed, places of their own among them."""
     if mechanism.boundaries:
         return {}
-    found = {name: tuple(z for z in zones_of(pair, point) if z.long) for name, pair in mechanism.pairs.items()}
+    found = {name: zones_of(pair, point) for name, pair in mechanism.pairs.items()}
     return {name: zones for name, zones in found.items() if zones}
 
 
+def long_ones(zones: Mapping[str, tuple[Zone, ...]]) -> dict[str, tuple[Zone, ...]]:
+    """Those that are more than a place."""
+    found = {name: tuple(zone for zone in mine if zone.long) for name, mine in zones.items()}
+    return {name: mine for name, mine in found.items() if mine}
+
+
 def ends_of(mechanism: Mechanism, zones: Mapping[str, tuple[Zone, ...]]) -> dict[str, Array]:
-    """For every contact with a zone, its ends c_i within the first beam, as shares of the length, ascending."""
+    """For every contact with a long zone, its ends c_i within the first beam, as shares of the length, ascending."""
     ends = {}
-    for name, found in zones.items():
+    for name, found in long_ones(zones).items():
         length = mechanism.pairs[name].a.s[-1]
         inner = {end / length for zone in found for end in (zone.begin, zone.end) if 0.0 < end < length}
         if inner:
@@ -74,29 +86,63 @@ def ends_of(mechanism: Mechanism, zones: Mapping[str, tuple[Zone, ...]]) -> dict
     return ends
 
 
-def fitted(mechanism: Mechanism, ends: Mapping[str, Array], settings: Settings) -> Fit:
+def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]], settings: Settings) -> Fit:
     """Elements that end where contacts do, even between; where ends are closer than an element, even ones."""
-    contacts: dict[str, list[str]] = {}
-    for name in ends:
-        contacts.setdefault(mechanism.pairs[name].a.name, []).append(name)
+    ends = ends_of(mechanism, zones)
     borders: dict[str, Array] = {}
     kept: dict[str, Array] = {}
-    for beam, names in contacts.items():
-        n = settings.links_of(beam)
-        places = np.unique(np.concatenate([ends[name] for name in names]))
-        numbers = np.concatenate(([0.0], np.clip(np.round(places * n), 1, n - 1), [float(n)]))
-        if np.all(np.diff(numbers) >= 1.0):
-            borders[beam] = np.interp(np.arange(n + 1), numbers, np.concatenate(([0.0], places, [1.0])))
-            kept |= {name: ends[name] for name in names}
+    for chain in mechanism.problem.model.chains:
+        names = [name for name in ends if mechanism.pairs[name].a is chain]
+        places = _places_on(mechanism, point, zones, chain)
+        if not names and not places.size:
+            continue
+        n = settings.links_of(chain.name)
+        marks = np.unique(np.concatenate([places, *(ends[name] for name in names)]))
+        marks = marks[(marks > 0.0) & (marks < 1.0)]
+        numbers = _shared_out(marks, n, (True, chain.end is not None))
+        if numbers is None or (not names and np.all(np.diff(np.round(marks * n), prepend=0, append=n) >= n // SHARE)):
+            continue
+        borders[chain.name] = np.interp(np.arange(n + 1), numbers, np.concatenate(([0.0], marks, [1.0])))
+        kept |= {name: ends[name] for name in names}
     return Fit(borders, kept)
 
 
+def _places_on(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]], chain: Chain) -> Array:
+    """Where what is no long zone presses on a beam, as shares of its length."""
+    found = [np.zeros(0)]
+    for name, mine in zones.items():
+        middles = np.array([0.5 * (zone.begin + zone.end) for zone in mine if not zone.long])
+        pressed = mechanism.pairs[name].pressed(point.state, point.at, chain, middles) if middles.size else None
+        if pressed is not None:
+            found.append(pressed[1] / chain.s[-1])
+    return np.concatenate(found)
+
+
+def _shared_out(marks: Array, n: int, held: tuple[bool, bool]) -> Array | None:
+    """At which of n elements the spans between marks (shares of the length) begin and end; None where it cannot be."""
+    spans = np.diff(marks, prepend=0.0, append=1.0)
+    if np.any(spans * n < SHORTEST):
+        return None
+    least = np.full(len(spans), float(min(n // SHARE, n // (2 * len(spans)))))
+    least[[0, -1]] = np.where(held, least[[0, -1]], 1.0)
+    wanted = np.maximum(n * spans, least)
+    spare = wanted - least
+    numbers = np.round(np.cumsum(wanted - (wanted.sum() - n) * spare / spare.sum()))
+    numbers = np.concatenate(([0.0], numbers[:-1], [float(n)]))
+    return numbers if np.all(np.diff(numbers) >= 1.0) else None
+
+
 def fits(mechanism: Mechanism, fit: Fit) -> bool:
-    """Whether the mechanism's mesh was made for (nearly) the same ends."""
-    made = mechanism.fit.ends
-    return made.keys() == fit.ends.keys() and all(
-        len(made[name]) == len(ends) and np.all(np.abs(made[name] - ends) <= MOVED / mechanism.pairs[name].a.n)
-        for name, ends in fit.ends.items()
+    """Whether the mechanism's mesh was made for (nearly) the same ends and places."""
+    made = mechanism.fit
+    return (
+        made.ends.keys() == fit.ends.keys()
+        and made.borders.keys() == fit.borders.keys()
+        and all(
+            len(made.borders[beam]) == len(borders)
+            and np.all(np.abs(made.borders[beam] - borders) <= MOVED / (len(borders) - 1))
+            for beam, borders in fit.borders.items()
+        )
     )
 
 
@@ -112,7 +158,7 @@ def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict
     at = positions(new, state)
     rows = after.problem.formulation(state, at)
     lam = np.zeros(rows.size)
-    zones = all_zones(before, point)
+    zones = long_ones(all_zones(before, point))
     first = 0
     for group in rows.groups:
         name, mine = group.contact, slice(first, first + len(group.values))
@@ -123,11 +169,6 @@ def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict
     return point_at(after.problem, values, state, point.mu, lam, rows)
 
 
-def _elements(chain: Chain, arc: Array) -> Array:
-    """Lengths of the elements at arc lengths ``arc``."""
-    return np.asarray(chain.sizes[np.clip(np.searchsorted(chain.borders, arc) - 1, 0, chain.n - 1)])
-
-
 def _pressure(point: Point, contact: str, zones: tuple[Zone, ...], chains: tuple[Chain, Chain], arc: Array) -> Array:
     """Forces on rows at ``arc`` within the zones, from the pressures of an earlier mesh; its and the new chain."""
     source, target = chains
@@ -135,8 +176,8 @@ def _pressure(point: Point, contact: str, zones: tuple[Zone, ...], chains: tuple
     mine = np.array([name == contact for name in point.rows.contact], dtype=bool)
     order = np.argsort(point.rows.arc[mine])
     places, forces = point.rows.arc[mine][order], point.lam[mine][order]
-    pressure = np.interp(arc, places, forces / _elements(source, places))
-    size = _elements(target, arc)
+    pressure = np.interp(arc, places, forces / source.size_at(places))
+    size = target.size_at(arc)
     for zone in zones:
         # up to the joint beyond an end, which shares the force there; an arch's joints press too, in the limit
         inside = (arc >= zone.begin - BESIDE * size) & (arc <= zone.end + BESIDE * size)

@@ -20,14 +20,14 @@ from cprbm.forces import contact_imbalance
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.probing import probed, shapes, touching
-from cprbm.refining import all_zones, carried_over, coarser, ends_of, fits, fitted
+from cprbm.refining import all_zones, carried_over, coarser, fits, fitted, long_ones
 from cprbm.settings import Settings
 from scene import Answer, Certificate, Ending, Event, Scene, StationAnswer
 
 GROWTH = 2.0
 EVENT_TOLERANCE = 1e-10  # of the load step in which a contact closed
 CLOSER = 8
-FITS = 2  # of the mesh to the zones' ends, at most
+FITS = 4  # of the mesh to where contact is, at most
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
 
 
@@ -125,9 +125,9 @@ class _March:
         asked, now = self.family[-1], self.settings
         for settings in (*self.family[1:-1], *[asked] * FITS):
             zones = all_zones(mechanism, point)
-            if settings is not asked and not zones:
+            if settings is not asked and not long_ones(zones):
                 continue  # a few places need no mesh between the coarsest and the finest
-            fit = fitted(mechanism, ends_of(mechanism, zones), settings)
+            fit = fitted(mechanism, point, zones, settings)
             if settings is now and fits(mechanism, fit):
                 break
             target = mechanism_of(self.scene, settings, fit)

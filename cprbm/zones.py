@@ -51,26 +51,26 @@ def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     order = np.argsort(arcs)
     arcs, forces, overlaps, reach = arcs[order], forces[order], overlaps[order], reach[order]
     pressed = np.flatnonzero(forces > 0.0)
-    h = float(chain.sizes.max())
+    h = chain.size_at(arcs)
     # one zone goes on where each joint has a row, and the beam arches by no more than one force can bend an element
     arched = -overlaps > largest * h**3 / chain.rigidity
-    breaks = np.concatenate(
-        ([0], np.cumsum((np.diff(arcs) > CLOSE * h + reach[1:] + reach[:-1]) | arched[1:] | arched[:-1]))
-    )
+    apart = np.diff(arcs) > CLOSE * np.maximum(h[1:], h[:-1]) + reach[1:] + reach[:-1]
+    breaks = np.concatenate(([0], np.cumsum(apart | arched[1:] | arched[:-1])))
     runs = np.split(arcs[pressed], np.flatnonzero(np.diff(breaks[pressed])) + 1)
-    return tuple(_zone(pair, point, chain, run, h) for run in runs if len(run) > 1 or run[0] not in clamped)
+    return tuple(_zone(pair, point, chain, run) for run in runs if len(run) > 1 or run[0] not in clamped)
 
 
-def _zone(pair: Touching, point: Point, chain: Chain, run: Array, h: float) -> Zone:
+def _zone(pair: Touching, point: Point, chain: Chain, run: Array) -> Zone:
     """The zone whose forces act at arc lengths ``run``, ascending."""
     first, last = float(run[0]), float(run[-1])
+    h = chain.size_at(run[[0, -1]])
     springs = chain.s[1:-1]
-    before, after = springs[springs < first - 0.75 * h][::-1], springs[springs > last + 0.25 * h]
+    before, after = springs[springs < first - 0.75 * h[0]][::-1], springs[springs > last + 0.25 * h[1]]
     whole = run.size > 1 and (not before.size or not after.size)
-    if not whole and last - first < SHORTEST * h:
+    if not whole and last - first < SHORTEST * h.max():
         return Zone(first, last, long=False)
-    begin = _continued(pair, point, before[:CONTINUED], first, h) if before.size else 0.0
-    end = _continued(pair, point, after[:CONTINUED], last, h) if after.size else float(chain.s[-1])
+    begin = _continued(pair, point, before[:CONTINUED], first, h[0]) if before.size else 0.0
+    end = _continued(pair, point, after[:CONTINUED], last, h[1]) if after.size else float(chain.s[-1])
     return Zone(begin, max(begin, end), long=True)
 
 

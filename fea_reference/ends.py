@@ -18,7 +18,7 @@ before them, and continued as a parabola.  At a beam's end, or where the other b
 the zone ends there itself.
 
 Of a contact in a point, χ is positive on either side: continued through the point, both sides reach zero beyond it, so
-that the zone would begin behind its end.  Then it is the pressure's centre.
+that the zone would begin behind its end, or beside its pressure.  Then it is the pressure's centre.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def ends(model: Model, system: System, touch: Touch) -> Array:
     middle = float(weight @ touch.zeta / weight.sum())
     first = _continued(model, system, touch, 0, -1.0)
     last = _continued(model, system, touch, -1, 1.0)
-    return np.array([first, last]) if first <= last else np.array([middle, middle])
+    return np.array([first, last]) if first <= middle <= last else np.array([middle, middle])
 
 
 def _continued(model: Model, system: System, touch: Touch, at: int, outwards: float) -> float:

@@ -56,7 +56,7 @@ def pair_at_rest(scene, links):
 @pytest.mark.parametrize("seed", range(4))
 def test_every_minimum_is_found_where_the_curvature_jumps_too(monkeypatch, seed):
     # reference: Brent's method on D between the samples; beams bent at random have a kink of D' at every border
-    monkeypatch.setattr(wells, "isolated", lambda parting, samples: np.ones(len(samples), dtype=bool))
+    monkeypatch.setattr(wells, "isolated", lambda parting, samples, least: np.ones(len(samples), dtype=bool))
     scene = beams(line((0.0, 0.0012), (0.1, 0.0012)), line((0.0, 0.0), (0.13, 0.0)))
     mechanism = mechanism_of(scene, cprbm.Settings(links={"A": 31, "B": 43}))
     pair, model = mechanism.pairs["c"], mechanism.problem.model
