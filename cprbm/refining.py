@@ -87,7 +87,7 @@ def ends_of(mechanism: Mechanism, zones: Mapping[str, tuple[Zone, ...]]) -> dict
 
 
 def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]], settings: Settings) -> Fit:
-    """Elements that end where contacts do, even between; where ends are closer than an element, even ones."""
+    """Elements that end where contacts do, even between; where these are much closer than that, even ones."""
     ends = ends_of(mechanism, zones)
     borders: dict[str, Array] = {}
     kept: dict[str, Array] = {}
@@ -108,11 +108,13 @@ def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
 
 
 def _places_on(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]], chain: Chain) -> Array:
-    """Where what is no long zone presses on a beam, as shares of its length."""
+    """Where contacts without a long zone press on a beam, as shares of its length."""
     found = [np.zeros(0)]
     for name, mine in zones.items():
-        middles = np.array([0.5 * (zone.begin + zone.end) for zone in mine if not zone.long])
-        pressed = mechanism.pairs[name].pressed(point.state, point.at, chain, middles) if middles.size else None
+        if any(zone.long for zone in mine):
+            continue
+        middles = np.array([0.5 * (zone.begin + zone.end) for zone in mine])
+        pressed = mechanism.pairs[name].pressed(point.state, point.at, chain, middles)
         if pressed is not None:
             found.append(pressed[1] / chain.s[-1])
     return np.concatenate(found)

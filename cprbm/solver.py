@@ -27,7 +27,7 @@ from scene import Answer, Certificate, Ending, Event, Scene, StationAnswer
 GROWTH = 2.0
 EVENT_TOLERANCE = 1e-10  # of the load step in which a contact closed
 CLOSER = 8
-FITS = 4  # of the mesh to where contact is, at most
+FITS = 3  # of the mesh to where contact is, at most
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
 
 

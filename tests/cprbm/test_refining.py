@@ -11,9 +11,10 @@ from cprbm.equilibrium import point_at
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.model import Fit, build
-from cprbm.refining import all_zones, carried_over, coarser, ends_of, fits, fitted
+from cprbm.refining import SHARE, all_zones, carried_over, coarser, ends_of, fits, fitted, long_ones
 from cprbm.settings import Settings
 from cprbm.solver import _March
+from cprbm.zones import Zone
 from tests.cprbm.scenes import hinge
 from tests.cprbm.test_circle import BEAM, RADIUS, scene_of
 from tests.references.wrapped import Wrapped
@@ -42,8 +43,9 @@ def test_beams_with_few_links_keep_some_and_the_papers_meshes_are_not_coarsened(
 def test_borders_stand_where_zones_end_and_elements_are_even_between():
     march = marched(40)
     mechanism, point = march.mechanism, march.point
-    ends = ends_of(mechanism, all_zones(mechanism, point))
-    fit = fitted(mechanism, ends, march.settings)
+    zones = all_zones(mechanism, point)
+    ends = ends_of(mechanism, zones)
+    fit = fitted(mechanism, point, zones, march.settings)
     (end,), borders = ends["circle"], fit.borders["beam"]
     # reference: tests.references.wrapped
     assert end == pytest.approx(Wrapped(**BEAM, radius=RADIUS, force=97.0).wrap_length / BEAM["length"], abs=2e-4)
@@ -57,10 +59,26 @@ def test_borders_stand_where_zones_end_and_elements_are_even_between():
     assert fits(mechanism_of(march.scene, march.settings, fit), fit)
 
 
-def test_ends_closer_than_an_element_leave_the_elements_even():
+def test_ends_much_closer_than_an_element_leave_the_elements_even():
     march = marched(40)
-    near = {"circle": np.array([0.5, 0.503])}
-    assert fitted(march.mechanism, near, march.settings) == Fit({}, {})
+    near = {"circle": (Zone(0.5, 0.5001, long=True),)}
+    assert fitted(march.mechanism, march.point, near, march.settings) == Fit({}, {})
+
+
+@pytest.mark.parametrize("links", [20, 40, 46, 80])
+def test_a_place_close_to_a_held_end_has_its_share_of_the_elements(links):
+    march = marched(links)
+    borders = fitted(march.mechanism, march.point, {"circle": (Zone(0.03, 0.03, long=False),)}, march.settings).borders
+    sizes = np.diff(borders["beam"])
+    before = links // SHARE
+    assert sizes[:before] == pytest.approx(0.03 / before)
+    assert sizes[before:] == pytest.approx(0.97 / (links - before))
+
+
+def test_a_place_far_from_everything_leaves_the_elements_even():
+    march = marched(40)
+    far = {"circle": (Zone(0.4, 0.4, long=False),)}
+    assert fitted(march.mechanism, march.point, far, march.settings) == Fit({}, {})
 
 
 def test_a_state_carried_to_its_own_mesh_is_itself():
@@ -82,10 +100,12 @@ def test_a_state_carried_to_a_finer_mesh_and_back_turns_no_link_by_more_than_the
     assert np.all(pressing < zone.end + 1.0 / 160)
 
 
-def test_a_place_is_no_zone():
+def test_a_place_is_no_long_zone():
     march = _March(hinge(), (Settings(links=40),))
     march.run()
-    assert all_zones(march.mechanism, march.point) == {}
+    zones = all_zones(march.mechanism, march.point)
+    assert [len(found) for found in zones.values()] == [1]
+    assert long_ones(zones) == {}
 
 
 def test_the_fitted_mesh_is_that_of_the_same_beam():
