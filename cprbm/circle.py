@@ -9,8 +9,8 @@ z           local numbers of the beam (5), and the centre's place where it moves
 P           (I − n nᵀ)/ρ, derivative of n over r = C − o
 ==========  ===================================================================================
 
-A row stands at every joint that is close, and where D has a minimum between joints that is more convex than
-what the steps of the curvature between elements make of a zone. There s moves with the minimum, D_s = 0:
+A row stands at every joint that is close, and where D has a minimum with a place of its own (:mod:`cprbm.wells`).
+There s moves with the minimum, D_s = 0:
 
     D_z = n·r_z,     D_zz = n·C_zz + r_zᵀ P r_z − D_zs D_sz / D_ss     (last term only where s moves)
     D_s = n·C_s,     D_sz = n·C_sz + C_sᵀ P r_z,     D_ss = n·C_ss + C_sᵀ P C_s

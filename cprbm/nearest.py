@@ -11,8 +11,8 @@ z           local numbers of A (5) and of B (5)
 ==========  ==================================================================================
 
 σ is the foot of the perpendicular, t·r = 0 (i).  A row stands at every joint of A that is close to B, at the
-ends of A and, with the beams' parts exchanged, of B; and where D has a minimum within A that is deeper than
-the steps of the lines' curvature.  There s moves with the minimum: the tangents are parallel, ψ_A − ψ_B = const
+ends of A and, with the beams' parts exchanged, of B; and where D has a minimum within A with a place of
+its own (:mod:`cprbm.wells`).  There s moves with the minimum: the tangents are parallel, ψ_A − ψ_B = const
 (ii).  The conditions hold for every z, which gives s and σ as functions of z; so
 
     ∂D/∂z_k = side·n·r_k
@@ -36,6 +36,7 @@ of the links around: positions of further joints follow from p_{i+1} = p_i + L_i
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -124,7 +125,7 @@ class Pair:
     @property
     def shared(self) -> int:
         """m, how many of A's joints beside a clamp of both beams have one row together."""
-        return round(np.sqrt(self.a.n))
+        return round(math.sqrt(self.a.n))
 
     @property
     def clamped(self) -> tuple[bool, bool]:

@@ -19,6 +19,7 @@ has a stated share of the beam's elements, however short it is.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from cprbm.mechanism import Mechanism
 from cprbm.model import Chain, Fit
 from cprbm.settings import Settings
 from cprbm.zones import Zone, zones_of
-from scene.answer import Array
+from scene.answer import Array, Flags
 
 COARSEST = 80  # links that need no coarser mesh to start from
 FACTOR = 4
@@ -93,40 +94,48 @@ def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
     kept: dict[str, Array] = {}
     for chain in mechanism.problem.model.chains:
         names = [name for name in ends if mechanism.pairs[name].a is chain]
-        places = _places_on(mechanism, point, zones, chain)
-        if not names and not places.size:
+        found = [(place, name) for name in names for place in ends[name]]
+        found += _places_on(mechanism, point, zones, chain)
+        if not found:
             continue
         n = settings.links_of(chain.name)
-        marks = np.unique(np.concatenate([places, *(ends[name] for name in names)]))
-        marks = marks[(marks > 0.0) & (marks < 1.0)]
-        numbers = _shared_out(marks, n, (True, chain.end is not None))
-        if numbers is None or (not names and np.all(np.diff(np.round(marks * n), prepend=0, append=n) >= n // SHARE)):
+        marks, of = np.array([mark for mark, _ in sorted(found)]), [name for _, name in sorted(found)]
+        # between two places of one contact the beam lies on what it touches, or nearly; a free end has no curvature
+        needy = np.array([True, *(one != other for one, other in pairwise(of)), chain.end is not None])
+        numbers = _shared_out(marks, n, needy)
+        even = np.diff(np.round(marks * n), prepend=0, append=n)
+        if numbers is None or (not names and np.all(even[needy] >= n // SHARE)):
             continue
         borders[chain.name] = np.interp(np.arange(n + 1), numbers, np.concatenate(([0.0], marks, [1.0])))
         kept |= {name: ends[name] for name in names}
     return Fit(borders, kept)
 
 
-def _places_on(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]], chain: Chain) -> Array:
-    """Where contacts without a long zone press on a beam, as shares of its length."""
-    found = [np.zeros(0)]
+def _places_on(
+    mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]], chain: Chain
+) -> list[tuple[float, str]]:
+    """Where contacts without a long zone press within a beam, as shares of its length, and which."""
+    found = []
     for name, mine in zones.items():
         if any(zone.long for zone in mine):
             continue
         middles = np.array([0.5 * (zone.begin + zone.end) for zone in mine])
         pressed = mechanism.pairs[name].pressed(point.state, point.at, chain, middles)
         if pressed is not None:
-            found.append(pressed[1] / chain.s[-1])
-    return np.concatenate(found)
+            places = pressed[1] / chain.s[-1]
+            found += [(float(place), name) for place in places if 0.0 < place < 1.0]
+    return found
 
 
-def _shared_out(marks: Array, n: int, held: tuple[bool, bool]) -> Array | None:
-    """At which of n elements the spans between marks (shares of the length) begin and end; None where it cannot be."""
+def _shared_out(marks: Array, n: int, needy: Flags) -> Array | None:
+    """At which of n elements the spans between marks (shares of the length) begin and end; None where it cannot be.
+
+    Spans that are ``needy`` have at least their share.
+    """
     spans = np.diff(marks, prepend=0.0, append=1.0)
     if np.any(spans * n < SHORTEST):
         return None
-    least = np.full(len(spans), float(min(n // SHARE, n // (2 * len(spans)))))
-    least[[0, -1]] = np.where(held, least[[0, -1]], 1.0)
+    least = np.where(needy, float(min(n // SHARE, n // (2 * len(spans)))), 1.0)
     wanted = np.maximum(n * spans, least)
     spare = wanted - least
     numbers = np.round(np.cumsum(wanted - (wanted.sum() - n) * spare / spare.sum()))
