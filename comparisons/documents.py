@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from comparisons.benchmark import Benchmark, trend
+from comparisons.claims import claim_met, claim_of
 from comparisons.measures import Row, arc_lengths, unit_of
 from comparisons.verdict import Comparison
-from scene import Answer, Certificate, Claim, Probe, Scene
+from scene import Answer, Certificate, Probe, Scene
 from scene.answer import Array
 
 Plain = dict[str, Any]
@@ -163,20 +164,6 @@ def plain(value: object) -> Any:  # noqa: ANN401 - whatever JSON holds
             return float(value) if math.isfinite(value) else None
         case _:
             return str(value)
-
-
-def claim_of(scene: Scene, row: Row) -> Claim | None:
-    """What the scene's source claims of a row."""
-    for claim in scene.claims:
-        if claim.probe == row.probe.name and math.isclose(claim.station, row.station, rel_tol=1e-12):
-            return claim
-    return None
-
-
-def claim_met(claim: Claim | None, row: Row) -> bool | None:
-    """Whether our difference stays below the claimed bound; None where either is missing."""
-    fraction = row.fraction(row.difference)
-    return None if claim is None or fraction is None else fraction <= claim.bound
 
 
 def _row(scene: Scene, row: Row) -> Plain:

@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 
 from comparisons.benchmark import FIT_FROM, Benchmark, trend
-from comparisons.documents import claim_met, claim_of, worst
+from comparisons.claims import standings
+from comparisons.documents import worst
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.geometry import radius
 from comparisons.measures import Row, Steps, unit_of
@@ -102,11 +103,11 @@ def last_rows(compared: Comparison) -> tuple[Row, ...]:
 
 
 def explanation(compared: Comparison) -> tuple[str, ...]:
-    """For each claim a sentence that says what our difference there is made of."""
+    """For each claim a sentence that says what our difference is made of, at its worst station."""
     sentences = []
-    for row in compared.rows:
-        claim = claim_of(compared.scene, row)
-        if claim is None or row.steps is None:
+    for standing in standings(compared.scene, compared.rows):
+        claim, row = standing.claim, standing.worst
+        if row.steps is None:
             continue
         sentences.append(
             f"{row.probe.name} at {row.station:g}: our difference of {_of(row, row.difference)} is the "
@@ -186,24 +187,21 @@ def _verdicts(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
 
 
 def _claims(compared: Comparison) -> Sheet:
-    body = []
-    for row in compared.rows:
-        claim = claim_of(compared.scene, row)
-        if claim is None:
-            continue
-        met = claim_met(claim, row)
-        body.append(
-            (
-                claim.text or claim.probe,
-                percent(claim.bound),
-                _of(row, row.difference),
-                "–" if met is None else "met" if met else "not met",
-            )
+    body = tuple(
+        (
+            standing.claim.text or standing.claim.probe,
+            percent(standing.claim.bound),
+            _of(standing.worst, standing.worst.difference),
+            f"{standing.worst.stage} {standing.worst.station:g}",
+            f"{standing.met} of {standing.stations}",
+            "met" if standing.holds else "not met",
         )
+        for standing in standings(compared.scene, compared.rows)
+    )
     return Sheet(
         "Claims of the source",
-        ("claim", "theirs", "ours", ""),
-        tuple(body),
+        ("claim", "theirs", "ours at worst", "at", "met at", ""),
+        body,
         "They stand beside our figures and have no part in the verdict.",
     )
 
