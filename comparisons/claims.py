@@ -1,6 +1,8 @@
 """What a scene's source claims, beside our rows: met or not, station by station and as a whole.
 
-Claims have no part in the verdict.
+A source's relative difference of a force or a moment is one of the value there, and not of the largest in the stage by
+which our rows measure it.  A claim is therefore held against the difference over the reference's own norm, as long
+as that does not vanish.  Claims have no part in the verdict.
 """
 
 from __future__ import annotations
@@ -10,7 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from comparisons.measures import Row
+from comparisons.scales import VANISHING, norm
 from scene import Claim, Scene
+
+_OF_THE_VALUE = frozenset({"force", "reaction", "reaction_moment"})
+"""Quantities whose rows are measured by the stage's largest, and claims by the value itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,8 +26,8 @@ class Standing:
     Attributes:
         claim: what is claimed.
         worst: the row with our largest difference, as a fraction.
-        met: stations at which that claim is met.
-        stations: all at which both sides have something to say.
+        met: stations at which the claim is met.
+        stations: all at which both sides have a value.
     """
 
     claim: Claim
@@ -37,30 +43,39 @@ class Standing:
 
 def claim_of(scene: Scene, row: Row) -> Claim | None:
     """What is claimed of a row: at its own station, or else at every station of its probe; None if nothing is."""
-    return next(
-        (claim for own in (True, False) for claim in scene.claims if (claim.station is not None) is own
-         and _is_about(claim, row)),
-        None,
-    )  # fmt: skip
+    about = [claim for claim in scene.claims if _is_about(claim, row)]
+    own = [claim for claim in about if claim.station is not None]
+    return next(iter((*own, *about)), None)
+
+
+def claim_difference(row: Row) -> float | None:
+    """Our difference as a claim takes it, a fraction; None where there is none."""
+    own = norm(row.probe.quantity, row.fea)
+    if row.probe.quantity in _OF_THE_VALUE and own >= VANISHING * row.scale and math.isfinite(row.difference):
+        return row.difference / own
+    return row.fraction(row.difference)
 
 
 def claim_met(claim: Claim | None, row: Row) -> bool | None:
     """Whether our difference stays below the claimed bound; None where either is missing."""
-    fraction = row.fraction(row.difference)
-    return None if claim is None or fraction is None else fraction <= claim.bound
+    found = claim_difference(row)
+    return None if claim is None or found is None else found <= claim.bound
 
 
 def standings(scene: Scene, rows: Sequence[Row]) -> tuple[Standing, ...]:
     """Every claim that some row can be held against, in the scene's order."""
     found = []
     for claim in scene.claims:
-        mine = [(fraction, row) for row in rows if _is_about(claim, row)
-                and (fraction := row.fraction(row.difference)) is not None]  # fmt: skip
+        mine = [(difference, row) for row in rows if (difference := _held_against(claim, row)) is not None]
         if mine:
             worst = max(mine, key=lambda each: each[0])[1]
-            met = sum(fraction <= claim.bound for fraction, _ in mine)
+            met = sum(difference <= claim.bound for difference, _ in mine)
             found.append(Standing(claim, worst, met, len(mine)))
     return tuple(found)
+
+
+def _held_against(claim: Claim, row: Row) -> float | None:
+    return claim_difference(row) if _is_about(claim, row) else None
 
 
 def _is_about(claim: Claim, row: Row) -> bool:

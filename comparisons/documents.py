@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from comparisons.benchmark import Benchmark, trend
-from comparisons.claims import claim_met, claim_of
+from comparisons.claims import claim_difference, claim_met, claim_of
 from comparisons.measures import Row, arc_lengths, unit_of
 from comparisons.verdict import Comparison
+from comparisons.work_energy import Reaction
 from scene import Answer, Certificate, Probe, Scene
 from scene.answer import Array
 
@@ -39,6 +40,7 @@ def comparison(compared: Comparison) -> Plain:
             {**_row(compared.scene, row), "verdict": None if word is None else word.value}
             for row, word in zip(compared.rows, compared.verdict.words, strict=True)
         ],
+        "work_energy": [_reaction(each) for each in compared.reactions],
     }
 
 
@@ -187,6 +189,7 @@ def _row(scene: Scene, row: Row) -> Plain:
         },
         "claim": None if claim is None else claim.bound,
         "claim_met": claim_met(claim, row),
+        "claim_difference": None if claim is None else claim_difference(row),
         "difference_same_theory": row.fraction(row.same_theory),
         "steps": None
         if steps is None
@@ -201,6 +204,22 @@ def _row(scene: Scene, row: Row) -> Plain:
         "scale": row.scale,
         "denominator": row.denominator,
         **_places(scene, row.probe),
+    }
+
+
+def _reaction(found: Reaction) -> Plain:
+    return {
+        "stage": found.stage,
+        "station": found.station,
+        "drive": found.drive,
+        "unit": found.unit,
+        "multiplier": found.multiplier,
+        "work_energy": found.work_energy,
+        "difference": found.difference,
+        "round_off": found.floor / found.scale if found.scale > 0.0 else None,
+        "fea": found.fea,
+        "difference_fea": found.from_fea,
+        "changes_nearby": list(found.changes),
     }
 
 

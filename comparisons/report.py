@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-from comparisons import archive, documents, figures, sheets
+from comparisons import archive, documents, figures, reactions_drawn, sheets
 from comparisons.verdict import Comparison
 from comparisons.writing import write
 
@@ -52,13 +52,14 @@ def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison) -> tup
         OSError: the folder cannot be written to.
     """
     own = folder / compared.scene.name
-    pictures = figures.of_comparison(compared)
+    pictures = (*figures.of_comparison(compared), *reactions_drawn.of_comparison(compared))
     for picture in pictures:
         write(own / f"{picture.name}.svg", picture.svg)
         write(own / f"{picture.name}.png", picture.png)
     answers = {name: archive.packed(answer) for name, answer in compared.runs.everything()}
-    if compared.runs.paper is not None:
-        answers["cprbm paper"] = archive.packed(compared.runs.paper)
+    for name, answer in (("cprbm paper", compared.runs.paper), ("cprbm nearby", compared.runs.nearby)):
+        if answer is not None:
+            answers[name] = archive.packed(answer)
     write(own / "answers.json", documents.text(answers))
     write(own / "comparison.json", documents.text({"cases": [documents.comparison(compared)]}))
     chapters = (*earlier, chapter(compared, pictures))

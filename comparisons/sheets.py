@@ -6,13 +6,14 @@ import math
 from dataclasses import dataclass
 
 from comparisons.benchmark import FIT_FROM, Benchmark, trend
-from comparisons.claims import standings
+from comparisons.claims import claim_difference, standings
 from comparisons.documents import worst
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.geometry import radius
 from comparisons.measures import Row, Steps, unit_of
 from comparisons.scales import norm
 from comparisons.verdict import Comparison
+from comparisons.work_energy import by_drive, sentence
 from scene import Answer, Scene
 
 
@@ -31,6 +32,7 @@ def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
     rows = last_rows(compared)
     found = [_values(compared, rows), _verdicts(compared, rows)]
     found.append(_claims(compared))
+    found.extend(_reactions(compared))
     found.append(_stresses(compared.scene, rows))
     found.append(_steps(compared, rows))
     found.append(_certificates(compared))
@@ -191,7 +193,7 @@ def _claims(compared: Comparison) -> Sheet:
         (
             standing.claim.text or standing.claim.probe,
             percent(standing.claim.bound),
-            _of(standing.worst, standing.worst.difference),
+            percent(claim_difference(standing.worst)),
             f"{standing.worst.stage} {standing.worst.station:g}",
             f"{standing.met} of {standing.stations}",
             "met" if standing.holds else "not met",
@@ -202,8 +204,37 @@ def _claims(compared: Comparison) -> Sheet:
         "Claims of the source",
         ("claim", "theirs", "ours at worst", "at", "met at", ""),
         body,
-        "They stand beside our figures and have no part in the verdict.",
+        "They stand beside our figures and have no part in the verdict. Of a force or a moment the difference is "
+        "here a fraction of the value at its station.",
     )
+
+
+def _reactions(compared: Comparison) -> tuple[Sheet, ...]:
+    """A sheet for each drive that a stage steps."""
+    found = []
+    for drive, reactions in by_drive(compared.reactions).items():
+        factor, unit = scaled_unit(reactions[0].unit, max(abs(each.multiplier) for each in reactions))
+        body = tuple(
+            (
+                f"{each.stage} {each.station:g}",
+                number(each.multiplier / factor, 5),
+                "–" if each.work_energy is None else number(each.work_energy / factor, 5),
+                percent(each.difference),
+                number(each.fea / factor, 5),
+                percent(each.from_fea),
+                ", ".join(each.changes),
+            )
+            for each in reactions
+        )
+        found.append(
+            Sheet(
+                f"Reaction at the drive {drive}, {unit}",
+                ("station", "multiplier", "work–energy", "from it", "FEA", "multiplier from it", "closes or opens"),
+                body,
+                sentence(reactions),
+            )
+        )
+    return tuple(found)
 
 
 def _stresses(scene: Scene, rows: tuple[Row, ...]) -> Sheet:

@@ -26,6 +26,7 @@ from comparisons.formats import percent
 from comparisons.measures import Bounds, Row, rows_of
 from comparisons.pairing import Runs
 from comparisons.soundness import ABSENT_WHILE_OPEN, complaints
+from comparisons.work_energy import Reaction, reactions
 from scene import Scene
 
 
@@ -56,12 +57,13 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A scene, all answers to it, the rows and the verdict."""
+    """A scene, all answers to it, the rows, the verdict, and the drives' reactions by two ways."""
 
     scene: Scene
     runs: Runs
     rows: tuple[Row, ...]
     verdict: Verdict
+    reactions: tuple[Reaction, ...] = ()
 
 
 def compared(scene: Scene, runs: Runs) -> Comparison:
@@ -81,7 +83,8 @@ def compared(scene: Scene, runs: Runs) -> Comparison:
     # nothing rests on the formulation that stands beside, so that its failure leaves no more than a gap
     beside = runs.paper is not None and not complaints(scene, runs.paper)
     rows = rows_of(scene, runs if beside else replace(runs, paper=None))
-    return Comparison(scene, runs, rows, judged(scene, rows))
+    near = () if runs.nearby is None else reactions(scene, runs.cprbm[0], runs.reference, runs.nearby)
+    return Comparison(scene, runs, rows, judged(scene, rows), near)
 
 
 def judged(scene: Scene, rows: tuple[Row, ...]) -> Verdict:
