@@ -6,21 +6,13 @@ In the folder: ``index.html``; and per case ``comparison.json`` (as documented f
 
 from __future__ import annotations
 
-import base64
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 
 from comparisons import archive, documents, figures, reactions_drawn, sheets
+from comparisons.rendering import Embedded, embedded, rendered
 from comparisons.verdict import Comparison
 from comparisons.writing import write
-
-
-@dataclass(frozen=True, slots=True)
-class _PagePicture:
-    name: str
-    caption: str
-    data: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +26,7 @@ class Chapter:
     sentence: str
     sheets: tuple[sheets.Sheet, ...]
     explanation: tuple[str, ...]
-    pictures: tuple[_PagePicture, ...]
+    pictures: tuple[Embedded, ...]
 
 
 def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison) -> tuple[Chapter, ...]:
@@ -69,14 +61,7 @@ def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison) -> tup
 
 def page(chapters: tuple[Chapter, ...]) -> str:
     """The page as HTML."""
-    import jinja2
-
-    templates = files("comparisons.pages")
-    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
-    template = environment.from_string((templates / "index.html").read_text("utf-8"))
-    style = (templates / "style.css").read_text("utf-8")
-    marked = ("AGREE", "DIFFER", "UNDECIDED", "met", "not met")
-    return template.render(cases=chapters, style=style, marked=marked) + "\n"
+    return rendered("index.html", {"cases": chapters})
 
 
 def chapter(compared: Comparison, pictures: tuple[figures.Picture, ...]) -> Chapter:
@@ -89,8 +74,5 @@ def chapter(compared: Comparison, pictures: tuple[figures.Picture, ...]) -> Chap
         sentence=compared.verdict.sentence,
         sheets=sheets.of_comparison(compared),
         explanation=sheets.explanation(compared),
-        pictures=tuple(
-            _PagePicture(picture.name, picture.caption, base64.b64encode(picture.svg).decode("ascii"))
-            for picture in pictures
-        ),
+        pictures=tuple(embedded(picture) for picture in pictures),
     )
