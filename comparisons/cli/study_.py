@@ -102,7 +102,7 @@ def table1(
             found = study.solved(found, run, solvers, at_most)
     finally:
         _show(told(found), json_file, out, quiet=quiet)
-    return 0
+    return 1 if found.unfinished else 0
 
 
 def _room(json_file: Path | None, out: Path | None) -> None:

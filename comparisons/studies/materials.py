@@ -74,6 +74,16 @@ class Tested:
     scaled: float
     comparison: Comparison
 
+    def error(self, probe: str, kinematics: Kinematics, *, finer: bool) -> float | None:
+        """The CPRBM's error of a probe beside the finite elements in a theory, at n or at 2n of them.
+
+        Raises:
+            KeyError: the comparison has no such probe or theory.
+        """
+        scene, runs = self.comparison.scene, self.comparison.runs
+        probes = {each.name: each for each in scene.probes}
+        return error_of(scene, probes[probe], runs.cprbm[0], runs.fea[kinematics][int(finer)])
+
     @property
     def properties(self) -> Material:
         """E and ν."""
@@ -84,7 +94,9 @@ class Tested:
 class Sweep:
     """A specimen's errors in ``shear`` by probe, one for each of ``poisson_ratios``, and in the theories without it.
 
-    An error is |v_c − v_f|/|v_f| at the last station; None where a run gave no whole answer.
+    An error is |v_c − V_f|/|V_f| at the last station, V_f with twice the elements of the specimen's choices: a zone
+    of contact takes in an element more at some ratio, and with few elements the step would be seen.  None where a run
+    gave no whole answer.
     """
 
     specimen: Specimen
@@ -162,17 +174,18 @@ def _sweeping(specimen: Specimen) -> Piece:
     def swept(solvers: Solvers) -> Sweep:
         scene, choices = question(specimen), specimen.choices
         cprbm = solvers.cprbm(scene, choices)  # ν is not in it
-        without = {kinematics: solvers.fea(scene, choices.within(kinematics)) for kinematics in _WITHOUT_SHEAR}
-        fea = [solvers.fea(_with_ratio(scene, ratio), choices) for ratio in POISSON_RATIOS]
+        finer = choices.finer()
+        without = {kinematics: solvers.fea(scene, finer.within(kinematics)) for kinematics in _WITHOUT_SHEAR}
+        fea = [solvers.fea(_with_ratio(scene, ratio), finer) for ratio in POISSON_RATIOS]
         probes = [probe for probe in scene.probes if probe.quantity == "displacement"]
         return Sweep(
             specimen,
             POISSON_RATIOS,
-            frozendict({probe.name: tuple(_error(scene, probe, cprbm, each) for each in fea) for probe in probes}),
+            frozendict({probe.name: tuple(error_of(scene, probe, cprbm, each) for each in fea) for probe in probes}),
             frozendict(
                 {
                     probe.name: frozendict(
-                        {kinematics: _error(scene, probe, cprbm, each) for kinematics, each in without.items()}
+                        {kinematics: error_of(scene, probe, cprbm, each) for kinematics, each in without.items()}
                     )
                     for probe in probes
                 }
@@ -190,9 +203,11 @@ def _with_ratio(scene: Scene, ratio: float) -> Scene:
     return scene.model_copy(update={"materials": frozendict(materials)})
 
 
-def _error(scene: Scene, probe: Probe, cprbm: Answer, fea: Answer) -> float | None:
+def error_of(scene: Scene, probe: Probe, cprbm: Answer, fea: Answer) -> float | None:
+    """|v_c − v_f|/|v_f| at the last station; None where an answer is not whole."""
     if complaints(scene, cprbm) or complaints(scene, fea):
         return None
     last = scene.stages[-1]
     v_c, v_f = (station_of(each, last.name, last.stations[-1]).values[probe.name] for each in (cprbm, fea))
-    return norm(probe.quantity, v_c - v_f) / norm(probe.quantity, v_f)
+    size = norm(probe.quantity, v_f)
+    return norm(probe.quantity, v_c - v_f) / size if size > 0.0 else None

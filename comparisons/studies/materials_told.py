@@ -5,8 +5,7 @@ from __future__ import annotations
 from comparisons.claims import claim_met, claim_of
 from comparisons.documents import Plain, plain, values
 from comparisons.formats import percent, scaled_unit, vector
-from comparisons.measures import Row, station_of
-from comparisons.scales import norm
+from comparisons.measures import Row
 from comparisons.sheets import Sheet
 from comparisons.studies.drawn import error_against_ratio
 from comparisons.studies.materials import MATERIALS, Materials, Sweep, Tested
@@ -25,15 +24,6 @@ def told(found: Materials) -> Told:
         pictures=(error_against_ratio(found),) if found.sweeps else (),
         data=_data(found),
     )
-
-
-def within_bending(tested: Tested, row: Row) -> float:
-    """|v_c − v_b|/|v_b|: the error beside the finite elements in ``bending``, over their own value there.
-
-    The row's fraction is of the chosen theory's value, in which Poisson's ratio has a part.
-    """
-    v_b = station_of(tested.comparison.runs.fea["bending"][0], row.stage, row.station).values[row.probe.name]
-    return norm(row.probe.quantity, row.cprbm - v_b) / norm(row.probe.quantity, v_b)
 
 
 def shear_ratio(poisson_ratio: float) -> float:
@@ -146,18 +136,21 @@ def _ratios(found: Materials) -> Sheet:
         "Error against Poisson's ratio",
         ("case", "probe", "bending", "stretch", *(f"ν = {ratio:g}" for ratio in ratios)),
         tuple(body),
-        "Beside the finite elements in bending, in stretch, and in shear with that ratio.",
+        "Beside the finite elements in bending, in stretch, and in shear with that ratio; 160 elements per beam.",
     )
 
 
 def _bending(found: Materials) -> dict[tuple[str, str], dict[str, float]]:
-    """The errors within bending, by case and probe, then by material."""
+    """The errors beside the finite elements in bending, over their own value, by case and probe, then by material.
+
+    A row's fraction within one theory is of the chosen theory's value, in which Poisson's ratio has a part.
+    """
     errors: dict[tuple[str, str], dict[str, float]] = {}
     for tested in found.tested:
         for row in tested.comparison.rows:
-            if row.fea.any():
-                place = errors.setdefault((tested.specimen.case, row.probe.name), {})
-                place[tested.material] = within_bending(tested, row)
+            error = tested.error(row.probe.name, "bending", finer=False)
+            if error is not None:
+                errors.setdefault((tested.specimen.case, row.probe.name), {})[tested.material] = error
     return errors
 
 
@@ -262,7 +255,7 @@ def _row(tested: Tested, row: Row) -> Plain:
         "fea": values(row.probe, row.fea),
         "scaled_by": scaled,
         "difference": row.fraction(row.difference),
-        "difference_bending": within_bending(tested, row) if row.fea.any() else None,
+        "difference_bending": tested.error(row.probe.name, "bending", finer=False),
         "uncertainty": None if bounds is None else row.fraction(bounds.total),
         "steps": None
         if steps is None
