@@ -46,17 +46,18 @@ POISSON_RATIOS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
 
 @dataclass(frozen=True, slots=True)
 class Specimen:
-    """A built-in case, the displacements that sections 3.2 and 3.3 speak of, what they claim, and their links."""
+    """A built-in case, the points that sections 3.2 and 3.3 speak of, what they claim, and how finely it is asked."""
 
     case: str
     displaced: tuple[str, ...]
     bound: float
     links: Count
+    elements: Count = 80
 
     @property
     def choices(self) -> Choices:
-        """The paper's discretisation."""
-        return Choices(links=self.links, elements=80)
+        """The discretisation; the paper's own in :data:`SPECIMENS`."""
+        return Choices(links=self.links, elements=self.elements)
 
 
 SPECIMENS = (
