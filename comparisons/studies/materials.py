@@ -177,7 +177,7 @@ def _sweeping(specimen: Specimen) -> Piece:
         cprbm = solvers.cprbm(scene, choices)  # ν is not in it
         finer = choices.finer()
         without = {kinematics: solvers.fea(scene, finer.within(kinematics)) for kinematics in _WITHOUT_SHEAR}
-        fea = [solvers.fea(_with_ratio(scene, ratio), finer) for ratio in POISSON_RATIOS]
+        fea = [solvers.fea(with_ratio(scene, ratio), finer) for ratio in POISSON_RATIOS]
         probes = [probe for probe in scene.probes if probe.quantity == "displacement"]
         return Sweep(
             specimen,
@@ -199,7 +199,8 @@ def _sweeping(specimen: Specimen) -> Piece:
 _WITHOUT_SHEAR: tuple[Kinematics, ...] = ("bending", "stretch")
 
 
-def _with_ratio(scene: Scene, ratio: float) -> Scene:
+def with_ratio(scene: Scene, ratio: float) -> Scene:
+    """The scene with another Poisson's ratio of all its materials."""
     materials = {name: own.model_copy(update={"poisson_ratio": ratio}) for name, own in scene.materials.items()}
     return scene.model_copy(update={"materials": frozendict(materials)})
 
