@@ -19,9 +19,10 @@ def error_against_ratio(found: Materials) -> Picture:
     with canvas(7.2, 3.4 * len(found.sweeps)) as figure:
         panels = figure.subplots(len(found.sweeps), 1, squeeze=False)[:, 0]
         for axes, sweep in zip(panels, found.sweeps, strict=True):
-            for (probe, errors), colour in zip(sweep.errors.items(), (BLUE, RED), strict=False):
+            tested = [each for each in found.tested if each.specimen == sweep.specimen]
+            for (probe, errors), colour, up in zip(sweep.errors.items(), (BLUE, RED), (-14, 6), strict=False):
                 _line(axes, sweep, probe, errors, colour)
-                _marks(axes, [each for each in found.tested if each.specimen == sweep.specimen], probe, colour)
+                _marks(axes, tested, probe, colour, up)
             bound = 100.0 * sweep.specimen.bound
             axes.axhline(bound, color=GREY, linewidth=1.0, linestyle=":", label=f"claimed, {bound:g} %")
             axes.set_ylim(bottom=0.0)
@@ -76,10 +77,13 @@ def _line(axes: Axes, sweep: Sweep, probe: str, errors: tuple[float | None, ...]
             axes.axhline(100.0 * error, color=colour, linewidth=0.9, linestyle=style)
 
 
-def _marks(axes: Axes, tested: list[Tested], probe: str, colour: str) -> None:
+def _marks(axes: Axes, tested: list[Tested], probe: str, colour: str, up: int) -> None:
+    """The materials on a probe's line, their initials so many points above it."""
     for each in tested:
         error = each.error(probe, "shear", finer=True)
         if error is not None:
             place = (each.properties.poisson_ratio, 100.0 * error)
             axes.plot(*place, "o", color=colour, markerfacecolor="none")
-            axes.annotate(each.material[0], place, textcoords="offset points", xytext=(0, 6), ha="center", color=colour)
+            axes.annotate(
+                each.material[0], place, textcoords="offset points", xytext=(0, up), ha="center", color=colour
+            )
