@@ -160,11 +160,11 @@ def _spread(errors: dict[str, float]) -> float:
 
 def _words(found: Materials) -> tuple[str, ...]:
     words = [
-        "Every material carries the case's own loads times the ratio of its modulus to the case's own. In the bending of lines that "
-        "keep their length a modulus E stands in one place, the stiffness E·I: the potential energy over E·I, with the "
-        "loads over E·I, is one and the same function of the shape, and so are its minimum, the contacts and every "
-        "relative error. An error of the CPRBM within bending can therefore not depend on E, and to claim it for three "
-        "moduli is to claim it once."
+        "Every material carries the case's own loads times the ratio of its modulus to the case's own. In the bending "
+        "of lines that keep their length a modulus E stands in one place, the stiffness E·I: the potential energy over "
+        "E·I, with the loads over E·I, is one and the same function of the shape, and so are its minimum, the contacts "
+        "and every relative error. An error of the CPRBM within bending can therefore not depend on E, and to claim "
+        "it for three moduli is to claim it once."
     ]
     spreads = [_spread(errors) for errors in _bending(found).values() if len(errors) > 1]
     if spreads:
