@@ -190,6 +190,18 @@ def test_it_stands_in_json_in_a_table_and_in_a_figure_of_each_drive():
     assert all(picture.png.startswith(b"\x89PNG") for picture in pictures)
 
 
+def test_it_stands_though_a_finer_run_fails_and_not_where_one_of_its_own_does():
+    scene = driven(("push", (0.002, 0.004)))
+
+    def answers(fails):
+        return lambda scene, choices: Spring(until=1 if choices.links == fails else None)(scene, choices)
+
+    finer, own = found(scene, answers(80)), found(scene, answers(40))
+    assert not finer.verdict.completed
+    assert len(finer.reactions) == 2
+    assert own.reactions == ()
+
+
 def test_the_verdict_does_not_hang_on_it():
     scene = driven(("push", (0.002, 0.004)))
     comparison = found(scene)
