@@ -77,7 +77,15 @@ def test_every_station_has_two_beside_it_and_is_the_last_of_them():
     assert pull == (0.5,)
     np.testing.assert_allclose(back, [-0.003992, -0.004008, -0.004, 0.0], rtol=1e-12)
     assert push[2::3] == (0.001, 0.002)  # what follows goes on from the scene's own state
-    assert [probe.name for probe in scene.probes] == ["scene.potential_energy"]
+    assert "scene.potential_energy" in {probe.name for probe in scene.probes}
+
+
+def test_the_energy_is_asked_for_if_the_scene_does_not():
+    scene = driven(("push", (0.001,)))
+    fewer = scene.model_copy(update={"probes": tuple(p for p in scene.probes if p.quantity != "potential_energy")})
+    near = nearby(fewer)
+    assert near is not None
+    assert [probe.name for probe in near.probes] == [*(p.name for p in fewer.probes), "scene.potential_energy"]
 
 
 def test_without_a_driven_reaction_nothing_is_asked(hinge, right):
@@ -163,7 +171,7 @@ def test_a_run_beside_that_ends_early_leaves_the_rest_without():
     scene = driven(("push", (0.001, 0.002, 0.003)))
 
     def early(scene, choices):
-        return Spring(until=None if len(scene.probes) > 1 else 4)(scene, choices)
+        return Spring(until=4 if len(scene.stages[0].stations) > 3 else None)(scene, choices)
 
     comparison = found(scene, early)
     assert [each.work_energy is None for each in comparison.reactions] == [False, True, True]
