@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from comparisons.measures import Row
 from comparisons.scales import VANISHING, norm
@@ -48,12 +48,16 @@ def claim_of(scene: Scene, row: Row) -> Claim | None:
     return next(iter((*own, *about)), None)
 
 
+def as_claimed(row: Row) -> Row:
+    """The row with its fractions taken as a claim takes them."""
+    own = norm(row.probe.quantity, row.fea)
+    of_the_value = row.probe.quantity in _OF_THE_VALUE and own >= VANISHING * row.scale
+    return replace(row, denominator=own) if of_the_value else row
+
+
 def claim_difference(row: Row) -> float | None:
     """Our difference as a claim takes it, a fraction; None where there is none."""
-    own = norm(row.probe.quantity, row.fea)
-    if row.probe.quantity in _OF_THE_VALUE and own >= VANISHING * row.scale and math.isfinite(row.difference):
-        return row.difference / own
-    return row.fraction(row.difference)
+    return as_claimed(row).fraction(row.difference)
 
 
 def claim_met(claim: Claim | None, row: Row) -> bool | None:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from comparisons.benchmark import FIT_FROM, Benchmark, trend
-from comparisons.claims import claim_difference, standings
+from comparisons.claims import as_claimed, claim_difference, standings
 from comparisons.documents import worst
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.geometry import radius
@@ -108,7 +108,7 @@ def explanation(compared: Comparison) -> tuple[str, ...]:
     """For each claim a sentence that says what our difference is made of, at its worst station."""
     sentences = []
     for standing in standings(compared.scene, compared.rows):
-        claim, row = standing.claim, standing.worst
+        claim, row = standing.claim, as_claimed(standing.worst)
         if row.steps is None:
             continue
         sentences.append(

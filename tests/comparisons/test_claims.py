@@ -97,3 +97,13 @@ def test_a_row_without_a_difference_meets_nothing(hinge):
     claim = Claim(probe="A.reaction", bound=0.01)
     assert claim_met(claim, nothing) is None
     assert standings(claiming(hinge, claim), [nothing]) == ()
+
+
+def test_the_sentence_and_the_table_say_the_same_number(hinge, right):
+    scene = claiming(hinge, Claim(probe="contact.force", station=0.335, bound=0.01))
+    comparison = compared(scene, paired(hinge, Choices(), right))
+    sheet = next(sheet for sheet in sheets.of_comparison(comparison) if sheet.title == "Claims of the source")
+    (sentence,) = sheets.explanation(comparison)
+    assert f"our difference of {sheet.rows[0][2]} " in sentence
+    (small,) = (each for each in comparison.rows if each.probe.name == "contact.force" and each.station == 0.335)
+    assert small.fraction(small.difference) != claim_difference(small)
