@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import gc
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
@@ -77,13 +77,12 @@ class Timing:
     @property
     def median(self) -> float:
         """T, s."""
-        return float(np.median(self.seconds))
+        return middle(self.seconds)
 
     @property
     def spread(self) -> float:
         """Distance of the quartiles, s."""
-        low, high = np.percentile(self.seconds, (25.0, 75.0))
-        return float(high - low)
+        return quartiles_apart(self.seconds)
 
     @property
     def total_iterations(self) -> int:
@@ -175,7 +174,7 @@ def measured(
                 if n > last[method] or slow:
                     continue
                 watch(repetition, method, n)
-                taken, answer = _timed(_solver(solvers, method), scene, _choices(plan, method, n), clock)
+                taken, answer = timed(_solver(solvers, method), scene, _choices(plan, method, n), clock)
                 seconds.setdefault((method, n), []).append(taken)
                 steps = tuple(station.certificate.iterations for station in answer.stations)
                 answers.setdefault((method, n), []).append((answer.ending, steps))
@@ -216,7 +215,25 @@ def _interleaved(plan: Plan) -> Iterator[tuple[Method, int]]:
                 yield method, n
 
 
-def _timed(solver: Solver, scene: Scene, choices: Choices, clock: Callable[[], float]) -> tuple[float, Answer]:
+def middle(seconds: Sequence[float]) -> float:
+    """T: the median, s."""
+    return float(np.median(seconds))
+
+
+def quartiles_apart(seconds: Sequence[float]) -> float:
+    """The spread: distance of the quartiles, s."""
+    low, high = np.percentile(seconds, (25.0, 75.0))
+    return float(high - low)
+
+
+def timed(
+    solver: Solver, scene: Scene, choices: Choices, clock: Callable[[], float] = time.perf_counter
+) -> tuple[float, Answer]:
+    """Seconds of one solve and its answer; BLAS keeps the threads that the caller has left it.
+
+    Raises:
+        SceneError: the solver refuses the question.
+    """
     gc.collect()  # what earlier solves have left is not this one's to clear
     begin = clock()
     answer = solver(scene, choices)

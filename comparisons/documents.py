@@ -10,9 +10,11 @@ from typing import Any
 import numpy as np
 
 from comparisons.benchmark import Benchmark, trend
+from comparisons.claims import claim_difference, claim_met, claim_of
 from comparisons.measures import Row, arc_lengths, unit_of
 from comparisons.verdict import Comparison
-from scene import Answer, Certificate, Claim, Probe, Scene
+from comparisons.work_energy import Reaction
+from scene import Answer, Certificate, Probe, Scene
 from scene.answer import Array
 
 Plain = dict[str, Any]
@@ -38,6 +40,7 @@ def comparison(compared: Comparison) -> Plain:
             {**_row(compared.scene, row), "verdict": None if word is None else word.value}
             for row, word in zip(compared.rows, compared.verdict.words, strict=True)
         ],
+        "work_energy": [_reaction(each) for each in compared.reactions],
     }
 
 
@@ -165,20 +168,6 @@ def plain(value: object) -> Any:  # noqa: ANN401 - whatever JSON holds
             return str(value)
 
 
-def claim_of(scene: Scene, row: Row) -> Claim | None:
-    """What the scene's source claims of a row."""
-    for claim in scene.claims:
-        if claim.probe == row.probe.name and math.isclose(claim.station, row.station, rel_tol=1e-12):
-            return claim
-    return None
-
-
-def claim_met(claim: Claim | None, row: Row) -> bool | None:
-    """Whether our difference stays below the claimed bound; None where either is missing."""
-    fraction = row.fraction(row.difference)
-    return None if claim is None or fraction is None else fraction <= claim.bound
-
-
 def _row(scene: Scene, row: Row) -> Plain:
     claim = claim_of(scene, row)
     bounds = row.bounds
@@ -200,6 +189,7 @@ def _row(scene: Scene, row: Row) -> Plain:
         },
         "claim": None if claim is None else claim.bound,
         "claim_met": claim_met(claim, row),
+        "claim_difference": None if claim is None else claim_difference(row),
         "difference_same_theory": row.fraction(row.same_theory),
         "steps": None
         if steps is None
@@ -214,6 +204,22 @@ def _row(scene: Scene, row: Row) -> Plain:
         "scale": row.scale,
         "denominator": row.denominator,
         **_places(scene, row.probe),
+    }
+
+
+def _reaction(found: Reaction) -> Plain:
+    return {
+        "stage": found.stage,
+        "station": found.station,
+        "drive": found.drive,
+        "unit": found.unit,
+        "multiplier": found.multiplier,
+        "work_energy": found.work_energy,
+        "difference": found.difference,
+        "round_off": found.floor / found.scale if found.scale > 0.0 else None,
+        "fea": found.fea,
+        "difference_fea": found.from_fea,
+        "changes_nearby": list(found.changes),
     }
 
 

@@ -6,7 +6,8 @@ The same answers give the same bytes: no dates, and identifiers from a fixed sal
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-_BLUE, _RED, _GREY = "#1f5fa8", "#c8321e", "#8a8a8a"
+BLUE, RED, GREY = "#1f5fa8", "#c8321e", "#8a8a8a"
 _STYLE: dict[Any, Any] = {  # the stubs name every key of every version
     "svg.hashsalt": "cprbm",
     "svg.fonttype": "path",
@@ -79,7 +80,7 @@ def of_benchmark(measured: Benchmark) -> Picture:
         figure = Figure(figsize=(6.4, 6.4), layout="constrained")
         seconds, iterations = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         sizes = sorted({timing.n for timing in measured.timings})
-        for method, colour, marker in zip(METHODS, (_BLUE, _RED), "os", strict=True):
+        for method, colour, marker in zip(METHODS, (BLUE, RED), "os", strict=True):
             if measured.of(method):
                 _timings(measured, method, seconds, iterations, colour, marker)
         for axes in (seconds, iterations):
@@ -97,7 +98,7 @@ def of_benchmark(measured: Benchmark) -> Picture:
         seconds.legend(loc="upper left")
         iterations.set_ylabel("iterations, all stations")
         iterations.set_xlabel("links or elements per beam, N")
-        return _picture(
+        return picture(
             figure,
             "bench",
             "Median time with the quartiles, and iterations, against the number of links or elements per beam.",
@@ -146,26 +147,26 @@ def _shapes(scene: Scene, runs: Runs) -> Picture:
             style = "-" if stands else "--"  # one that moves is shown where it began
             # an artist, no patch: a large circle must not make the beams small
             axes.add_artist(
-                Circle((1e3 * x, 1e3 * y), 1e3 * contact.radius, fill=False, edgecolor=_GREY, linestyle=style)
+                Circle((1e3 * x, 1e3 * y), 1e3 * contact.radius, fill=False, edgecolor=GREY, linestyle=style)
             )
     cprbm, fea = runs.cprbm[0].stations[-1], runs.reference.stations[-1]
     ends: dict[str, list[tuple[float, float]]] = {}
     for place, beam in enumerate(scene.beams.values()):
         x, y = 1e3 * points(beam.curve, np.linspace(0.0, length(beam.curve), 200)).T
-        axes.plot(x, y, "--", color=_GREY, linewidth=1.0, label="undeformed" if place == 0 else None)
+        axes.plot(x, y, "--", color=GREY, linewidth=1.0, label="undeformed" if place == 0 else None)
         for end, point in ((beam.start, 0), (beam.end, -1)):
             if not isinstance(end, FreeEnd):
                 ends.setdefault(scene.body_of(end.point), []).append((x[point], y[point]))
-    _links(axes, ends, "--", _GREY)
+    _links(axes, ends, "--", GREY)
     _links(axes, _ends(scene, fea), "-", "black")
     for place, beam_name in enumerate(scene.beams):
         shape = fea.shapes[beam_name]
         label = f"FEA ({runs.kinematics})" if place == 0 else None
-        axes.plot(1e3 * shape.x, 1e3 * shape.y, "-", color=_RED, linewidth=2.2, label=label)
+        axes.plot(1e3 * shape.x, 1e3 * shape.y, "-", color=RED, linewidth=2.2, label=label)
         shape = cprbm.shapes[beam_name]
         label = "CPRBM" if place == 0 else None
-        axes.plot(1e3 * shape.x, 1e3 * shape.y, ".", color=_BLUE, markersize=3.5, label=label)
-    for name, station, marker, colour in (("FEA", fea, "x", _RED), ("CPRBM", cprbm, "o", _BLUE)):
+        axes.plot(1e3 * shape.x, 1e3 * shape.y, ".", color=BLUE, markersize=3.5, label=label)
+    for name, station, marker, colour in (("FEA", fea, "x", RED), ("CPRBM", cprbm, "o", BLUE)):
         for place, spots in enumerate(station.touching.values()):
             label = f"contact, {name}" if place == 0 else None
             x, y = 1e3 * spots.T
@@ -180,7 +181,7 @@ def _shapes(scene: Scene, runs: Runs) -> Picture:
     axes.set_ylabel("y, mm")
     axes.margins(0.08)
     figure.legend(loc="outside lower center", ncols=3)
-    return _picture(
+    return picture(
         figure,
         "shapes",
         f"Neutral lines before and at {cprbm.stage} {cprbm.value:g}, with the places of contact.",
@@ -215,14 +216,14 @@ def _stresses(rows: list[Row]) -> Picture:
         axes = figure.add_subplot(len(rows), 1, place + 1)
         if row.arc_length is None:
             continue
-        axes.axhline(0.0, color=_GREY, linewidth=0.6)
-        axes.plot(1e3 * row.arc_length, row.fea / factor, "-", color=_RED, linewidth=1.8, label="FEA")
-        axes.plot(1e3 * row.arc_length, row.cprbm / factor, ".", color=_BLUE, markersize=5, label="CPRBM")
+        axes.axhline(0.0, color=GREY, linewidth=0.6)
+        axes.plot(1e3 * row.arc_length, row.fea / factor, "-", color=RED, linewidth=1.8, label="FEA")
+        axes.plot(1e3 * row.arc_length, row.cprbm / factor, ".", color=BLUE, markersize=5, label="CPRBM")
         axes.set_title(row.probe.of, loc="left")
         axes.set_ylabel(f"bending stress, {unit}")
         axes.legend(loc="best")
         axes.set_xlabel("initial arc length, mm")
-    return _picture(
+    return picture(
         figure,
         "stress",
         f"Bending stress along the beams at {rows[0].stage} {rows[0].station:g}; where it is "
@@ -243,22 +244,33 @@ def _against_load(scene: Scene, rows: list[Row], quantity: str, what: str) -> Pi
                 continue
             mine = [row for row in rows if row.probe.name == name and row.stage == stage.name]
             load = [row.station for row in mine]
-            axes.plot(load, [row.fea[0] / factor for row in mine], "-", color=_RED, label=f"{name}, FEA")
+            axes.plot(load, [row.fea[0] / factor for row in mine], "-", color=RED, label=f"{name}, FEA")
             axes.plot(
                 load,
                 [row.cprbm[0] / factor for row in mine],
                 "o",
-                color=_BLUE,
+                color=BLUE,
                 markersize=4,
                 label=f"{name}, CPRBM",
             )
     axes.set_xlabel(f"{last.steps}, {load_unit(scene, last)}")
     axes.set_ylabel(f"{what.lower()}, {unit}")
     axes.legend(loc="best")
-    return _picture(figure, quantity, f"{what} against {last.steps}.")
+    return picture(figure, quantity, f"{what} against {last.steps}.")
 
 
-def _picture(figure: Figure, name: str, caption: str) -> Picture:
+@contextmanager
+def canvas(width: float, height: float) -> Iterator[Figure]:
+    """An empty figure of ``width`` and ``height``, inches, in the style that it must also be drawn and saved in."""
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
+    with mpl.rc_context(_STYLE):
+        yield Figure(figsize=(width, height), layout="constrained")
+
+
+def picture(figure: Figure, name: str, caption: str) -> Picture:
+    """A figure drawn to the end."""
     svg, png = io.BytesIO(), io.BytesIO()
     figure.savefig(svg, format="svg", metadata={"Date": None})
     figure.savefig(png, format="png", metadata={"Software": None})

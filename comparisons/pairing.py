@@ -7,6 +7,9 @@ two, if there is one, so that the step from one theory to the next can be split.
 
 Where ``auto`` was chosen and every contact says what ``paper`` must be told, that is run at N as well.  It shows
 what the contact's formulation makes of the answer and takes no part in the verdict.
+
+Where a drive's reaction is asked, the CPRBM runs at N once more with two stations close round each of the scene's
+(:mod:`comparisons.nearby`): the reaction by the energies' difference, which takes no part in the verdict either.
 """
 
 from __future__ import annotations
@@ -23,6 +26,7 @@ from frozendict import frozendict
 from pydantic import ValidationError
 
 from comparisons.choices import KINEMATICS, Choices, Kinematics, check
+from comparisons.nearby import nearby
 from scene import Answer, BeamContact, Mistake, Scene, SceneError
 
 Solver = Callable[[Scene, Choices], Answer]
@@ -81,6 +85,7 @@ class Runs:
         paper: the same in the formulation ``paper``, if ``auto`` was chosen and the other could be asked;
             nothing rests on it.
         beside: the CPRBM in ``auto`` at N + N/7 links, if there is contact; ``ratio`` is N over that number.
+        nearby: the CPRBM at N links, answering :func:`comparisons.nearby.nearby`; nothing rests on it.
     """
 
     kinematics: Kinematics
@@ -90,6 +95,7 @@ class Runs:
     paper: Answer | None = None
     beside: Answer | None = None
     ratio: float = 1.0
+    nearby: Answer | None = None
 
     @property
     def reference(self) -> Answer:
@@ -129,9 +135,11 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1
     """
     check(choices, scene)
     even = replace(choices, formulation="auto")
-    extra = [] if even == choices else [(solvers.cprbm, even)]
-    beside = [(solvers.cprbm, even.beside())] if scene.contacts else []
-    jobs = [(solvers.cprbm, choices), (solvers.cprbm, even.finer()), *extra, *beside]
+    extra = [] if even == choices else [(solvers.cprbm, scene, even)]
+    beside = [(solvers.cprbm, scene, even.beside())] if scene.contacts else []
+    driven = nearby(scene)
+    round_each = [] if driven is None else [(solvers.cprbm, driven, choices)]
+    jobs = [(solvers.cprbm, scene, choices), (solvers.cprbm, scene, even.finer()), *extra, *beside, *round_each]
     first = len(jobs)
     places: list[tuple[Kinematics, int]] = []
     for kinematics in KINEMATICS[: KINEMATICS.index(choices.kinematics) + 1]:
@@ -139,8 +147,8 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1
         levels = (variant, variant.finer()) if kinematics in ("bending", choices.kinematics) else (variant,)
         for level, settings in enumerate(levels):
             places.append((kinematics, level))
-            jobs.append((solvers.fea, settings))
-    answers = _in_order(scene, jobs, min(workers, len(jobs)))
+            jobs.append((solvers.fea, scene, settings))
+    answers = _in_order(jobs, min(workers, len(jobs)))
     fea: dict[Kinematics, tuple[Answer, ...]] = {}
     for (kinematics, _), answer in zip(places, answers[first:], strict=True):
         fea[kinematics] = (*fea.get(kinematics, ()), answer)
@@ -150,8 +158,9 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1
         frozendict(fea),
         auto=answers[2] if extra else None,
         paper=None if extra else _paper(scene, choices, solvers),
-        beside=answers[first - 1] if beside else None,
+        beside=answers[2 + len(extra)] if beside else None,
         ratio=_links(even) / _links(even.beside()),
+        nearby=answers[first - 1] if round_each else None,
     )
 
 
@@ -172,16 +181,16 @@ def _paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
         return None
 
 
-def _in_order(scene: Scene, jobs: list[tuple[Solver, Choices]], workers: int) -> list[Answer]:
+def _in_order(jobs: list[tuple[Solver, Scene, Choices]], workers: int) -> list[Answer]:
     if workers <= 1:
-        return [solver(scene, choices) for solver, choices in jobs]
+        return [solver(scene, choices) for solver, scene, choices in jobs]
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_quiet_worker)
     try:
         # The finest runs take longest, and they stand last: handed out first, they leave no worker idle.
         with _workers_deaf_at_first():
             futures: dict[Future[Answer | tuple[Mistake, ...]], int] = {
                 pool.submit(_job, solver, scene, choices): place
-                for place, (solver, choices) in reversed(list(enumerate(jobs)))
+                for place, (solver, scene, choices) in reversed(list(enumerate(jobs)))
             }
         answers: dict[int, Answer] = {}
         for future in as_completed(futures):

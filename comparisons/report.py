@@ -6,21 +6,13 @@ In the folder: ``index.html``; and per case ``comparison.json`` (as documented f
 
 from __future__ import annotations
 
-import base64
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 
-from comparisons import archive, documents, figures, sheets
+from comparisons import archive, documents, figures, reactions_drawn, sheets
+from comparisons.rendering import Embedded, embedded, rendered
 from comparisons.verdict import Comparison
 from comparisons.writing import write
-
-
-@dataclass(frozen=True, slots=True)
-class _PagePicture:
-    name: str
-    caption: str
-    data: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +26,7 @@ class Chapter:
     sentence: str
     sheets: tuple[sheets.Sheet, ...]
     explanation: tuple[str, ...]
-    pictures: tuple[_PagePicture, ...]
+    pictures: tuple[Embedded, ...]
 
 
 def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison) -> tuple[Chapter, ...]:
@@ -52,13 +44,14 @@ def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison) -> tup
         OSError: the folder cannot be written to.
     """
     own = folder / compared.scene.name
-    pictures = figures.of_comparison(compared)
+    pictures = (*figures.of_comparison(compared), *reactions_drawn.of_comparison(compared))
     for picture in pictures:
         write(own / f"{picture.name}.svg", picture.svg)
         write(own / f"{picture.name}.png", picture.png)
     answers = {name: archive.packed(answer) for name, answer in compared.runs.everything()}
-    if compared.runs.paper is not None:
-        answers["cprbm paper"] = archive.packed(compared.runs.paper)
+    for name, answer in (("cprbm paper", compared.runs.paper), ("cprbm nearby", compared.runs.nearby)):
+        if answer is not None:
+            answers[name] = archive.packed(answer)
     write(own / "answers.json", documents.text(answers))
     write(own / "comparison.json", documents.text({"cases": [documents.comparison(compared)]}))
     chapters = (*earlier, chapter(compared, pictures))
@@ -68,14 +61,7 @@ def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison) -> tup
 
 def page(chapters: tuple[Chapter, ...]) -> str:
     """The page as HTML."""
-    import jinja2
-
-    templates = files("comparisons.pages")
-    environment = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined)
-    template = environment.from_string((templates / "index.html").read_text("utf-8"))
-    style = (templates / "style.css").read_text("utf-8")
-    marked = ("AGREE", "DIFFER", "UNDECIDED", "met", "not met")
-    return template.render(cases=chapters, style=style, marked=marked) + "\n"
+    return rendered("index.html", {"cases": chapters})
 
 
 def chapter(compared: Comparison, pictures: tuple[figures.Picture, ...]) -> Chapter:
@@ -88,8 +74,5 @@ def chapter(compared: Comparison, pictures: tuple[figures.Picture, ...]) -> Chap
         sentence=compared.verdict.sentence,
         sheets=sheets.of_comparison(compared),
         explanation=sheets.explanation(compared),
-        pictures=tuple(
-            _PagePicture(picture.name, picture.caption, base64.b64encode(picture.svg).decode("ascii"))
-            for picture in pictures
-        ),
+        pictures=tuple(embedded(picture) for picture in pictures),
     )

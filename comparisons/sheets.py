@@ -6,12 +6,14 @@ import math
 from dataclasses import dataclass
 
 from comparisons.benchmark import FIT_FROM, Benchmark, trend
-from comparisons.documents import claim_met, claim_of, worst
+from comparisons.claims import as_claimed, claim_difference, standings
+from comparisons.documents import worst
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.geometry import radius
 from comparisons.measures import Row, Steps, unit_of
 from comparisons.scales import norm
 from comparisons.verdict import Comparison
+from comparisons.work_energy import by_drive, sentence
 from scene import Answer, Scene
 
 
@@ -30,6 +32,7 @@ def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
     rows = last_rows(compared)
     found = [_values(compared, rows), _verdicts(compared, rows)]
     found.append(_claims(compared))
+    found.extend(_reactions(compared))
     found.append(_stresses(compared.scene, rows))
     found.append(_steps(compared, rows))
     found.append(_certificates(compared))
@@ -102,11 +105,11 @@ def last_rows(compared: Comparison) -> tuple[Row, ...]:
 
 
 def explanation(compared: Comparison) -> tuple[str, ...]:
-    """For each claim a sentence that says what our difference there is made of."""
+    """For each claim a sentence that says what our difference is made of, at its worst station."""
     sentences = []
-    for row in compared.rows:
-        claim = claim_of(compared.scene, row)
-        if claim is None or row.steps is None:
+    for standing in standings(compared.scene, compared.rows):
+        claim, row = standing.claim, as_claimed(standing.worst)
+        if row.steps is None:
             continue
         sentences.append(
             f"{row.probe.name} at {row.station:g}: our difference of {_of(row, row.difference)} is the "
@@ -186,26 +189,52 @@ def _verdicts(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
 
 
 def _claims(compared: Comparison) -> Sheet:
-    body = []
-    for row in compared.rows:
-        claim = claim_of(compared.scene, row)
-        if claim is None:
-            continue
-        met = claim_met(claim, row)
-        body.append(
-            (
-                claim.text or claim.probe,
-                percent(claim.bound),
-                _of(row, row.difference),
-                "–" if met is None else "met" if met else "not met",
-            )
+    body = tuple(
+        (
+            standing.claim.text or standing.claim.probe,
+            percent(standing.claim.bound),
+            percent(claim_difference(standing.worst)),
+            f"{standing.worst.stage} {standing.worst.station:g}",
+            f"{standing.met} of {standing.stations}",
+            "met" if standing.holds else "not met",
         )
+        for standing in standings(compared.scene, compared.rows)
+    )
     return Sheet(
         "Claims of the source",
-        ("claim", "theirs", "ours", ""),
-        tuple(body),
-        "They stand beside our figures and have no part in the verdict.",
+        ("claim", "theirs", "ours at worst", "at", "met at", ""),
+        body,
+        "They stand beside our figures and have no part in the verdict. Of a force or a moment the difference is "
+        "here a fraction of the value at its station.",
     )
+
+
+def _reactions(compared: Comparison) -> tuple[Sheet, ...]:
+    """A sheet for each drive that a stage steps."""
+    found = []
+    for drive, reactions in by_drive(compared.reactions).items():
+        factor, unit = scaled_unit(reactions[0].unit, max(abs(each.multiplier) for each in reactions))
+        body = tuple(
+            (
+                f"{each.stage} {each.station:g}",
+                number(each.multiplier / factor, 5),
+                "–" if each.work_energy is None else number(each.work_energy / factor, 5),
+                percent(each.difference),
+                number(each.fea / factor, 5),
+                percent(each.from_fea),
+                ", ".join(each.changes),
+            )
+            for each in reactions
+        )
+        found.append(
+            Sheet(
+                f"Reaction at the drive {drive}, {unit}",
+                ("station", "multiplier", "work–energy", "from it", "FEA", "multiplier from it", "closes or opens"),
+                body,
+                sentence(reactions),
+            )
+        )
+    return tuple(found)
 
 
 def _stresses(scene: Scene, rows: tuple[Row, ...]) -> Sheet:

@@ -26,6 +26,7 @@ from comparisons.formats import percent
 from comparisons.measures import Bounds, Row, rows_of
 from comparisons.pairing import Runs
 from comparisons.soundness import ABSENT_WHILE_OPEN, complaints
+from comparisons.work_energy import Reaction, reactions
 from scene import Scene
 
 
@@ -56,18 +57,19 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A scene, all answers to it, the rows and the verdict."""
+    """A scene, all answers to it, the rows, the verdict, and the drives' reactions by two ways."""
 
     scene: Scene
     runs: Runs
     rows: tuple[Row, ...]
     verdict: Verdict
+    reactions: tuple[Reaction, ...] = ()
 
 
 def compared(scene: Scene, runs: Runs) -> Comparison:
     """Put the answers beside each other and judge them.
 
-    Rows stand only if every run gave a whole answer.
+    Rows stand only if every run gave a whole answer, the drives' reactions if those at N and n did.
     """
     found: dict[str, list[str]] = {}
     for name, answer in runs.everything():
@@ -77,11 +79,19 @@ def compared(scene: Scene, runs: Runs) -> Comparison:
             found.setdefault(f"{what[0]}{more}", []).append(name)
     if found:
         sentence = "; ".join(f"{', '.join(names)} gave no whole answer: {what}" for what, names in found.items())
-        return Comparison(scene, runs, (), Verdict(Word.UNDECIDED, sentence + ".", (), completed=False))
+        verdict = Verdict(Word.UNDECIDED, sentence + ".", (), completed=False)
+        return Comparison(scene, runs, (), verdict, _reactions(scene, runs))
     # nothing rests on the formulation that stands beside, so that its failure leaves no more than a gap
     beside = runs.paper is not None and not complaints(scene, runs.paper)
     rows = rows_of(scene, runs if beside else replace(runs, paper=None))
-    return Comparison(scene, runs, rows, judged(scene, rows))
+    return Comparison(scene, runs, rows, judged(scene, rows), _reactions(scene, runs))
+
+
+def _reactions(scene: Scene, runs: Runs) -> tuple[Reaction, ...]:
+    """The drives' reactions by two ways: they need the answers at N and n alone, and no estimate of an error."""
+    if runs.nearby is None or complaints(scene, runs.cprbm[0]) or complaints(scene, runs.reference):
+        return ()
+    return reactions(scene, runs.cprbm[0], runs.reference, runs.nearby)
 
 
 def judged(scene: Scene, rows: tuple[Row, ...]) -> Verdict:

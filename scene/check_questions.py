@@ -61,7 +61,7 @@ def wrong_claims(scene: Scene) -> Iterator[Mistake]:
     for i, claim in enumerate(scene.claims):
         if claim.probe not in probes:
             yield unknown_name(f"claims[{i}].probe", claim.probe, "probe", probes)
-        if not any(isclose(claim.station, value, rel_tol=1e-9) for value in stations):
+        if claim.station is not None and not any(isclose(claim.station, value, rel_tol=1e-9) for value in stations):
             listed = ", ".join(f"{value:g}" for value in stations)
             yield Mistake(f"claims[{i}].station", f"{claim.station:g}", f"a station of a stage: {listed}")
 

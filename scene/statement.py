@@ -301,10 +301,13 @@ class Probe(Record):
 
 
 class Claim(Record):
-    """What a publication says of one probe: its relative difference stays below ``bound``."""
+    """What a publication says of one probe: its relative difference stays below ``bound``.
+
+    Without a ``station`` it says so of every station at which the probe has a value.
+    """
 
     probe: str
-    station: float
+    station: float | None = None
     bound: Positive
     text: str = ""
 

@@ -20,7 +20,7 @@ from scene import SceneError
 if TYPE_CHECKING:
     from comparisons.pairing import Solvers
 
-_COMMANDS = ("list", "solve", "compare", "bench", "regress")
+_COMMANDS = ("list", "solve", "compare", "bench", "study", "regress")
 
 WRONG_QUESTION = 2
 INTERRUPTED = 130
@@ -44,6 +44,8 @@ class _Commands(click.Group):
                 from comparisons.cli.compare_ import command
             case "bench":
                 from comparisons.cli.bench_ import command
+            case "study":
+                from comparisons.cli.study_ import command
             case "regress":
                 from comparisons.cli.regress_ import command
             case _:

@@ -4,7 +4,7 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.documents import claim_of
+from comparisons.claims import claim_of
 from comparisons.measures import rows_of
 from comparisons.pairing import paired
 from scene import SceneError

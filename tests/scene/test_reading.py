@@ -4,7 +4,9 @@ import pytest
 from pydantic import ValidationError
 
 from scene import SceneError, read
+from scene.reading import scene_from
 from tests.scene.conftest import HINGE
+from tests.scene.editing import REMOVED, edited, mistakes
 
 
 def _refusal(path):
@@ -81,3 +83,9 @@ def test_the_message_names_file_key_finding_and_what_is_allowed(tmp_path, hinge_
     with pytest.raises(SceneError) as caught:
         read(path)
     assert str(caught.value) == (f"{path}: beams.beam1.thickness: found -0.002; allowed: a number greater than 0")
+
+
+def test_a_claim_without_a_station_is_about_every_station():
+    scene = scene_from(edited(("claims/0/station", REMOVED)))
+    assert [claim.station for claim in scene.claims] == [None, 0.67]
+    assert set(mistakes(("claims/0/station", REMOVED), ("claims/0/probe", "B.rotation"))) == {"claims[0].probe"}

@@ -1,0 +1,44 @@
+"""HTML pages from the templates beside this module: whole in themselves, figures included."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+
+from comparisons.figures import Picture
+
+_MARKED = ("AGREE", "DIFFER", "UNDECIDED", "met", "not met")
+"""Cells of a table that have a style of their own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Embedded:
+    """A figure as a page holds it: ``data`` is its SVG in base 64."""
+
+    name: str
+    caption: str
+    data: str
+
+
+def embedded(picture: Picture) -> Embedded:
+    """A figure made ready for a page."""
+    return Embedded(picture.name, picture.caption, base64.b64encode(picture.svg).decode("ascii"))
+
+
+def rendered(template: str, context: Mapping[str, object]) -> str:
+    """The page that a template makes of a context; every text in it is escaped.
+
+    Raises:
+        jinja2.UndefinedError: the template asks for what the context does not have.
+    """
+    import jinja2
+
+    environment = jinja2.Environment(
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        loader=jinja2.PackageLoader("comparisons", "pages"),
+    )
+    style = (files("comparisons.pages") / "style.css").read_text("utf-8")
+    return environment.get_template(template).render({**context, "style": style, "marked": _MARKED}) + "\n"

@@ -1,0 +1,97 @@
+"""What is told of the paper's Table 1 beside ours: tables, sentences and the documented JSON."""
+
+from __future__ import annotations
+
+from comparisons.documents import Plain, plain
+from comparisons.formats import number
+from comparisons.sheets import Sheet
+from comparisons.studies.drawn import run_times
+from comparisons.studies.table1 import THEIR_MACHINE, Cell, Table, Times
+from comparisons.studies.told import Told
+
+
+def told(table: Table) -> Told:
+    """Everything that is told of what was measured so far."""
+    measured = any(times.seconds for times in table.times.values())
+    return Told(
+        name="table1",
+        title="Run times, beside Table 1 of the paper",
+        words=_words(table),
+        sheets=(_sheet(table),),
+        pictures=(run_times(table),) if measured else (),
+        data=_data(table),
+    )
+
+
+def _sheet(table: Table) -> Sheet:
+    body = tuple(
+        (
+            cell.case,
+            cell.label,
+            cell.sized,
+            number(times.median),
+            number(times.spread, 2),
+            str(len(times.seconds)),
+            number(cell.theirs),
+            _ratio(cell, times),
+            _ended(times),
+        )
+        for cell, times in table.times.items()
+    )
+    machine = table.machine
+    return Sheet(
+        "Seconds to the last load, in one load",
+        ("case", "method", "elements or links", "ours", "spread", "repeats", "theirs", "theirs / ours", "ended"),
+        body,
+        "Ours: median of whole answers, set-up included, and the distance of the quartiles; finite elements in shear. "
+        f"Ours on {machine['cpu']}, BLAS on one thread, Python {machine['python']}, NumPy {machine['numpy']}, SciPy "
+        f"{machine['scipy']}, scikit-fem {machine['scikit-fem']}; theirs on {THEIR_MACHINE}.",
+    )
+
+
+def _ratio(cell: Cell, times: Times) -> str:
+    return number(cell.theirs / times.median) if cell.theirs is not None and times.median else "–"
+
+
+def _ended(times: Times) -> str:
+    if times.ending is None:
+        return "refused" if times.why else "not begun"
+    return times.ending.name
+
+
+def _words(table: Table) -> tuple[str, ...]:
+    return (
+        "Times of different programs on different machines: the paper's CPRBM is interpreted code round a general "
+        "optimiser, its finite elements are a commercial program with all that it does besides. What can be compared "
+        "is how the times of one program go with the discretisation and with contact.",
+        "The table gives the gripper's links as 40 and 30 where section 3.3 has 30 and 40; both are run.",
+        *(
+            f"{cell.case}, {cell.label}, {cell.sized}: {'not whole' if times.seconds else 'refused'}. {times.why}."
+            for cell, times in table.times.items()
+            if times.why
+        ),
+    )
+
+
+def _data(table: Table) -> Plain:
+    return {
+        "study": "table1",
+        "machine": dict(table.machine),
+        "paper_machine": THEIR_MACHINE,
+        "rows": [
+            {
+                "case": cell.case,
+                "method": cell.method,
+                "formulation": cell.formulation,
+                "contact": cell.contact,
+                "size": plain(cell.size),
+                "seconds": times.median,
+                "spread": times.spread,
+                "repeats": len(times.seconds),
+                "ended": None if times.ending is None else times.ending.name,
+                "why": times.why or None,
+                "paper_seconds": cell.theirs,
+            }
+            for cell, times in table.times.items()
+        ],
+    }

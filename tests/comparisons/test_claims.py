@@ -1,0 +1,109 @@
+"""Claims: at one station or at all, of a displacement or of a force, beside rows written by hand."""
+
+import math
+
+import pytest
+
+from comparisons import documents, sheets
+from comparisons.choices import Choices
+from comparisons.claims import claim_difference, claim_met, claim_of, standings
+from comparisons.measures import Row
+from comparisons.pairing import paired
+from comparisons.verdict import compared
+from scene import Claim, Probe
+from scene.answer import frozen_array
+
+
+def row(value, reference, *, station=1.0, quantity="reaction", scale=100.0):
+    """A row of one component whose fraction is of the scale."""
+    probe = Probe(of="A", quantity=quantity)
+    both = frozen_array([value]), frozen_array([reference])
+    return Row(probe, "load", station, "N", *both, scale, scale, difference=abs(value - reference))
+
+
+def claiming(hinge, *claims):
+    return hinge.model_copy(update={"claims": claims})
+
+
+EVERYWHERE = Claim(probe="BD.rotation", bound=0.005, text="rotation within 0.5 % everywhere")
+
+
+def test_a_claim_without_a_station_stands_at_every_row_of_its_probe(hinge, right):
+    comparison = compared(claiming(hinge, EVERYWHERE), paired(hinge, Choices(), right))
+    found = documents.comparison(comparison)["rows"]
+    mine = [each for each in found if each["probe"] == "BD.rotation"]
+    assert len(mine) == 10
+    for each in mine:
+        assert each["claim"] == 0.005
+        assert each["claim_met"] is (each["claim_difference"] <= 0.005)
+    assert {each["claim"] for each in found if each["probe"] != "BD.rotation"} == {None}
+    assert {each["claim_difference"] for each in found if each["probe"] != "BD.rotation"} == {None}
+
+
+def test_it_has_one_line_with_the_worst_station_and_how_often_it_is_met(hinge, right):
+    comparison = compared(claiming(hinge, EVERYWHERE), paired(hinge, Choices(), right))
+    fractions = {row.station: claim_difference(row) for row in comparison.rows if row.probe.name == "BD.rotation"}
+    worst = max(fractions, key=fractions.get)
+    met = sum(fraction <= 0.005 for fraction in fractions.values())
+    sheet = next(sheet for sheet in sheets.of_comparison(comparison) if sheet.title == "Claims of the source")
+    ((text, theirs, _, at, how_often, word),) = sheet.rows
+    assert text == EVERYWHERE.text
+    assert theirs == "0.500 %"
+    assert at == f"load {worst:g}"
+    assert how_often == f"{met} of 10"
+    assert word == ("met" if met == 10 else "not met")
+    (sentence,) = sheets.explanation(comparison)
+    assert f"at {worst:g}" in sentence
+
+
+def test_met_everywhere_but_once_is_not_met(hinge):
+    scene = claiming(hinge, Claim(probe="A.reaction", bound=0.01))
+    rows = [row(100.0, 100.5, station=1.0), row(100.0, 102.0, station=2.0), row(100.0, 100.0, station=3.0)]
+    (standing,) = standings(scene, rows)
+    assert (standing.met, standing.stations, standing.holds) == (2, 3, False)
+    assert standing.worst.station == 2.0
+    assert standings(scene, rows[::2])[0].holds
+
+
+def test_a_claim_of_a_station_goes_before_one_of_all(hinge):
+    everywhere, here = Claim(probe="A.reaction", bound=0.01), Claim(probe="A.reaction", station=2.0, bound=0.05)
+    scene = claiming(hinge, everywhere, here)
+    assert claim_of(scene, row(1.0, 1.0, station=2.0)) is here
+    assert claim_of(scene, row(1.0, 1.0, station=1.0)) is everywhere
+    assert claim_of(scene, row(1.0, 1.0, quantity="force")) is None
+
+
+@pytest.mark.parametrize("quantity", ["reaction", "force", "reaction_moment"])
+def test_a_claim_of_a_force_is_of_the_value_there(quantity):
+    """10.2 for 10 where the stage has 100: 0.2 % of the largest, and 2 % of the value that is claimed about."""
+    small = row(10.2, 10.0, quantity=quantity)
+    assert small.fraction(small.difference) == pytest.approx(0.002)
+    assert claim_difference(small) == pytest.approx(0.02)
+    assert claim_met(Claim(probe=small.probe.name, bound=0.01), small) is False
+
+
+def test_of_a_force_that_vanishes_it_is_of_the_stages_largest():
+    assert claim_difference(row(0.9, 0.5)) == pytest.approx(0.004)
+
+
+def test_a_place_is_measured_by_the_beam():
+    assert claim_difference(row(10.2, 10.0, quantity="centre")) == pytest.approx(0.002)
+
+
+def test_a_row_without_a_difference_meets_nothing(hinge):
+    nothing = Row(
+        Probe(of="A", quantity="reaction"), "load", 1.0, "N", frozen_array([]), frozen_array([]), 1.0, 1.0, math.nan
+    )
+    claim = Claim(probe="A.reaction", bound=0.01)
+    assert claim_met(claim, nothing) is None
+    assert standings(claiming(hinge, claim), [nothing]) == ()
+
+
+def test_the_sentence_and_the_table_say_the_same_number(hinge, right):
+    scene = claiming(hinge, Claim(probe="contact.force", station=0.335, bound=0.01))
+    comparison = compared(scene, paired(hinge, Choices(), right))
+    sheet = next(sheet for sheet in sheets.of_comparison(comparison) if sheet.title == "Claims of the source")
+    (sentence,) = sheets.explanation(comparison)
+    assert f"our difference of {sheet.rows[0][2]} " in sentence
+    (small,) = (each for each in comparison.rows if each.probe.name == "contact.force" and each.station == 0.335)
+    assert small.fraction(small.difference) != claim_difference(small)

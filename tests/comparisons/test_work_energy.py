@@ -1,0 +1,218 @@
+"""The work–energy reaction beside planted springs, whose energy and force are known."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from frozendict import frozendict
+
+from comparisons import documents, reactions_drawn, sheets
+from comparisons.choices import Choices
+from comparisons.nearby import RHO, nearby
+from comparisons.pairing import Solvers, paired
+from comparisons.verdict import compared
+from comparisons.work_energy import WITHIN, sentence
+from scene import Stage
+from scene.answer import frozen_array
+from scene.freedoms import unit
+from scene.statement import DisplacementDrive
+from tests.comparisons.made_up import MadeUp
+from tests.together.driven import gripper_like, snapping
+
+K, STOP_AT, STOP = 70.0, 0.006, 900.0  # N/m, m, N/m
+
+
+def force(d):
+    """Of a spring, and of a second one beyond a stop."""
+    return K * d + STOP * max(d - STOP_AT, 0.0)
+
+
+def energy(d):
+    return 0.5 * K * d**2 + 0.5 * STOP * max(d - STOP_AT, 0.0) ** 2
+
+
+class Spring:
+    """Answers whose energy and driven force are those of the spring; ``share`` is a fault of the force."""
+
+    def __init__(self, solver="cprbm", *, share=1.0, until=None):
+        self.base, self.share, self.until = MadeUp(solver, 1e-3), share, until
+
+    def __call__(self, scene, choices):
+        answer = self.base(scene, choices)
+        stations = []
+        for station in answer.stations:
+            stage = next(stage for stage in scene.stages if stage.name == station.stage)
+            values = dict(station.values)
+            values["scene.potential_energy"] = frozen_array([energy(station.value)])
+            drive = scene.drives.get(stage.steps)
+            pushed = self.share * force(station.value)
+            if isinstance(drive, DisplacementDrive) and f"{drive.point}.reaction" in values:
+                values[f"{drive.point}.reaction"] = frozen_array(pushed * unit(drive.direction))
+            elif drive is not None and stage.steps == "turn":
+                values["block.reaction_moment"] = frozen_array([pushed])
+            touching = {"stop": frozen_array([[0.0, 0.0]])} if station.value > STOP_AT else {}
+            stations.append(replace(station, values=frozendict(values), touching=frozendict(touching)))
+        return replace(answer, stations=tuple(stations[: self.until]))
+
+
+def driven(*stages):
+    """The driven scene with stages of its drives and its load in place of its own."""
+    named = tuple(
+        Stage(name=f"{steps}{place}", steps=steps, stations=stations) for place, (steps, stations) in enumerate(stages)
+    )
+    return gripper_like().model_copy(update={"stages": named})
+
+
+def found(scene, cprbm=None):
+    solvers = Solvers(cprbm or Spring(), Spring("fea", share=1.01))
+    return compared(scene, paired(scene, Choices(), solvers))
+
+
+def test_every_station_has_two_beside_it_and_is_the_last_of_them():
+    scene = nearby(driven(("push", (0.001, 0.002)), ("pull", (0.5,)), ("push", (-0.004, 0.0))))
+    assert scene is not None
+    push, pull, back = (stage.stations for stage in scene.stages)
+    np.testing.assert_allclose(push, [0.000998, 0.001002, 0.001, 0.001996, 0.002004, 0.002], rtol=1e-12)
+    assert pull == (0.5,)
+    np.testing.assert_allclose(back, [-0.003992, -0.004008, -0.004, 0.0], rtol=1e-12)
+    assert push[2::3] == (0.001, 0.002)  # what follows goes on from the scene's own state
+    assert "scene.potential_energy" in {probe.name for probe in scene.probes}
+
+
+def test_the_energy_is_asked_for_if_the_scene_does_not():
+    scene = driven(("push", (0.001,)))
+    fewer = scene.model_copy(update={"probes": tuple(p for p in scene.probes if p.quantity != "potential_energy")})
+    near = nearby(fewer)
+    assert near is not None
+    assert [probe.name for probe in near.probes] == [*(p.name for p in fewer.probes), "scene.potential_energy"]
+
+
+def test_without_a_driven_reaction_nothing_is_asked(hinge, right):
+    assert nearby(hinge) is None
+    assert nearby(driven(("pull", (0.5,)))) is None
+    scene = driven(("push", (0.001,)))
+    fewer = scene.model_copy(update={"probes": tuple(p for p in scene.probes if p.name != "M.reaction")})
+    assert nearby(fewer) is None
+    comparison = compared(hinge, paired(hinge, Choices(), right))
+    assert comparison.reactions == ()
+    assert documents.comparison(comparison)["work_energy"] == []
+    assert reactions_drawn.of_comparison(comparison) == ()
+
+
+@pytest.mark.parametrize("steps", ["push", "turn"])
+def test_the_energies_give_the_springs_force_along_the_drive_or_its_moment(steps):
+    """Of a quadratic the central difference is exact; a stage may go back, below zero, and to zero."""
+    comparison = found(driven((steps, (0.001, 0.004)), (steps, (0.002, -0.003, 0.0))))
+    assert [each.station for each in comparison.reactions] == [0.001, 0.004, 0.002, -0.003]
+    for each in comparison.reactions:
+        assert each.unit == ("N" if steps == "push" else "N·m")
+        assert each.multiplier == pytest.approx(K * each.station, rel=1e-12)
+        assert each.work_energy == pytest.approx(K * each.station, rel=1e-9)
+        assert each.fea == pytest.approx(1.01 * K * each.station, rel=1e-12)
+        assert each.from_fea == pytest.approx(-0.01 * np.sign(each.station), rel=1e-9)
+        assert each.changes == ()
+        assert not each.apart
+        # certificates of 1e-13, an energy of half the force times d
+        assert each.floor / each.scale == pytest.approx(1e-13 / (4.0 * RHO), rel=0.01)
+
+
+def test_a_contact_that_closes_is_named_within_one_station_and_nowhere_else():
+    comparison = found(driven(("push", (0.002, 0.004, 0.007, 0.008)), ("push", (0.005, 0.001))))
+    changes = {(each.stage, each.station): each.changes for each in comparison.reactions}
+    assert changes == {
+        ("push0", 0.002): (),
+        ("push0", 0.004): ("stop",),
+        ("push0", 0.007): ("stop",),
+        ("push0", 0.008): ("stop",),  # it opens again before the next
+        ("push1", 0.005): ("stop",),
+        ("push1", 0.001): (),
+    }
+
+
+def test_at_a_kink_the_two_are_apart_and_the_sentence_lists_it():
+    """At the stop d2 has felt it and d1 has not: STOP (ρd)²/2 of energy over 2ρd."""
+    comparison = found(driven(("push", (0.002, STOP_AT, 0.009))))
+    kink = comparison.reactions[1]
+    assert kink.changes == ("stop",)
+    assert kink.difference == pytest.approx(0.25 * STOP * RHO * STOP_AT / force(STOP_AT), rel=1e-6)
+    assert kink.apart
+    said = sentence(comparison.reactions)
+    assert "push0 0.006 (0.643 %)" in said
+    assert "within 0.100 % of the multiplier at 1 of 1 stations away" in said
+
+
+def test_a_multiplier_that_is_wrong_is_told():
+    comparison = found(driven(("push", (0.002, 0.004))), Spring(share=1.0 + 2.0 * WITHIN))
+    assert [each.apart for each in comparison.reactions] == [True, True]
+    assert "at 0 of 2 stations" in sentence(comparison.reactions)
+
+
+def test_the_forces_of_two_oblique_drives_of_a_point_are_told_apart():
+    """3 N along the one and 5 N along the other; their sum's projection would be another number."""
+    scene = snapping()
+    oblique = scene.drives["aside"].model_copy(update={"direction": (1.0, -1.0)})
+    scene = scene.model_copy(update={"drives": frozendict({**scene.drives, "aside": oblique})})
+    whole = 3.0 * np.array([0.0, -1.0]) + 5.0 * np.array([1.0, -1.0]) / np.sqrt(2.0)
+
+    def pushed(scene, choices):
+        answer = Spring()(scene, choices)
+        stations = tuple(
+            replace(station, values={**station.values, "T.reaction": frozen_array(whole)})
+            for station in answer.stations
+        )
+        return replace(answer, stations=stations)
+
+    comparison = compared(scene, paired(scene, Choices(), Solvers(pushed, pushed)))
+    assert [each.multiplier for each in comparison.reactions] == pytest.approx(4 * [3.0], rel=1e-12)
+
+
+def test_a_run_beside_that_ends_early_leaves_the_rest_without():
+    scene = driven(("push", (0.001, 0.002, 0.003)))
+
+    def early(scene, choices):
+        return Spring(until=4 if len(scene.stages[0].stations) > 3 else None)(scene, choices)
+
+    comparison = found(scene, early)
+    assert [each.work_energy is None for each in comparison.reactions] == [False, True, True]
+    assert "2 stations were not reached" in sentence(comparison.reactions)
+    assert len(reactions_drawn.of_comparison(comparison)) == 1
+    assert json.loads(documents.text(documents.comparison(comparison)))["work_energy"][2]["work_energy"] is None
+
+
+def test_it_stands_in_json_in_a_table_and_in_a_figure_of_each_drive():
+    comparison = found(driven(("push", (0.002, STOP_AT)), ("turn", (0.003,))))
+    data = json.loads(documents.text(documents.comparison(comparison)))["work_energy"]
+    assert [(row["stage"], row["station"], row["drive"], row["unit"]) for row in data] == [
+        ("push0", 0.002, "push", "N"),
+        ("push0", STOP_AT, "push", "N"),
+        ("turn1", 0.003, "turn", "N·m"),
+    ]
+    assert data[1]["changes_nearby"] == ["stop"]
+    assert data[1]["difference"] == pytest.approx(data[1]["work_energy"] / data[1]["multiplier"] - 1.0, rel=1e-9)
+    tables = [sheet for sheet in sheets.of_comparison(comparison) if sheet.title.startswith("Reaction at the drive")]
+    assert [len(sheet.rows) for sheet in tables] == [2, 1]
+    assert {len(row) for sheet in tables for row in sheet.rows} == {len(tables[0].headers)}
+    pictures = reactions_drawn.of_comparison(comparison)
+    assert [picture.name for picture in pictures] == ["reaction-push", "reaction-turn"]
+    assert all(picture.png.startswith(b"\x89PNG") for picture in pictures)
+
+
+def test_it_stands_though_a_finer_run_fails_and_not_where_one_of_its_own_does():
+    scene = driven(("push", (0.002, 0.004)))
+
+    def answers(fails):
+        return lambda scene, choices: Spring(until=1 if choices.links == fails else None)(scene, choices)
+
+    finer, own = found(scene, answers(80)), found(scene, answers(40))
+    assert not finer.verdict.completed
+    assert len(finer.reactions) == 2
+    assert own.reactions == ()
+
+
+def test_the_verdict_does_not_hang_on_it():
+    scene = driven(("push", (0.002, 0.004)))
+    comparison = found(scene)
+    without = compared(scene, replace(comparison.runs, nearby=None))
+    assert without.verdict == comparison.verdict
+    assert without.reactions == ()
