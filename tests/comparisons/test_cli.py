@@ -195,7 +195,7 @@ def test_every_mistake_of_a_scene_is_in_the_paragraph(right, capsys, tmp_path):
         ("[loads.M]", '[drives.d]\nkind = "rotation"\nbody = "BD"\n[loads.M]', "loads.M"),
         (
             "[loads.M]",
-            '[contacts.c]\nkind = "beam-circle"\nbeam = "beam1"\nbody = "AC"\ncenter = [0.026, 0.05125]\n'
+            '[contacts.c]\nkind = "beam-circle"\nbeam = "beam1"\nbody = "AC"\ncenter = [0.026, 0.00125]\n'
             "radius = 0.0005\n[loads.M]",
             "contacts.c",
         ),
