@@ -23,6 +23,7 @@ _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predic
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
 _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
 _CUTS = 10  # in a row, each to a quarter
+_EASY = 6  # iterations: a step that took more is not followed by a longer one
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _TIGHTENINGS = 25
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
@@ -82,9 +83,11 @@ class March:
             value = target if size >= abs(way) else self.values[load] + np.copysign(size, way)
             if value == self.values[load]:
                 raise StoppedError(*reason)
+            spent = self.iterations
             trouble = self._step(load, value, rate)
             if trouble is None:
-                stride, cuts = 2.0 * size, 0
+                easy = self.iterations - spent <= _EASY
+                stride, cuts = 2.0 * size if easy else size, 0
             elif not searching and self._loosen(Pair):
                 searching = True
             else:

@@ -43,7 +43,7 @@ class Settings:
     residual: float = 1e-10
     correction: float = 1e-8
     newton_limit: int = 25
-    iteration_limit: int = 300
+    iteration_limit: int = 1000
 
     def __post_init__(self) -> None:
         mistakes = []

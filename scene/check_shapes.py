@@ -12,14 +12,18 @@ Bounds stand on dimensionless numbers only.  With thickness t, arc length L, cur
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import product
 from math import hypot, inf, isfinite
+from typing import Literal
 
 import numpy as np
 
 from scene import polynomial
 from scene.geometry import arc_length, closest_pair, largest_curvature, points_on, scaled, tangents_on
 from scene.mistakes import Mistake
-from scene.statement import Arc, Beam, BeamContact, Curve, FreeEnd, Point, Polynomial, Scene
+from scene.statement import Arc, Beam, BeamContact, BeamEnd, Curve, FreeEnd, Point, Polynomial, Scene, WeldedEnd
+
+Side = Literal["start", "end"]
 
 THINNEST, THICKEST = 1e-5, 0.2
 MOST_CURVED = 0.5
@@ -28,8 +32,10 @@ STEEPEST = 1e3
 HIGHEST_DEGREE = 20
 MEETING = 1e-6  # of the beam's length, or of the arc's radius
 OVERLAP = 1e-6  # of the mean thickness
+HELD_OVERLAP = 1e-3  # of the mean thickness, beside ends that one body holds: coordinates that were rounded
 CROSSING_ANGLE = 1e-3  # rad; lines that meet at less are taken as tangent
 JOINED = 5.0  # mean thicknesses beside a shared end in which an overlap is no mistake
+SIDE_BY_SIDE = 2.0  # mean thicknesses between ends that one body holds beside each other
 
 
 def wrong_curves(scene: Scene) -> Iterator[Mistake]:
@@ -90,7 +96,8 @@ def overlaps(scene: Scene) -> Iterator[Mistake]:
     """Beams of a contact that overlap (thick) or cross (lines) where they start.
 
     Where the two beams share an end, they overlap there by their nature: a stretch of a few thicknesses
-    beside the shared end is left out of the check.
+    beside the shared end is left out of the check.  Where one body holds two ends side by side, no motion changes
+    the gap between them: there an overlap may be as large as rounded coordinates make it.
     """
     for name, contact in scene.contacts.items():
         if not isinstance(contact, BeamContact):
@@ -100,7 +107,7 @@ def overlaps(scene: Scene) -> Iterator[Mistake]:
             continue
         if not (is_beam(first) and is_beam(second)):
             continue
-        found = _overlap(first, second, thick=contact.thick)
+        found = _overlap(first, second, _welded_to(scene, first, second), thick=contact.thick)
         if found is not None:
             beams = f"{contact.between[0]!r} and {contact.between[1]!r}"
             yield Mistake(f"contacts.{name}", f"{beams} {found[0]}", found[1])
@@ -206,7 +213,24 @@ def _wrong_paper(key: str, contact: BeamContact) -> Iterator[Mistake]:
                 yield Mistake(f"{where}.{axis}", str(list(span)), "a range from the smaller to the larger value")
 
 
-def _overlap(first: Beam, second: Beam, *, thick: bool) -> tuple[str, str] | None:
+def _welded_to(scene: Scene, first: Beam, second: Beam) -> list[tuple[Side, Side]]:
+    """The ends of two beams, one of each, that are welded to the same body."""
+    owners = {point: name for name, body in scene.bodies.items() for point in body.points}
+    return [
+        (side1, side2)
+        for (side1, end1), (side2, end2) in product(_ends(first), _ends(second))
+        if isinstance(end1, WeldedEnd)
+        and isinstance(end2, WeldedEnd)
+        and end1.point in owners
+        and owners[end1.point] == owners.get(end2.point)
+    ]
+
+
+def _ends(beam: Beam) -> tuple[tuple[Side, BeamEnd], tuple[Side, BeamEnd]]:
+    return ("start", beam.start), ("end", beam.end)
+
+
+def _overlap(first: Beam, second: Beam, welded: list[tuple[Side, Side]], *, thick: bool) -> tuple[str, str] | None:
     """What is wrong between two beams, and what is allowed; None where nothing is."""
     size = max(_largest_coordinate(first.curve), _largest_coordinate(second.curve))
     curve1, curve2 = scaled(first.curve, size), scaled(second.curve, size)
@@ -223,6 +247,13 @@ def _overlap(first: Beam, second: Beam, *, thick: bool) -> tuple[str, str] | Non
         depth = mean - pair.distance
         if depth <= OVERLAP * mean:
             return None
+        if depth <= HELD_OVERLAP * mean:
+            beside = _apart_from_held(curve1, curve2, welded, mean, (range1, range2))
+            if not all(low < high for low, high in beside):
+                return None
+            away = closest_pair(curve1, curve2, *beside)
+            if beside != (range1, range2) and mean - away.distance <= OVERLAP * mean:
+                return None
         return (
             f"that overlap at the start by {depth * size:.3g} m, {depth / mean:.3g} of their mean thickness",
             f"beams that touch or are apart (overlap at most {OVERLAP:g} of the mean thickness)",
@@ -250,6 +281,28 @@ def _apart_from_shared(curve: Curve, other: Curve, left_out: float) -> tuple[flo
         if _distance(curve.end, end) <= near:
             high = 1.0 - share
     return low, high
+
+
+def _apart_from_held(
+    curve1: Curve,
+    curve2: Curve,
+    welded: list[tuple[Side, Side]],
+    mean: float,
+    ranges: tuple[tuple[float, float], tuple[float, float]],
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """The ranges of u without the stretches beside ends that one body holds side by side."""
+    shares = JOINED * mean / arc_length(curve1), JOINED * mean / arc_length(curve2)
+    cut = list(ranges)
+    for sides in welded:
+        ends = [
+            curve.start if side == "start" else curve.end for curve, side in zip((curve1, curve2), sides, strict=True)
+        ]
+        if _distance(*ends) > SIDE_BY_SIDE * mean:
+            continue
+        for i, (side, share) in enumerate(zip(sides, shares, strict=True)):
+            low, high = cut[i]
+            cut[i] = (max(low, share), high) if side == "start" else (low, min(high, 1.0 - share))
+    return cut[0], cut[1]
 
 
 def _distance(a: Point, b: Point) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from scene.check_beside_itself import beside_themselves
 from scene.check_circles import circle_overlaps, wrong_circles
 from scene.check_drives import wrong_drives, wrong_slides
 from scene.check_motion import wrong_loads, wrong_stages, wrong_supports
@@ -18,6 +19,7 @@ _CHECKS = (
     unknown_names,
     wrong_curves,
     wrong_sections,
+    beside_themselves,
     wrong_ends,
     wrong_slides,
     wrong_supports,

@@ -186,6 +186,19 @@ def test_every_mistake_of_a_scene_is_in_the_paragraph(right, capsys, tmp_path):
         ("[bodies.AC]", "[bodies.AC", "TOML"),
         ('body = "BD"', 'body = "AC"', "loads.M.body"),
         ('between = ["beam1", "beam2"]', 'between = ["beam1", "beam3"]', "contacts.contact.between"),
+        ("[contacts.contact.paper]", "[contacts.contact]", "TOML"),
+        (
+            "[contacts.contact.paper]",
+            '[contacts.again]\nkind = "beam-beam"\nbetween = ["beam2", "beam1"]\n[contacts.contact.paper]',
+            "contacts.again.between",
+        ),
+        ("[loads.M]", '[drives.d]\nkind = "rotation"\nbody = "BD"\n[loads.M]', "loads.M"),
+        (
+            "[loads.M]",
+            '[contacts.c]\nkind = "beam-circle"\nbeam = "beam1"\nbody = "AC"\ncenter = [0.026, 0.00125]\n'
+            "radius = 0.0005\n[loads.M]",
+            "contacts.c",
+        ),
     ],
     ids=[
         "misspelt",
@@ -196,6 +209,10 @@ def test_every_mistake_of_a_scene_is_in_the_paragraph(right, capsys, tmp_path):
         "no TOML",
         "on ground",
         "no beam",
+        "one table twice",
+        "one pair twice",
+        "a load on what is driven",
+        "a circle inside a beam",
     ],
 )
 def test_every_kind_of_wrong_scene_is_a_paragraph_and_2(right, capsys, tmp_path, old, new, said):

@@ -82,6 +82,12 @@ TIES = [
         "contacts.more.between",
         "the pair of contacts.contact again",
     ),
+    (
+        "contacts/again",
+        {"kind": "beam-beam", "between": ["beam1", "beam2"], "thick": False},
+        "contacts.again.between",
+        "the pair of contacts.contact again",
+    ),
     ("contacts/contact/paper/boundary", "BD", "contacts.contact.paper.boundary", "'beam1', 'beam2'"),
     (
         "contacts/contact/paper/related/AC",
