@@ -35,7 +35,7 @@ JOINED = 5.0  # mean thicknesses beside a shared end in which an overlap is no m
 def wrong_curves(scene: Scene) -> Iterator[Mistake]:
     """Curves without length, arcs whose ends lie on no common circle, polynomials that state no curve."""
     for name, beam in scene.beams.items():
-        mistake = _wrong_curve(f"beams.{name}.curve", beam.curve)
+        mistake = wrong_curve(f"beams.{name}.curve", beam.curve)
         if mistake is not None:
             yield mistake
 
@@ -111,7 +111,7 @@ def is_beam(beam: Beam) -> bool:
     return _has_shape(beam.curve) and _wrong_section("", beam) is None
 
 
-def _wrong_curve(key: str, curve: Curve) -> Mistake | None:
+def wrong_curve(key: str, curve: Curve) -> Mistake | None:
     if isinstance(curve, Polynomial) and (mistake := _wrong_polynomial(key, curve)) is not None:
         return mistake
     if curve.start == curve.end:
@@ -165,7 +165,7 @@ def _wrong_polynomial(key: str, curve: Polynomial) -> Mistake | None:
 
 
 def _has_shape(curve: Curve) -> bool:
-    return _wrong_curve("", curve) is None
+    return wrong_curve("", curve) is None
 
 
 def _wrong_section(name: str, beam: Beam) -> Mistake | None:
