@@ -15,14 +15,16 @@ more than the verdict limit (or a point lies beyond the exact curve's ends), and
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from frozendict import frozendict
 
 from comparisons.formats import percent
 from comparisons.offset_exact import ordinates
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
-from comparisons.verdict import Word
+from comparisons.verdict import Verdict, Word
 from scene import OffsetClaim, OffsetQuestion
 from scene.answer import Array
 
@@ -72,18 +74,16 @@ class OffsetRow:
 
 @dataclass(frozen=True, slots=True)
 class OffsetComparison:
-    """An offset question, its rows and the verdict; seconds of the two routes."""
+    """An offset question, its rows and the verdict; ``seconds`` of the two routes, and the route for pictures."""
 
     question: OffsetQuestion
     rows: tuple[OffsetRow, ...]
-    word: Word
-    sentence: str
-    seconds: dict[str, float]
+    verdict: Verdict
+    seconds: Mapping[str, float]
+    construct: OffsetConstruction
 
 
-def compared_offset(
-    question: OffsetQuestion, construct: OffsetConstruction = cprbm_offset_points
-) -> OffsetComparison:
+def compared_offset(question: OffsetQuestion, construct: OffsetConstruction = cprbm_offset_points) -> OffsetComparison:
     """Both routes for every spacing, N and t of a question."""
     distances = question.sign * np.array(question.offsets)
     chains = [(name, n) for name in question.spacings for n in question.numbers]
@@ -94,7 +94,9 @@ def compared_offset(
     breaks = np.cumsum([n for _, n in chains])[:-1]
     exact = [
         np.split(ordinates(question.curve, at, float(distance), along_x=graph == 0), breaks)
-        for distance, at in zip(distances, np.concatenate([each.points[..., graph] for each in found], axis=1), strict=True)
+        for distance, at in zip(
+            distances, np.concatenate([each.points[..., graph] for each in found], axis=1), strict=True
+        )
     ]
     seconds = {"cprbm": between - begun, "exact": time.perf_counter() - between}
     rows = tuple(
@@ -102,8 +104,7 @@ def compared_offset(
         for chain, ((name, _), each) in enumerate(zip(chains, found, strict=True))
         for place in range(len(distances))
     )
-    word, sentence = _judged(question, rows)
-    return OffsetComparison(question, rows, word, sentence, seconds)
+    return OffsetComparison(question, rows, _judged(question, rows), frozendict(seconds), construct)
 
 
 def claim_of_offset(question: OffsetQuestion, n: int) -> OffsetClaim | None:
@@ -131,7 +132,7 @@ def _row(question: OffsetQuestion, name: str, place: int, found: Offsets, exact:
     )
 
 
-def _judged(question: OffsetQuestion, rows: tuple[OffsetRow, ...]) -> tuple[Word, str]:
+def _judged(question: OffsetQuestion, rows: tuple[OffsetRow, ...]) -> Verdict:
     words = [row.word(question.verdict_limit) for row in rows]
     for word in (Word.DIFFER, Word.UNDECIDED, Word.AGREE):
         those = [row for row, said in zip(rows, words, strict=True) if said is word]
@@ -149,8 +150,9 @@ def _judged(question: OffsetQuestion, rows: tuple[OffsetRow, ...]) -> tuple[Word
     place = f"{row.spacing} at N = {row.n}, t = {row.offset:g}: {said}"
     match word:
         case Word.AGREE:
-            return word, f"All {len(rows)} rows agree; the closest call is {place}."
+            sentence = f"All {len(rows)} rows agree; the closest call is {place}."
         case Word.DIFFER:
-            return word, f"{len(those)} of {len(rows)} rows differ, most of all {place}."
+            sentence = f"{len(those)} of {len(rows)} rows differ, most of all {place}."
         case Word.UNDECIDED:
-            return word, f"{len(those)} of {len(rows)} rows cannot be told, least of all {place}."
+            sentence = f"{len(those)} of {len(rows)} rows cannot be told, least of all {place}."
+    return Verdict(word, sentence, tuple(words), completed=all(np.isfinite(each.difference) for each in rows))

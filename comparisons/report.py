@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
-from comparisons import archive, documents, figures, sheets
+from comparisons import archive, documents, figures, offset_pages, sheets
+from comparisons.offset_verdict import OffsetComparison
 from comparisons.verdict import Comparison
 from comparisons.writing import write
 
@@ -35,9 +36,10 @@ class Chapter:
     sheets: tuple[sheets.Sheet, ...]
     explanation: tuple[str, ...]
     pictures: tuple[_PagePicture, ...]
+    files: tuple[str, ...] = ("comparison.json", "answers.json")
 
 
-def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison) -> tuple[Chapter, ...]:
+def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison | OffsetComparison) -> tuple[Chapter, ...]:
     """Write a finished case into a report.
 
     Args:
@@ -51,19 +53,27 @@ def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison) -> tup
     Raises:
         OSError: the folder cannot be written to.
     """
-    own = folder / compared.scene.name
-    pictures = figures.of_comparison(compared)
+    if isinstance(compared, OffsetComparison):
+        own, pictures = folder / compared.question.name, figures.of_offset(compared)
+        write(own / "comparison.json", documents.text({"cases": [offset_pages.document(compared)]}))
+        chapters = (*earlier, offset_chapter(compared, pictures))
+    else:
+        own, pictures = folder / compared.scene.name, figures.of_comparison(compared)
+        _archive(own, compared)
+        chapters = (*earlier, chapter(compared, pictures))
     for picture in pictures:
         write(own / f"{picture.name}.svg", picture.svg)
         write(own / f"{picture.name}.png", picture.png)
+    write(folder / "index.html", page(chapters))
+    return chapters
+
+
+def _archive(own: Path, compared: Comparison) -> None:
     answers = {name: archive.packed(answer) for name, answer in compared.runs.everything()}
     if compared.runs.paper is not None:
         answers["cprbm paper"] = archive.packed(compared.runs.paper)
     write(own / "answers.json", documents.text(answers))
     write(own / "comparison.json", documents.text({"cases": [documents.comparison(compared)]}))
-    chapters = (*earlier, chapter(compared, pictures))
-    write(folder / "index.html", page(chapters))
-    return chapters
 
 
 def page(chapters: tuple[Chapter, ...]) -> str:
@@ -88,8 +98,27 @@ def chapter(compared: Comparison, pictures: tuple[figures.Picture, ...]) -> Chap
         sentence=compared.verdict.sentence,
         sheets=sheets.of_comparison(compared),
         explanation=sheets.explanation(compared),
-        pictures=tuple(
-            _PagePicture(picture.name, picture.caption, base64.b64encode(picture.svg).decode("ascii"))
-            for picture in pictures
-        ),
+        pictures=_shown(pictures),
+    )
+
+
+def offset_chapter(compared: OffsetComparison, pictures: tuple[figures.Picture, ...]) -> Chapter:
+    """What the page shows of an offset question and its figures."""
+    return Chapter(
+        name=compared.question.name,
+        title=compared.question.title or compared.question.name,
+        source=compared.question.source,
+        word=compared.verdict.word.value,
+        sentence=compared.verdict.sentence,
+        sheets=offset_pages.sheets_of(compared),
+        explanation=(),
+        pictures=_shown(pictures),
+        files=("comparison.json",),
+    )
+
+
+def _shown(pictures: tuple[figures.Picture, ...]) -> tuple[_PagePicture, ...]:
+    return tuple(
+        _PagePicture(picture.name, picture.caption, base64.b64encode(picture.svg).decode("ascii"))
+        for picture in pictures
     )

@@ -16,7 +16,8 @@ With Taylor's series of the tangent angle along the curve, a link's angle is the
     ε = (½ − L_{i−1}/(L_{i−1}+L_i))(θ_i − θ_{i−1}) + L_{i−1} L_i κ'/6 + …
 
 The first term is eq. (9) less eq. (8), whose γ are as the lengths where the curvature is even; the second is what
-(8) with lengths leaves.  (The estimate takes ε from a spline, which holds further terms.)  Where neighbouring links differ by a second order both are of second order in 1/N.
+(8) with lengths leaves.  (The estimate takes ε from a spline, which holds further terms.)  Where neighbouring links
+differ by a second order both are of second order in 1/N.
 
 A point that stands at the distance t from p_i but ε off the normal has moved t sin ε along the exact offset curve and
 t(1 − cos ε) back from its tangent.  That curve's own curvature is κ/(1 − tκ), and it leaves the tangent by
@@ -113,8 +114,8 @@ def _normal_error(lengths: Array, theta: Array) -> tuple[Array, Array]:
 
     along = np.concatenate(([0.0], np.cumsum(lengths)))
     sums = np.concatenate(([0.0], np.cumsum(theta * lengths)))
-    cubic, quintic = (make_interp_spline(along, sums, degree) for degree in (3, 5))
+    lower, higher = (make_interp_spline(along, sums, degree) for degree in (2, 4))
     tau, inner = 0.5 * (theta[:-1] + theta[1:]), along[1:-1]
-    of_cubic, of_quintic = np.abs(tau - cubic(inner, 1)), np.abs(tau - quintic(inner, 1))
-    error = np.maximum(of_cubic, of_quintic) + np.abs(quintic(inner, 1) - cubic(inner, 1))
-    return error, np.asarray(quintic(inner, 2), dtype=np.float64)
+    of_lower, of_higher = np.abs(tau - lower(inner, 1)), np.abs(tau - higher(inner, 1))
+    error = np.maximum(of_lower, of_higher) + np.abs(higher(inner, 1) - lower(inner, 1))
+    return error, np.asarray(higher(inner, 2), dtype=np.float64)

@@ -112,6 +112,7 @@ def is_beam(beam: Beam) -> bool:
 
 
 def wrong_curve(key: str, curve: Curve) -> Mistake | None:
+    """What is wrong with the curve at ``key``, if anything is."""
     if isinstance(curve, Polynomial) and (mistake := _wrong_polynomial(key, curve)) is not None:
         return mistake
     if curve.start == curve.end:
