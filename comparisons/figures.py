@@ -168,7 +168,7 @@ def _offset_points(compared: OffsetComparison, shown: Shown) -> Picture:
             axes.plot(*exact.T, color=_RED, linewidth=1.2, label=label[0])
             axes.plot(*found.T, "o", color=_BLUE, markersize=5, markerfacecolor="none", label=label[1])
             axes.annotate(f"t = {abs(t):g}", exact[200], textcoords="offset points", xytext=(0, 7), ha="center")
-        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_aspect("equal", adjustable="box")
         axes.margins(0.08)
         axes.set_title(f"N = {n}", loc="left")
         axes.set_xlabel("x, m")

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from frozendict import frozendict
 from pydantic import Field
 
 from scene.statement import Curve, Fraction, Name, Named, Positive, Record
@@ -62,7 +61,7 @@ class OffsetQuestion(Record):
     relative_to: Literal["ordinate", "offset"] = "ordinate"
     offsets: Offsets
     numbers: Numbers
-    spacings: Annotated[Named[Spacing], Field(min_length=1)] = frozendict()
+    spacings: Annotated[Named[Spacing], Field(min_length=1)]
     claims: tuple[OffsetClaim, ...] = ()
     shown: Shown | None = None
     verdict_limit: Fraction = 0.015
