@@ -157,7 +157,7 @@ def _offset_points(compared: OffsetComparison, shown: Shown) -> Picture:
     name, spacing = next(iter(question.spacings.items()))
     distances = question.sign * np.array(shown.offsets)
     u = np.linspace(0.0, 1.0, 400)
-    figure = Figure(figsize=(4.6 * len(shown.numbers), 4.6), layout="constrained")
+    figure = Figure(figsize=(4.6 * len(shown.numbers), 3.2), layout="constrained")
     plots = figure.subplots(1, len(shown.numbers), sharey=True, squeeze=False)[0]
     for axes, n in zip(plots, shown.numbers, strict=True):
         axes.plot(*offset_curve(question.curve, u, 0.0).T, color="black", linewidth=1.4, label="curve")
