@@ -21,13 +21,16 @@ from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from multiprocessing import get_context
+from typing import Protocol
 
 from frozendict import frozendict
 from pydantic import ValidationError
 
 from comparisons.choices import KINEMATICS, Choices, Kinematics, check
 from comparisons.nearby import nearby
-from scene import Answer, BeamContact, Mistake, Scene, SceneError
+from scene import Answer, BeamContact, Mistake, Scene, SceneError, Spacing
+from scene.answer import Array
+from scene.statement import Curve
 
 Solver = Callable[[Scene, Choices], Answer]
 
@@ -65,12 +68,35 @@ def fea_answer(scene: Scene, choices: Choices) -> Answer:
     return fea_reference.answer(scene, settings)
 
 
+class Offsets(Protocol):
+    """Offset points (k, n, 2), m, at k distances, their tangents' angles (n,), how far off they may be (k, n), m."""
+
+    @property
+    def points(self) -> Array: ...  # noqa: D102
+    @property
+    def tangents(self) -> Array: ...  # noqa: D102
+    @property
+    def off_curve(self) -> Array: ...  # noqa: D102
+
+
+OffsetConstruction = Callable[[Curve, Spacing, int, Array], Offsets]
+"""Of a curve, a spacing, N and signed distances (k,), m (positive to the left)."""
+
+
+def cprbm_offset_points(curve: Curve, spacing: Spacing, n: int, distances: Array) -> Offsets:
+    """The offset points of a chain of ``n`` springs."""
+    import cprbm
+
+    return cprbm.offset_points(curve, spacing, n, distances)
+
+
 @dataclass(frozen=True, slots=True)
 class Solvers:
-    """The two functions that are compared; others can be planted in their place."""
+    """The functions that are compared; others can be planted in their place."""
 
     cprbm: Solver = cprbm_answer
     fea: Solver = fea_answer
+    offset: OffsetConstruction = cprbm_offset_points
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from comparisons import archive, documents, figures, reactions_drawn, sheets
+from comparisons import archive, documents, figures, offset_drawn, offset_pages, reactions_drawn, sheets
+from comparisons.offset_verdict import OffsetComparison
 from comparisons.rendering import Embedded, embedded, rendered
 from comparisons.verdict import Comparison
 from comparisons.writing import write
@@ -27,9 +28,10 @@ class Chapter:
     sheets: tuple[sheets.Sheet, ...]
     explanation: tuple[str, ...]
     pictures: tuple[Embedded, ...]
+    files: tuple[str, ...] = ("comparison.json", "answers.json")
 
 
-def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison) -> tuple[Chapter, ...]:
+def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison | OffsetComparison) -> tuple[Chapter, ...]:
     """Write a finished case into a report.
 
     Args:
@@ -43,20 +45,29 @@ def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison) -> tup
     Raises:
         OSError: the folder cannot be written to.
     """
-    own = folder / compared.scene.name
-    pictures = (*figures.of_comparison(compared), *reactions_drawn.of_comparison(compared))
+    if isinstance(compared, OffsetComparison):
+        own, pictures = folder / compared.question.name, offset_drawn.of_comparison(compared)
+        write(own / "comparison.json", documents.text({"cases": [offset_pages.document(compared)]}))
+        chapters = (*earlier, offset_chapter(compared, pictures))
+    else:
+        own = folder / compared.scene.name
+        pictures = (*figures.of_comparison(compared), *reactions_drawn.of_comparison(compared))
+        _archive(own, compared)
+        chapters = (*earlier, chapter(compared, pictures))
     for picture in pictures:
         write(own / f"{picture.name}.svg", picture.svg)
         write(own / f"{picture.name}.png", picture.png)
+    write(folder / "index.html", page(chapters))
+    return chapters
+
+
+def _archive(own: Path, compared: Comparison) -> None:
     answers = {name: archive.packed(answer) for name, answer in compared.runs.everything()}
     for name, answer in (("cprbm paper", compared.runs.paper), ("cprbm nearby", compared.runs.nearby)):
         if answer is not None:
             answers[name] = archive.packed(answer)
     write(own / "answers.json", documents.text(answers))
     write(own / "comparison.json", documents.text({"cases": [documents.comparison(compared)]}))
-    chapters = (*earlier, chapter(compared, pictures))
-    write(folder / "index.html", page(chapters))
-    return chapters
 
 
 def page(chapters: tuple[Chapter, ...]) -> str:
@@ -75,4 +86,19 @@ def chapter(compared: Comparison, pictures: tuple[figures.Picture, ...]) -> Chap
         sheets=sheets.of_comparison(compared),
         explanation=sheets.explanation(compared),
         pictures=tuple(embedded(picture) for picture in pictures),
+    )
+
+
+def offset_chapter(compared: OffsetComparison, pictures: tuple[figures.Picture, ...]) -> Chapter:
+    """What the page shows of an offset question and its figures."""
+    return Chapter(
+        name=compared.question.name,
+        title=compared.question.title or compared.question.name,
+        source=compared.question.source,
+        word=compared.verdict.word.value,
+        sentence=compared.verdict.sentence,
+        sheets=offset_pages.sheets_of(compared),
+        explanation=(),
+        pictures=tuple(embedded(picture) for picture in pictures),
+        files=("comparison.json",),
     )

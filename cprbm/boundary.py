@@ -25,6 +25,7 @@ from numpy.polynomial import chebyshev
 from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
+from cprbm.offset_points import offset_vectors
 from scene import BeamContact, Mistake, PaperContact, Scene, SceneError
 from scene.answer import Array, Ints
 
@@ -63,8 +64,7 @@ class FittedBoundary:
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
         m, n = len(self.joints), len(self.points)
-        tau = 0.5 * (state.theta[self.links[:-1]] + state.theta[self.links[1:]])
-        nx, ny = -self.side * self.offset * np.sin(tau), self.side * self.offset * np.cos(tau)
+        _, nx, ny = offset_vectors(state.theta[self.links], self.side * self.offset)
         bx, by = at.x[self.points] + nx, at.y[self.points] + ny
         if self.along_x:
             A, B, a, o = bx, by, at.x[self.joints], at.y[self.joints]
@@ -143,13 +143,11 @@ class FittedBoundary:
 
     def range_left(self, state: State, at: Positions) -> Array:
         """How far each constrained joint lies beyond the boundary's ends, (m,), units of length; ≤ 0 within."""
-        tau = 0.5 * (state.theta[self.links[:-1]] + state.theta[self.links[1:]])
+        _, nx, ny = offset_vectors(state.theta[self.links], self.side * self.offset)
         if self.along_x:
-            A = at.x[self.points] - self.side * self.offset * np.sin(tau)
-            a = at.x[self.joints]
+            A, a = at.x[self.points] + nx, at.x[self.joints]
         else:
-            A = at.y[self.points] + self.side * self.offset * np.cos(tau)
-            a = at.y[self.joints]
+            A, a = at.y[self.points] + ny, at.y[self.joints]
         return np.asarray(np.maximum(a - A.max(), A.min() - a))
 
 

@@ -7,7 +7,8 @@ This room states; it never computes mechanics.  Both solvers read the same
 
 from scene.answer import Answer, Certificate, Ending, Event, Shape, StationAnswer
 from scene.mistakes import Mistake, SceneError
-from scene.reading import read
+from scene.offset import OffsetClaim, OffsetQuestion, Spacing
+from scene.reading import Question, read, read_question
 from scene.statement import (
     Arc,
     Beam,
@@ -48,15 +49,20 @@ __all__ = [
     "Load",
     "Material",
     "Mistake",
+    "OffsetClaim",
+    "OffsetQuestion",
     "PaperContact",
     "PinnedEnd",
     "Polynomial",
     "Probe",
+    "Question",
     "Scene",
     "SceneError",
     "Shape",
+    "Spacing",
     "Stage",
     "StationAnswer",
     "WeldedEnd",
     "read",
+    "read_question",
 ]

@@ -41,7 +41,7 @@ SIDE_BY_SIDE = 2.0  # mean thicknesses between ends that one body holds beside e
 def wrong_curves(scene: Scene) -> Iterator[Mistake]:
     """Curves without length, arcs whose ends lie on no common circle, polynomials that state no curve."""
     for name, beam in scene.beams.items():
-        mistake = _wrong_curve(f"beams.{name}.curve", beam.curve)
+        mistake = wrong_curve(f"beams.{name}.curve", beam.curve)
         if mistake is not None:
             yield mistake
 
@@ -118,7 +118,8 @@ def is_beam(beam: Beam) -> bool:
     return _has_shape(beam.curve) and _wrong_section("", beam) is None
 
 
-def _wrong_curve(key: str, curve: Curve) -> Mistake | None:
+def wrong_curve(key: str, curve: Curve) -> Mistake | None:
+    """What is wrong with the curve at ``key``, if anything is."""
     if isinstance(curve, Polynomial) and (mistake := _wrong_polynomial(key, curve)) is not None:
         return mistake
     if curve.start == curve.end:
@@ -172,7 +173,7 @@ def _wrong_polynomial(key: str, curve: Polynomial) -> Mistake | None:
 
 
 def _has_shape(curve: Curve) -> bool:
-    return _wrong_curve("", curve) is None
+    return wrong_curve("", curve) is None
 
 
 def _wrong_section(name: str, beam: Beam) -> Mistake | None:

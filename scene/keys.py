@@ -7,21 +7,21 @@ from typing import Annotated, Any, Union, get_args, get_origin
 
 from pydantic import BaseModel
 
-from scene.statement import Scene
+from scene.statement import Record, Scene
 
 
-def keys_at(loc: tuple[int | str, ...]) -> tuple[str, ...]:
-    """Keys of the table at ``loc``, a place in a scene as pydantic names it (tags of unions included)."""
-    place: Any = Scene
+def keys_at(loc: tuple[int | str, ...], root: type[Record] = Scene) -> tuple[str, ...]:
+    """Keys of the table at ``loc``, a place in ``root`` as pydantic names it (tags of unions included)."""
+    place: Any = root
     for part in loc:
         place = _below(_bare(place), part)
     record = _bare(place)
-    return tuple(key for key in record.model_fields if (record, key) != (Scene, "file"))
+    return tuple(key for key in record.model_fields if (record, key) != (root, "file"))
 
 
-def tags_at(loc: tuple[int | str, ...]) -> tuple[str, ...]:
+def tags_at(loc: tuple[int | str, ...], root: type[Record] = Scene) -> tuple[str, ...]:
     """Kinds (or joints, or motions) of which the table at ``loc`` may be one."""
-    place: Any = Scene
+    place: Any = root
     for part in loc:
         place = _below(_bare(place), part)
     return tuple(tag for record in get_args(_bare(place)) for tag in _tags(record))

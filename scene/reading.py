@@ -1,19 +1,24 @@
-"""TOML in, :class:`~scene.statement.Scene` out, or every mistake at once."""
+"""TOML in, :class:`~scene.statement.Scene` (or :class:`~scene.offset.OffsetQuestion`) out, or every mistake."""
 
 from __future__ import annotations
 
 import tomllib
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
+from scene.check_offset import mistakes_in_offset
 from scene.checks import mistakes_in
 from scene.keys import keys_at, tags_at
 from scene.mistakes import Mistake, SceneError, unknown_name
-from scene.statement import Scene
+from scene.offset import OffsetQuestion
+from scene.statement import Record, Scene
+
+Question = Scene | OffsetQuestion
+Asked = TypeVar("Asked", Scene, OffsetQuestion)
 
 _ALLOWED = {
     "finite_number": "a finite number",
@@ -44,7 +49,21 @@ def read(path: str | Path) -> Scene:
         The scene, with ``file`` set to ``path``.
 
     Raises:
-        SceneError: the file cannot be read, or anything in it is wrong; all mistakes are named.
+        SceneError: the file cannot be read, anything in it is wrong (all mistakes are named), or it asks
+            something else than a scene does.
+    """
+    found = read_question(path)
+    if isinstance(found, OffsetQuestion):
+        allowed = "a scene of beams; of an offset there is no equilibrium, and 'compare' answers it"
+        raise SceneError([Mistake("question", repr(found.question), allowed, found.file)])
+    return found
+
+
+def read_question(path: str | Path) -> Question:
+    """Read a file of any question: of a scene, or, where it says ``question = "offset"``, of an offset curve.
+
+    Raises:
+        SceneError: as :func:`read`.
     """
     path = Path(path)
     try:
@@ -58,6 +77,8 @@ def read(path: str | Path) -> Scene:
         data = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
         raise _file_error(path, f"text that is no TOML ({error})") from None
+    if "question" in data:
+        return offset_from(data, file=str(path))
     return scene_from(data, file=str(path))
 
 
@@ -67,19 +88,36 @@ def scene_from(data: dict[str, Any], *, file: str = "") -> Scene:
     Raises:
         SceneError: anything in it is wrong; all mistakes are named.
     """
-    if "file" in data:
-        raise SceneError([replace(unknown_name("file", "file", "key here", keys_at(())), file=file)])
-    try:
-        scene = Scene.model_validate({**_tuples(data), "file": file})
-    except ValidationError as error:
-        mistakes = [_mistake(details, file) for details in error.errors() if not _says_it_again(details)]
-        raise SceneError(mistakes) from None
-    except RecursionError:
-        raise SceneError([Mistake("", "tables nested too deeply", "a scene", file)]) from None
+    scene = _record(Scene, data, file)
     found = mistakes_in(scene)
     if found:
         raise SceneError(found)
     return scene
+
+
+def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
+    """Make an offset question of plain data.
+
+    Raises:
+        SceneError: anything in it is wrong; all mistakes are named.
+    """
+    question = _record(OffsetQuestion, data, file)
+    found = mistakes_in_offset(question)
+    if found:
+        raise SceneError(found)
+    return question
+
+
+def _record(kind: type[Asked], data: dict[str, Any], file: str) -> Asked:
+    if "file" in data:
+        raise SceneError([replace(unknown_name("file", "file", "key here", keys_at((), kind)), file=file)])
+    try:
+        return kind.model_validate({**_tuples(data), "file": file})
+    except ValidationError as error:
+        mistakes = [_mistake(details, file, kind) for details in error.errors() if not _says_it_again(details)]
+        raise SceneError(mistakes) from None
+    except RecursionError:
+        raise SceneError([Mistake("", "tables nested too deeply", "a scene", file)]) from None
 
 
 def _file_error(path: Path, found: str) -> SceneError:
@@ -95,7 +133,7 @@ def _tuples(value: Any) -> Any:  # noqa: ANN401 - whatever TOML holds
     return value
 
 
-def _mistake(details: ErrorDetails, file: str) -> Mistake:
+def _mistake(details: ErrorDetails, file: str, root: type[Record]) -> Mistake:
     """Pydantic's finding in the house's words."""
     kind, loc = details["type"], details["loc"]
     key = _key_path(loc)
@@ -103,7 +141,7 @@ def _mistake(details: ErrorDetails, file: str) -> Mistake:
     found = _shown(details.get("input"))
     match kind:
         case "extra_forbidden":
-            return replace(unknown_name(key, str(loc[-1]), "key here", keys_at(loc[:-1])), file=file)
+            return replace(unknown_name(key, str(loc[-1]), "key here", keys_at(loc[:-1], root)), file=file)
         case "missing":
             found = "nothing"
             allowed = "an item here" if isinstance(loc[-1], int) else "a value: this key is required"
@@ -128,7 +166,7 @@ def _mistake(details: ErrorDetails, file: str) -> Mistake:
             key = f"{key}.{tag}"
             given = details["input"].get(tag)
             found = "nothing" if kind == "union_tag_not_found" else _shown(given)
-            allowed = f"one of {', '.join(map(repr, tags_at(loc)))}"
+            allowed = f"one of {', '.join(map(repr, tags_at(loc, root)))}"
         case _:
             allowed = _ALLOWED.get(kind, details["msg"])
     return Mistake(key, found, allowed, file)
@@ -171,6 +209,8 @@ def _key_path(loc: tuple[int | str, ...]) -> str:
 
 def _is_tag(loc: tuple[int | str, ...], depth: int) -> bool:
     """Whether pydantic put the tag of a union there: below a body, a load, a drive, a contact, a beam's parts."""
+    if loc[0] == "curve":
+        return depth == 1 and loc[1] in _CURVES
     if loc[0] == "bodies":
         return depth == 2 and loc[2] in {"fixed", "free", "slides"}
     if loc[0] == "loads":

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Callable
 from importlib.resources import as_file, files
+from pathlib import Path
+from typing import Any, TypeVar
 
-from scene import Mistake, Scene, SceneError, read
+from scene import Mistake, Question, Scene, SceneError, read, read_question
+
+T = TypeVar("T")
 
 
 def names() -> tuple[str, ...]:
@@ -18,25 +23,47 @@ def described() -> tuple[tuple[str, str, str], ...]:
     """Name, title and source of every built-in case, read without checking the scenes."""
     found = []
     for name in names():
-        data = tomllib.loads((files(__name__) / f"{name}.toml").read_text(encoding="utf-8"))
+        data = _data(name)
         found.append((name, str(data.get("title", "")), str(data.get("source", ""))))
     return tuple(found)
 
 
+def scenes() -> tuple[str, ...]:
+    """Names of the built-in cases that are scenes of beams."""
+    return tuple(name for name in names() if "question" not in _data(name))
+
+
 def opened(case: str) -> Scene:
-    """The scene of a built-in case's name or of a file.
+    """The scene of a built-in case's name or of a file, as :func:`asked` finds it.
+
+    Raises:
+        SceneError: there is no such case, or the file is no valid scene.
+    """
+    return _found(case, read)
+
+
+def asked(case: str) -> Question:
+    """The question of a built-in case's name or of a file.
 
     Args:
         case: a name of :func:`names`, or the path of a TOML file (anything that ends in ``.toml`` or holds
             a path separator).
 
     Raises:
-        SceneError: there is no such case, or the file is no valid scene.
+        SceneError: there is no such case, or the file is no valid question.
     """
+    return _found(case, read_question)
+
+
+def _found(case: str, reader: Callable[[str | Path], T]) -> T:
     if case in names():
         with as_file(files(__name__) / f"{case}.toml") as path:
-            return read(path)
+            return reader(path)
     if case.endswith(".toml") or "/" in case or "\\" in case:
-        return read(case)
+        return reader(case)
     allowed = f"a built-in case ({', '.join(names())}) or the path of a file that ends in .toml"
     raise SceneError([Mistake("case", repr(case), allowed)])
+
+
+def _data(name: str) -> dict[str, Any]:
+    return tomllib.loads((files(__name__) / f"{name}.toml").read_text(encoding="utf-8"))

@@ -13,6 +13,8 @@ from comparisons.choices import Kinematics
 from comparisons.cli.options import folder, numerical, output
 
 if TYPE_CHECKING:
+    from comparisons.documents import Plain
+    from comparisons.offset_verdict import OffsetComparison
     from comparisons.verdict import Comparison
 
 
@@ -35,19 +37,22 @@ def command(
     out: Path | None,
 ) -> int:
     """Answer scenes with both solvers and say whether they agree."""
-    from comparisons import cases, documents, report, sheets
+    from comparisons import cases, offset_pages, report, sheets
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
+    from comparisons.offset_verdict import OffsetComparison, compared_offset
     from comparisons.pairing import Solvers, paired
     from comparisons.verdict import compared
+    from scene import OffsetQuestion
 
     workers = 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
     solvers = planted if isinstance(planted, Solvers) else Solvers()
     names = [name for text in asked for name in (cases.names() if text == "all" else (text,))]
-    scenes = [cases.opened(name) for name in dict.fromkeys(names)]
+    scenes = [cases.asked(name) for name in dict.fromkeys(names)]
     choices = Choices(links, formulation, elements, kinematics, penetration)
     for scene in scenes:
-        check(choices, scene)
+        if not isinstance(scene, OffsetQuestion):
+            check(choices, scene)
     _distinct([scene.name for scene in scenes])
     if out is None and "all" in asked:
         out = Path("report")
@@ -55,30 +60,37 @@ def command(
         out.mkdir(parents=True, exist_ok=True)
     showing.room_for(json_file)
     printing = str(json_file) != "-"
-    finished: list[Comparison] = []
+    finished: list[Comparison | OffsetComparison] = []
     chapters: tuple[report.Chapter, ...] = ()
     for scene in showing.progress(scenes, shown=not quiet):
-        comparison = compared(scene, paired(scene, choices, solvers, workers=workers))
+        comparison: Comparison | OffsetComparison
+        if isinstance(scene, OffsetQuestion):
+            comparison = compared_offset(scene, solvers.offset)
+        else:
+            comparison = compared(scene, paired(scene, choices, solvers, workers=workers))
         finished.append(comparison)
         if out is not None:
             chapters = report.add(out, chapters, comparison)
         if json_file is not None and str(json_file) != "-":
-            showing.json(json_file, {"cases": [documents.comparison(one) for one in finished]})
+            showing.json(json_file, {"cases": [_document(one) for one in finished]})
         if printing:
             if not quiet:
-                showing.tables(sheets.of_comparison(comparison))
-                for sentence in sheets.explanation(comparison):
-                    click.echo(sentence + "\n")
+                if isinstance(comparison, OffsetComparison):
+                    showing.tables(offset_pages.sheets_of(comparison))
+                else:
+                    showing.tables(sheets.of_comparison(comparison))
+                    for sentence in sheets.explanation(comparison):
+                        click.echo(sentence + "\n")
             verdict = comparison.verdict
             click.echo(f"{scene.name}: {verdict.word.value}. {verdict.sentence}")
     if json_file is not None and str(json_file) == "-":
-        showing.json(json_file, {"cases": [documents.comparison(one) for one in finished]})
+        showing.json(json_file, {"cases": [_document(one) for one in finished]})
     if out is not None and printing and not quiet:
         click.echo(f"report: {out / 'index.html'}")
     return exit_code(finished)
 
 
-def exit_code(finished: Sequence[Comparison]) -> int:
+def exit_code(finished: Sequence[Comparison | OffsetComparison]) -> int:
     """0 if all agree; 1 if any differs or a solve did not complete; 3 if nothing is worse than undecided."""
     from comparisons.verdict import Word
 
@@ -86,6 +98,13 @@ def exit_code(finished: Sequence[Comparison]) -> int:
     if any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts):
         return 1
     return 3 if any(verdict.word is Word.UNDECIDED for verdict in verdicts) else 0
+
+
+def _document(one: Comparison | OffsetComparison) -> Plain:
+    from comparisons import documents, offset_pages
+    from comparisons.offset_verdict import OffsetComparison
+
+    return offset_pages.document(one) if isinstance(one, OffsetComparison) else documents.comparison(one)
 
 
 def _distinct(names: list[str]) -> None:

@@ -35,7 +35,7 @@ def command(planted: object, asked: str, reason: str | None, day: str | None, fo
             raise click.UsageError(f"--date: found {day!r}; allowed: a date as YYYY-MM-DD.") from None
     solvers = planted if isinstance(planted, Solvers) else Solvers()
     code = 0
-    for scene in [cases.opened(name) for name in (cases.names() if asked == "all" else (asked,))]:
+    for scene in [cases.opened(name) for name in (cases.scenes() if asked == "all" else (asked,))]:
         file = folder / f"{scene.name}.json"
         try:
             found = regression.measured(scene, solvers)

@@ -11,8 +11,8 @@ from scene import SceneError
 
 
 @pytest.mark.parametrize("name", cases.names())
-def test_a_case_is_a_scene_of_its_files_name(name):
-    assert cases.opened(name).name == name
+def test_a_case_is_a_question_of_its_files_name(name):
+    assert cases.asked(name).name == name
 
 
 def test_every_claim_of_the_hinge_stands_at_a_row(hinge, right):

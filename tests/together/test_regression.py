@@ -16,13 +16,13 @@ from comparisons.pairing import Solvers
 FOLDER = Path(__file__).parent / "regression"
 
 
-@pytest.mark.parametrize("case", cases.names())
+@pytest.mark.parametrize("case", cases.scenes())
 def test_no_number_has_moved(case):
     found = regression.measured(cases.opened(case), Solvers())
     assert [str(departure) for departure in regression.departures(FOLDER / f"{case}.json", found)] == []
 
 
-@pytest.mark.parametrize("case", cases.names())
+@pytest.mark.parametrize("case", cases.scenes())
 def test_every_acceptance_has_a_date_and_a_reason(case):
     history = json.loads((FOLDER / f"{case}.json").read_text("utf-8"))["history"]
     assert history
@@ -32,4 +32,4 @@ def test_every_acceptance_has_a_date_and_a_reason(case):
 
 
 def test_every_file_belongs_to_a_case():
-    assert {path.stem for path in FOLDER.glob("*.json")} == set(cases.names())
+    assert {path.stem for path in FOLDER.glob("*.json")} == set(cases.scenes())
