@@ -53,7 +53,7 @@ def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     pressed = np.flatnonzero(forces > 0.0)
     h = float(chain.sizes.max())
     # one zone goes on where each joint has a row, and the beam arches by no more than one force can bend an element
-    arched = -overlaps > largest * h**3 / chain.rigidity
+    arched = -overlaps > largest * h**3 / chain.section.rigidity_at(arcs)
     breaks = np.concatenate(
         ([0], np.cumsum((np.diff(arcs) > CLOSE * h + reach[1:] + reach[:-1]) | arched[1:] | arched[:-1]))
     )

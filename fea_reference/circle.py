@@ -76,8 +76,8 @@ def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...
                 radius,
                 half if contact.thick else 0.0,
                 beam.thickness if contact.thick else 1.0,
-                beam.bending / layer**4,
-                beam.bending / max(h / _RESOLVED, beam.length / thinnest) ** 4,
+                beam.softest / layer**4,
+                beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
             )
         )
     return tuple(found)

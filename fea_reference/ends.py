@@ -94,6 +94,7 @@ def _curvature(model: Model, system: System, beam: BeamPart, zeta: Array) -> Arr
     elements = model.elements
     e = model.line(beam, system.z).locate(zeta)[0] + beam.elements.start
     undeformed = (elements.rotation[1, e] - elements.rotation[0, e]) / elements.length[e]
-    moment = bending_moment(model, system, beam, zeta / (beam.elements.stop - beam.elements.start))
+    fractions = zeta / (beam.elements.stop - beam.elements.start)
+    moment = bending_moment(model, system, beam, fractions)
     stretch = elements.compliance[e] * system.z[model.element_dofs[6, e]]
-    return np.asarray((undeformed + moment / beam.bending) / (1.0 + stretch))
+    return np.asarray((undeformed + moment / beam.bending(fractions)) / (1.0 + stretch))

@@ -31,10 +31,10 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
         case "reaction_moment":
             return frozen_array(sum(moment for _, moment in _holding(scene, march, probe.of)) * units.moment)
         case "bending_stress":
-            moment = bending_moment(model, march.system, model.beam(probe.of), np.linspace(0.0, 1.0, probe.points))
-            beam = scene.beams[probe.of]
-            # M t/(2I), with I of the rectangle
-            return frozen_array(moment * units.moment * 6.0 / (beam.width * beam.thickness**2))
+            u, beam = np.linspace(0.0, 1.0, probe.points), scene.beams[probe.of]
+            moment = bending_moment(model, march.system, model.beam(probe.of), u)
+            # M t/(2I), with I of the rectangle that is there
+            return frozen_array(moment * units.moment * 6.0 / (beam.width_at(u) * beam.thickness_at(u) ** 2))
         case "potential_energy":
             return frozen_array(_potential_energy(march) * units.moment)
         case "closing_load":

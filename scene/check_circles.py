@@ -46,13 +46,18 @@ def circle_overlaps(scene: Scene) -> Iterator[Mistake]:
         if not isinstance(contact, CircleContact):
             continue
         beam = scene.beams.get(contact.beam)
-        if beam is None or not is_beam(beam) or _out_of_proportion(name, contact, beam) is not None:
+        if (
+            beam is None
+            or not is_beam(beam)
+            or (contact.thick and beam.tapered)
+            or _out_of_proportion(name, contact, beam) is not None
+        ):
             continue
         length = arc_length(beam.curve)
         # what is compared is in beam's lengths: neither squares nor sums leave the range of floating point
         curve = scaled(beam.curve, length)
         center = (contact.center[0] / length, contact.center[1] / length)
-        thickness = beam.thickness / length if contact.thick else 0.0
+        thickness = beam.thickest / length if contact.thick else 0.0
         depth = contact.radius / length + 0.5 * thickness - distance_to(curve, center)
         measure, of = (thickness, "its thickness") if contact.thick else (1.0, "its length")
         if depth > OVERLAP * measure:

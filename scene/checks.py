@@ -8,6 +8,7 @@ from scene.check_circles import circle_overlaps, wrong_circles
 from scene.check_drives import wrong_drives, wrong_slides
 from scene.check_motion import wrong_loads, wrong_stages, wrong_supports
 from scene.check_names import repeated_names, unknown_names
+from scene.check_profiles import thick_contacts, wrong_profiles
 from scene.check_questions import wrong_claims, wrong_probes
 from scene.check_shapes import overlaps, wrong_contacts, wrong_curves, wrong_ends, wrong_sections
 from scene.mistakes import Mistake
@@ -17,6 +18,7 @@ _CHECKS = (
     repeated_names,
     unknown_names,
     wrong_curves,
+    wrong_profiles,
     wrong_sections,
     wrong_ends,
     wrong_slides,
@@ -24,6 +26,7 @@ _CHECKS = (
     wrong_loads,
     wrong_drives,
     wrong_contacts,
+    thick_contacts,
     overlaps,
     wrong_circles,
     circle_overlaps,

@@ -72,9 +72,9 @@ def test_bending_stiffness():
         beams = {name: {**beam, "thickness": thickness, "width": width} for name, beam in data["beams"].items()}
         scene = hinge(materials=data["materials"], beams=beams)
         chain = mechanism_of(scene, cprbm.Settings(links=7)).problem.model
-        ours = chain.chains[0].rigidity * chain.unit_moment * chain.unit_length
+        ours = chain.chains[0].section.rigidity_at(np.zeros(1))[0] * chain.unit_moment * chain.unit_length
         model = build(scene, fea_reference.Settings(elements=5))
-        theirs = model.beams[0].bending * model.units.bending
+        theirs = model.beams[0].stiffest * model.units.bending
         textbook = modulus * width * thickness**3 / 12.0  # second moment of a rectangle
         assert ours == pytest.approx(textbook, rel=1e-12)
         assert theirs == pytest.approx(textbook, rel=1e-12)
