@@ -86,13 +86,13 @@ def bent(
 
     nothing = np.zeros(0)
     psi, before = 0.0, 0.0
-    for share in np.linspace(0.0, 1.0, 21)[1:]:
+    for share in np.linspace(0.0, 1.0, 9)[1:]:
 
         def miss(psi: float, share: float = float(share)) -> float:
             return float(from_tip(psi, share, nothing)[0][0])
 
         # the next angle lies near the continued one
-        guess, width_of_search = 2.0 * psi - before, 0.02
+        guess, width_of_search = 2.0 * psi - before, 0.05
         while miss(guess - width_of_search) * miss(guess + width_of_search) > 0.0:
             width_of_search *= 2.0
         psi, before = (
