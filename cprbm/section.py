@@ -24,6 +24,7 @@ import numpy as np
 from scene import Beam
 from scene.answer import Array
 
+SAME = 1e-9  # of the thickness over the length: slopes that differ by less are one
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
@@ -45,6 +46,17 @@ class Section:
     def thickness_at(self, s: Array) -> Array:
         """t at arc lengths ``s`` (n,)."""
         return np.asarray(np.interp(s, self.places, self.thickness))
+
+    def thinning_at(self, s: Array) -> Array:
+        """dt/ds at arc lengths ``s`` (n,); at a kink what follows."""
+        piece = np.clip(np.searchsorted(self.places, s, side="right") - 1, 0, len(self.places) - 2)
+        return np.asarray((np.diff(self.thickness) / np.diff(self.places))[piece])
+
+    @property
+    def ridges(self) -> Array:
+        """Arc lengths (k,) at which the edges have a corner that stands out."""
+        slopes = np.diff(self.thickness) / np.diff(self.places)
+        return np.asarray(self.places[1:-1][np.diff(slopes) < -SAME * self.thickness.max() / self.places[-1]])
 
     def rigidity_at(self, s: Array) -> Array:
         """E·I at arc lengths ``s`` (n,), units of S and of length."""

@@ -41,8 +41,11 @@ def ends(model: Model, system: System, touch: Touch) -> Array:
     """Places ζ (2,) on the first beam where the contact's first zone begins and its last one ends."""
     weight = np.hypot(*touch.force)
     middle = float(weight @ touch.zeta / weight.sum())
-    first = _continued(model, system, touch, 0, -1.0)
-    last = _continued(model, system, touch, -1, 1.0)
+    # a clamped end that just touches may overlap by round-off
+    wide = np.flatnonzero(np.diff(touch.zones.intervals, axis=1)[:, 0] > _AT_END)
+    outer = wide[[0, -1]] if wide.size else np.array([0, -1])
+    first = _continued(model, system, touch, int(outer[0]), -1.0)
+    last = _continued(model, system, touch, int(outer[1]), 1.0)
     return np.array([first, last]) if first <= last else np.array([middle, middle])
 
 
@@ -77,7 +80,10 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array,
     if isinstance(pair, Circle):
         n = x - centre(model, pair, z)[:, None]
         turning = np.sign(tangent[0] * n[1] - tangent[1] * n[0])
-        return np.asarray(turning * own + 1.0 / (pair.radius + pair.distance))
+        # where the edge lies along the circle, the beam leans against it by the angle whose sine is T' by arc length
+        lengths = line.lengths[line.locate(zeta)[0]]
+        level = np.sqrt(1.0 - (pair.edge.slope(zeta) / lengths) ** 2)
+        return np.asarray(turning * own + level / (pair.radius + pair.edge.at(zeta)))
     other = model.beams[pair.second]
     line_m = model.line(other, z)
     zeta_m, found = project(line_m, x, np.full(zeta.shape, facing))

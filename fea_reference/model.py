@@ -18,7 +18,7 @@ from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLi
 from fea_reference.curves import length, sample
 from fea_reference.element import Elements, reference
 from fea_reference.hermite import Index, NeutralLine
-from fea_reference.section import bending_stiffness, compliance
+from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
 from fea_reference.settings import Settings
 from fea_reference.state import State
 from scene.answer import Array
@@ -75,6 +75,10 @@ class BeamPart:
     def bending(self, fractions: Array) -> Array:
         """EI at fractions (k,) of the arc length, without units."""
         return bending_stiffness(self.record, self.material, fractions) / self.unit
+
+    def bending_second(self, fractions: Array) -> Array:
+        """Second derivative of EI by arc length at fractions (k,), without units; at a knot what follows."""
+        return bending_stiffness_second(self.record, self.material, fractions) / self.unit / self.length**2
 
     @property
     def softest(self) -> float:

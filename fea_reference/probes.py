@@ -67,12 +67,14 @@ def touching(march: March) -> dict[str, Array]:
     model, places = march.model, {}
     for one in march.system.touches:
         if one.closed:
-            own = model.beams[one.pair.first].thickness
-            # A circle's points are on its surface already.
-            other = model.beams[one.pair.second].thickness if isinstance(one.pair, Pair) else 0.0
-            # From each neutral line to its own surface; lines have none.
-            share = one.pair.distance / (own + other)
-            middle = 0.5 * (one.x + one.x_m + share * (other - own) * one.normal)
+            if isinstance(one.pair, Pair):
+                # From each neutral line to its own surface; lines have none.
+                own, other = (model.beams[i].thickness for i in (one.pair.first, one.pair.second))
+                to_surfaces = np.asarray(one.pair.distance / (own + other) * (other - own))
+            else:
+                # A circle's points are on its surface already.
+                to_surfaces = -one.pair.edge.at(one.zeta)
+            middle = 0.5 * (one.x + one.x_m + to_surfaces * one.normal)
             places[one.pair.name] = frozen_array((middle * model.units.length + model.units.origin[:, None]).T)
     return places
 
