@@ -202,8 +202,8 @@ class Circle:
         ends = line.at(s[[0, -1]])
         rising = (ends.x - self.x) * np.cos(ends.psi) + (ends.y - self.y) * np.sin(ends.psi)
         rising -= np.hypot(ends.x - self.x, ends.y - self.y) * self.widening(ends.s)
-        lowest[0] &= rising[0] < 0.0
-        lowest[-1] &= rising[1] > 0.0
+        lowest[0] &= rising[0] < -ON_IT
+        lowest[-1] &= rising[1] > ON_IT
         places, convex = self._refined(line, s[lowest])
         held = np.concatenate((s[near], self.ends))
         free = places[convex]

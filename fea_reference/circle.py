@@ -165,24 +165,32 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
 
 
 def resting_pressure(model: Model, touch: Touch, circle: Circle, z: State) -> float:
-    """κ (N − EI'') where the zone meets an end of the beam, or in its middle; zero where the beam is compressed.
+    """κ (N − EI'') where a zone meets an end of the beam, else in the middle; zero where the beam is compressed.
 
+    Zero too where what meets the end is less than an element: beside an end that touches and leaves the circle at once.
     N + κ² EI, which is constant, is the median along the zone, which its end cannot spoil.
     """
     if not touch.closed:
         return 0.0
     beam = model.beams[circle.first]
     line = model.line(beam, z)
-    middle = touch.zones.intervals.mean(axis=1)
-    e, _ = line.locate(middle)
-    axial = z[model.element_dofs[6, e + beam.elements.start]]
-    kappa = 1.0 / (circle.radius + circle.edge.at(middle))
-    constant = float(np.median(axial + kappa**2 * beam.bending(middle / line.n)))
-    begin, end = touch.zones.intervals[0, 0], touch.zones.intervals[-1, 1]
-    place = 0.0 if begin <= _AT_END else float(line.n) if end >= line.n - _AT_END else 0.5 * (begin + end)
-    there = np.array([place])
-    kappa_there = 1.0 / float(circle.radius + circle.edge.at(there)[0])
-    stiffness, second = float(beam.bending(there / line.n)[0]), float(beam.bending_second(there / line.n)[0])
+    intervals = touch.zones.intervals
+    middle = intervals.mean(axis=1)
+    zone = np.cumsum(np.append(False, intervals[1:, 0] > intervals[:-1, 1]))
+    if intervals[0, 0] <= _AT_END:
+        place, mine = 0.0, zone == 0
+    elif intervals[-1, 1] >= line.n - _AT_END:
+        place, mine = float(line.n), zone == zone[-1]
+    else:
+        place, mine = float(np.median(middle)), zone >= 0
+    if place in (0.0, line.n) and intervals[mine].max() - intervals[mine].min() < 1.0:
+        return 0.0
+    axial = z[model.element_dofs[6, line.locate(middle[mine])[0] + beam.elements.start]]
+    kappa = 1.0 / (circle.radius + circle.edge.at(middle[mine]))
+    constant = float(np.median(axial + kappa**2 * beam.bending(middle[mine] / line.n)))
+    at = np.array([place / line.n])
+    stiffness, second = float(beam.bending(at)[0]), float(beam.bending_second(at)[0])
+    kappa_there = 1.0 / float(circle.radius + circle.edge.at(at * line.n)[0])
     return max(0.0, kappa_there * (constant - kappa_there**2 * stiffness - second))
 
 

@@ -34,6 +34,7 @@ from fea_reference.touch import Circle, Touch
 from scene.answer import Array
 
 _AT_END = 1e-6  # elements
+_NOTHING = 1e-9  # of the resultant
 _READ = np.array([0.0, 1.0, 2.0])  # elements beyond s_e
 
 
@@ -41,11 +42,11 @@ def ends(model: Model, system: System, touch: Touch) -> Array:
     """Places ζ (2,) on the first beam where the contact's first zone begins and its last one ends."""
     weight = np.hypot(*touch.force)
     middle = float(weight @ touch.zeta / weight.sum())
-    # a clamped end that just touches may overlap by round-off
-    wide = np.flatnonzero(np.diff(touch.zones.intervals, axis=1)[:, 0] > _AT_END)
-    outer = wide[[0, -1]] if wide.size else np.array([0, -1])
-    first = _continued(model, system, touch, int(outer[0]), -1.0)
-    last = _continued(model, system, touch, int(outer[1]), 1.0)
+    # a clamped end that just touches overlaps by round-off, and presses by no more
+    each = weight.reshape(len(touch.zones.intervals), -1).sum(axis=1)
+    pressed = np.flatnonzero(each > _NOTHING * each.sum())
+    first = _continued(model, system, touch, int(pressed[0]), -1.0)
+    last = _continued(model, system, touch, int(pressed[-1]), 1.0)
     return np.array([first, last]) if first <= last else np.array([middle, middle])
 
 

@@ -13,6 +13,8 @@ from fea_reference.touch import Pair, Touch
 from scene.answer import Array, Shape, frozen_array
 from scene.statement import DisplacementDrive, Probe, Scene
 
+_NOTHING = 1e-9  # of the largest force
+
 
 def probed(scene: Scene, march: March, probe: Probe) -> Array:
     """One probe's value; the potential energy leaves out what the contact's penalty stores."""
@@ -96,8 +98,11 @@ def _driven(scene: Scene, drive: str) -> str:
 
 
 def _touch(march: March, name: str) -> Touch | None:
-    """A contact's state, None while it is open."""
-    return next((one for one in march.system.touches if one.pair.name == name and one.closed), None)
+    """A contact's state, None while it is open, or where it overlaps by round-off and presses by no more."""
+    for one in march.system.touches:
+        if one.pair.name == name and one.closed and np.hypot(*one.force).sum() > _NOTHING * march.system.scale:
+            return one
+    return None
 
 
 def _centre(march: March, touch: Touch) -> float:

@@ -293,7 +293,7 @@ class CircleContact(Record):
     """A beam that may touch a rigid circle from outside, without friction.
 
     The circle of ``radius`` about ``center`` (metres, initial position) is fixed to ``body``;
-    a ``thick`` beam touches by its edge, any other as a line.
+    a ``thick`` beam touches by its edge, half of the thickness of the place from its neutral line, another as a line.
     """
 
     kind: Literal["beam-circle"]
