@@ -11,6 +11,7 @@ from scene.statement import Beam, BeamContact, Profile, Scene
 
 CLOSEST = 1e-6  # of the beam's length, between places; nearer ones would state a jump
 MOST_PLACES = 1001
+LARGEST_RATIO = 1e5  # of two values of one size: no beam theory holds where one is nothing beside the other
 
 
 def wrong_profiles(scene: Scene) -> Iterator[Mistake]:
@@ -54,6 +55,12 @@ def _wrong_profile(key: str, size: float | Profile) -> Mistake | None:
             f"{key}.at",
             f"places from {at[0]:.9g} to {at[-1]:.9g}",
             "fractions of the beam's length that begin with 0 and end with 1",
+        )
+    if not max(values) / LARGEST_RATIO <= min(values):
+        return Mistake(
+            f"{key}.values",
+            f"values from {min(values):g} m to {max(values):g} m",
+            f"values of which the largest is at most {LARGEST_RATIO:g} times the least",
         )
     steps = np.diff(at)
     if not np.all(steps >= CLOSEST):
