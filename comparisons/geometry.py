@@ -20,10 +20,12 @@ from typing import assert_never
 
 import numpy as np
 
-from scene import Arc, Line, Polynomial
+from scene import Arc, Beam, Line, Polynomial
 from scene.answer import Array, Shape
-from scene.geometry import arc_length, largest_curvature, points_on
+from scene.geometry import arc_length, curvature_on, largest_curvature, points_on
 from scene.statement import Curve
+
+_SAMPLES = 1001  # along a beam whose thickness varies
 
 
 def length(curve: Curve) -> float:
@@ -51,6 +53,14 @@ def radius(curve: Curve) -> float:
             return 1.0 / curvature if curvature > 0.0 else math.inf
         case _:
             assert_never(curve)
+
+
+def bentness(beam: Beam) -> float:
+    """Largest thickness over radius along a beam at rest."""
+    if not beam.tapered:
+        return beam.thickest / radius(beam.curve)
+    u = np.union1d(np.linspace(0.0, 1.0, _SAMPLES), beam.knots)
+    return float(np.max(beam.thickness_at(u) * curvature_on(beam.curve, u)))
 
 
 def points(curve: Curve, s: Array) -> Array:

@@ -36,7 +36,7 @@ def _shared(scene: Scene, name: str) -> set[str]:
         return set(_held(scene, contact.beam))
     assert isinstance(contact, BeamContact)
     one, other = (_held(scene, beam) for beam in contact.between)
-    near = BESIDE * 0.5 * sum(scene.beams[beam].thickness for beam in contact.between)
+    near = BESIDE * 0.5 * sum(scene.beams[beam].thickest for beam in contact.between)
     return {
         point
         for mine, a in one.items()

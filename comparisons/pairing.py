@@ -1,9 +1,10 @@
 """One scene to both solvers: the only module that knows them, and it imports each where it is used.
 
 What is run for a comparison: the CPRBM at N and 2N links (in the formulation ``paper``, whose error is uneven in
-N, at N in ``paper``, and at N and 2N in ``auto``) and, where there is contact, at N + N/7; the finite elements
-at n and 2n in the theory that was chosen and in ``bending``, the CPRBM's own; and at n in the theory between the
-two, if there is one, so that the step from one theory to the next can be split.
+N, at N in ``paper``, and at N and 2N in ``auto``) and, where there is contact or a section has a kink, whose place
+in an element matters, at N + N/7; the finite elements at n and 2n in the theory that was chosen and in ``bending``,
+the CPRBM's own; and at n in the theory between the two, if there is one, so that the step from one theory to the next
+can be split.
 
 Where ``auto`` was chosen and every contact says what ``paper`` must be told, that is run at N as well.  It shows
 what the contact's formulation makes of the answer and takes no part in the verdict.
@@ -110,7 +111,8 @@ class Runs:
         auto: the CPRBM at N links in the formulation ``auto``, if another was chosen.
         paper: the same in the formulation ``paper``, if ``auto`` was chosen and the other could be asked;
             nothing rests on it.
-        beside: the CPRBM in ``auto`` at N + N/7 links, if there is contact; ``ratio`` is N over that number.
+        beside: the CPRBM in ``auto`` at N + N/7 links, if there is contact or a section has a kink; ``ratio`` is N
+            over that number.
         nearby: the CPRBM at N links, answering :func:`comparisons.nearby.nearby`; nothing rests on it.
     """
 
@@ -162,7 +164,8 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1
     check(choices, scene)
     even = replace(choices, formulation="auto")
     extra = [] if even == choices else [(solvers.cprbm, scene, even)]
-    beside = [(solvers.cprbm, scene, even.beside())] if scene.contacts else []
+    uneven = scene.contacts or any(len(beam.knots) > 2 for beam in scene.beams.values())
+    beside = [(solvers.cprbm, scene, even.beside())] if uneven else []
     driven = nearby(scene)
     round_each = [] if driven is None else [(solvers.cprbm, driven, choices)]
     jobs = [(solvers.cprbm, scene, choices), (solvers.cprbm, scene, even.finer()), *extra, *beside, *round_each]

@@ -38,7 +38,7 @@ from typing import Literal
 import numpy as np
 
 from comparisons.geometry import length
-from scene import Answer, Probe, Scene, Stage
+from scene import Answer, Beam, Probe, Scene, Stage
 from scene.answer import Array
 from scene.statement import Quantity
 
@@ -87,7 +87,7 @@ def natural_scale(scene: Scene, quantity: Quantity, stage: Stage, *, contact: st
     """What a quantity amounts to where beams bend by about a radian, in its unit."""
     lever = _lever(scene)
     beams = [(beam, scene.materials[beam.material].youngs_modulus) for beam in scene.beams.values()]
-    S = max(E * beam.width * beam.thickness**3 / 12.0 for beam, E in beams) / lever
+    S = max(E * float(np.max(_stiffness(beam))) for beam, E in beams) / lever
     match quantity:
         case "displacement":
             return lever
@@ -98,7 +98,7 @@ def natural_scale(scene: Scene, quantity: Quantity, stage: Stage, *, contact: st
         case "closing_load":
             return {"moment": S, "force": S / lever, "displacement": lever, "rotation": 1.0}[scene.stepped(stage).kind]
         case "bending_stress":
-            return max(E * beam.thickness for beam, E in beams) / (2.0 * lever)
+            return max(E * beam.thickest for beam, E in beams) / (2.0 * lever)
         case "centre" | "ends":
             return length(scene.beams[scene.contacts[contact].beams[0]].curve)
         case _:
@@ -146,6 +146,11 @@ def denominator(probe: Probe, reference: Array, scale: float) -> float:
     """What a row's difference is divided by: the reference's norm, or the scale where that may vanish."""
     own = norm(probe.quantity, reference)
     return own if probe.quantity in _OWN_NORM and own >= VANISHING * scale else scale
+
+
+def _stiffness(beam: Beam) -> Array:
+    """I at the places between which the section goes straight, m⁴."""
+    return np.asarray(beam.width_at(beam.knots) * beam.thickness_at(beam.knots) ** 3 / 12.0)
 
 
 def _lever(scene: Scene) -> float:

@@ -9,7 +9,7 @@ from comparisons.benchmark import FIT_FROM, Benchmark, trend
 from comparisons.claims import as_claimed, claim_difference, standings
 from comparisons.documents import worst
 from comparisons.formats import number, percent, scaled_unit, vector
-from comparisons.geometry import radius
+from comparisons.geometry import bentness
 from comparisons.measures import Row, Steps, unit_of
 from comparisons.scales import norm
 from comparisons.verdict import Comparison
@@ -252,7 +252,7 @@ def _stresses(scene: Scene, rows: tuple[Row, ...]) -> Sheet:
                 vector(row.fea, factor),
                 "–" if row.largest is None else _of(row, row.largest),
                 _of(row, row.difference),
-                percent(beam.thickness / (3.0 * radius(beam.curve))),
+                percent(bentness(beam) / 3.0),
             )
         )
     return Sheet(

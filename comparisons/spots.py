@@ -55,7 +55,9 @@ def clear_of_spots(
     if not spots:
         return np.ones(arc_length.shape, dtype=bool)
     distance = np.min(np.abs(arc_length[:, None] - np.array(spots)), axis=1)
-    return np.asarray(distance >= record.thickness * (1.0 - 1e-9))
+    # by Saint-Venant's principle, of the thickness that is there
+    here = record.thickness_at(arc_length / length(record.curve))
+    return np.asarray(distance >= here * (1.0 - 1e-9))
 
 
 def ends_of_zones(places: Sequence[Array], apart: float) -> list[float]:

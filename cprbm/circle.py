@@ -4,7 +4,9 @@
 C           smooth neutral line of the beam, :mod:`cprbm.smooth`; ψ its tangent angle
 o, R        centre and radius of the circle
 ρ, n        |C − o| and (C − o)/ρ
-D           ρ − R, distance of the neutral line from the circle; constraint c = t/2 − D ≤ 0
+T           t/2, half the thickness at s, zero for a line
+D           ρ − R − (T − T₀), distance of the neutral line from the circle, less what the beam is thicker at s than 2 T₀
+            where it is thinnest; constraint c = T₀ − D ≤ 0
 z           local numbers of the beam (5), and the centre's place where it moves (2)
 P           (I − n nᵀ)/ρ, derivative of n over r = C − o
 ==========  ===================================================================================
@@ -13,7 +15,7 @@ A row stands at every joint that is close, and where D has a minimum with a plac
 There s moves with the minimum, D_s = 0:
 
     D_z = n·r_z,     D_zz = n·C_zz + r_zᵀ P r_z − D_zs D_sz / D_ss     (last term only where s moves)
-    D_s = n·C_s,     D_sz = n·C_sz + C_sᵀ P r_z,     D_ss = n·C_ss + C_sᵀ P C_s
+    D_s = n·C_s − T_s,     D_sz = n·C_sz + C_sᵀ P r_z,     D_ss = n·C_ss + C_sᵀ P C_s
 
 Forces on joints can take any share of a line pressure; between two joints of a zone no further row is
 needed, since the line is bent like the circle there.
@@ -44,6 +46,7 @@ LEAST_CURVATURE = 1e-6  # of D, 1/ℓ, below which its minimum has no place of i
 BESIDE_MINIMUM = 2.5  # a joint closer than this many h to a minimum with a place of its own leaves it to that
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 ON_IT = 1e-9  # gap of a clamped end, and how far its normal passes from the centre, where it is clamped on the circle
+BESIDE_ROW = 1e-3  # a corner of the edge closer than this many h to a row has none of its own
 JOINT_REACH = 2.0  # joints farther than this many h²·(1/R + 1/ℓ) are none
 
 
@@ -57,10 +60,11 @@ class Circle:
         body: that the circle is fixed to, −1 for the ground; ``mark`` the number of its centre among the joints,
             if that is a body that moves.
         x, y, radius: of the circle, units of length; x and y at rest, see :meth:`placed`.
-        offset: half the thickness, zero for a line; units of length.
+        offset: T₀, zero for a line; units of length.
         unit_length: ℓ, m.
         clamped: whether the beam's start and end are clamped in touch with the circle and tangent to it.
-        ends: arc lengths at which zones end on this mesh, where element borders are; rows stand there too.
+        ends: arc lengths at which zones end on this mesh, where element borders are, and where the edge has a corner
+            that stands out; rows stand there too.
     """
 
     name: str
@@ -85,7 +89,15 @@ class Circle:
 
     def distance(self, points: smooth.Points) -> Array:
         """D at some points of the beam."""
-        return np.hypot(points.x - self.x, points.y - self.y) - self.radius
+        return np.hypot(points.x - self.x, points.y - self.y) - self.radius - (self._half(points.s) - self.offset)
+
+    def _half(self, s: Array) -> Array:
+        """T at arc lengths ``s``."""
+        return 0.5 * self.a.section.thickness_at(s) if self.offset > 0.0 else np.zeros_like(s)
+
+    def widening(self, s: Array) -> Array:
+        """T_s at arc lengths ``s``."""
+        return 0.5 * self.a.section.thinning_at(s) if self.offset > 0.0 else np.zeros_like(s)
 
     def _away(self, points: smooth.Points) -> tuple[Array, Array]:
         """ρ (k,) and n (k, 2) at some points of the beam."""
@@ -126,7 +138,7 @@ class Circle:
         order = ALONE
         if self.body >= 0:
             joints, order = np.stack((joints[:, 0], np.full(len(s), self.mark)), axis=1), WITH_CENTRE
-        values, slopes, second = self.offset - (rho - self.radius), -D_z[:, order], second[:, order[:, None], order]
+        values, slopes, second = self.offset - self.distance(A), -D_z[:, order], second[:, order[:, None], order]
         angles = self.a.first_link + np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n)), axis=1)
         keys = np.where(free, -1, np.searchsorted(self.a.s, s))
         at_ends = np.isin(s, self.ends)
@@ -169,26 +181,27 @@ class Circle:
         return found
 
     def _convexity(self, A: smooth.Points, n: Array, q_s: Array, rho: Array) -> Array:
-        """D_ss where the beam is parallel to the circle."""
-        facing = n[:, 1] * np.cos(A.psi) - n[:, 0] * np.sin(A.psi)
-        return np.asarray(facing * A.speed * A.bend + q_s**2 / rho)
+        """D_ss."""
+        cos, sin = np.cos(A.psi), np.sin(A.psi)
+        facing, leaning = n[:, 1] * cos - n[:, 0] * sin, n[:, 0] * cos + n[:, 1] * sin
+        return np.asarray(facing * A.speed * A.bend + leaning * A.gain + q_s**2 / rho)
 
     def _places(self, line: smooth.SmoothLine) -> tuple[Array, Flags]:
         """Arc lengths of the rows, and which of them move with a minimum."""
         s = smooth.halves(self.a)
         A = line.at(s)
         rho, n = self._away(A)
-        D = rho - self.radius - self.offset
+        D = self.distance(A) - self.offset
         near = np.zeros(len(s), dtype=bool)
         near[::2] = D[::2] < JOINT_REACH * self.a.h**2 * (1.0 / self.radius + 1.0)
         # an end that the circle's own body holds cannot move against it: its gap is no unknown
         held = self.a.start.body == self.body, self.a.end is not None and self.a.end.body == self.body
         near[[0, -1]] &= ~np.array(held)
         # at an end that is lowest the minimum lies within if the way to it rises
-        slope = n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi)
+        slope = n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi) - self.widening(s)
         fence = [
             np.inf if inwards and not fixed else -np.inf
-            for inwards, fixed in zip((slope[0] < 0.0, slope[-1] > 0.0), held, strict=True)
+            for inwards, fixed in zip((slope[0] < -ON_IT, slope[-1] > ON_IT), held, strict=True)
         ]
         lowest = wells.lowest(np.concatenate((fence[:1], D, fence[1:])), REACH) - 1
         q_s = A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi))
@@ -209,7 +222,7 @@ class Circle:
             A = line.at(s)
             rho, n = self._away(A)
             q_s = A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi))
-            slope = A.speed * (n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi))
+            slope = A.speed * (n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi)) - self.widening(s)
             D_ss = self._convexity(A, n, q_s, rho)
             step = -slope / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
             s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
@@ -237,7 +250,9 @@ class Circle:
         """D_ss at arc lengths ``s`` if the beam touched there along the circle: the curvature with which it parts."""
         A, here = self.line(state, at).at(s), self.placed(at)
         outward = (A.y - here.y) * np.cos(A.psi) - (A.x - here.x) * np.sin(A.psi)
-        return np.asarray(np.sign(outward) * A.bend + 1.0 / (self.radius + self.offset))
+        # where its edge lies along the circle, the beam leans against it by the angle whose sine is T_s
+        level = np.sqrt(1.0 - self.widening(s) ** 2)
+        return np.asarray(np.sign(outward) * A.bend + level / (self.radius + self._half(s)))
 
     @property
     def thickness(self) -> float:
@@ -274,7 +289,7 @@ def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:
     assert isinstance(contact, CircleContact)
     chain = model.chain(contact.beam)
     unit = model.unit_length
-    offset = 0.5 * chain.thickness if contact.thick else 0.0
+    offset = 0.5 * float(chain.section.thickness.min()) if contact.thick else 0.0
     body = model.marks[name].body if name in model.marks else -1
     mark = model.first_mark + list(model.marks).index(name) if body >= 0 else -1
     circle = Circle(
@@ -283,10 +298,19 @@ def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:
     state = rest_state(model)
     ends = circle.line(state, positions(model, state)).at(chain.s[[0, -1]])
     towards = (ends.x - circle.x) * np.cos(ends.psi) + (ends.y - circle.y) * np.sin(ends.psi)
+    towards -= np.hypot(ends.x - circle.x, ends.y - circle.y) * circle.widening(ends.s)
     on_it = (np.abs(circle.distance(ends) - offset) <= ON_IT) & (np.abs(towards) <= ON_IT)
     start, end = (held is not None and held.body == body and held.welded for held in (chain.start, chain.end))
     return replace(
         circle,
         clamped=(start and bool(on_it[0]), end and bool(on_it[1])),
-        ends=tuple(chain.s[-1] * fit.ends[name]) if name in fit.ends else (),
+        ends=_places_of_rows(chain, chain.s[-1] * fit.ends.get(name, np.zeros(0)), corners=contact.thick),
     )
+
+
+def _places_of_rows(chain: Chain, ends: Array, *, corners: bool) -> tuple[float, ...]:
+    """The ``ends`` of zones, and where an edge with ``corners`` has some that stand out, unless there is a row."""
+    taken = np.concatenate((ends, chain.s))
+    ridges = chain.section.ridges if corners else np.zeros(0)
+    apart = np.min(np.abs(ridges[:, None] - taken), axis=1) > BESIDE_ROW * chain.h
+    return (*ends.tolist(), *ridges[apart].tolist())

@@ -9,7 +9,7 @@ N           elements of a beam; springs 1..N at their middles, links 0..N, and
 h_i         arc length of element i; equal, unless a border was moved to where a contact ends
 L_i         length of link i, between joints i and i+1
 θ_i         tangent angle of link i; θ_i⁰ stress-free
-k_i         stiffness of spring i, E·I/h_i
+k_i         stiffness of spring i: one over ∫ ds/(E·I) along its element, so E·I/h_i in an even beam
 ℓ           unit of length: the longest beam, m
 S           unit of energy and moment: the largest E·I/ℓ, N·m; S/ℓ that of force
 ==========  =====================================================================
@@ -25,6 +25,7 @@ from frozendict import frozendict
 
 from cprbm.curves import NeutralLine, neutral_line
 from cprbm.pieces import Pieces, pieces
+from cprbm.section import Section, largest_rigidity, section_of
 from cprbm.settings import Settings
 from scene import BeamEnd, CircleContact, FreeEnd, Scene, WeldedEnd
 from scene.answer import Array
@@ -61,9 +62,8 @@ class Chain:
         turns: stress-free turning of the neutral line along the elements, rad (N,).
         lean: (2, N+1), cos and sin of its stress-free tangent at the borders against the links there.
         pieces: of the neutral line, that the links carry; None of a straight one.
-        rigidity: E·I, units of S and of length.
-        thickness: units of length.
-        stress_unit: E·t/2 in Pa; times a spring's change of angle over h_i in units of length⁻¹ per metre.
+        section: thickness and E·I along the beam.
+        youngs_modulus: E, Pa.
         start, end: what the ends are joined to; no end is None for a free one, a free start a body of its own.
     """
 
@@ -81,11 +81,15 @@ class Chain:
     turns: Array
     lean: Array
     pieces: Pieces | None
-    rigidity: float
-    thickness: float
-    stress_unit: float
+    section: Section
+    youngs_modulus: float
     start: Attachment
     end: Attachment | None
+
+    @property
+    def thickness(self) -> float:
+        """The largest one; of beams that touch by their edges the same everywhere."""
+        return float(self.section.thickness.max())
 
     @property
     def links(self) -> slice:
@@ -186,11 +190,8 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
     settings.check(scene)
     lines = {name: neutral_line(beam.curve) for name, beam in scene.beams.items()}
     unit_length = max(line.length for line in lines.values())
-    rigidities = {
-        name: scene.materials[beam.material].youngs_modulus * beam.width * beam.thickness**3 / 12.0
-        for name, beam in scene.beams.items()
-    }
-    unit_moment = max(rigidities.values()) / unit_length
+    moduli = {name: scene.materials[beam.material].youngs_modulus for name, beam in scene.beams.items()}
+    unit_moment = max(largest_rigidity(beam, moduli[name]) for name, beam in scene.beams.items()) / unit_length
     places = {name: next(iter(body.points.values())) for name, body in scene.bodies.items() if body.motion != "fixed"}
     # a chain begins somewhere: a start that nothing holds is welded to a body that nothing else holds
     places |= {_loose(name): beam.curve.start for name, beam in scene.beams.items() if isinstance(beam.start, FreeEnd)}
@@ -231,9 +232,8 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
                 turns=np.diff(tangents),
                 lean=np.stack((np.cos(tangents - directions), np.sin(tangents - directions))),
                 pieces=pieces(line, s, directions),
-                rigidity=rigidities[name] / unit_length / unit_moment,
-                thickness=beam.thickness / unit_length,
-                stress_unit=0.5 * scene.materials[beam.material].youngs_modulus * beam.thickness / unit_length,
+                section=section_of(beam, moduli[name], line.length, unit_length, unit_moment),
+                youngs_modulus=moduli[name],
                 start=attachment(beam.start) or Attachment(free_bodies.index(_loose(name)), (0.0, 0.0), welded=True),
                 end=attachment(beam.end),
             )
@@ -242,7 +242,7 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
         first_joint += n + 2
     couplings = np.zeros(first_link - 1)
     for chain in chains:
-        couplings[chain.first_link : chain.first_link + chain.n] = chain.rigidity / chain.sizes
+        couplings[chain.first_link : chain.first_link + chain.n] = 1.0 / chain.section.flexibility(chain.borders)
     rest = np.concatenate([chain.rest for chain in chains])
     return Model(
         chains=tuple(chains),

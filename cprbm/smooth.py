@@ -56,7 +56,7 @@ class Points:
     Attributes:
         s: arc length; link: the link each lies on, in the beam's own numbering.
         x, y: position; psi: tangent angle.
-        speed: |dC/ds|; bend: dψ/ds.
+        speed: |dC/ds|; bend: dψ/ds; gain: d|dC/ds|/ds.
         cos, sin: of the link's angle: e = (cos, sin), n = (−sin, cos).
         a, w, a1, w1: coordinates in the link's frame and their derivatives over s.
         before: whether each lies before the border, in the element of the link's first joint.
@@ -71,6 +71,7 @@ class Points:
     psi: Array
     speed: Array
     bend: Array
+    gain: Array
     cos: Array
     sin: Array
     a: Array
@@ -161,6 +162,7 @@ class SmoothLine:
             psi=self.theta[link] + np.arctan2(w1, a1),
             speed=np.sqrt(squared),
             bend=(a1 * w2 - w1 * a2) / squared,
+            gain=(a1 * a2 + w1 * w2) / np.sqrt(squared),
             cos=cos,
             sin=sin,
             a=a,

@@ -1,14 +1,15 @@
 """Bending moment and stress along a beam, eq. (7), with the kinks that contact forces make.
 
 ==========  ==============================================================================
-m_i         moment of spring i: the mean of M over element i, whose change of curvature is even
+m_i         moment of spring i: the mean of M over element i by weights 1/(E·I), for the beam turns by M/(E·I)
+s̄_i         the mean of s by the same weights, the element's middle where E·I is even
 s_c, V      place of a contact force on the beam and its part along the left normal
 K(s)        ½ Σ V |s − s_c|, the kinks of M: dM/ds jumps by V at s_c
-K̄_i         mean of K over element i
-σ           E·t/2 · M/(EI)
+K̄_i         the mean of K, likewise
+σ           E·t/2 · M/(E·I), with t and E·I of the place
 ==========  ==============================================================================
 
-M − K is smooth: its means m_i − K̄_i stand for its values at the springs and are joined by straight
+M − K is smooth, whatever the section does: its means m_i − K̄_i stand for its values at s̄_i and are joined by straight
 lines; K is added back where the stress is wanted.
 """
 
@@ -28,35 +29,28 @@ def bending_stress(mechanism: Mechanism, point: Point, chain: Chain, points: int
     """σ (points,), Pa, at equal arc-length steps; beyond the outer springs the nearest two are continued."""
     moments = spring_moments(mechanism.problem.model, point.state)[chain.first_link : chain.first_link + chain.n]
     at, jumps = _kinks(mechanism, point, chain)
-    smooth = moments - np.diff(_integral(at, jumps, chain.borders)) / chain.sizes
+    section, borders = chain.section, chain.borders
+    weight = section.flexibility(borders)
+    inner = section.yielding(borders, np.asarray, np.zeros(0)) / weight
+    smooth = moments - section.yielding(borders, lambda s: _kinked(at, jumps, s), at) / weight
     # beyond the outer springs the nearest two are continued
-    inner, slopes = chain.s[1:-1], np.diff(smooth) / np.diff(chain.s[1:-1])
+    slopes = np.diff(smooth) / np.diff(inner)
     first = smooth[0] - slopes[0] * inner[0]
     last = smooth[-1] + slopes[-1] * (chain.s[-1] - inner[-1])
     s = np.linspace(0.0, chain.s[-1], points)
-    moment = np.interp(s, chain.s, np.concatenate(([first], smooth, [last]))) + _kinked(at, jumps, s)
-    return np.asarray(chain.stress_unit * moment / chain.rigidity)
-
-
-def _sums(at: Array, jumps: Array, s: Array) -> tuple[Array, Array, Array]:
-    """Σ sgn(s − s_c) V s_cᵏ at places ``s`` for k = 0, 1, 2."""
-    order = np.argsort(at)
-    powers = jumps[order] * at[order] ** np.arange(3)[:, None]
-    below = np.concatenate((np.zeros((3, 1)), np.cumsum(powers, axis=1)), axis=1)
-    zeroth, first, second = 2.0 * below[:, np.searchsorted(at[order], s)] - below[:, -1:]
-    return zeroth, first, second
+    known = np.concatenate(([0.0], inner, chain.s[-1:]))
+    moment = np.interp(s, known, np.concatenate(([first], smooth, [last]))) + _kinked(at, jumps, s)
+    return np.asarray(0.5 * chain.youngs_modulus * section.thickness_at(s) * moment / section.rigidity_at(s))
 
 
 def _kinked(at: Array, jumps: Array, s: Array) -> Array:
     """K at places ``s``."""
-    zeroth, first, _ = _sums(at, jumps, s)
+    order = np.argsort(at)
+    powers = jumps[order] * at[order] ** np.arange(2)[:, None]
+    below = np.concatenate((np.zeros((2, 1)), np.cumsum(powers, axis=1)), axis=1)
+    # Σ sgn(s − s_c) V s_cᵏ
+    zeroth, first = 2.0 * below[:, np.searchsorted(at[order], s)] - below[:, -1:]
     return np.asarray(0.5 * (s * zeroth - first))
-
-
-def _integral(at: Array, jumps: Array, s: Array) -> Array:
-    """∫K ds = ¼ Σ V (s − s_c)|s − s_c|."""
-    zeroth, first, second = _sums(at, jumps, s)
-    return np.asarray(0.25 * (s * (s * zeroth - 2.0 * first) + second))
 
 
 def _kinks(mechanism: Mechanism, point: Point, chain: Chain) -> tuple[Array, Array]:

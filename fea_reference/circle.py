@@ -5,7 +5,7 @@ symbol  meaning
 ======  =====================================================================================
 x, c    point of the neutral line, centre of the circle: X + R(φ) arm from its body's own
 r, n    distance |x − c| and its direction (x − c)/r;  τ is n turned clockwise
-R, T    radius; half of the beam's thickness, zero for a line
+R, T    radius; half of the beam's thickness at ζ, zero for a line
 g       gap r − R − T
 ε       penalty stiffness per unit length of the beam
 δ       lead: the gap at which the pressure begins
@@ -16,14 +16,15 @@ Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the beam's undeformed arc lengt
 
     δg = n·(δx − δc),     δ²g = n·(δ²x − δ²c) + (τ·(δx − δc))²/r,
 
-and by ζ alone g' = n·x', g'' = n·x'' + (τ·x')²/r.  The integral runs over the exact intervals on which g < δ,
+and by ζ alone g' = n·x' − T', g'' = n·x'' + (τ·x')²/r.  The integral runs over the exact intervals on which g < δ,
 as in :mod:`fea_reference.contact`: the pressure vanishes at their ends.
 
-A beam that lies on a circle has the circle's curvature, so it has no shear force, so its tension is constant and
-presses it on with N/(R + T) (Landau and Lifshitz, Theory of Elasticity, §19).  Without a lead, the beam sinks in by
+An even beam that lies on a circle has the circle's curvature κ = 1/(R + T), so it has no shear force, so its tension is
+constant and presses it on with N κ (Landau and Lifshitz, Theory of Elasticity, §19).  Where EI varies, the shear force
+is −κ EI', so that N + κ² EI is constant and the pressure κ (N − EI'').  Without a lead, the beam sinks in by
 that over ε, and beside a clamp, which does not, a layer of width (4 EI/ε)^¼ leaves its pressure to the clamp: an
-error of first order in the layer's width in the contact's force.  With δ = N/((R + T) ε) there is no such layer, and
-what is left, at the end of the zone, is of second order.
+error of first order in the layer's width in the contact's force.  With δ = κ (N − EI'')/ε at the clamp there is no such
+layer, and what is left, at the end of the zone, is of second order.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from fea_reference.edge import edge_of
 from fea_reference.hermite import NeutralLine, along, shapes, twice_along
 from fea_reference.model import Model, turned
 from fea_reference.state import State, squared, summed
@@ -43,6 +45,7 @@ from scene.statement import CircleContact, Scene
 _BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states
 _SHALLOW = 0.05  # of the radius: an overlap that a penalty may leave
 _SAGITTA = 0.15  # of the square of a way along an arc, by which its chord may leave it
+_AT_END = 1e-6  # elements
 _LAYERS = 32.0  # of the first penalty, in a beam's length
 _RESOLVED = 3.0  # layers in an element: what they leave is of second order in their width
 # Layers in a beam's length at the standard penetration: what they leave is below 1e-7, and thinner ones make more of a
@@ -63,10 +66,10 @@ def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...
         beam = model.beams[first]
         at = (np.array(contact.center) - model.units.origin) / model.units.length
         x, y = at - model.bodies[body].centre
-        half = 0.5 * beam.thickness
+        edge = edge_of(beam.record, beam.elements.stop - beam.elements.start, model.units.length, thick=contact.thick)
         radius = contact.radius / model.units.length
         h = float(model.elements.length[beam.elements.start])
-        layer = max(h, half, min(beam.length / _LAYERS, radius))
+        layer = max(h, 0.5 * beam.thickness, min(beam.length / _LAYERS, radius))
         found.append(
             Circle(
                 name,
@@ -74,10 +77,10 @@ def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...
                 body,
                 (float(x), float(y)),
                 radius,
-                half if contact.thick else 0.0,
-                beam.thickness if contact.thick else 1.0,
-                beam.bending / layer**4,
-                beam.bending / max(h / _RESOLVED, beam.length / thinnest) ** 4,
+                edge,
+                2.0 * edge.nearest if contact.thick else 1.0,
+                beam.softest / layer**4,
+                beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
             )
         )
     return tuple(found)
@@ -85,7 +88,7 @@ def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...
 
 def zones_of(model: Model, circle: Circle, z: State) -> Zones:
     """Where the beam overlaps the circle in state ``z``."""
-    return _find(model.line(model.beams[circle.first], z), centre(model, circle, z), circle.radius + circle.distance)
+    return _find(model.line(model.beams[circle.first], z), centre(model, circle, z), circle, 0.0)
 
 
 def centre(model: Model, circle: Circle, z: State) -> Array:
@@ -107,7 +110,7 @@ def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
     if abs(winding) > np.pi:
         return True
     way = np.hypot(*(new - old)).max()
-    allowed = (1.0 - _SHALLOW) * circle.radius + 0.5 * circle.distance - _SAGITTA * way**2
+    allowed = (1.0 - _SHALLOW) * circle.radius + 0.5 * circle.edge.nearest - _SAGITTA * way**2
     return any(np.hypot(*(old + part * (new - old))).min() < allowed for part in _BETWEEN)
 
 
@@ -115,8 +118,7 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
     """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[circle.first], model.bodies[circle.body]
     line, c = model.line(beam, z), centre(model, circle, z)
-    reach = circle.radius + circle.distance
-    ahead = _find(line, c, reach + penalty.lead)
+    ahead = _find(line, c, circle, penalty.lead)
     zones = replace(ahead, least=ahead.least + penalty.lead)
 
     points, weights = np.polynomial.legendre.leggauss(quadrature)
@@ -126,7 +128,7 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
     x = line.at(zeta)[0]
-    r, n, g = _clearance(line, c, reach, zeta)
+    r, n, g = _clearance(line, c, circle, zeta)
     tau = np.stack([n[1], -n[0]])
 
     H = shapes(xi)
@@ -163,46 +165,68 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
 
 
 def resting_pressure(model: Model, touch: Touch, circle: Circle, z: State) -> float:
-    """N/(R + T), the median along the zone, which its end cannot spoil; zero where the beam is compressed."""
+    """κ (N − EI'') where a zone meets an end of the beam, else in the middle; zero where the beam is compressed.
+
+    Zero too where what meets the end is less than an element: beside an end that touches and leaves the circle at once.
+    N + κ² EI, which is constant, is the median along the zone, which its end cannot spoil.
+    """
     if not touch.closed:
         return 0.0
     beam = model.beams[circle.first]
-    low, high = touch.zones.intervals.T
-    e, _ = model.line(beam, z).locate(0.5 * (low + high))
-    axial = z[model.element_dofs[6, e + beam.elements.start]]
-    return max(0.0, float(np.median(axial))) / (circle.radius + circle.distance)
+    line = model.line(beam, z)
+    intervals = touch.zones.intervals
+    middle = intervals.mean(axis=1)
+    zone = np.cumsum(np.append(False, intervals[1:, 0] > intervals[:-1, 1]))
+    if intervals[0, 0] <= _AT_END:
+        place, mine = 0.0, zone == 0
+    elif intervals[-1, 1] >= line.n - _AT_END:
+        place, mine = float(line.n), zone == zone[-1]
+    else:
+        place, mine = float(np.median(middle)), zone >= 0
+    if place in (0.0, line.n) and intervals[mine].max() - intervals[mine].min() < 1.0:
+        return 0.0
+    axial = z[model.element_dofs[6, line.locate(middle[mine])[0] + beam.elements.start]]
+    kappa = 1.0 / (circle.radius + circle.edge.at(middle[mine]))
+    constant = float(np.median(axial + kappa**2 * beam.bending(middle[mine] / line.n)))
+    at = np.array([place / line.n])
+    stiffness, second = float(beam.bending(at)[0]), float(beam.bending_second(at)[0])
+    kappa_there = 1.0 / float(circle.radius + circle.edge.at(at * line.n)[0])
+    return max(0.0, kappa_there * (constant - kappa_there**2 * stiffness - second))
 
 
-def _clearance(line: NeutralLine, c: Array, reach: float, zeta: Array) -> tuple[Array, Array, Array]:
-    """r (k,), n (2, k) and g (k,) at places ``zeta`` (k,): g by (r² − (R + T)²)/(r + R + T).
+def _clearance(line: NeutralLine, c: Array, circle: Circle, zeta: Array) -> tuple[Array, Array, Array]:
+    """r (k,), n (2, k) and g (k,) at places ``zeta`` (k,): g by (r² − (R + T)²)/(r + R + T) of the least T.
 
     At an element's first node the numerator has all its digits; from there on it changes by no more than the
     element is long, and so does its round-off.
     """
     e, _ = line.locate(zeta)
+    reach = circle.radius + circle.edge.nearest
     q, error = summed(line.points, -c[:, None] * np.ones_like(line.points))
     q_rest = error + line.rest
     square, lost = squared(q)
     total, lost_in_sum = summed(square[0], square[1])
-    circle, lost_of_circle = squared(np.full_like(total, reach))
-    over, lost_in_difference = summed(total, -circle)
-    at_node = over + (lost_in_difference + lost_in_sum - lost_of_circle + (lost + 2.0 * q * q_rest).sum(axis=0))
+    own, lost_of_own = squared(np.full_like(total, reach))
+    over, lost_in_difference = summed(total, -own)
+    at_node = over + (lost_in_difference + lost_in_sum - lost_of_own + (lost + 2.0 * q * q_rest).sum(axis=0))
     d = line.from_node(zeta)
     away = q[:, e] + d
     r = np.hypot(away[0], away[1])
     g = (at_node[e] + ((2.0 * q[:, e] + d) * d).sum(axis=0)) / (r + reach)
-    return r, away / r, g
+    return r, away / r, g - (circle.edge.at(zeta) - circle.edge.nearest)
 
 
-def _find(line: NeutralLine, c: Array, reach: float) -> Zones:
-    """All intervals on which the neutral line is nearer to ``c`` than ``reach``."""
+def _find(line: NeutralLine, c: Array, circle: Circle, lead: float) -> Zones:
+    """All intervals on which the gap is less than ``lead``; those of a thick beam end at its knots too."""
 
     def at(zeta: Array, none: Array) -> Gap:
         _, x1, x2 = line.at(zeta)
-        r, n, g = _clearance(line, c, reach, zeta)
+        r, n, g = _clearance(line, c, circle, zeta)
         along_circle = n[1] * x1[0] - n[0] * x1[1]
-        slope, curvature = (n * x1).sum(axis=0), (n * x2).sum(axis=0) + along_circle**2 / r
-        return Gap(g, slope, curvature, none, np.ones(zeta.shape, dtype=bool))
+        slope, curvature = (n * x1).sum(axis=0) - circle.edge.slope(zeta), (n * x2).sum(axis=0) + along_circle**2 / r
+        return Gap(g - lead, slope, curvature, none, np.ones(zeta.shape, dtype=bool))
 
-    zeta = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
-    return negative(at, zeta, at(zeta, np.zeros_like(zeta)), np.ones(zeta.size - 1, dtype=bool))
+    even = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
+    zeta = np.union1d(even, circle.edge.knots)
+    there = at(zeta, np.zeros_like(zeta))
+    return negative(at, zeta, there, np.ones(zeta.size - 1, dtype=bool), circle.edge.knots)

@@ -75,7 +75,7 @@ def _penalties(model: Model, beam: BeamPart, thickness: float) -> tuple[float, f
     """EI over the fourth power of the widest layer, of the first, and of the thinnest."""
     h = float(model.elements.length[beam.elements.start])
     first = max(h, 0.5 * thickness)
-    return beam.bending / max(first, beam.length / _LAYERS) ** 4, beam.bending / first**4, beam.bending / h**4
+    return beam.softest / max(first, beam.length / _LAYERS) ** 4, beam.softest / first**4, beam.softest / h**4
 
 
 def zones_of(model: Model, pair: Pair, z: State) -> Zones:
@@ -167,7 +167,8 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
     of_second = -pair.side * (speed[0] * bent[1] - speed[1] * bent[0]) / J**3
     kappa = of_second / (1.0 + pair.distance * of_second)  # parallel curves
     axial, axial_m = z[model.element_dofs[6, e]], z[model.element_dofs[6, e_m]]
-    pressure = kappa * (axial * beam_m.bending - axial_m * beam.bending) / (beam.bending + beam_m.bending)
+    EI, EI_m = beam.bending(middle / line.n), beam_m.bending(middle_m / line_m.n)
+    pressure = kappa * (axial * EI_m - axial_m * EI) / (EI + EI_m)
     at_end = np.array([touch.zones.intervals[0, 0] <= _AT_END, touch.zones.intervals[-1, 1] >= line.n - _AT_END])
     return max(0.0, float(np.median(pressure[[0, -1]][at_end] if at_end.any() else pressure)))
 

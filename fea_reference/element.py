@@ -10,8 +10,9 @@ L, l⁰    arc length of the undeformed element, and its chord
 θ(s)     rotation of the section against the chord: a parabola through both ends
 γ        angle of shear, one per element: w' = θ + γ, and w is zero at both ends, so γ = −∫θ ds / L
 N        axial force, an unknown of its own
-c        axial compliance 1/(EA), zero for an inextensible beam
-EI, GA   bending stiffness; effective shear stiffness k_s G A, k_s = 5/6
+c        axial compliance, the mean of 1/(EA), zero for an inextensible beam
+EI, GA   bending stiffness; effective shear stiffness k_s G A, k_s = 5/6; both may vary along the element
+F        flexibility of the end rotations, :mod:`fea_reference.section`; K = F⁻¹
 =======  =====================================================================================
 
 The element's contribution to the Hellinger–Reissner functional is
@@ -20,7 +21,8 @@ The element's contribution to the Hellinger–Reissner functional is
 
 with the membrane strain averaged over the element (a shallow arch on its chord), so that a curved element is
 neither locked nor shortened by its own curvature.  The parabola's middle value makes the energy of bending
-and shear stationary: without shear w is the cubic of Hermite, and (½/L) ∫ w'² ds = (2ϑ₁² − ϑ₁ϑ₂ + 2ϑ₂²)/30.
+and shear stationary, with the element's mean compliances: without shear w is the cubic of Hermite, whatever EI does,
+and (½/L) ∫ w'² ds = (2ϑ₁² − ϑ₁ϑ₂ + 2ϑ₂²)/30.
 Corotational kinematics: Crisfield, Non-linear Finite Element Analysis of Solids and Structures, vol. 1,
 ch. 7.
 """
@@ -71,16 +73,16 @@ def reference(
     mesh: MeshLine,
     points: Array,
     tangents: Array,
-    bending: Array,
-    compliance: Array,
-    shear_compliance: Array,
+    flexibility: Array,
+    axial: Array,
+    shear: Array,
 ) -> Elements:
     """Integrate what the elements need over the undeformed beams.
 
     Args:
         mesh: lines whose only coordinate is the arc length.
         points: nodes (m, 2); tangents: tangent angles at the nodes (m,).
-        bending: EI; compliance: c; shear_compliance: 1/GA, of every element (n,).
+        flexibility: F without shear (2, 2, n); axial: ∫ ds/(EA); shear: ∫ ds/(GA), of every element (n,).
     """
     basis = CellBasis(mesh, ElementLineP2(), intorder=4)
     D = _local(BilinearForm(lambda u, v, _: u.grad[0] * v.grad[0]), basis)
@@ -93,15 +95,14 @@ def reference(
     alpha = np.arctan2(chord[:, 1], chord[:, 0])
     rotation = _wrapped(np.stack([tangents[first] - alpha, tangents[second] - alpha]))
 
-    stiff, rigid = _section_rotation(D, m, bending, shear_compliance), _section_rotation(D, m, bending, 0 * L)
-    # The mean of θ is −γ; where the compliance is zero so is the mean, and the shear force is a reaction.
-    shear_force = -bending * np.einsum("in,ijn->jn", D[2], stiff) / m[2]
-    mean = np.einsum("in,ijn->jn", m, stiff)
-    K = bending * np.einsum("ain,abn,bjn->ijn", stiff, D, stiff) + mean[:, None] * shear_force[None, :]
+    # of an even moment: Δ = (−1, 1) turns the element by ∫ ds/(EI)
+    turning = flexibility[0, 0] - flexibility[0, 1] - flexibility[1, 0] + flexibility[1, 1]
+    stiff, rigid = (_section_rotation(D, m, one / turning) for one in (shear, 0.0 * shear))
+    K = _inverse(flexibility + shear / L**2)
     W = G - m[:, None] * m[None, :] / L  # ∫ w' w' ds
     slope = np.einsum("kn,akn,abn,bjn->jn", rotation, rigid, W, stiff)
     shortening = np.einsum("ain,abn,bjn->ijn", stiff, W, stiff)
-    return Elements(L, np.hypot(*chord.T), compliance, rotation, slope, K, shortening)
+    return Elements(L, np.hypot(*chord.T), axial / L, rotation, slope, K, shortening)
 
 
 def _local(form: BilinearForm, basis: CellBasis) -> Array:
@@ -109,13 +110,19 @@ def _local(form: BilinearForm, basis: CellBasis) -> Array:
     return np.moveaxis(np.asarray(form.coo_data(basis).tolocal(), dtype=float), 0, -1)
 
 
-def _section_rotation(D: Array, m: Array, bending: Array, shear_compliance: Array) -> Array:
-    """θ at both ends and in the middle by the end rotations, (3, 2, n).
+def _inverse(F: Array) -> Array:
+    """Of symmetric matrices (2, 2, n)."""
+    determinant = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]
+    return np.asarray(np.array([[F[1, 1], -F[0, 1]], [-F[1, 0], F[0, 0]]]) / determinant)
+
+
+def _section_rotation(D: Array, m: Array, ratio: Array) -> Array:
+    """θ at both ends and in the middle by the end rotations, (3, 2, n); ``ratio`` is EI/GA (n,).
 
     The middle makes the energy ½ EI θᵀ D θ + ½ (GA/L) (mᵀθ)² stationary: differentiated by the middle value
     and divided by GA/L.
     """
-    flexibility = bending * shear_compliance * m.sum(axis=0)
+    flexibility = ratio * m.sum(axis=0)
     middle = -(flexibility * D[2, :2] + m[2] * m[:2]) / (flexibility * D[2, 2] + m[2] ** 2)
     ends = np.broadcast_to(np.eye(2)[:, :, None], (2, 2, middle.shape[-1]))
     return np.concatenate([ends, middle[None]], axis=0)

@@ -34,6 +34,7 @@ from fea_reference.touch import Circle, Touch
 from scene.answer import Array
 
 _AT_END = 1e-6  # elements
+_NOTHING = 1e-9  # of the resultant
 _READ = np.array([0.0, 1.0, 2.0])  # elements beyond s_e
 
 
@@ -41,8 +42,11 @@ def ends(model: Model, system: System, touch: Touch) -> Array:
     """Places ζ (2,) on the first beam where the contact's first zone begins and its last one ends."""
     weight = np.hypot(*touch.force)
     middle = float(weight @ touch.zeta / weight.sum())
-    first = _continued(model, system, touch, 0, -1.0)
-    last = _continued(model, system, touch, -1, 1.0)
+    # a clamped end that just touches overlaps by round-off, and presses by no more
+    each = weight.reshape(len(touch.zones.intervals), -1).sum(axis=1)
+    pressed = np.flatnonzero(each > _NOTHING * each.sum())
+    first = _continued(model, system, touch, int(pressed[0]), -1.0)
+    last = _continued(model, system, touch, int(pressed[-1]), 1.0)
     return np.array([first, last]) if first <= middle <= last else np.array([middle, middle])
 
 
@@ -77,7 +81,10 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array,
     if isinstance(pair, Circle):
         n = x - centre(model, pair, z)[:, None]
         turning = np.sign(tangent[0] * n[1] - tangent[1] * n[0])
-        return np.asarray(turning * own + 1.0 / (pair.radius + pair.distance))
+        # where the edge lies along the circle, the beam leans against it by the angle whose sine is T' by arc length
+        lengths = line.lengths[line.locate(zeta)[0]]
+        level = np.sqrt(1.0 - (pair.edge.slope(zeta) / lengths) ** 2)
+        return np.asarray(turning * own + level / (pair.radius + pair.edge.at(zeta)))
     other = model.beams[pair.second]
     line_m = model.line(other, z)
     zeta_m, found = project(line_m, x, np.full(zeta.shape, facing))
@@ -94,6 +101,7 @@ def _curvature(model: Model, system: System, beam: BeamPart, zeta: Array) -> Arr
     elements = model.elements
     e = model.line(beam, system.z).locate(zeta)[0] + beam.elements.start
     undeformed = (elements.rotation[1, e] - elements.rotation[0, e]) / elements.length[e]
-    moment = bending_moment(model, system, beam, zeta / (beam.elements.stop - beam.elements.start))
+    fractions = zeta / (beam.elements.stop - beam.elements.start)
+    moment = bending_moment(model, system, beam, fractions)
     stretch = elements.compliance[e] * system.z[model.element_dofs[6, e]]
-    return np.asarray((undeformed + moment / beam.bending) / (1.0 + stretch))
+    return np.asarray((undeformed + moment / beam.bending(fractions)) / (1.0 + stretch))

@@ -18,12 +18,22 @@ from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLi
 from fea_reference.curves import length, sample
 from fea_reference.element import Elements, reference
 from fea_reference.hermite import Index, NeutralLine
+from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
 from fea_reference.settings import Settings
 from fea_reference.state import State
 from scene.answer import Array
-from scene.statement import BeamEnd, DisplacementDrive, Force, FreeEnd, Moment, Scene, SlidingBody, WeldedEnd
-
-SHEAR_FACTOR = 5.0 / 6.0  # of a rectangle
+from scene.statement import (
+    Beam,
+    BeamEnd,
+    DisplacementDrive,
+    Force,
+    FreeEnd,
+    Material,
+    Moment,
+    Scene,
+    SlidingBody,
+    WeldedEnd,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,14 +57,38 @@ class Units:
 
 @dataclass(frozen=True, slots=True)
 class BeamPart:
-    """Where a beam's nodes and elements stand among all; ``length`` and ``thickness`` without units."""
+    """Where a beam's nodes and elements stand among all.
+
+    ``length`` and ``thickness`` are without units, the latter the largest, which a beam that touches by its edges has
+    everywhere; ``record`` and ``material`` are the scene's, ``unit`` of its bending stiffness.
+    """
 
     name: str
     nodes: slice
     elements: slice
     length: float
     thickness: float
-    bending: float
+    record: Beam
+    material: Material
+    unit: float
+
+    def bending(self, fractions: Array) -> Array:
+        """EI at fractions (k,) of the arc length, without units."""
+        return bending_stiffness(self.record, self.material, fractions) / self.unit
+
+    def bending_second(self, fractions: Array) -> Array:
+        """Second derivative of EI by arc length at fractions (k,), without units; at a knot what follows."""
+        return bending_stiffness_second(self.record, self.material, fractions) / self.unit / self.length**2
+
+    @property
+    def softest(self) -> float:
+        """The least EI at the section's knots."""
+        return float(self.bending(self.record.knots).min())
+
+    @property
+    def stiffest(self) -> float:
+        """The largest EI at the section's knots."""
+        return float(self.bending(self.record.knots).max())
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,47 +229,44 @@ def build(scene: Scene, settings: Settings) -> Model:
     """
     counts = settings.elements_of(scene.beams)
     lengths = {name: length(beam.curve) for name, beam in scene.beams.items()}
-    stiffness = {
-        name: scene.materials[beam.material].youngs_modulus * beam.width * beam.thickness**3 / 12.0
-        for name, beam in scene.beams.items()
-    }
+    largest = max(
+        float(bending_stiffness(beam, scene.materials[beam.material], beam.knots).max())
+        for beam in scene.beams.values()
+    )
     first = next(iter(scene.beams.values()))
-    units = Units(max(lengths.values()), max(stiffness.values()), np.array(first.curve.start))
+    units = Units(max(lengths.values()), largest, np.array(first.curve.start))
 
     beams: list[BeamPart] = []
     arc, points, tangents, cells = [], [], [], []
-    bending, compliance, shear_compliance = [], [], []
+    compliances = []
     node, cell, offset = 0, 0, 0.0
     for name, beam in scene.beams.items():
         n, material = counts[name], scene.materials[beam.material]
-        own_length, own_bending = lengths[name] / units.length, stiffness[name] / units.bending
+        own_length = lengths[name] / units.length
         fractions = np.linspace(0.0, 1.0, n + 1)
         where, angle = sample(beam.curve, fractions)
         arc.append(offset + own_length * fractions)
         points.append((where - units.origin) / units.length)
         tangents.append(angle)
         cells.append(node + np.stack([np.arange(n), np.arange(1, n + 1)]))
-        # 1/EA and 1/GA follow from EI: I/A = t²/12, and G/E from Poisson's ratio.
-        t = beam.thickness / units.length
-        soft = t**2 / (12.0 * own_bending)
-        bending.append(np.full(n, own_bending))
-        compliance.append(np.full(n, 0.0 if settings.kinematics == "bending" else soft))
-        shear_over_axial = 2.0 * (1.0 + material.poisson_ratio) / SHEAR_FACTOR
-        shear_compliance.append(np.full(n, soft * shear_over_axial if settings.kinematics == "shear" else 0.0))
-        beams.append(BeamPart(name, slice(node, node + n + 1), slice(cell, cell + n), own_length, t, own_bending))
+        compliances.append(compliance(beam, material, lengths[name], n))
+        t = beam.thickest / units.length
+        nodes_here, elements_here = slice(node, node + n + 1), slice(cell, cell + n)
+        beams.append(BeamPart(name, nodes_here, elements_here, own_length, t, beam, material, units.bending))
         node, cell, offset = node + n + 1, cell + n, offset + own_length + 1.0
 
     # One coordinate, the arc length, for all beams one after the other; no element spans the gaps.
     mesh = MeshLine(np.concatenate(arc)[None, :], np.concatenate(cells, axis=1))
     basis = CellBasis(mesh, ElementVector(ElementLineP1(), 3) * ElementLineP0(), intorder=2)
     nodes, angles = np.concatenate(points), np.concatenate(tangents)
+    stretches, shears = settings.kinematics != "bending", settings.kinematics == "shear"
     elements = reference(
         mesh,
         nodes,
         angles,
-        np.concatenate(bending),
-        np.concatenate(compliance),
-        np.concatenate(shear_compliance),
+        np.concatenate([one.bending for one in compliances], axis=2) * units.moment,
+        np.concatenate([one.axial for one in compliances]) * (stretches * units.force / units.length),
+        np.concatenate([one.shear for one in compliances]) * (shears * units.force / units.length),
     )
     node_dofs = np.asarray(basis.nodal_dofs, dtype=np.int64)
     size = int(basis.N)

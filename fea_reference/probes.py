@@ -13,6 +13,8 @@ from fea_reference.touch import Pair, Touch
 from scene.answer import Array, Shape, frozen_array
 from scene.statement import DisplacementDrive, Probe, Scene
 
+_NOTHING = 1e-9  # of the largest force
+
 
 def probed(scene: Scene, march: March, probe: Probe) -> Array:
     """One probe's value; the potential energy leaves out what the contact's penalty stores."""
@@ -31,10 +33,10 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
         case "reaction_moment":
             return frozen_array(sum(moment for _, moment in _holding(scene, march, probe.of)) * units.moment)
         case "bending_stress":
-            moment = bending_moment(model, march.system, model.beam(probe.of), np.linspace(0.0, 1.0, probe.points))
-            beam = scene.beams[probe.of]
-            # M t/(2I), with I of the rectangle
-            return frozen_array(moment * units.moment * 6.0 / (beam.width * beam.thickness**2))
+            u, beam = np.linspace(0.0, 1.0, probe.points), scene.beams[probe.of]
+            moment = bending_moment(model, march.system, model.beam(probe.of), u)
+            # M t/(2I), with I of the rectangle that is there
+            return frozen_array(moment * units.moment * 6.0 / (beam.width_at(u) * beam.thickness_at(u) ** 2))
         case "potential_energy":
             return frozen_array(_potential_energy(march) * units.moment)
         case "closing_load":
@@ -67,12 +69,14 @@ def touching(march: March) -> dict[str, Array]:
     model, places = march.model, {}
     for one in march.system.touches:
         if one.closed:
-            own = model.beams[one.pair.first].thickness
-            # A circle's points are on its surface already.
-            other = model.beams[one.pair.second].thickness if isinstance(one.pair, Pair) else 0.0
-            # From each neutral line to its own surface; lines have none.
-            share = one.pair.distance / (own + other)
-            middle = 0.5 * (one.x + one.x_m + share * (other - own) * one.normal)
+            if isinstance(one.pair, Pair):
+                # From each neutral line to its own surface; lines have none.
+                own, other = (model.beams[i].thickness for i in (one.pair.first, one.pair.second))
+                to_surfaces = np.asarray(one.pair.distance / (own + other) * (other - own))
+            else:
+                # A circle's points are on its surface already.
+                to_surfaces = -one.pair.edge.at(one.zeta)
+            middle = 0.5 * (one.x + one.x_m + to_surfaces * one.normal)
             places[one.pair.name] = frozen_array((middle * model.units.length + model.units.origin[:, None]).T)
     return places
 
@@ -94,8 +98,11 @@ def _driven(scene: Scene, drive: str) -> str:
 
 
 def _touch(march: March, name: str) -> Touch | None:
-    """A contact's state, None while it is open."""
-    return next((one for one in march.system.touches if one.pair.name == name and one.closed), None)
+    """A contact's state, None while it is open, or where it overlaps by round-off and presses by no more."""
+    for one in march.system.touches:
+        if one.pair.name == name and one.closed and np.hypot(*one.force).sum() > _NOTHING * march.system.scale:
+            return one
+    return None
 
 
 def _centre(march: March, touch: Touch) -> float:

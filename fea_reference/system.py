@@ -84,7 +84,7 @@ def assemble(
     balanced += [np.abs(one.gradient).max(initial=0.0) for one in touches]
     largest = float(max(balanced))
     angle = max(1.0, float(np.abs(z[model.node_dofs[2]]).max()))
-    stiffest = max(12.0 * beam.bending / model.elements.length[beam.elements.start] ** 2 for beam in model.beams)
+    stiffest = max(12.0 * beam.stiffest / model.elements.length[beam.elements.start] ** 2 for beam in model.beams)
     floor = _ROUND_OFF * stiffest * float(np.spacing(angle))
     floor += sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
     scale = largest if largest > _NOTHING * floor else 1.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from fea_reference.edge import Edge
 from fea_reference.hermite import Index
 from fea_reference.zones import Zones
 from scene.answer import Array
@@ -45,8 +46,8 @@ class Circle:
         first: number of the beam.
         body: number of the body that the circle is fixed to, at ``arm`` from its reference centre.
         radius: of the circle.
-        distance: T, of the neutral line from the circle when they touch.
-        scale: what penetration is measured by: the thickness, or the longest beam for a line.
+        edge: T, distance of the neutral line from the circle where they touch.
+        scale: what penetration is measured by: the least thickness, or the longest beam for a line.
         loosest: the penalty to begin with, EI over the fourth power of the width of the layer in which the
             pressure builds up at a zone's end: a share of the beam's length (or the radius, if that is less), so
             that finer elements make the search for the zone no harder.
@@ -59,7 +60,7 @@ class Circle:
     body: int
     arm: tuple[float, float]
     radius: float
-    distance: float
+    edge: Edge
     scale: float
     loosest: float
     stiffest: float

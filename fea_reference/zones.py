@@ -125,13 +125,20 @@ def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zone
     return Zones(*_split_at_nodes(first, second, inside.intervals, inside.zeta_m), inside.least)
 
 
-def negative(at: Callable[[Array, Array], Gap], zeta: Array, there: Gap, neighbours: NDArray[np.bool_]) -> Zones:
+def negative(
+    at: Callable[[Array, Array], Gap],
+    zeta: Array,
+    there: Gap,
+    neighbours: NDArray[np.bool_],
+    kinks: tuple[float, ...] = (),
+) -> Zones:
     """The intervals on which a gap is negative, each as long as its element lets it be.
 
     Args:
         at: the gap at places ζ (k,), the closest points sought from ζ_m (k,).
         zeta: places (k,) in order, all nodes that matter among them; ``there`` is the gap at them.
         neighbours: whether the gap is known between a place and the next (k−1,).
+        kinks: those of the places, but for nodes, at which the gap has a kink.
     """
     g, slope, curvature, zeta_m = there.g, there.slope, there.curvature, there.zeta_m
 
@@ -165,7 +172,8 @@ def negative(at: Callable[[Array, Array], Gap], zeta: Array, there: Gap, neighbo
         neighbours = np.insert(neighbours, ends, True)
     inside = np.flatnonzero(neighbours & (g[:-1] <= 0.0) & (g[1:] <= 0.0) & (g[:-1] + g[1:] < 0.0))
     # What follows on within one element is one interval: the gap is smooth there.
-    begins = np.flatnonzero((np.diff(inside, prepend=-2) > 1) | (zeta[inside] == np.floor(zeta[inside])))
+    at_node, at_kink = zeta[inside] == np.floor(zeta[inside]), np.isin(zeta[inside], kinks)
+    begins = np.flatnonzero((np.diff(inside, prepend=-2) > 1) | at_node | at_kink)
     last = np.append(begins[1:], inside.size)[: begins.size] - 1
     low, high = inside[begins], inside[last] + 1
     return Zones(np.stack([zeta[low], zeta[high]], axis=1), np.stack([zeta_m[low], zeta_m[high]], axis=1), least)

@@ -13,7 +13,7 @@ ends               (2,)    arc lengths on the contact's first beam where its zon
                            ascending, the same twice for contact in a point; empty if open; of several
                            zones the first one's beginning and the last one's end
 closing_load       (1,)    value of the stepped load or drive at which a contact first closes; empty if open
-bending_stress     (P,)    signed: E·t/2 times the change of curvature along the beam, Pa,
+bending_stress     (P,)    signed: E·t/2 times the change of curvature along the beam, Pa, with t of the place,
                            at P equal arc-length steps from the beam's start to its end;
                            a positive change turns the tangent counter-clockwise
 reaction           (2,)    force of the ground on what is joined at a point, N; at a driven point the drive's force

@@ -3,7 +3,7 @@
 ======  ====================================================================
 symbol  meaning
 ======  ====================================================================
-t       thickness, m
+t       thickness, m; of a ring whose thickness varies, the mean at its ends
 s       arc length, m; Δs between two places of one neutral line
 d       distance of these places in the plane, m
 κ       curvature, 1/m; t κ < 1 is asked of every beam
@@ -23,6 +23,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import hypot, pi
 
+import numpy as np
+
 from scene.check_shapes import OVERLAP, is_beam
 from scene.geometry import arc_angle
 from scene.mistakes import Mistake
@@ -36,9 +38,10 @@ def beside_themselves(scene: Scene) -> Iterator[Mistake]:
         if not (isinstance(curve, Arc) and is_beam(beam) and abs(arc_angle(curve)) > pi):
             continue
         apart = hypot(curve.end[0] - curve.start[0], curve.end[1] - curve.start[1])
-        if beam.thickness - apart > OVERLAP * beam.thickness:
+        thickness = float(np.mean(beam.thickness_at(np.array([0.0, 1.0]))))
+        if thickness - apart > OVERLAP * thickness:
             yield Mistake(
                 f"beams.{name}.curve",
-                f"a ring that overlaps itself: its ends are {apart:.3g} m apart, and it is {beam.thickness:g} m thick",
+                f"a ring that overlaps itself: its ends are {apart:.3g} m apart, and they are {thickness:g} m thick",
                 "ends of an arc that are at least its thickness apart",
             )

@@ -9,8 +9,8 @@ t       thickness of the beam, m; without meaning for a beam that is a line
 d       distance of the neutral line from the circle's center, m
 ======  =====================================================================
 
-The beam's edge lies outside the circle where d ≥ r + t/2; for a line, where d ≥ r.  Bounds stand on
-dimensionless numbers only: 1e-6 ≤ r/L ≤ 1e6, and L ≥ 1e-6 of the center's coordinates, since positions lose
+The beam's edge lies outside the circle where d ≥ r + t/2, with t of the place; for a line, where d ≥ r.  Bounds
+stand on dimensionless numbers only: 1e-6 ≤ r/L ≤ 1e6, and L ≥ 1e-6 of the center's coordinates, since positions lose
 the digits that a gap is made of in a circle far larger, or farther away, than the beam.
 """
 
@@ -18,10 +18,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from scene.check_shapes import OVERLAP, SHORTEST, is_beam
-from scene.geometry import arc_length, distance_to, scaled
+from scene.geometry import Array, arc_length, distance_to, points_on, scaled
 from scene.mistakes import Mistake
-from scene.statement import Beam, CircleContact, Point, Scene
+from scene.statement import Beam, CircleContact, Curve, Point, Scene
+
+_SAMPLES = 2001  # of a beam whose thickness varies
+_REFINED = 5
 
 
 def wrong_circles(scene: Scene) -> Iterator[Mistake]:
@@ -52,8 +57,10 @@ def circle_overlaps(scene: Scene) -> Iterator[Mistake]:
         # what is compared is in beam's lengths: neither squares nor sums leave the range of floating point
         curve = scaled(beam.curve, length)
         center = (contact.center[0] / length, contact.center[1] / length)
-        thickness = beam.thickness / length if contact.thick else 0.0
-        depth = contact.radius / length + 0.5 * thickness - distance_to(curve, center)
+        thickness = beam.thinnest / length if contact.thick else 0.0
+        varies = contact.thick and beam.tapered
+        apart = _edge_from(beam, curve, center, length) if varies else distance_to(curve, center)
+        depth = contact.radius / length + 0.5 * thickness - apart
         measure, of = (thickness, "its thickness") if contact.thick else (1.0, "its length")
         if depth > OVERLAP * measure:
             yield Mistake(
@@ -62,6 +69,28 @@ def circle_overlaps(scene: Scene) -> Iterator[Mistake]:
                 f"{depth / measure:.3g} of {of}",
                 f"a beam that touches the circle from outside or is apart (overlap at most {OVERLAP:g} of {of})",
             )
+
+
+def _edge_from(beam: Beam, curve: Curve, center: Point, length: float) -> float:
+    """The least of d − (t − t₀)/2 along a beam whose thickness t varies, t₀ where it is thinnest; in beam's lengths."""
+    from scipy.optimize import minimize_scalar  # loaded when a thickness varies, not with every scene
+
+    def apart(u: Array) -> Array:
+        distance = np.hypot(*(points_on(curve, u) - np.array(center)).T)
+        return np.asarray(distance - 0.5 * (beam.thickness_at(u) - beam.thinnest) / length)
+
+    u = np.union1d(np.linspace(0.0, 1.0, _SAMPLES), beam.knots)
+    sampled = apart(u)
+    fence = np.pad(sampled, 1, constant_values=np.inf)
+    minima = np.flatnonzero((sampled <= fence[:-2]) & (sampled <= fence[2:]))
+    found = [float(sampled.min())]
+    for i in minima[np.argsort(sampled[minima], kind="stable")[:_REFINED]]:
+        beside = (float(u[max(i - 1, 0)]), float(u[min(i + 1, len(u) - 1)]))
+        refined = minimize_scalar(
+            lambda v: float(apart(np.array([v]))[0]), bounds=beside, method="bounded", options={"xatol": 1e-12}
+        )
+        found.append(float(refined.fun))
+    return min(found)
 
 
 def _out_of_proportion(name: str, contact: CircleContact, beam: Beam) -> Mistake | None:

@@ -3,7 +3,7 @@
 Bounds stand on dimensionless numbers only.  With thickness t, arc length L, curvature κ:
 
 * 1e-5 ≤ t/L ≤ 0.2: above, no beam theory holds; below, EI/L³ leaves nothing above round-off;
-* t κ / 2 < 0.5: the inner edge keeps at least half of the neutral line's length;
+* t κ / 2 < 0.5: the inner edge keeps at least half of the neutral line's length; where t varies, place by place;
 * L ≥ 1e-6 of the largest coordinate: nearer to nothing, positions lose the digits the other checks ask for;
   and of a polynomial's largest term, for the same reason;
 * |f'| ≤ 1e3 and degree ≤ 20 of a polynomial f: beyond, it is no good way to write the curve.
@@ -19,7 +19,8 @@ from typing import Literal
 import numpy as np
 
 from scene import polynomial
-from scene.geometry import arc_length, closest_pair, largest_curvature, points_on, scaled, tangents_on
+from scene.check_profiles import has_sizes
+from scene.geometry import arc_length, closest_pair, curvature_on, largest_curvature, points_on, scaled, tangents_on
 from scene.mistakes import Mistake
 from scene.statement import Arc, Beam, BeamContact, BeamEnd, Curve, FreeEnd, Point, Polynomial, Scene, WeldedEnd
 
@@ -34,6 +35,7 @@ MEETING = 1e-6  # of the beam's length, or of the arc's radius
 OVERLAP = 1e-6  # of the mean thickness
 HELD_OVERLAP = 1e-3  # of the mean thickness, beside ends that one body holds: coordinates that were rounded
 CROSSING_ANGLE = 1e-3  # rad; lines that meet at less are taken as tangent
+_SAMPLES = 2001  # of a beam whose thickness varies
 JOINED = 5.0  # mean thicknesses beside a shared end in which an overlap is no mistake
 SIDE_BY_SIDE = 2.0  # mean thicknesses between ends that one body holds beside each other
 
@@ -49,7 +51,7 @@ def wrong_curves(scene: Scene) -> Iterator[Mistake]:
 def wrong_sections(scene: Scene) -> Iterator[Mistake]:
     """Thicknesses out of proportion to the beam's length or curvature."""
     for name, beam in scene.beams.items():
-        if _has_shape(beam.curve) and (mistake := _wrong_section(name, beam)) is not None:
+        if _has_shape(beam.curve) and has_sizes(beam) and (mistake := _wrong_section(name, beam)) is not None:
             yield mistake
 
 
@@ -105,7 +107,7 @@ def overlaps(scene: Scene) -> Iterator[Mistake]:
         first, second = (scene.beams.get(beam) for beam in contact.between)
         if first is None or second is None or contact.between[0] == contact.between[1]:
             continue
-        if not (is_beam(first) and is_beam(second)):
+        if not (is_beam(first) and is_beam(second)) or (contact.thick and (first.tapered or second.tapered)):
             continue
         found = _overlap(first, second, _welded_to(scene, first, second), thick=contact.thick)
         if found is not None:
@@ -114,8 +116,8 @@ def overlaps(scene: Scene) -> Iterator[Mistake]:
 
 
 def is_beam(beam: Beam) -> bool:
-    """Whether a beam's curve exists and its thickness is in proportion to it."""
-    return _has_shape(beam.curve) and _wrong_section("", beam) is None
+    """Whether a beam's curve exists, its sizes are stated all along, and its thickness is in proportion to it."""
+    return _has_shape(beam.curve) and has_sizes(beam) and _wrong_section("", beam) is None
 
 
 def wrong_curve(key: str, curve: Curve) -> Mistake | None:
@@ -177,19 +179,25 @@ def _has_shape(curve: Curve) -> bool:
 
 
 def _wrong_section(name: str, beam: Beam) -> Mistake | None:
-    key = f"beams.{name}.thickness"
-    slenderness = beam.thickness / arc_length(beam.curve)
-    if not THINNEST <= slenderness <= THICKEST:
-        return Mistake(
-            key,
-            f"{beam.thickness:g} m, which is {slenderness:.3g} of the beam's length",
-            f"a thickness between {THINNEST:g} and {THICKEST:g} of the beam's length",
-        )
-    bentness = 0.5 * beam.thickness * largest_curvature(beam.curve)
+    key, length = f"beams.{name}.thickness", arc_length(beam.curve)
+    for thickness in (beam.thinnest, beam.thickest):
+        if not THINNEST <= thickness / length <= THICKEST:
+            return Mistake(
+                key,
+                f"{thickness:g} m, which is {thickness / length:.3g} of the beam's length",
+                f"a thickness between {THINNEST:g} and {THICKEST:g} of the beam's length",
+            )
+    thickness, curvature = beam.thickest, largest_curvature(beam.curve)
+    if beam.tapered and 0.5 * thickness * curvature >= MOST_CURVED:
+        u = np.union1d(np.linspace(0.0, 1.0, _SAMPLES), beam.knots)
+        bend = beam.thickness_at(u) * curvature_on(beam.curve, u)
+        worst = u[[bend.argmax()]]
+        thickness, curvature = float(beam.thickness_at(worst)[0]), float(curvature_on(beam.curve, worst)[0])
+    bentness = 0.5 * thickness * curvature
     if bentness >= MOST_CURVED:
         return Mistake(
             key,
-            f"{beam.thickness:g} m, half of which is {bentness:.3g} of the radius of curvature",
+            f"{thickness:g} m, half of which is {bentness:.3g} of the radius of curvature",
             f"half a thickness less than {MOST_CURVED:g} of the radius of curvature",
         )
     return None
@@ -235,7 +243,7 @@ def _overlap(first: Beam, second: Beam, welded: list[tuple[Side, Side]], *, thic
     """What is wrong between two beams, and what is allowed; None where nothing is."""
     size = max(_largest_coordinate(first.curve), _largest_coordinate(second.curve))
     curve1, curve2 = scaled(first.curve, size), scaled(second.curve, size)
-    mean = 0.5 * (first.thickness + second.thickness) / size
+    mean = 0.5 * (first.thickest + second.thickest) / size
     left_out = JOINED * mean if thick else CROSSING_ANGLE * min(arc_length(curve1), arc_length(curve2))
     range1, range2 = (
         _apart_from_shared(curve1, curve2, left_out),

@@ -9,6 +9,7 @@ from scene.check_circles import circle_overlaps, wrong_circles
 from scene.check_drives import wrong_drives, wrong_slides
 from scene.check_motion import wrong_loads, wrong_stages, wrong_supports
 from scene.check_names import repeated_names, unknown_names
+from scene.check_profiles import thick_contacts, wrong_profiles
 from scene.check_questions import wrong_claims, wrong_probes
 from scene.check_shapes import overlaps, wrong_contacts, wrong_curves, wrong_ends, wrong_sections
 from scene.mistakes import Mistake
@@ -18,6 +19,7 @@ _CHECKS = (
     repeated_names,
     unknown_names,
     wrong_curves,
+    wrong_profiles,
     wrong_sections,
     beside_themselves,
     wrong_ends,
@@ -26,6 +28,7 @@ _CHECKS = (
     wrong_loads,
     wrong_drives,
     wrong_contacts,
+    thick_contacts,
     overlaps,
     wrong_circles,
     circle_overlaps,

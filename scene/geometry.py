@@ -61,6 +61,13 @@ def largest_curvature(curve: Curve) -> float:
     return 1.0 / _radius(curve) if isinstance(curve, Arc) else 0.0
 
 
+def curvature_on(curve: Curve, u: Array) -> Array:
+    """Absolute curvature (n,), 1/m, at the fractions ``u`` (n,)."""
+    if isinstance(curve, Polynomial):
+        return polynomial.curvature(curve, u)
+    return np.full(u.shape, 1.0 / _radius(curve) if isinstance(curve, Arc) else 0.0)
+
+
 def points_on(curve: Curve, u: Array) -> Array:
     """p(u) (n, 2), m, at the fractions ``u`` (n,)."""
     if isinstance(curve, Polynomial):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from types import NoneType, UnionType
 from typing import Annotated, Any, Union, get_args, get_origin
 
-from pydantic import BaseModel
+from pydantic import BaseModel, Tag
 
 from scene.statement import Record, Scene
 
@@ -48,6 +48,9 @@ def _bare(place: Any) -> Any:  # noqa: ANN401 - annotations are whatever they ar
     return place
 
 
-def _tags(record: type[BaseModel]) -> tuple[str, ...]:
+def _tags(record: Any) -> tuple[str, ...]:  # noqa: ANN401 - annotations are whatever they are
+    """Under which names a member of a union goes."""
+    if get_origin(record) is Annotated:
+        return tuple(each.tag for each in get_args(record) if isinstance(each, Tag))
     fields = record.model_fields
     return get_args(next(fields[tag] for tag in ("kind", "joint", "motion") if tag in fields).annotation)

@@ -79,19 +79,23 @@ def largest_curvature(curve: Polynomial) -> float:
     from scipy.optimize import minimize_scalar  # loaded when a curve is measured, not with every scene
 
     graph = _graph(curve)
-
-    def curvature(w: Array) -> Array:
-        return np.asarray(np.abs(polynomial.polyval(w, graph.g2)) / _speed(graph, w) ** 3)
-
     # a steep line turns sharply where it is level
     level = polynomial.polyroots(polynomial.polytrim(graph.g1, _NOTHING * np.max(np.abs(graph.g1))))
     level = level.real[(np.abs(level.imag) < _REAL) & (level.real > 0.0) & (level.real < 1.0)]
     w = np.unique(np.concatenate((np.linspace(0.0, 1.0, _SAMPLES), level)))
-    kappa = curvature(w)
+    kappa = _curvature(graph, w)
     best = int(np.argmax(kappa))
     beside = (float(w[max(best - 1, 0)]), float(w[min(best + 1, len(w) - 1)]))
-    refined = minimize_scalar(lambda w: -float(curvature(w)), bounds=beside, method="bounded", options={"xatol": 1e-12})
+    refined = minimize_scalar(
+        lambda w: -float(_curvature(graph, w)), bounds=beside, method="bounded", options={"xatol": 1e-12}
+    )
     return max(float(kappa[best]), -float(refined.fun)) / graph.extent
+
+
+def curvature(curve: Polynomial, u: Array) -> Array:
+    """κ (n,), 1/m, at the fractions ``u`` (n,)."""
+    graph = _graph(curve)
+    return _curvature(graph, _places(graph, u)) / graph.extent
 
 
 def points(curve: Polynomial, u: Array) -> Array:
@@ -185,6 +189,11 @@ def _knots(g1: Array, panels: int) -> Array:
 
 def _speed(graph: _Graph, w: Array) -> Array:
     return np.asarray(np.hypot(1.0, polynomial.polyval(w, graph.g1)))
+
+
+def _curvature(graph: _Graph, w: Array) -> Array:
+    """κ·D."""
+    return np.asarray(np.abs(polynomial.polyval(w, graph.g2)) / _speed(graph, w) ** 3)
 
 
 def _places(graph: _Graph, u: Array) -> Array:

@@ -37,6 +37,7 @@ _ALLOWED = {
 
 _CURVES = {"line", "arc", "polynomial"}
 _JOINTS = {"weld", "pin", "free"}
+_SIZES = {"number", "profile"}
 
 
 def read(path: str | Path) -> Scene:
@@ -220,4 +221,5 @@ def _is_tag(loc: tuple[int | str, ...], depth: int) -> bool:
     if loc[0] == "contacts":
         return depth == 2 and loc[2] in {"beam-beam", "beam-circle"}
     in_beam = loc[0] == "beams" and depth == 3
-    return in_beam and loc[3] in {"curve": _CURVES, "start": _JOINTS, "end": _JOINTS}.get(str(loc[2]), set())
+    tags = {"curve": _CURVES, "start": _JOINTS, "end": _JOINTS, "thickness": _SIZES, "width": _SIZES}
+    return in_beam and loc[3] in tags.get(str(loc[2]), set())

@@ -14,8 +14,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Literal, TypeVar
 
+import numpy as np
 from frozendict import frozendict
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints
+from numpy.typing import NDArray
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, StringConstraints, Tag
 
 T = TypeVar("T")
 
@@ -120,18 +122,71 @@ class FreeEnd(Record):
 BeamEnd = Annotated[WeldedEnd | PinnedEnd | FreeEnd, Field(discriminator="joint")]
 
 
+class Profile(Record):
+    """A size that varies along a beam: ``values`` (metres) at fractions ``at`` of its arc length, straight between.
+
+    The first fraction is 0, the last 1, and they ascend.
+    """
+
+    at: Annotated[tuple[float, ...], Field(min_length=2)]
+    values: Annotated[tuple[Positive, ...], Field(min_length=2)]
+
+
+def _size_tag(value: object) -> str:
+    return "profile" if isinstance(value, Mapping | Profile) else "number"
+
+
+Size = Annotated[Annotated[Positive, Tag("number")] | Annotated[Profile, Tag("profile")], Discriminator(_size_tag)]
+
+
 class Beam(Record):
     """A slender beam of rectangular section, free of stress in the shape of its ``curve``.
 
-    ``thickness`` lies in the plane of motion, ``width`` across it, both in metres.
+    ``thickness`` lies in the plane of motion, ``width`` across it, both in metres; each is a number or varies along
+    the beam.
     """
 
     curve: Curve
-    thickness: Positive
-    width: Positive
+    thickness: Size
+    width: Size
     material: Name
     start: BeamEnd
     end: BeamEnd
+
+    def thickness_at(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Thickness at fractions ``u`` of the arc length, m, in the same shape."""
+        return _size_at(self.thickness, u)
+
+    def width_at(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Width at fractions ``u`` of the arc length, m, in the same shape."""
+        return _size_at(self.width, u)
+
+    @property
+    def knots(self) -> NDArray[np.float64]:
+        """Fractions (k,) between which thickness and width go straight, from 0 to 1."""
+        inner = [size.at for size in (self.thickness, self.width) if isinstance(size, Profile)]
+        return np.unique(np.concatenate(([0.0, 1.0], *inner)))
+
+    @property
+    def thinnest(self) -> float:
+        """The least thickness, m."""
+        return min(self.thickness.values) if isinstance(self.thickness, Profile) else self.thickness
+
+    @property
+    def thickest(self) -> float:
+        """The largest thickness, m."""
+        return max(self.thickness.values) if isinstance(self.thickness, Profile) else self.thickness
+
+    @property
+    def tapered(self) -> bool:
+        """Whether the thickness varies along the beam."""
+        return self.thinnest < self.thickest
+
+
+def _size_at(size: float | Profile, u: NDArray[np.float64]) -> NDArray[np.float64]:
+    if isinstance(size, Profile):
+        return np.asarray(np.interp(u, size.at, size.values))
+    return np.full(np.shape(u), size)
 
 
 Points = Annotated[Named[Point], Field(min_length=1)]
@@ -238,7 +293,7 @@ class CircleContact(Record):
     """A beam that may touch a rigid circle from outside, without friction.
 
     The circle of ``radius`` about ``center`` (metres, initial position) is fixed to ``body``;
-    a ``thick`` beam touches by its edge, any other as a line.
+    a ``thick`` beam touches by its edge, half of the thickness of the place from its neutral line, another as a line.
     """
 
     kind: Literal["beam-circle"]

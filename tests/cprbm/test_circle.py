@@ -9,7 +9,7 @@ from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import contact_gradient, contact_rows, equilibrium, point_at, system
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
-from scene import SceneError
+from scene import Profile, SceneError
 from scene.reading import scene_from
 from tests.cprbm.scenes import cantilever_data, force
 from tests.references.wrapped import Wrapped
@@ -149,9 +149,22 @@ def test_a_force_that_pulls_backwards_wraps_more_than_half_a_circle():
     assert values["T.displacement"] == pytest.approx(reference.displacement, abs=1e-3 * BEAM["length"])
 
 
-@pytest.fixture(params=["fixed", "moving"])
+def tapered(scene, *values):
+    """The scene with a thickness that varies, stated at equal steps in parts of the even one."""
+    size = {"at": tuple(np.linspace(0.0, 1.0, len(values)).tolist())}
+    thickness = Profile(**size, values=tuple(BEAM["thickness"] * value for value in values))
+    beam = scene.beams["beam"].model_copy(update={"thickness": thickness})
+    return scene.model_copy(update={"beams": {"beam": beam}})
+
+
+@pytest.fixture(params=["fixed", "moving", "tapered", "pinned"])
 def bent(request):
     scene = scene_of([60.0])
+    if request.param == "tapered":  # with a corner that stands out, at 0.6 of the length
+        scene = tapered(scene, 1.0, 0.8, 0.8, 0.9, 0.6, 0.5)
+    if request.param == "pinned":  # where the row moves with the minimum
+        pin = {"radius": 0.0031, "center": [0.43 * BEAM["length"], -0.0037]}
+        scene = tapered(scene_of([60.0], **pin), 1.0, 0.5)
     if request.param == "moving":  # with the tip, about which nothing is real but the derivatives
         moving = scene.contacts["circle"].model_copy(update={"body": "tip"})
         scene = scene.model_copy(update={"contacts": {"circle": moving}})

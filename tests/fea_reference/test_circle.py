@@ -10,7 +10,7 @@ from fea_reference.circle import circles, passed, touch
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.touch import Penalty
-from scene import Ending, Scene, Stage
+from scene import Ending, Profile, Scene, Stage
 from scene.statement import Force
 from tests.cprbm import test_circle as cprbm_circle
 
@@ -226,13 +226,15 @@ def test_doubling_the_rule_changes_nothing():
     assert once["tip.displacement"] == pytest.approx(twice["tip.displacement"], rel=1e-9)
 
 
+@pytest.mark.parametrize("thickness", [T, Profile(at=(0.0, 0.4, 1.0), values=(0.6 * T, T, 0.7 * T))])
 @pytest.mark.parametrize("body", ["ground", "end"])
 @pytest.mark.parametrize("depth", [1e-5, 1e-3])
-def test_the_contacts_derivatives(body, depth):
+def test_the_contacts_derivatives(body, depth, thickness):
     """Gradient and tangent of ½ ε ∫ ⟨−g⟩² ds by differences, also over the motion of a free body."""
-    model = build(
-        scene := on_circle((1.0,), body=body, center=(0.4, -0.2), circle=0.2 - T / 2 + depth), Settings(elements=9)
-    )
+    scene = on_circle((1.0,), body=body, center=(0.4, -0.2), circle=0.2 - T / 2 + depth)
+    beam = scene.beams["beam"].model_copy(update={"thickness": thickness})
+    scene = scene.model_copy(update={"beams": {"beam": beam}})
+    model = build(scene, Settings(elements=9))
     (circle,) = circles(scene, model, 1e-4)
     rng = np.random.default_rng(5)
     z = model.start.values + 0.02 * depth * rng.standard_normal(model.size)
@@ -243,7 +245,7 @@ def test_the_contacts_derivatives(body, depth):
         for dofs, g, H in zip(one.dofs.T, one.gradient.T, one.hessian.T, strict=True):
             gradient[dofs] += g
             hessian[np.ix_(dofs, dofs)] += H
-        g = ((one.x - one.x_m) * one.normal).sum(axis=0) - circle.distance
+        g = ((one.x - one.x_m) * one.normal).sum(axis=0) - circle.edge.at(one.zeta)
         return 0.5 * float(np.hypot(*one.force) @ -g), gradient, hessian
 
     value, gradient, hessian = gathered(z)

@@ -19,6 +19,7 @@ from cprbm.nearest import distance_along
 from fea_reference import curves
 from fea_reference.model import build
 from fea_reference.projection import project
+from fea_reference.section import compliance
 from scene import Arc, Line, Polynomial
 from tests.cprbm.scenes import hinge, hinge_data
 
@@ -72,12 +73,39 @@ def test_bending_stiffness():
         beams = {name: {**beam, "thickness": thickness, "width": width} for name, beam in data["beams"].items()}
         scene = hinge(materials=data["materials"], beams=beams)
         chain = mechanism_of(scene, cprbm.Settings(links=7)).problem.model
-        ours = chain.chains[0].rigidity * chain.unit_moment * chain.unit_length
+        ours = chain.chains[0].section.rigidity_at(np.zeros(1))[0] * chain.unit_moment * chain.unit_length
         model = build(scene, fea_reference.Settings(elements=5))
-        theirs = model.beams[0].bending * model.units.bending
+        theirs = model.beams[0].stiffest * model.units.bending
         textbook = modulus * width * thickness**3 / 12.0  # second moment of a rectangle
         assert ours == pytest.approx(textbook, rel=1e-12)
         assert theirs == pytest.approx(textbook, rel=1e-12)
+
+
+def test_how_elements_of_a_varying_section_turn():
+    data = hinge_data()
+    for _ in range(10):
+        at = [0.0, *sorted(map(float, RANDOM.uniform(0.05, 0.95, 2))), 1.0]
+        sizes = {"thickness": RANDOM.uniform(2e-4, 2.3e-3, 4), "width": RANDOM.uniform(1e-3, 0.02, 4)}
+        profiles = {key: {"at": at, "values": list(map(float, values))} for key, values in sizes.items()}
+        contact = {**data["contacts"]["contact"], "thick": False}
+        beams = {name: {**beam, **profiles} for name, beam in data["beams"].items()}
+        scene = hinge(beams=beams, contacts={"contact": contact})
+        beam, n = scene.beams["beam1"], 6
+        material = scene.materials[beam.material]
+        model = mechanism_of(scene, cprbm.Settings(links=n)).problem.model
+        chain = model.chains[0]
+        ours = chain.section.flexibility(chain.borders) / model.unit_moment
+        length = curves.length(beam.curve)
+        F = compliance(beam, material, length, n).bending
+        assert ours == pytest.approx(F[0, 0] - 2.0 * F[0, 1] + F[1, 1], rel=1e-13)
+        # a third derivation: many small steps, each with the section of its middle
+        u = (np.arange(n * 30_000) + 0.5) / (n * 30_000)
+        EI = material.youngs_modulus * np.interp(u, at, sizes["width"]) * np.interp(u, at, sizes["thickness"]) ** 3 / 12
+        xi = u * n % 1.0
+        element = (u * n).astype(int)
+        for i, j, times in ((0, 0, (1 - xi) ** 2), (0, 1, -xi * (1 - xi)), (1, 0, -xi * (1 - xi)), (1, 1, xi**2)):
+            steps = np.bincount(element, weights=times / EI, minlength=n) * length / len(u)
+            assert F[i, j] == pytest.approx(steps, rel=1e-6)
 
 
 def test_gaps_between_the_undeformed_beams():

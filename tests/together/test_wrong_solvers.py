@@ -8,6 +8,8 @@ How each is planted:
 * *thickness forgotten*: the beams touch as lines for one solver;
 * *contact sign*: inside a solver the side of a beam on which the other lies is turned round, so that what
   holds beams apart holds them together;
+* *one thickness*: a beam whose thickness varies has the mean thickness for one solver;
+* *sampled stiffness*: inside a solver the bending stiffness at an element's end stands for the whole element;
 * *stops early*: stations are left out, with and without saying so;
 * *NaN*: one number of an otherwise right answer.
 """
@@ -22,12 +24,14 @@ import pytest
 from frozendict import frozendict
 
 import cprbm.nearest
+import cprbm.section
 import fea_reference.contact
+from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer, paired
 from comparisons.verdict import Verdict, Word, compared
 from scene import Answer, Ending, Scene
-from scene.answer import frozen_array
+from scene.answer import Array, frozen_array
 
 COARSE = Choices(elements=20, kinematics="bending")
 
@@ -67,6 +71,15 @@ def stiffer(scene: Scene) -> Scene:
 def thin(scene: Scene) -> Scene:
     contacts = {name: contact.model_copy(update={"thick": False}) for name, contact in scene.contacts.items()}
     return scene.model_copy(update={"contacts": frozendict(contacts)})
+
+
+def untapered(scene: Scene) -> Scene:
+    u = np.linspace(0.0, 1.0, 1001)
+    beams = {
+        name: beam.model_copy(update={"thickness": float(np.mean(beam.thickness_at(u)))})
+        for name, beam in scene.beams.items()
+    }
+    return scene.model_copy(update={"beams": frozendict(beams)})
 
 
 def asked_of(solver: Solver, altered: Callable[[Scene], Scene]) -> Solver:
@@ -158,6 +171,33 @@ def test_a_wrong_sign_of_contact_is_caught_in_the_finite_elements(hinge, coarse_
     right = fea_reference.contact.side_of
     monkeypatch.setattr(fea_reference.contact, "side_of", lambda *given: -right(*given))
     assert with_fea(hinge, coarse_runs, once(fea_answer)).word is not Word.AGREE
+
+
+@pytest.fixture(scope="module")
+def tapered() -> Scene:
+    return cases.opened("tapered")
+
+
+def in_bending(scene: Scene, solvers: Solvers) -> Word:
+    """The verdict in one theory, in which nothing excuses a difference."""
+    return compared(scene, paired(scene, Choices(kinematics="bending"), solvers)).verdict.word
+
+
+def test_the_right_ones_agree_on_the_tapered_beam(tapered):
+    assert in_bending(tapered, Solvers()) is Word.AGREE
+
+
+def test_a_mean_thickness_is_caught(tapered):
+    assert in_bending(tapered, Solvers(cprbm=asked_of(cprbm_answer, untapered))) is Word.DIFFER
+    assert in_bending(tapered, Solvers(fea=asked_of(fea_answer, untapered))) is Word.DIFFER
+
+
+def test_a_stiffness_sampled_at_the_ends_of_elements_is_caught(tapered, monkeypatch):
+    def sampled(section: cprbm.section.Section, borders: Array) -> Array:
+        return np.diff(borders) / section.rigidity_at(borders[1:])
+
+    monkeypatch.setattr(cprbm.section.Section, "flexibility", sampled)
+    assert in_bending(tapered, Solvers()) is not Word.AGREE
 
 
 @pytest.mark.parametrize("ending", [Ending.COMPLETED, Ending.STEP_TOO_SMALL])

@@ -1,0 +1,47 @@
+"""How far a beam's edge is from its neutral line, along the beam.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+ζ       place on the beam: element number plus ξ in [0, 1] within the element
+T       half of the thickness, zero for a line: it goes straight between the section's knots
+======  =====================================================================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scene.answer import Array
+from scene.statement import Beam
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """``half`` (k,) is T at the ``knots`` (k,), which are places ζ from the beam's start to its end; no unit."""
+
+    knots: tuple[float, ...]
+    half: tuple[float, ...]
+
+    @property
+    def nearest(self) -> float:
+        """The least T."""
+        return min(self.half)
+
+    def at(self, zeta: Array) -> Array:
+        """T at places ``zeta`` (k,)."""
+        return np.asarray(np.interp(zeta, self.knots, self.half))
+
+    def slope(self, zeta: Array) -> Array:
+        """∂T/∂ζ at places ``zeta`` (k,); at a knot what follows."""
+        piece = np.clip(np.searchsorted(self.knots, zeta, side="right") - 1, 0, len(self.knots) - 2)
+        return np.asarray((np.diff(self.half) / np.diff(self.knots))[piece])
+
+
+def edge_of(beam: Beam, elements: int, unit_length: float, *, thick: bool) -> Edge:
+    """The edge of a ``thick`` beam of so many even ``elements``, or the neutral line of any other."""
+    half = 0.5 * beam.thickness_at(beam.knots) / unit_length if thick else np.zeros_like(beam.knots)
+    # rounded, so that a knot at a node is that node
+    return Edge(tuple(np.round(beam.knots * elements, 9).tolist()), tuple(half.tolist()))
