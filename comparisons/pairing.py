@@ -5,8 +5,8 @@ N, at N in ``paper``, and at N and 2N in ``auto``) and, where there is contact, 
 at n and 2n in the theory that was chosen and in ``bending``, the CPRBM's own; and at n in the theory between the
 two, if there is one, so that the step from one theory to the next can be split.
 
-Where ``auto`` was chosen and every contact says what ``paper`` must be told, that is run at N as well.  It shows
-what the contact's formulation makes of the answer and takes no part in the verdict.
+Where ``auto`` was chosen and every contact of two beams says what ``paper`` must be told, that is run at N as well.
+It shows what the contact's formulation makes of the answer and takes no part in the verdict.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from frozendict import frozendict
 from pydantic import ValidationError
 
 from comparisons.choices import KINEMATICS, Choices, Kinematics, check
-from scene import Answer, BeamContact, Mistake, Scene, SceneError
+from scene import Answer, CircleContact, Mistake, Scene, SceneError
 
 Solver = Callable[[Scene, Choices], Answer]
 
@@ -163,7 +163,7 @@ def _paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
     """The CPRBM in the formulation ``paper``, where that can be asked and does not take long."""
     finest = choices.links if isinstance(choices.links, int) else max(choices.links.values())
     contacts = scene.contacts.values()
-    told = all(isinstance(contact, BeamContact) and contact.paper is not None for contact in contacts)
+    told = all(isinstance(contact, CircleContact) or contact.paper is not None for contact in contacts)
     if not contacts or not told or finest > PAPER_BESIDE_AUTO:
         return None
     try:

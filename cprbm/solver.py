@@ -13,6 +13,7 @@ import numpy as np
 from scipy.optimize import brentq
 from threadpoolctl import threadpool_limits
 
+from cprbm.boundary import FittedBoundary
 from cprbm.certifying import certify
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import Equilibrium, Point, equilibrium, point_at
@@ -150,11 +151,13 @@ class _March:
             for name in self.scene.contacts
             if not any(name in station.touching for station in self.reached)
         ]
-        if self.mechanism.boundaries:
-            own = contact_imbalance(self.mechanism.problem, self.point)
+        for name, boundary in self.mechanism.boundaries.items():
+            if not isinstance(boundary, FittedBoundary):
+                continue
+            own = contact_imbalance(self.mechanism.problem, self.point, name)
             said.append(
-                f"forces on a fitted boundary's points and on the joints that press it leave a moment of {own:.1e} "
-                "of the largest; the formulation has no rotational invariance"
+                f"in contact '{name}' forces on the fitted boundary's points and on the joints that press it leave a "
+                f"moment of {own:.1e} of the largest; the formulation has no rotational invariance"
             )
         return said
 
@@ -214,15 +217,15 @@ class _March:
             asked = mechanism_of(self.scene, self.family[-1])
             mechanism, point = asked, carried_over(mechanism, point, asked, self.values)
         problem = mechanism.without(name)
-        near = point_at(problem, self.values, point.state, point.mu, np.zeros(0), NO_ROWS)
+        solved = {begin: point_at(problem, self.values, point.state, point.mu, np.zeros(0), NO_ROWS)}
 
         def overlap(value: float) -> float:
-            nonlocal near
             values = {**self.values, load: value}
+            near = solved[min(solved, key=lambda other: abs(other - value))]
             found = equilibrium(problem, values, near, self.settings.tolerance, self.settings.iterations)
             if not found.converged:
                 return float("nan")
-            near = found.point
+            solved[value] = found.point
             return max(mechanism.overlap(name, found.point.state, found.point.at), -1.0)
 
         # without the contact the far end may be out of reach: come closer until it is not

@@ -120,6 +120,12 @@ class FreeEnd(Record):
 BeamEnd = Annotated[WeldedEnd | PinnedEnd | FreeEnd, Field(discriminator="joint")]
 
 
+class PaperBeam(Record):
+    """How the paper cuts a beam into elements: ``uniform`` along ``x`` or ``y``; without this even in arc length."""
+
+    uniform: Literal["x", "y"]
+
+
 class Beam(Record):
     """A slender beam of rectangular section, free of stress in the shape of its ``curve``.
 
@@ -132,6 +138,7 @@ class Beam(Record):
     material: Name
     start: BeamEnd
     end: BeamEnd
+    paper: PaperBeam | None = None
 
 
 Points = Annotated[Named[Point], Field(min_length=1)]
@@ -220,6 +227,12 @@ class PaperContact(Record):
     related: Named[Related] = Field(default_factory=frozendict)
 
 
+class PaperCircle(Record):
+    """Which joints of the beam the paper's contact with a circle holds outside; without an entry all."""
+
+    related: Named[Related] = Field(default_factory=frozendict)
+
+
 class BeamContact(Record):
     """Two beams that may touch, without friction; ``thick`` beams touch by their edges, others as lines."""
 
@@ -247,6 +260,7 @@ class CircleContact(Record):
     center: Point
     radius: Positive
     thick: bool = True
+    paper: PaperCircle | None = None
 
     @property
     def beams(self) -> tuple[str, ...]:
