@@ -13,6 +13,10 @@ of the centre, both say that the joint is outside of the circle: the feasible se
 so are the forces λ_j ∇c_j, each of which is the one force along n_j that balances the joint (the multipliers differ
 by |∇c_j|, which is one here).  The distance is defined everywhere, also beside the circle, where g_m is not and its
 slope on the way there grows beyond all bounds.
+
+Where the beam is clamped on the circle, the first spring cannot move, and is h²/8R away from it.  The beam comes down
+to the circle over a length ~ √h, whose pressure the clamp carries: shape and energy converge with h², the clamp's
+moment with h, how clamp and circle share the force with √h only.
 """
 
 from __future__ import annotations

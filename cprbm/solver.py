@@ -159,6 +159,13 @@ class _March:
                 f"in contact '{name}' forces on the fitted boundary's points and on the joints that press it leave a "
                 f"moment of {own:.1e} of the largest; the formulation has no rotational invariance"
             )
+            beyond = boundary.range_left(self.point.state, self.point.at)
+            if np.any(beyond > 0.0):
+                farthest = float(beyond.max()) * self.mechanism.problem.model.unit_length
+                said.append(
+                    f"in contact '{name}' {np.sum(beyond > 0.0)} of {len(beyond)} related joints lie beyond the fitted "
+                    f"boundary's ends, by up to {farthest:.2g} m, where it is continued; none of them presses"
+                )
         return said
 
     def _advance(self, stage: str, load: str, begin: float, target: float) -> tuple[Ending, str, Certificate | None]:

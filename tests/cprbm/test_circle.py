@@ -282,3 +282,29 @@ def test_a_tip_that_would_cut_through_a_circle_in_one_step_comes_to_lie_on_it(li
     values, fine = (solved(77.0, n, angle=-1.684, **circle).values for n in (links, 320))
     assert values["circle.ends"][0] > 0.98 * length
     assert values["circle.force"] == pytest.approx(fine["circle.force"], rel=1e-3)
+
+
+def test_in_the_papers_form_shape_and_energy_converge_and_forces_beside_the_clamp_slowly(truth):
+    # reference: tests.references.wrapped.  The first spring is held h²/8R away from the circle.  The beam comes down to
+    # it over a length a with EI h²/8R ~ p a⁴ at the pressure p, so a ~ √h; the clamp carries what lies there: p a of
+    # the force and p a²/2 of the moment.
+    errors = []
+    for links in (57, 160):
+        answer = cprbm.answer(scene_of([truth.force]), cprbm.Settings(links=links, formulation="paper"))
+        assert answer.completed, answer.sentence
+        values = answer.stations[-1].values
+        errors.append(
+            [
+                np.hypot(*(values["T.displacement"] - truth.displacement)) / BEAM["length"],
+                abs(values["tip.rotation"][0] - truth.rotation),
+                abs(values["scene.potential_energy"][0] / truth.potential_energy - 1.0),
+                abs(values["circle.ends"][1] - truth.wrap_length) / BEAM["length"],
+                abs(values["R.reaction_moment"][0] / truth.reaction_moment - 1.0),
+                abs(values["circle.force"][0] / np.hypot(*truth.contact_force) - 1.0),
+            ]
+        )
+    coarse, fine = np.array(errors)
+    assert fine[:4] == pytest.approx(np.zeros(4), abs=2e-5)
+    assert np.max(fine[:4] / coarse[:4]) < 2.0 * (57 / 160) ** 2
+    assert fine[4] / coarse[4] < 1.2 * 57 / 160
+    assert fine[5] / coarse[5] < 1.1 * (57 / 160) ** 0.5

@@ -7,8 +7,8 @@ import pytest
 
 import cprbm
 from cprbm.model import build
-from tests.cprbm.scenes import cantilever_data, force
 from scene.reading import scene_from
+from tests.cprbm.scenes import cantilever_data, force
 
 N = 7
 BENT = 14.64  # 1/m: x = 0.05 + BENT·y²
