@@ -308,3 +308,15 @@ def test_in_the_papers_form_shape_and_energy_converge_and_forces_beside_the_clam
     assert np.max(fine[:4] / coarse[:4]) < 2.0 * (57 / 160) ** 2
     assert fine[4] / coarse[4] < 1.2 * 57 / 160
     assert fine[5] / coarse[5] < 1.1 * (57 / 160) ** 0.5
+
+
+def test_in_the_papers_form_a_circle_moves_with_its_body():
+    # reference: tests.references.wrapped, seen from the moving body
+    reference = Wrapped(**BEAM, radius=RADIUS, force=97.0, pull=np.radians(80.0))
+    scene, turned = hanging(reference, 0.5)
+    answer = cprbm.answer(scene, cprbm.Settings(links=60, formulation="paper"))
+    assert answer.completed, answer.sentence
+    (station,) = answer.stations
+    assert station.certificate.force_balance < 1e-9
+    assert station.values["hub.rotation"][0] == pytest.approx(turned, abs=1.0 / 60**2)
+    assert station.values["T.reaction"] == pytest.approx([0.0, reference.force], abs=1e-9 * reference.force)

@@ -229,8 +229,8 @@ def test_action_is_reaction_where_the_gap_is_a_distance_and_nearly_so_at_a_fitte
         left[formulation] = contact_imbalance(problem, found.point, "contact")
     assert left["auto"] < 1e-12
     assert 1e-12 < left["paper"] < 1e-2
-    (note,) = cprbm.answer(hinge(), cprbm.Settings(formulation="paper")).notes
-    assert "leave a moment" in note
+    notes = cprbm.answer(hinge(), cprbm.Settings(formulation="paper")).notes
+    assert sum("leave a moment" in note for note in notes) == 1
 
 
 def test_a_contact_that_never_closes_is_named():
