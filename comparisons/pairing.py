@@ -6,8 +6,8 @@ in an element matters, at N + N/7; the finite elements at n and 2n in the theory
 the CPRBM's own; and at n in the theory between the two, if there is one, so that the step from one theory to the next
 can be split.
 
-Where ``auto`` was chosen and every contact says what ``paper`` must be told, that is run at N as well.  It shows
-what the contact's formulation makes of the answer and takes no part in the verdict.
+Where ``auto`` was chosen and every contact of two beams says what ``paper`` must be told, that is run at N as well.
+It shows what the contact's formulation makes of the answer and takes no part in the verdict.
 
 Where a drive's reaction is asked, the CPRBM runs at N once more with two stations close round each of the scene's
 (:mod:`comparisons.nearby`): the reaction by the energies' difference, which takes no part in the verdict either.
@@ -29,7 +29,7 @@ from pydantic import ValidationError
 
 from comparisons.choices import KINEMATICS, Choices, Kinematics, check
 from comparisons.nearby import nearby
-from scene import Answer, BeamContact, Mistake, Scene, SceneError, Spacing
+from scene import Answer, CircleContact, Mistake, Scene, SceneError, Spacing
 from scene.answer import Array
 from scene.statement import Curve
 
@@ -201,7 +201,7 @@ def _paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
     """The CPRBM in the formulation ``paper``, where that can be asked and does not take long."""
     finest = choices.links if isinstance(choices.links, int) else max(choices.links.values())
     contacts = scene.contacts.values()
-    told = all(isinstance(contact, BeamContact) and contact.paper is not None for contact in contacts)
+    told = all(isinstance(contact, CircleContact) or contact.paper is not None for contact in contacts)
     if not contacts or not told or finest > PAPER_BESIDE_AUTO:
         return None
     try:

@@ -24,9 +24,10 @@ from numpy.polynomial import chebyshev
 
 from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State
-from cprbm.model import Chain, Model
+from cprbm.model import Model
 from cprbm.offset_points import offset_vectors
-from scene import BeamContact, Mistake, PaperContact, Scene, SceneError
+from cprbm.related import related_joints
+from scene import BeamContact, Mistake, Scene, SceneError
 from scene.answer import Array, Ints
 
 FEWEST_POINTS = 3
@@ -186,8 +187,8 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
         )
     other = next(beam for beam in contact.between if beam != hints.boundary)
     boundary, constrained = model.chain(hints.boundary), model.chain(other)
-    points = _related(scene, model, name, hints, boundary)
-    joints = _related(scene, model, name, hints, constrained)
+    points = related_joints(scene, model, name, boundary, FEWEST_POINTS)
+    joints = related_joints(scene, model, name, constrained, FEWEST_POINTS)
     line = boundary.line
     x_p, y_p = line.position(boundary.s[points] * model.unit_length)
     x_j, y_j = constrained.line.position(constrained.s[joints] * model.unit_length)
@@ -213,37 +214,3 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
         arc=constrained.s[joints] if first is constrained else boundary.s[points],
         on_first=first is constrained,
     )
-
-
-def _related(scene: Scene, model: Model, name: str, hints: PaperContact, chain: Chain) -> Ints:
-    """The spring joints (1..N) of a beam that lie in its related range; the beam's ends are never among them."""
-    inner = np.arange(1, chain.n + 1)
-    related = hints.related.get(chain.name)
-    if related is not None:
-        x, y = chain.line.position(chain.s[inner] * model.unit_length)
-        low, high = related.x or related.y or (-np.inf, np.inf)
-        along = x if related.x is not None else y
-        inner = inner[(along >= low) & (along <= high)]
-        if inner.size and np.any(np.diff(inner) > 1):
-            raise SceneError(
-                [
-                    Mistake(
-                        f"contacts.{name}.paper.related.{chain.name}",
-                        "a range that holds two separate parts of the beam",
-                        "a range that holds one",
-                        scene.file,
-                    )
-                ]
-            )
-    if len(inner) < FEWEST_POINTS:
-        raise SceneError(
-            [
-                Mistake(
-                    f"contacts.{name}.paper.related.{chain.name}",
-                    f"{len(inner)} related joints of {chain.name} at {chain.n} links",
-                    f"at least {FEWEST_POINTS}: a wider range or more links",
-                    scene.file,
-                )
-            ]
-        )
-    return inner.astype(np.intp)

@@ -291,7 +291,7 @@ def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:
     unit = model.unit_length
     offset = 0.5 * float(chain.section.thickness.min()) if contact.thick else 0.0
     body = model.marks[name].body if name in model.marks else -1
-    mark = model.first_mark + list(model.marks).index(name) if body >= 0 else -1
+    mark = model.mark_of(name)
     circle = Circle(
         name, chain, body, mark, contact.center[0] / unit, contact.center[1] / unit, contact.radius / unit, offset, unit
     )

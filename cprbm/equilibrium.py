@@ -43,6 +43,7 @@ LONGEST_TURN = 0.5  # of any link in one iteration, rad
 CONTACT_STIFFNESS = 1e4  # of pressing contacts while the energy alone is not convex, S/ℓ²
 MANY = 40  # contact rows beyond which the system is solved with the joints' positions as unknowns
 LOCAL = 8  # joints in a row that is local
+PATIENCE = 12  # iterations; then the set that presses may go in circles, and is found by a rule that cannot
 DENSE = 120  # unknowns up to which all curvatures are computed at once
 LANCZOS = 40  # steps
 SMALL = 1e-9  # of the largest compliance: negative ones below it are round-off
@@ -333,13 +334,19 @@ def _local_system(problem: Problem, point: Point) -> LocalSystem:
     )
 
 
-def newton_step(problem: Problem, point: Point) -> tuple[Array, Array, Array]:
+def newton_step(problem: Problem, point: Point, *, thorough: bool = False) -> tuple[Array, Array, Array]:
     """Change of q and the new multipliers μ, λ.
+
+    Args:
+        problem: what stays the same.
+        point: where the step begins.
+        thorough: of many contacts too, find the set that presses by the complementarity problem's own rule, and
+            make the energy convex; dear where they are many.
 
     Raises:
         np.linalg.LinAlgError: the linearised problem has no solution.
     """
-    if _many(point.rows):
+    if _many(point.rows) and not thorough:
         return local_step(_local_system(problem, point), point.lam > 0.0)
     found = _convex_system(problem, point)
     f = -point.gradient.copy()
@@ -379,7 +386,7 @@ def equilibrium(
     now = measure(problem, point)
     for iteration in range(1, iterations + 1):
         try:
-            change, mu, lam = newton_step(problem, point)
+            change, mu, lam = newton_step(problem, point, thorough=iteration > PATIENCE)
         except np.linalg.LinAlgError:
             return Equilibrium(point, now, iteration, converged=False)
         longest = float(np.max(np.abs(change[: model.n_links])))

@@ -96,9 +96,9 @@ def holding(problem: Problem, point: Point) -> tuple[Held, ...]:
     return held(problem.model, closure.holds, point.state, point.mu[closure.first_hold :])
 
 
-def contact_imbalance(problem: Problem, point: Point) -> float:
-    """Moment of all contact forces together over the supports' largest: zero where action is reaction."""
-    contact = contact_forces(problem, point)
+def contact_imbalance(problem: Problem, point: Point, contact_name: str) -> float:
+    """Moment of all forces of a contact of beams together over the supports' largest: zero where action is reaction."""
+    contact = contact_forces(problem, point, contact_name)
     own = point.at.x @ contact.fy - point.at.y @ contact.fx + np.sum(contact.moments)
     largest = max((abs(support.moment) for support in supports(problem, point)), default=0.0)
     return abs(float(own)) / largest if largest > 0.0 else 0.0

@@ -18,6 +18,7 @@ from cprbm.holding import holds_of
 from cprbm.kinematics import Positions, State, positions
 from cprbm.model import EVEN, Fit, build
 from cprbm.nearest import Pair, pair_of
+from cprbm.rigid import RigidCircle, rigid_circle
 from cprbm.settings import Settings
 from scene import BeamContact, Scene
 
@@ -41,7 +42,7 @@ class Mechanism:
 
     problem: Problem
     pairs: dict[str, Pair | Circle]
-    boundaries: dict[str, FittedBoundary]
+    boundaries: dict[str, FittedBoundary | RigidCircle]
     fit: Fit
 
     def without(self, contact: str) -> Problem:
@@ -105,9 +106,14 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism
         name: pair_of(scene, model, name) if isinstance(contact, BeamContact) else circle_of(scene, model, name, fit)
         for name, contact in scene.contacts.items()
     }
-    boundaries = {}
+    boundaries: dict[str, FittedBoundary | RigidCircle] = {}
     if settings.formulation == "paper":
-        boundaries = {name: fitted_boundary(scene, model, name, settings.degree) for name in scene.contacts}
+        boundaries = {
+            name: fitted_boundary(scene, model, name, settings.degree)
+            if isinstance(contact, BeamContact)
+            else rigid_circle(scene, model, name)
+            for name, contact in scene.contacts.items()
+        }
     parts: dict[str, Groups] = {
         name: boundaries[name].groups if boundaries else pair.groups for name, pair in pairs.items()
     }

@@ -6,7 +6,8 @@ one numbering each, so that every sum over the mechanism is one array.
 ==========  =====================================================================
 N           elements of a beam; springs 1..N at their middles, links 0..N, and
             joints 0..N+1: the beam's start, the springs, the beam's end
-h_i         arc length of element i; equal, unless a border was moved to where a contact ends
+h_i         arc length of element i; equal, unless a border was moved to where a contact ends, or a beam of
+            the formulation ``paper`` is cut evenly along an axis, its springs at the middle along that
 L_i         length of link i, between joints i and i+1
 θ_i         tangent angle of link i; θ_i⁰ stress-free
 k_i         stiffness of spring i: one over ∫ ds/(E·I) along its element, so E·I/h_i in an even beam
@@ -27,6 +28,7 @@ from cprbm.curves import NeutralLine, neutral_line
 from cprbm.pieces import Pieces, pieces
 from cprbm.section import Section, largest_rigidity, section_of
 from cprbm.settings import Settings
+from cprbm.spacing import spaced
 from scene import BeamEnd, CircleContact, FreeEnd, Scene, WeldedEnd
 from scene.answer import Array
 
@@ -155,6 +157,10 @@ class Model:
         """S/ℓ, N."""
         return self.unit_moment / self.unit_length
 
+    def mark_of(self, contact: str) -> int:
+        """Number of the centre of a contact's circle among the joints; −1 where the circle does not move."""
+        return self.first_mark + list(self.marks).index(contact) if contact in self.marks else -1
+
     def chain(self, name: str) -> Chain:
         """The chain of a beam."""
         return next(chain for chain in self.chains if chain.name == name)
@@ -212,8 +218,12 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
     first_link = first_joint = 0
     for name, beam in scene.beams.items():
         line, n = lines[name], settings.links_of(name)
-        edges = line.length * fit.borders.get(name, np.arange(n + 1) / n)
-        s = np.concatenate(([0.0], 0.5 * (edges[1:] + edges[:-1]), [line.length]))
+        if settings.formulation == "paper" and beam.paper is not None:
+            edges, springs = spaced(line, n, beam.paper.uniform)
+        else:
+            edges = line.length * fit.borders.get(name, np.arange(n + 1) / n)
+            springs = 0.5 * (edges[1:] + edges[:-1])
+        s = np.concatenate(([0.0], springs, [line.length]))
         chords, directions = line.chords(s)
         tangents = line.angle(edges)
         chains.append(

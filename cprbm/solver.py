@@ -13,6 +13,7 @@ import numpy as np
 from scipy.optimize import brentq
 from threadpoolctl import threadpool_limits
 
+from cprbm.boundary import FittedBoundary
 from cprbm.certifying import certify
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import Equilibrium, Point, equilibrium, point_at
@@ -150,12 +151,21 @@ class _March:
             for name in self.scene.contacts
             if not any(name in station.touching for station in self.reached)
         ]
-        if self.mechanism.boundaries:
-            own = contact_imbalance(self.mechanism.problem, self.point)
+        for name, boundary in self.mechanism.boundaries.items():
+            if not isinstance(boundary, FittedBoundary):
+                continue
+            own = contact_imbalance(self.mechanism.problem, self.point, name)
             said.append(
-                f"forces on a fitted boundary's points and on the joints that press it leave a moment of {own:.1e} "
-                "of the largest; the formulation has no rotational invariance"
+                f"in contact '{name}' forces on the fitted boundary's points and on the joints that press it leave a "
+                f"moment of {own:.1e} of the largest; the formulation has no rotational invariance"
             )
+            beyond = boundary.range_left(self.point.state, self.point.at)
+            if np.any(beyond > 0.0):
+                farthest = float(beyond.max()) * self.mechanism.problem.model.unit_length
+                said.append(
+                    f"in contact '{name}' {np.sum(beyond > 0.0)} of {len(beyond)} related joints lie beyond the fitted "
+                    f"boundary's ends, by up to {farthest:.2g} m, where it is continued; none of them presses"
+                )
         return said
 
     def _advance(self, stage: str, load: str, begin: float, target: float) -> tuple[Ending, str, Certificate | None]:
@@ -214,15 +224,15 @@ class _March:
             asked = mechanism_of(self.scene, self.family[-1])
             mechanism, point = asked, carried_over(mechanism, point, asked, self.values)
         problem = mechanism.without(name)
-        near = point_at(problem, self.values, point.state, point.mu, np.zeros(0), NO_ROWS)
+        solved = {begin: point_at(problem, self.values, point.state, point.mu, np.zeros(0), NO_ROWS)}
 
         def overlap(value: float) -> float:
-            nonlocal near
             values = {**self.values, load: value}
+            near = solved[min(solved, key=lambda other: abs(other - value))]
             found = equilibrium(problem, values, near, self.settings.tolerance, self.settings.iterations)
             if not found.converged:
                 return float("nan")
-            near = found.point
+            solved[value] = found.point
             return max(mechanism.overlap(name, found.point.state, found.point.at), -1.0)
 
         # without the contact the far end may be out of reach: come closer until it is not

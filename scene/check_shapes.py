@@ -79,7 +79,7 @@ def wrong_ends(scene: Scene) -> Iterator[Mistake]:
 
 
 def wrong_contacts(scene: Scene) -> Iterator[Mistake]:
-    """Contacts of a beam with itself, pairs named twice, and paper entries that do not belong to the pair."""
+    """Contacts of a beam with itself, and pairs named twice."""
     seen: dict[frozenset[str], str] = {}
     for name, contact in scene.contacts.items():
         if not isinstance(contact, BeamContact):
@@ -91,7 +91,6 @@ def wrong_contacts(scene: Scene) -> Iterator[Mistake]:
         elif pair in seen:
             yield Mistake(f"{key}.between", f"the pair of contacts.{seen[pair]} again", "each pair of beams once")
         seen.setdefault(pair, name)
-        yield from _wrong_paper(key, contact)
 
 
 def overlaps(scene: Scene) -> Iterator[Mistake]:
@@ -201,25 +200,6 @@ def _wrong_section(name: str, beam: Beam) -> Mistake | None:
             f"half a thickness less than {MOST_CURVED:g} of the radius of curvature",
         )
     return None
-
-
-def _wrong_paper(key: str, contact: BeamContact) -> Iterator[Mistake]:
-    paper = contact.paper
-    if paper is None:
-        return
-    pair = f"one of the pair: {contact.between[0]!r}, {contact.between[1]!r}"
-    if paper.boundary not in contact.between:
-        yield Mistake(f"{key}.paper.boundary", repr(paper.boundary), pair)
-    for beam, related in paper.related.items():
-        where = f"{key}.paper.related.{beam}"
-        if beam not in contact.between:
-            yield Mistake(where, f"the beam {beam!r}", pair)
-        given = [(axis, span) for axis, span in (("x", related.x), ("y", related.y)) if span is not None]
-        if len(given) != 1:
-            yield Mistake(where, "both x and y" if given else "neither x nor y", "a range in exactly one of x and y")
-        for axis, span in given:
-            if span[0] >= span[1]:
-                yield Mistake(f"{where}.{axis}", str(list(span)), "a range from the smaller to the larger value")
 
 
 def _welded_to(scene: Scene, first: Beam, second: Beam) -> list[tuple[Side, Side]]:

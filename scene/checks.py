@@ -9,6 +9,7 @@ from scene.check_circles import circle_overlaps, wrong_circles
 from scene.check_drives import wrong_drives, wrong_slides
 from scene.check_motion import wrong_loads, wrong_stages, wrong_supports
 from scene.check_names import repeated_names, unknown_names
+from scene.check_paper import wrong_hints, wrong_spacings
 from scene.check_profiles import thick_contacts, wrong_profiles
 from scene.check_questions import wrong_claims, wrong_probes
 from scene.check_shapes import overlaps, wrong_contacts, wrong_curves, wrong_ends, wrong_sections
@@ -29,6 +30,8 @@ _CHECKS = (
     wrong_drives,
     wrong_contacts,
     thick_contacts,
+    wrong_spacings,
+    wrong_hints,
     overlaps,
     wrong_circles,
     circle_overlaps,

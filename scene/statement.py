@@ -139,6 +139,12 @@ def _size_tag(value: object) -> str:
 Size = Annotated[Annotated[Positive, Tag("number")] | Annotated[Profile, Tag("profile")], Discriminator(_size_tag)]
 
 
+class PaperBeam(Record):
+    """How the paper cuts a beam into elements: ``uniform`` along ``x`` or ``y``; without this even in arc length."""
+
+    uniform: Literal["x", "y"]
+
+
 class Beam(Record):
     """A slender beam of rectangular section, free of stress in the shape of its ``curve``.
 
@@ -152,6 +158,7 @@ class Beam(Record):
     material: Name
     start: BeamEnd
     end: BeamEnd
+    paper: PaperBeam | None = None
 
     def thickness_at(self, u: NDArray[np.float64]) -> NDArray[np.float64]:
         """Thickness at fractions ``u`` of the arc length, m, in the same shape."""
@@ -275,6 +282,12 @@ class PaperContact(Record):
     related: Named[Related] = Field(default_factory=frozendict)
 
 
+class PaperCircle(Record):
+    """Which joints of the beam the paper's contact with a circle holds outside; without an entry all."""
+
+    related: Named[Related] = Field(default_factory=frozendict)
+
+
 class BeamContact(Record):
     """Two beams that may touch, without friction; ``thick`` beams touch by their edges, others as lines."""
 
@@ -302,6 +315,7 @@ class CircleContact(Record):
     center: Point
     radius: Positive
     thick: bool = True
+    paper: PaperCircle | None = None
 
     @property
     def beams(self) -> tuple[str, ...]:

@@ -54,7 +54,7 @@ def test_both_formulations_are_there_whichever_was_chosen(hinge):
         ("hinge", 160, True),
         ("hinge", 161, False),
         ("hinge", {"beam1": 20, "beam2": 200}, False),
-        ("wrapped", 40, False),
+        ("wrapped", 40, True),
     ],
 )
 def test_paper_stands_beside_auto_where_it_was_told_all_and_is_quick(right, case, links, asked):

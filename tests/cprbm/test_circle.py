@@ -9,7 +9,7 @@ from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import contact_gradient, contact_rows, equilibrium, point_at, system
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
-from scene import Profile, SceneError
+from scene import Profile
 from scene.reading import scene_from
 from tests.cprbm.scenes import cantilever_data, force
 from tests.references.wrapped import Wrapped
@@ -157,18 +157,21 @@ def tapered(scene, *values):
     return scene.model_copy(update={"beams": {"beam": beam}})
 
 
-@pytest.fixture(params=["fixed", "moving", "tapered", "pinned"])
+@pytest.fixture(
+    params=[(place, form) for place in ("fixed", "moving", "tapered", "pinned") for form in ("auto", "paper")]
+)
 def bent(request):
     scene = scene_of([60.0])
-    if request.param == "tapered":  # with a corner that stands out, at 0.6 of the length
+    place, formulation = request.param
+    if place == "tapered":  # with a corner that stands out, at 0.6 of the length
         scene = tapered(scene, 1.0, 0.8, 0.8, 0.9, 0.6, 0.5)
-    if request.param == "pinned":  # where the row moves with the minimum
+    if place == "pinned":  # where the row moves with the minimum
         pin = {"radius": 0.0031, "center": [0.43 * BEAM["length"], -0.0037]}
         scene = tapered(scene_of([60.0], **pin), 1.0, 0.5)
-    if request.param == "moving":  # with the tip, about which nothing is real but the derivatives
+    if place == "moving":  # with the tip, about which nothing is real but the derivatives
         moving = scene.contacts["circle"].model_copy(update={"body": "tip"})
         scene = scene.model_copy(update={"contacts": {"circle": moving}})
-    mechanism = mechanism_of(scene, cprbm.Settings(links=23))
+    mechanism = mechanism_of(scene, cprbm.Settings(links=23, formulation=formulation))
     problem = mechanism.problem
     model = problem.model
     start = point_at(problem, {}, rest_state(model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
@@ -263,11 +266,6 @@ def test_a_circle_that_moves_with_the_body_that_the_beam_is_clamped_to(links):
     assert values["circle.ends"] == pytest.approx([0.0, reference.wrap_length], abs=rough * BEAM["length"])
 
 
-def test_the_papers_formulation_says_that_it_has_no_circle():
-    with pytest.raises(SceneError, match=r"contacts\.circle\.paper"):
-        cprbm.answer(scene_of([1.0]), cprbm.Settings(formulation="paper"))
-
-
 def test_a_beam_never_passes_over_a_circle_whatever_the_step():
     # a thin pin under the middle of the beam, far smaller than what one load step moves the beam by; it stands
     # in the way on the beam's whole path, so that an answer without force is on the wrong side of it
@@ -300,3 +298,41 @@ def test_a_tip_that_would_cut_through_a_circle_in_one_step_comes_to_lie_on_it(li
     values, fine = (solved(77.0, n, angle=-1.684, **circle).values for n in (links, 320))
     assert values["circle.ends"][0] > 0.98 * length
     assert values["circle.force"] == pytest.approx(fine["circle.force"], rel=1e-3)
+
+
+def test_in_the_papers_form_shape_and_energy_converge_and_forces_beside_the_clamp_slowly(truth):
+    # reference: tests.references.wrapped.  The first spring is held h²/8R away from the circle.  The beam comes down to
+    # it over a length a with EI h²/8R ~ p a⁴ at the pressure p, so a ~ √h; the clamp carries what lies there: p a of
+    # the force and p a²/2 of the moment.
+    errors = []
+    for links in (57, 160):
+        answer = cprbm.answer(scene_of([truth.force]), cprbm.Settings(links=links, formulation="paper"))
+        assert answer.completed, answer.sentence
+        values = answer.stations[-1].values
+        errors.append(
+            [
+                np.hypot(*(values["T.displacement"] - truth.displacement)) / BEAM["length"],
+                abs(values["tip.rotation"][0] - truth.rotation),
+                abs(values["scene.potential_energy"][0] / truth.potential_energy - 1.0),
+                abs(values["circle.ends"][1] - truth.wrap_length) / BEAM["length"],
+                abs(values["R.reaction_moment"][0] / truth.reaction_moment - 1.0),
+                abs(values["circle.force"][0] / np.hypot(*truth.contact_force) - 1.0),
+            ]
+        )
+    coarse, fine = np.array(errors)
+    assert fine[:4] == pytest.approx(np.zeros(4), abs=2e-5)
+    assert np.max(fine[:4] / coarse[:4]) < 2.0 * (57 / 160) ** 2
+    assert fine[4] / coarse[4] < 1.2 * 57 / 160
+    assert fine[5] / coarse[5] < 1.1 * (57 / 160) ** 0.5
+
+
+def test_in_the_papers_form_a_circle_moves_with_its_body():
+    # reference: tests.references.wrapped, seen from the moving body
+    reference = Wrapped(**BEAM, radius=RADIUS, force=97.0, pull=np.radians(80.0))
+    scene, turned = hanging(reference, 0.5)
+    answer = cprbm.answer(scene, cprbm.Settings(links=60, formulation="paper"))
+    assert answer.completed, answer.sentence
+    (station,) = answer.stations
+    assert station.certificate.force_balance < 1e-9
+    assert station.values["hub.rotation"][0] == pytest.approx(turned, abs=1.0 / 60**2)
+    assert station.values["T.reaction"] == pytest.approx([0.0, reference.force], abs=1e-9 * reference.force)
