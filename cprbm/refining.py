@@ -38,6 +38,7 @@ FEWEST = 8  # links of a beam in a coarser mesh
 BESIDE = 0.6  # elements beyond a zone's end up to which a joint presses
 LEAST = 1e-3  # of the largest pressure, on a joint within a zone
 SHARE = 4  # a span between marks has one of so many of the beam's elements at least
+FIXED = 0.75  # of a beam's elements, the most that such shares may take
 SHORTEST = 0.1  # elements: marks closer than this leave the elements even
 MOVED = 0.02  # elements: ends that have moved less since the mesh was made are where the mesh has them
 
@@ -103,8 +104,10 @@ def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
         # between two places of one contact the beam lies on what it touches, or nearly; a free end has no curvature
         needy = np.array([True, *(one != other for one, other in pairwise(of)), chain.end is not None])
         numbers = _shared_out(marks, n, needy)
-        even = np.diff(np.round(marks * n), prepend=0, append=n)
-        if numbers is None or (not names and np.all(even[needy] >= n // SHARE)):
+        # a zone's end is a border; a place need not be one, and as it goes on its way the mesh changes evenly
+        numbers = np.round(numbers) if names else numbers
+        as_they_are = not names and np.allclose(numbers[1:-1], n * marks, rtol=0.0, atol=MOVED)
+        if as_they_are or not np.all(np.diff(numbers) >= 1.0):
             continue
         borders[chain.name] = np.interp(np.arange(n + 1), numbers, np.concatenate(([0.0], marks, [1.0])))
         kept |= {name: ends[name] for name in names}
@@ -127,20 +130,19 @@ def _places_on(
     return found
 
 
-def _shared_out(marks: Array, n: int, needy: Flags) -> Array | None:
-    """At which of n elements the spans between marks (shares of the length) begin and end; None where it cannot be.
+def _shared_out(marks: Array, n: int, needy: Flags) -> Array:
+    """How many of n elements lie before the marks (shares of the length) and the ends, spans ``needy`` having a share.
 
-    Spans that are ``needy`` have at least their share.
+    All zero where marks are too close to each other.
     """
     spans = np.diff(marks, prepend=0.0, append=1.0)
     if np.any(spans * n < SHORTEST):
-        return None
-    least = np.where(needy, float(min(n // SHARE, n // (2 * len(spans)))), 1.0)
+        return np.zeros(len(marks) + 2)
+    least = np.where(needy, min(n / SHARE, FIXED * n / max(np.sum(needy), 1)), 1.0)
     wanted = np.maximum(n * spans, least)
     spare = wanted - least
-    numbers = np.round(np.cumsum(wanted - (wanted.sum() - n) * spare / spare.sum()))
-    numbers = np.concatenate(([0.0], numbers[:-1], [float(n)]))
-    return numbers if np.all(np.diff(numbers) >= 1.0) else None
+    before = np.cumsum(wanted - (wanted.sum() - n) * spare / spare.sum())
+    return np.concatenate(([0.0], before[:-1], [float(n)]))
 
 
 def fits(mechanism: Mechanism, fit: Fit) -> bool:

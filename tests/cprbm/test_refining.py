@@ -69,10 +69,14 @@ def test_ends_much_closer_than_an_element_leave_the_elements_even():
 def test_a_place_close_to_a_held_end_has_its_share_of_the_elements(links):
     march = marched(links)
     borders = fitted(march.mechanism, march.point, {"circle": (Zone(0.03, 0.03, long=False),)}, march.settings).borders
-    sizes = np.diff(borders["beam"])
-    before = links // SHARE
-    assert sizes[:before] == pytest.approx(0.03 / before)
-    assert sizes[before:] == pytest.approx(0.97 / (links - before))
+    sizes, share = np.diff(borders["beam"]), links / SHARE
+    before = int(share)
+    assert sizes[:before] == pytest.approx(0.03 / share)
+    assert sizes[before + 1 :] == pytest.approx(0.97 / (links - share))
+    # the mesh goes evenly with the place
+    near = {"circle": (Zone(0.03 + 1e-6, 0.03 + 1e-6, long=False),)}
+    moved = fitted(march.mechanism, march.point, near, march.settings).borders["beam"]
+    assert np.all(np.abs(moved - borders["beam"]) <= 1.001e-6)
 
 
 def test_a_place_far_from_everything_leaves_the_elements_even():

@@ -59,7 +59,7 @@ def test_borders_and_springs_are_even_along_the_axis(curve, axis):
     assert chain.s[1:-1] == pytest.approx(places[1::2], abs=1e-12)
     assert chain.sizes == pytest.approx(np.diff(places[::2]), abs=1e-12)
     # eq. (3): k = EI/Le, over the unit of moment
-    assert model.couplings == pytest.approx(chain.rigidity / np.diff(places[::2]), rel=1e-9)
+    assert model.couplings == pytest.approx(chain.section.rigidity_at(np.zeros(1)) / np.diff(places[::2]), rel=1e-9)
 
 
 def test_springs_lie_at_the_middle_of_the_axis_and_not_of_the_arc():
