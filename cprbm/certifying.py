@@ -104,5 +104,5 @@ def penetration_of(mechanism: Mechanism, found: Equilibrium) -> float:
     deepest = 0.0
     state, at = found.point.state, found.point.at
     for pair in mechanism.pairs.values():
-        deepest = max(deepest, pair.deepest(state, at) / pair.thickness)
+        deepest = max(deepest, -pair.least_gap(state, at) / pair.thickness)
     return deepest

@@ -205,9 +205,9 @@ class Circle:
         ]
         lowest = wells.lowest(np.concatenate((fence[:1], D, fence[1:])), REACH) - 1
         q_s = A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi))
-        lowest = lowest[wells.isolated(self._convexity(A, n, q_s, rho)[::2], lowest, LEAST_CURVATURE)]
-        places, free = self._refined(line, s[lowest])
-        places = places[free]
+        found = wells.wells(self.a, D, self._convexity(A, n, q_s, rho)[::2], lowest, LEAST_CURVATURE)
+        places, settled = self._refined(line, s[found.samples])
+        places = places[settled & found.held(self.distance(line.at(places)) - self.offset)]
         for place in places:
             near &= np.abs(s - place) > BESIDE_MINIMUM * self.a.size_at(place)
         fixed = np.concatenate((s[near], self.ends))
@@ -270,12 +270,12 @@ class Circle:
         """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s``."""
         return (1.0, s, self.line(state, at).at(s).psi) if chain is self.a else None
 
-    def deepest(self, state: State, at: Positions) -> float:
-        """Largest overlap anywhere along the beam, units of length; zero where it is apart."""
+    def least_gap(self, state: State, at: Positions) -> float:
+        """Least gap anywhere along the beam, units of length; negative where it overlaps."""
         line, here = self.line(state, at), self.placed(at)
         s, _ = here._places(line)
         D = here.distance(line.at(np.concatenate((smooth.halves(self.a), s))))
-        return float(np.max(self.offset - D, initial=0.0))
+        return float(np.min(D)) - self.offset
 
 
 def _turned(angle: Array) -> Array:

@@ -152,13 +152,13 @@ class Pair:
         """What an overlap is measured by: the mean thickness, for lines the longest beam; units of length."""
         return self.offset if self.offset > 0.0 else 1.0
 
-    def deepest(self, state: State, at: Positions) -> float:
-        """Largest overlap of the two beams anywhere along A and at the ends of B, units of length; zero if apart."""
+    def least_gap(self, state: State, at: Positions) -> float:
+        """Least gap of the two beams along A and at the ends of B, units of length; infinite where nothing faces A."""
         lines = self.lines(state, at)
         s = np.concatenate((smooth.halves(self.a), _minima(self, lines, *_sampled(self, lines))[0]))
         D, _, foot = distance_along(self, lines, s)
         E, _, facing = distance_along(self.exchanged(), lines[::-1], self.b.s[[0, -1]])
-        return float(np.max(np.where(np.append(foot, facing), self.offset - np.append(D, E), 0.0), initial=0.0))
+        return float(np.min(np.append(D, E)[np.append(foot, facing)], initial=np.inf)) - self.offset
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
         """Where the edges touch that touch at arc lengths ``s`` of A, (k, 2), units of length."""
@@ -410,18 +410,18 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
     Newton's method on dD/ds = 0 and on (i), kept between the samples beside the lowest: where the curvature jumps
     it alone would not settle.
     """
-    s = smooth.halves(pair.a)
-    lowest = wells.lowest(D, pair.offset + REACH)
-    if lowest.size:
-        # the joints beside a common clamp press together, a place of its own among them would part them
-        beside = [pair.shared if clamped else 0 for clamped in pair.clamped]
-        lowest = lowest[(lowest > 4 * beside[0]) & (lowest < 2 * (pair.a.n + 1) - 4 * beside[1])]
-        parting, near = np.full(pair.a.n + 2, np.inf), np.isfinite(D[::2])
-        parting[near] = pair.parting_at(lines, pair.a.s[near], sigma[::2][near], D[::2][near])
-        lowest = lowest[wells.isolated(parting, lowest, LEAST_CURVATURE)]
-    low, high, s, sigma = s[lowest - 1], s[lowest + 1], s[lowest], sigma[lowest]
-    if not s.size:
-        return s, sigma
+    s, lowest = smooth.halves(pair.a), wells.lowest(D, pair.offset + REACH)
+    if not lowest.size:
+        return np.zeros(0), np.zeros(0)
+    # the joints beside a common clamp press together, a place of its own among them would part them
+    first, last = (4 * pair.shared if clamped else 0 for clamped in pair.clamped)
+    lowest = lowest[(lowest > first) & (lowest < 2 * (pair.a.n + 1) - last)]
+    parting, near = np.full(pair.a.n + 2, np.inf), np.isfinite(D[::2])
+    parting[near] = pair.parting_at(lines, pair.a.s[near], sigma[::2][near], D[::2][near])
+    found = wells.wells(pair.a, D - pair.offset, parting, lowest, LEAST_CURVATURE)
+    if not found.samples.size:
+        return np.zeros(0), np.zeros(0)
+    low, high, s, sigma = (of[found.samples + step] for of, step in ((s, -1), (s, 1), (s, 0), (sigma, 0)))
     for _ in range(CLOSEST_ITERATIONS):
         A, B = lines[0].at(s), lines[1].at(sigma)
         along, across = _seen_from(B, A)
@@ -438,7 +438,8 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
         if np.all((np.abs(step) < PLACE_TOLERANCE) & (np.abs(along) < FOOT_TOLERANCE)):
             break
         s, sigma = s + step, np.clip(sigma + left + towards * step, 0.0, pair.b.s[-1])
-    settled = (convex > LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
+    held = found.held(pair.side * across - pair.offset)
+    settled = held & (convex > LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
     return s[settled], sigma[settled]
 
 

@@ -32,8 +32,8 @@ class Touching(Protocol):
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
 
-    def deepest(self, state: State, at: Positions) -> float:
-        """Largest overlap anywhere along the beam; zero where it is apart."""
+    def least_gap(self, state: State, at: Positions) -> float:
+        """Least gap anywhere along the beam, negative where it overlaps; infinite where nothing faces it."""
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
         """Where the edges touch that touch at arc lengths ``s``, (k, 2)."""

@@ -95,12 +95,12 @@ def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
     kept: dict[str, Array] = {}
     for chain in mechanism.problem.model.chains:
         names = [name for name in ends if mechanism.pairs[name].a is chain]
-        found = [(place, name) for name in names for place in ends[name]]
+        found = [(float(place), name) for name in names for place in ends[name]]
         found += _places_on(mechanism, point, zones, chain)
         if not found:
             continue
         n = settings.links_of(chain.name)
-        marks, of = np.array([mark for mark, _ in sorted(found)]), [name for _, name in sorted(found)]
+        marks, of = np.array(sorted(mark for mark, _ in found)), [name for _, name in sorted(found)]
         # between two places of one contact the beam lies on what it touches, or nearly; a free end has no curvature
         needy = np.array([True, *(one != other for one, other in pairwise(of)), chain.end is not None])
         numbers = _shared_out(marks, n, needy)
@@ -138,7 +138,7 @@ def _shared_out(marks: Array, n: int, needy: Flags) -> Array:
     spans = np.diff(marks, prepend=0.0, append=1.0)
     if np.any(spans * n < SHORTEST):
         return np.zeros(len(marks) + 2)
-    least = np.where(needy, min(n / SHARE, FIXED * n / max(np.sum(needy), 1)), 1.0)
+    least = np.where(needy, min(n / SHARE, FIXED * n / max(int(np.sum(needy)), 1)), 1.0)
     wanted = np.maximum(n * spans, least)
     spare = wanted - least
     before = np.cumsum(wanted - (wanted.sum() - n) * spare / spare.sum())

@@ -26,6 +26,7 @@ from cprbm.settings import Settings
 from scene import Answer, Certificate, Ending, Event, Scene, StationAnswer
 
 GROWTH = 2.0
+TOUCHING = 1e-9  # of the thickness, a gap that is none
 EVENT_TOLERANCE = 1e-10  # of the load step in which a contact closed
 CLOSER = 8
 FITS = 3  # of the mesh to where contact is, at most
@@ -86,7 +87,12 @@ class _March:
         self.reached: list[StationAnswer] = []
         self.events: list[Event] = []
         self.closed_at: dict[str, float] = {}
-        self.asked_events = {p.of for p in scene.probes if p.quantity == "closing_load"}
+        self.asked_events = [p.of for p in scene.probes if p.quantity == "closing_load"]
+        for name in self.asked_events:
+            pair = self.mechanism.pairs[name]
+            if pair.least_gap(state, self.point.at) <= TOUCHING * pair.thickness:  # from the start, before any load
+                self.closed_at[name] = 0.0
+                self.events.append(Event(scene.stages[0].name, name, "closes", 0.0))
 
     def run(self) -> tuple[Ending, str]:
         """March through every stage; the Ending and its sentence."""
@@ -133,11 +139,14 @@ class _March:
                 break
             target = mechanism_of(self.scene, settings, fit)
             start = carried_over(mechanism, point, target, self.values)
-            found = equilibrium(target.problem, self.values, start, settings.tolerance, settings.iterations)
-            turned = float(np.max(np.abs(found.point.state.theta - start.state.theta)))
-            if not found.converged or turned > FOLLOWED:
+            solved = equilibrium(target.problem, self.values, start, settings.tolerance, settings.iterations)
+            iterations += solved.iterations
+            turned = float(np.max(np.abs(solved.point.state.theta - start.state.theta)))
+            if not solved.converged or turned > FOLLOWED:
+                if now is asked:  # on a mesh that fits a little less it stands already
+                    break
                 return None
-            mechanism, point, now, iterations = target, found.point, settings, iterations + found.iterations
+            mechanism, point, now, found = target, solved.point, settings, solved
         if mechanism is not self.mechanism:
             certificate, ending = certify(mechanism, asked, found)
             if ending is not Ending.COMPLETED:
@@ -244,7 +253,10 @@ class _March:
             high = overlap(target)
         if not low <= 0.0 <= high:
             return None
-        return float(brentq(overlap, begin, target, xtol=EVENT_TOLERANCE * abs(target - begin), rtol=8.9e-16))
+        try:
+            return float(brentq(overlap, begin, target, xtol=EVENT_TOLERANCE * abs(target - begin), rtol=8.9e-16))
+        except ValueError:  # between the two the mechanism has no equilibrium without the contact
+            return None
 
 
 def _presses(point: Point, contact: str) -> bool:

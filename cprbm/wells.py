@@ -9,13 +9,23 @@ Over a zone of contact D is nought at the joints that press, so that the mean of
 cannot be positive at three of them that follow each other.  Round a contact in a point it is positive on both sides,
 however little, since a force bends the beam towards what it presses and nothing else does.  So a minimum has a place
 of its own where D″ is positive at the joints around it, by more than the two lines' own unevenness.
+
+Where no such place was seen, joints press; what they hold apart may then have one, and pressed there has none.  So what
+is held at a minimum and is apart at both joints beside it stays a place of its own: no state is neither.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from cprbm.model import Chain
+from cprbm.smooth import halves
 from scene.answer import Array, Flags, Ints
+
+HELD = 2e-3  # of h², 1/ℓ: gaps that a zone may leave at its joints
+LEVEL = 0.01  # of the larger gap beside a minimum: less on its other side is the end of a zone
 
 
 def lowest(D: Array, reach: float) -> Ints:
@@ -23,10 +33,50 @@ def lowest(D: Array, reach: float) -> Ints:
     return np.flatnonzero((D[:-2] >= D[1:-1]) & (D[2:] > D[1:-1]) & (reach > D[1:-1])) + 1
 
 
-def isolated(parting: Array, samples: Ints, least: float) -> Flags:
-    """Whether D″ at the joints (N+2,), infinite where D is, is more than ``least`` round each of some samples (k,)."""
+@dataclass(frozen=True, slots=True)
+class Wells:
+    """Minima that may have a place of their own.
+
+    Attributes:
+        samples: the lowest samples (k,).
+        parted: whether D″ is positive all round.
+        apart: the lesser gap of the joints on either side, zero where it is next to nothing.
+    """
+
+    samples: Ints
+    parted: Flags
+    apart: Array
+
+    def held(self, gap: Array) -> Flags:
+        """Which have a place of their own, ``gap`` (k,) being what is found there."""
+        return np.asarray(self.parted | (self.apart + gap > 0.0))
+
+
+def wells(chain: Chain, gap: Array, parting: Array, samples: Ints, least: float) -> Wells:
+    """What may be a well, of the lowest samples (k,).
+
+    Args:
+        chain: the beam.
+        gap: at the samples (2N+3,).
+        parting: D″ at the joints (N+2,), infinite where it is not known.
+        samples: the lowest, as :func:`lowest` finds them.
+        least: D″ that is no more than the lines' own unevenness.
+    """
+    parted, apart = _parted(parting, samples, least), _apart(gap, samples, chain.size_at(halves(chain)[samples]))
+    likely = parted | (apart > 0.0)
+    return Wells(samples[likely], parted[likely], apart[likely])
+
+
+def _parted(parting: Array, samples: Ints, least: float) -> Flags:
     last = len(parting) - 1
     first, behind = samples // 2, (samples + 1) // 2
     # the ends have the curvature of the springs next to them
     around = np.clip(np.stack((first - 1, first, behind, behind + 1)), 1, last - 1)
     return np.asarray(np.all(parting[around] > least, axis=0))
+
+
+def _apart(gap: Array, samples: Ints, h: Array) -> Array:
+    """Next to nothing is what the joints of a zone have, or the last of a zone beside the one beyond it."""
+    one, other = gap[2 * ((samples - 1) // 2)], gap[np.minimum(2 * (samples // 2 + 1), len(gap) - 1)]
+    lesser = np.minimum(one, other)
+    return np.where((lesser > HELD * h**2) & (lesser > LEVEL * np.maximum(one, other)), lesser, 0.0)

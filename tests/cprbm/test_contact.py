@@ -54,7 +54,7 @@ def test_the_constraint_stands_at_the_smallest_distance_and_not_at_a_sample(seed
         row = np.max(rows.values)
         assert row == rows.values[rows.keys.index(("contact", -1))]
         assert row == pytest.approx(pair.offset - smallest, abs=1e-10)
-        assert pair.deepest(state, at) == pytest.approx(max(row, 0.0), abs=1e-10)
+        assert max(-pair.least_gap(state, at), 0.0) == pytest.approx(max(row, 0.0), abs=1e-10)
 
 
 def test_no_iteration_turns_a_link_by_more_than_is_allowed():

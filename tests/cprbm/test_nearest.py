@@ -56,7 +56,7 @@ def pair_at_rest(scene, links):
 @pytest.mark.parametrize("seed", range(4))
 def test_every_minimum_is_found_where_the_curvature_jumps_too(monkeypatch, seed):
     # reference: Brent's method on D between the samples; beams bent at random have a kink of D' at every border
-    monkeypatch.setattr(wells, "isolated", lambda parting, samples, least: np.ones(len(samples), dtype=bool))
+    monkeypatch.setattr(wells, "_parted", lambda parting, samples, least: np.ones(len(samples), dtype=bool))
     scene = beams(line((0.0, 0.0012), (0.1, 0.0012)), line((0.0, 0.0), (0.13, 0.0)))
     mechanism = mechanism_of(scene, cprbm.Settings(links={"A": 31, "B": 43}))
     pair, model = mechanism.pairs["c"], mechanism.problem.model
@@ -93,7 +93,7 @@ def test_an_end_of_the_second_beam_that_digs_into_the_first_is_seen(links):
     # end from A's line, which lies between A's samples
     scene = beams(line((0.0, 0.0), (0.1, 0.0)), line((0.037, -0.05), (0.037, -0.0011)))
     pair, state, at = pair_at_rest(scene, links)
-    assert pair.deepest(state, at) == 0.0
+    assert pair.least_gap(state, at) >= 0.0
     model = mechanism_of(scene, cprbm.Settings(links=links)).problem.model
     theta = state.theta.copy()
     theta[pair.a.links] += np.linspace(-0.03, 0.06, links + 1)
@@ -109,7 +109,7 @@ def test_an_end_of_the_second_beam_that_digs_into_the_first_is_seen(links):
     nearest_place = minimize_scalar(away, bounds=(0.2, 0.6), method="bounded", options={"xatol": 1e-12})
     overlap = pair.offset - nearest_place.fun
     assert overlap > 1e-3
-    assert pair.deepest(sagging, at) == pytest.approx(overlap, rel=1e-9)
+    assert -pair.least_gap(sagging, at) == pytest.approx(overlap, rel=1e-9)
     rows = Rows(pair.groups(sagging, at))
     assert np.max(rows.values) == pytest.approx(overlap, rel=1e-9)
     assert rows.arc[np.argmax(rows.values)] == pytest.approx(nearest_place.x, abs=1e-6)
