@@ -3,8 +3,8 @@
 With the symbols of :mod:`comparisons.measures`, a row says
 
 * DIFFER if  |v_c − v_f| > u_c + u_f + |v_b − v_f| + r   or   |v_c − v_b| > u_c + u_b + r;
-* UNDECIDED if it does not differ, but one of the two sums is more than the scene's ``verdict_limit`` of the
-  probe's scale: such a sum would have excused a wrong answer too;
+* UNDECIDED if it does not differ, but one of the two sums is more than the ``verdict_limit`` (the probe's own or the
+  scene's) of the probe's scale: such a sum would have excused a wrong answer too;
 * AGREE otherwise.
 
 The second condition makes the first one tight.  By the triangle inequality
@@ -120,7 +120,7 @@ def _word(scene: Scene, row: Row) -> Word | None:
     within = row.difference <= row.bounds.total and row.same_theory <= row.bounds.same_theory
     if not within:
         return Word.DIFFER
-    tellable = max(row.bounds.total, row.bounds.same_theory) <= scene.verdict_limit * row.scale
+    tellable = max(row.bounds.total, row.bounds.same_theory) <= scene.limit(row.probe) * row.scale
     return Word.AGREE if tellable else Word.UNDECIDED
 
 
@@ -144,7 +144,7 @@ def _pressure(scene: Scene, row: Row, word: Word) -> float:
     if row.bounds is None:
         return float("inf")
     if word is Word.UNDECIDED:
-        return _share(max(row.bounds.total, row.bounds.same_theory), scene.verdict_limit * row.scale)
+        return _share(max(row.bounds.total, row.bounds.same_theory), scene.limit(row.probe) * row.scale)
     return max(_share(row.difference, row.bounds.total), _share(row.same_theory, row.bounds.same_theory))
 
 
@@ -165,10 +165,19 @@ def _sentence(scene: Scene, row: Row, word: Word, count: int, rows: int) -> str:
             largest = max(row.bounds.total, row.bounds.same_theory)
             return (
                 f"{count} of {rows} rows cannot be told, least of all {place}: the stated uncertainty is "
-                f"{_of_scale(largest, row)} of the scale, more than {percent(scene.verdict_limit)}."
+                f"{_of_scale(largest, row)} of the scale, more than {percent(scene.limit(row.probe))}."
             )
         case Word.AGREE:
-            return f"All {rows} rows agree; the closest call is {place}: {said}."
+            return f"All {rows} rows agree; the closest call is {place}: {said}.{_allowed(scene)}"
+
+
+def _allowed(scene: Scene) -> str:
+    """Which probes the scene allows a larger uncertainty than the others, in a sentence; nothing if none."""
+    wider = [probe for probe in scene.probes if scene.limit(probe) > scene.verdict_limit]
+    if not wider:
+        return ""
+    said = ", ".join(f"{percent(scene.limit(probe))} for {probe.name}" for probe in wider)
+    return f" The scene allows stated uncertainties of up to {percent(scene.verdict_limit)} of the scale; {said}."
 
 
 def _sum(bounds: Bounds, row: Row, *, tight: bool) -> str:

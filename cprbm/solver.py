@@ -26,7 +26,6 @@ from cprbm.settings import Settings
 from scene import Answer, Certificate, Ending, Event, Scene, StationAnswer
 
 GROWTH = 2.0
-TOUCHING = 1e-9  # of the thickness, a gap that is none
 EVENT_TOLERANCE = 1e-10  # of the load step in which a contact closed
 CLOSER = 8
 FITS = 3  # of the mesh to where contact is, at most
@@ -88,11 +87,6 @@ class _March:
         self.events: list[Event] = []
         self.closed_at: dict[str, float] = {}
         self.asked_events = [p.of for p in scene.probes if p.quantity == "closing_load"]
-        for name in self.asked_events:
-            pair = self.mechanism.pairs[name]
-            if pair.least_gap(state, self.point.at) <= TOUCHING * pair.thickness:  # from the start, before any load
-                self.closed_at[name] = 0.0
-                self.events.append(Event(scene.stages[0].name, name, "closes", 0.0))
 
     def run(self) -> tuple[Ending, str]:
         """March through every stage; the Ending and its sentence."""

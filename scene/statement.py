@@ -356,12 +356,14 @@ class Probe(Record):
     """A number (or a few) that is wanted at every station, named ``of.quantity``.
 
     ``of`` is the name of a body's point, a body, a beam, a contact, or ``scene`` itself;
-    ``points`` the number of equal arc-length steps plus one at which a beam's stress is wanted.
+    ``points`` the number of equal arc-length steps plus one at which a beam's stress is wanted;
+    ``verdict_limit`` stands in the place of the scene's for this probe.
     """
 
     of: Name
     quantity: Quantity
     points: Annotated[int, Field(ge=3, le=10_001)] = 81
+    verdict_limit: Fraction | None = None
 
     @property
     def name(self) -> str:
@@ -386,7 +388,7 @@ class Scene(Record):
 
     Names of points, bodies, beams, contacts, loads and drives are unique across the scene.
     ``verdict_limit`` is the largest total uncertainty (a fraction of a probe's scale)
-    with which the scene still wants to hear AGREE.
+    with which the scene still wants to hear AGREE; a probe may have its own.
     """
 
     name: Name
@@ -403,6 +405,10 @@ class Scene(Record):
     claims: tuple[Claim, ...] = ()
     verdict_limit: Fraction = 0.015
     file: str = ""
+
+    def limit(self, probe: Probe) -> float:
+        """The largest total uncertainty, a fraction of the probe's scale, with which AGREE may be said of it."""
+        return self.verdict_limit if probe.verdict_limit is None else probe.verdict_limit
 
     def stepped(self, stage: Stage) -> Load | Drive:
         """The load or drive that a stage steps.
