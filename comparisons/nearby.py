@@ -45,7 +45,7 @@ def visited(d: float) -> tuple[float, ...]:
 
 
 def nearby(scene: Scene) -> Scene | None:
-    """The scene with d1 and d2 beside every station d of a drive, and the energy among its probes.
+    """The scene with d1 and d2 beside every station d of a drive, and the energy for its only probe.
 
     None where no stage steps a drive whose reaction is asked for.
     """
@@ -57,5 +57,4 @@ def nearby(scene: Scene) -> Scene | None:
         else stage
         for stage in scene.stages
     )
-    asked = scene.probes if ENERGY.name in {probe.name for probe in scene.probes} else (*scene.probes, ENERGY)
-    return scene.model_copy(update={"stages": stages, "probes": asked, "claims": ()})
+    return scene.model_copy(update={"stages": stages, "probes": (ENERGY,), "claims": ()})
