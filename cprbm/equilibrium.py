@@ -388,12 +388,13 @@ def potential_energy(problem: Problem, point: Point) -> float:
 
 
 def equilibrium(
-    problem: Problem, values: dict[str, float], start: Point, tolerance: float, iterations: int
+    problem: Problem, values: dict[str, float], start: Point, tolerance: float, iterations: int, *, settle: bool = False
 ) -> Equilibrium:
     """Newton's method from ``start`` to the equilibrium under the loads' and drives' ``values`` (SI).
 
     Where it comes back to a residual it had, the row sets of two or three states follow each other in a circle, and
-    a part of the step is taken; where it comes back for good, the steady rows decide.
+    a part of the step is taken.  Where it comes back for good, the steady rows decide if they may ``settle`` it;
+    otherwise that is the end.
     """
     model = problem.model
     point = point_at(problem, values, start.state, start.mu, start.lam, start.rows)
@@ -411,6 +412,8 @@ def equilibrium(
         returns = _returns(seen, now.residual)
         part = 0.5 * part if returns else min(1.0, 2.0 * part)
         circles += returns
+        if circles == CIRCLES and not settle:
+            return Equilibrium(point, now, iteration, converged=False)
         if circles == CIRCLES:
             problem = replace(problem, formulation=problem.steady)
         seen.append(now.residual)

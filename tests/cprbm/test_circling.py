@@ -8,7 +8,12 @@ from cprbm.kinematics import positions, rest_state
 from cprbm.mechanism import mechanism_of
 from scene.reading import scene_from
 
-BEAM = {"width": 0.01, "material": "m", "start": {"joint": "weld", "point": "R"}, "end": {"joint": "weld", "point": "T"}}
+BEAM = {
+    "width": 0.01,
+    "material": "m",
+    "start": {"joint": "weld", "point": "R"},
+    "end": {"joint": "weld", "point": "T"},
+}
 FEW = 60  # iterations; by ever smaller load steps the same took hundreds
 
 
@@ -59,7 +64,9 @@ def test_a_place_that_becomes_a_zone_takes_few_iterations_on_every_mesh(turning)
         assert answer.completed, answer.sentence
         for station, reference in zip(answer.stations, fine.stations, strict=True):
             assert station.certificate.iterations < FEW
-            assert station.values["circle.force"] == pytest.approx(reference.values["circle.force"], rel=15.0 / links**2)
+            assert station.values["circle.force"] == pytest.approx(
+                reference.values["circle.force"], rel=15.0 / links**2
+            )
             moved = station.values["T.displacement"] - reference.values["T.displacement"]
             assert np.hypot(*moved) < 1.5 / links**2 * 0.095
 
