@@ -65,6 +65,7 @@ class Circle:
         clamped: whether the beam's start and end are clamped in touch with the circle and tangent to it.
         ends: arc lengths at which zones end on this mesh, where element borders are, and where the edge has a corner
             that stands out; rows stand there too.
+        own_places: whether minima of D have rows of their own.
     """
 
     name: str
@@ -78,6 +79,7 @@ class Circle:
     unit_length: float
     clamped: tuple[bool, bool] = (False, False)
     ends: tuple[float, ...] = ()
+    own_places: bool = True
 
     def placed(self, at: Positions) -> Circle:
         """The same circle where it is in a state."""
@@ -204,6 +206,9 @@ class Circle:
             for inwards, fixed in zip((slope[0] < -ON_IT, slope[-1] > ON_IT), held, strict=True)
         ]
         lowest = wells.lowest(np.concatenate((fence[:1], D, fence[1:])), REACH) - 1
+        # the two joints beside a clamp on the circle press together, a place of its own among them would part them
+        first, last = (4 if clamped else -1 for clamped in self.clamped)
+        lowest = lowest[self.own_places & (lowest > first) & (lowest < 2 * (self.a.n + 1) - last)]
         q_s = A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi))
         found = wells.wells(self.a, D, self._convexity(A, n, q_s, rho)[::2], lowest, LEAST_CURVATURE)
         places, settled = self._refined(line, s[found.samples])

@@ -16,7 +16,7 @@ directions where it is not, first by the stiffness of the contacts that press, t
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import eigvalsh_tridiagonal
@@ -47,18 +47,28 @@ PATIENCE = 12  # iterations; then the set that presses may go in circles, and is
 DENSE = 120  # unknowns up to which all curvatures are computed at once
 LANCZOS = 40  # steps
 SMALL = 1e-9  # of the largest compliance: negative ones below it are round-off
+SAME = 0.1  # part by which residuals differ that are the same again
+CIRCLES = 4  # returns that end the search for places of their own
 NOTHING = 1e-12  # S: moments below it are no load at all, and what is left is measured by S
 EPS = float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """What stays the same along a load path."""
+    """What stays the same along a load path.
+
+    Attributes:
+        model, closure, loads: links and springs, equalities, dead loads.
+        formulation: the contact rows at a state.
+        steady: the same with rows at joints and ends alone, which come and go with nothing but the gaps there; for
+            where rows at places of their own come and go in a circle.
+    """
 
     model: Model
     closure: Closure
     loads: dict[str, DeadLoad]
     formulation: Formulation
+    steady: Formulation
 
 
 @dataclass(frozen=True, slots=True)
@@ -378,12 +388,19 @@ def potential_energy(problem: Problem, point: Point) -> float:
 
 
 def equilibrium(
-    problem: Problem, values: dict[str, float], start: Point, tolerance: float, iterations: int
+    problem: Problem, values: dict[str, float], start: Point, tolerance: float, iterations: int, *, settle: bool = False
 ) -> Equilibrium:
-    """Newton's method from ``start`` to the equilibrium under the loads' and drives' ``values`` (SI)."""
+    """Newton's method from ``start`` to the equilibrium under the loads' and drives' ``values`` (SI).
+
+    Where it comes back to a residual it had, the row sets of two or three states follow each other in a circle, and
+    a part of the step is taken.  Where it comes back for good, the steady rows decide if they may ``settle`` it;
+    otherwise that is the end.
+    """
     model = problem.model
     point = point_at(problem, values, start.state, start.mu, start.lam, start.rows)
     now = measure(problem, point)
+    seen: list[float] = []
+    part, circles = 1.0, 0
     for iteration in range(1, iterations + 1):
         try:
             change, mu, lam = newton_step(problem, point, thorough=iteration > PATIENCE)
@@ -392,13 +409,26 @@ def equilibrium(
         longest = float(np.max(np.abs(change[: model.n_links])))
         if not np.isfinite(longest):
             return Equilibrium(point, now, iteration, converged=False)
-        scale = min(1.0, LONGEST_TURN / longest) if longest > 0.0 else 1.0
+        returns = _returns(seen, now.residual)
+        part = 0.5 * part if returns else min(1.0, 2.0 * part)
+        circles += returns
+        if circles == CIRCLES and not settle:
+            return Equilibrium(point, now, iteration, converged=False)
+        if circles == CIRCLES:
+            problem = replace(problem, formulation=problem.steady)
+        seen.append(now.residual)
+        scale = min(part, LONGEST_TURN / longest) if longest > 0.0 else part
         state = point.state.moved(scale * change, model.n_links)
         point = point_at(problem, values, state, mu, lam, point.rows)
         now = measure(problem, point)
         if scale == 1.0 and _settled(now, longest, tolerance):
             return Equilibrium(point, now, iteration, converged=True)
     return Equilibrium(point, now, iterations, converged=False)
+
+
+def _returns(seen: list[float], residual: float) -> bool:
+    """Whether an iteration is back where it was two or three before: each state denies the other's rows."""
+    return any(abs(residual - before) < SAME * before for before in seen[-3:-1])
 
 
 def _settled(now: Measure, longest: float, tolerance: float) -> bool:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -50,7 +50,7 @@ class Mechanism:
             self.problem.model,
             self.problem.closure,
             self.problem.loads,
-            _formulation({name: self._groups(name) for name in self.pairs if name != contact}),
+            *_formulations({name: pair for name, pair in self.pairs.items() if name != contact}, self.boundaries),
         )
 
     def overlap(self, contact: str, state: State, at: Positions) -> float:
@@ -84,7 +84,22 @@ class Mechanism:
         return False
 
     def _groups(self, contact: str) -> Groups:
-        return self.boundaries[contact].groups if self.boundaries else self.pairs[contact].groups
+        return _groups(contact, self.pairs, self.boundaries)
+
+
+def _groups(
+    contact: str, pairs: Mapping[str, Pair | Circle], boundaries: Mapping[str, FittedBoundary | RigidCircle]
+) -> Groups:
+    return boundaries[contact].groups if boundaries else pairs[contact].groups
+
+
+def _formulations(
+    pairs: Mapping[str, Pair | Circle], boundaries: Mapping[str, FittedBoundary | RigidCircle]
+) -> tuple[Formulation, Formulation]:
+    """The rows of some contacts, and the steady ones."""
+    steady = {name: replace(pair, own_places=False) for name, pair in pairs.items()}
+    every, few = ({name: _groups(name, these, boundaries) for name in these} for these in (pairs, steady))
+    return _formulation(every), _formulation(few)
 
 
 def _formulation(parts: dict[str, Groups]) -> Formulation:
@@ -113,9 +128,6 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism
             else rigid_circle(scene, model, name)
             for name, contact in scene.contacts.items()
         }
-    parts: dict[str, Groups] = {
-        name: boundaries[name].groups if boundaries else pair.groups for name, pair in pairs.items()
-    }
     closure = closure_of(model, holds_of(scene, model))
-    problem = Problem(model, closure, dead_loads(scene, model), _formulation(parts))
+    problem = Problem(model, closure, dead_loads(scene, model), *_formulations(pairs, boundaries))
     return Mechanism(problem, pairs, boundaries, fit)

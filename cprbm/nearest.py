@@ -100,6 +100,7 @@ class Pair:
         offset: ½(t₁+t₂), zero for lines; units of length.
         unit_length: ℓ, m.
         clamps: for the start and the end of A and of B, whether it is clamped together with an end of the other.
+        own_places: whether minima of D have rows of their own.
     """
 
     name: str
@@ -110,6 +111,7 @@ class Pair:
     offset: float
     unit_length: float
     clamps: tuple[tuple[bool, bool], tuple[bool, bool]] = ((False, False), (False, False))
+    own_places: bool = True
 
     def lines(self, state: State, at: Positions) -> Lines:
         """The smooth lines of A and B in a state."""
@@ -120,7 +122,7 @@ class Pair:
 
     def exchanged(self) -> Pair:
         """The same contact with the parts of A and B exchanged."""
-        return Pair(self.name, self.b, self.a, self.across, self.side, self.offset, self.unit_length, self.clamps[::-1])
+        return replace(self, a=self.b, b=self.a, side=self.across, across=self.side, clamps=self.clamps[::-1])
 
     @property
     def shared(self) -> int:
@@ -411,7 +413,7 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
         return np.zeros(0), np.zeros(0)
     # the joints beside a common clamp press together, a place of its own among them would part them
     first, last = (4 * pair.shared if clamped else 0 for clamped in pair.clamped)
-    lowest = lowest[(lowest > first) & (lowest < 2 * (pair.a.n + 1) - last)]
+    lowest = lowest[pair.own_places & (lowest > first) & (lowest < 2 * (pair.a.n + 1) - last)]
     parting, near = np.full(pair.a.n + 2, np.inf), np.isfinite(D[::2])
     parting[near] = pair.parting_at(lines, pair.a.s[near], sigma[::2][near], D[::2][near])
     found = wells.wells(pair.a, D - pair.offset, parting, lowest, LEAST_CURVATURE)

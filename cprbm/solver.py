@@ -28,6 +28,7 @@ from scene import Answer, Certificate, Ending, Event, Scene, StationAnswer
 GROWTH = 2.0
 EVENT_TOLERANCE = 1e-10  # of the load step in which a contact closed
 CLOSER = 8
+SETTLE = 0.1  # of the way between stations: in shorter steps steady rows may settle which places there are
 FITS = 3  # of the mesh to where contact is, at most
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
 
@@ -133,7 +134,9 @@ class _March:
                 break
             target = mechanism_of(self.scene, settings, fit)
             start = carried_over(mechanism, point, target, self.values)
-            solved = equilibrium(target.problem, self.values, start, settings.tolerance, settings.iterations)
+            solved = equilibrium(
+                target.problem, self.values, start, settings.tolerance, settings.iterations, settle=now is not asked
+            )
             iterations += solved.iterations
             turned = float(np.max(np.abs(solved.point.state.theta - start.state.theta)))
             if not solved.converged or turned > FOLLOWED:
@@ -178,7 +181,7 @@ class _March:
             step = min(step, 1.0 - done)
             fraction = 1.0 if done + step >= 1.0 else done + step
             value = target if fraction == 1.0 else begin + fraction * (target - begin)
-            found = self._try(self.point, {**self.values, load: value})
+            found = self._try(self.point, {**self.values, load: value}, settle=step <= SETTLE)
             iterations += found.iterations
             certificate, ending = certify(self.mechanism, self.settings, found)
             turned = float(np.max(np.abs(found.point.state.theta - self.point.state.theta)))
@@ -207,8 +210,9 @@ class _March:
                     ending = Ending.STEP_TOO_SMALL
                 return ending, sentence, None
 
-    def _try(self, start: Point, values: dict[str, float]) -> Equilibrium:
-        return equilibrium(self.mechanism.problem, values, start, self.settings.tolerance, self.settings.iterations)
+    def _try(self, start: Point, values: dict[str, float], *, settle: bool) -> Equilibrium:
+        problem, settings = self.mechanism.problem, self.settings
+        return equilibrium(problem, values, start, settings.tolerance, settings.iterations, settle=settle)
 
     def _note_events(self, stage: str, load: str, after: Point, value: float) -> None:
         """Find where contacts closed in the load step that led to ``after``, if the scene asks."""
