@@ -40,7 +40,7 @@ def test_a_drives_reaction_or_a_slide_that_is_two_per_cent_wrong_is_caught(scene
     def wrong(scene, choices):
         answer = cprbm_answer(scene, choices)
         stations = tuple(
-            replace(station, values={**station.values, probe: 1.02 * station.values[probe]})
+            replace(station, values={k: 1.02 * v if k == probe else v for k, v in station.values.items()})
             for station in answer.stations
         )
         return replace(answer, stations=stations)
