@@ -111,7 +111,7 @@ class March:
         """Equilibrium at ``value`` near ``z``; None if there is none to be found."""
         values = self.values.copy()
         values[load] = value
-        solved = equilibrium(self.model, self.settings, self.penalties, values, z, self._depths())
+        solved = equilibrium(self.model, self.settings, self.penalties, values, z, self._depths(), self._pushes())
         self.iterations += solved.iterations
         return solved.system if solved.converged else None
 
@@ -199,7 +199,7 @@ class March:
         }
         if looser == self.penalties:
             return False
-        solved = equilibrium(self.model, self.settings, looser, self.values, self.system.z, self._depths())
+        solved = equilibrium(self.model, self.settings, looser, self.values, self.system.z, self._depths(), self._pushes())
         self.iterations += solved.iterations
         if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
             self.system, self.penalties = solved.system, looser
@@ -219,7 +219,7 @@ class March:
                 factor = min(wanted, most)
                 stiffness = factor * self.penalties[pair].stiffness
                 tighter[pair] = Penalty(stiffness, pressures[pair] / stiffness)
-            solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, {})
+            solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, {}, self._pushes())
             self.iterations += solved.iterations
             if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
                 self.system, self.penalties = solved.system, tighter
@@ -261,6 +261,10 @@ class March:
             and one.zones.least <= 1e-9 * one.pair.scale
             and self.penalties[one.pair].stiffness >= one.pair.stiffness
         }
+
+    def _pushes(self) -> dict[Contact, Array]:
+        """What the points of the closed contacts push with."""
+        return {one.pair: one.pushes for one in self.system.touches if one.closed}
 
     def _moved(self, system: System, z: State) -> float:
         """The most by which anything differs."""

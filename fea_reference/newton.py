@@ -40,6 +40,7 @@ def equilibrium(
     values: Array,
     z: State,
     depths: Mapping[Contact, float],
+    before: Mapping[Contact, Array],
 ) -> Solved:
     """Seek the equilibrium near ``z`` under load ``values``.
 
@@ -48,8 +49,8 @@ def equilibrium(
     """
     moving = np.concatenate([model.node_dofs.ravel(), *(b.dofs for b in model.bodies if b.dofs is not None)])
     correction = np.inf
-    held = dict(depths)
-    system = assemble(model, penalties, settings.quadrature, values, z, held)
+    held, foreseen = dict(depths), dict(before)
+    system = assemble(model, penalties, settings.quadrature, values, z, held, foreseen)
     for iteration in range(settings.newton_limit):
         unbalanced = float(np.abs(system.residual).max())
         accepted = max(settings.residual * system.scale, system.floor)
@@ -63,12 +64,13 @@ def equilibrium(
             return Solved(system, converged=False, iterations=iteration + 1)
         correction = float(np.abs(step[moving]).max())
         step *= min(1.0, _TURN / max(correction, _TURN))
+        foreseen = {one.pair: one.foreseen(step) for one in system.touches}
         if penalties and not held and unbalanced > accepted:
-            system = _along(model, settings, penalties, values, system, step, moving)
+            system = _along(model, settings, penalties, values, system, step, moving, foreseen)
             z = system.z
         else:
             z = advance(model, z, step)
-            system = assemble(model, penalties, settings.quadrature, values, z, held)
+            system = assemble(model, penalties, settings.quadrature, values, z, held, foreseen)
         if held:
             for one in system.touches:
                 depth = held.get(one.pair)
@@ -76,9 +78,9 @@ def equilibrium(
                     continue
                 near = depth / _NEAR < one.penetration < _NEAR * depth
                 settled = iteration >= _HELD or correction < _SETTLED
-                if near or settled or (iteration > 0 and one.push < 0.0):
+                if near or settled or (iteration > 0 and foreseen[one.pair].sum() < 0.0):
                     del held[one.pair]
-            system = assemble(model, penalties, settings.quadrature, values, z, held)
+            system = assemble(model, penalties, settings.quadrature, values, z, held, foreseen)
     return Solved(system, converged=False, iterations=settings.newton_limit)
 
 
@@ -90,6 +92,7 @@ def _along(
     system: System,
     step: Array,
     moving: Index,
+    foreseen: Mapping[Contact, Array],
 ) -> System:
     """The system after as much of ``step`` as lowers the energy; forces take all of theirs."""
     forces = step.copy()
@@ -98,7 +101,7 @@ def _along(
 
     def after(fraction: float) -> System:
         z = advance(model, system.z, forces + fraction * motions)
-        return assemble(model, penalties, settings.quadrature, values, z)
+        return assemble(model, penalties, settings.quadrature, values, z, {}, foreseen)
 
     def slope(there: System) -> float:
         return float(motions @ there.residual)

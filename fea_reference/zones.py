@@ -182,7 +182,7 @@ def negative(
 
 def _reach(first: NeutralLine, second: NeutralLine, T: float) -> float:
     """Where no node of the second beam is nearer than this, neither a place nor its neighbours can touch."""
-    return float(2.0 * T + 2.0 * second.lengths.max() + first.lengths.max())
+    return float(2.0 * abs(T) + 2.0 * second.lengths.max() + first.lengths.max())
 
 
 def _samples(first: NeutralLine, second: NeutralLine, T: float) -> Array:
