@@ -27,6 +27,7 @@ _EASY = 6  # iterations: a step that took more is not followed by a longer one
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _TIGHTENINGS = 25
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
+_NEARBY = (1e-3, 1e-2, 1e-1)  # of a step: where to look for a closing under tighter penalties
 _SLACK = 1.3  # on the penalty foreseen for the penetration asked
 
 
@@ -64,8 +65,6 @@ class March:
         """
         self.iterations = 0
         self._watch_what_touches(load)
-        if self.values[load] != target:
-            self._loosen(Circle)
         stride, cuts, searching = np.inf, 0, False
         reason = (Ending.STEP_TOO_SMALL, "")
         while self.values[load] != target:
@@ -83,12 +82,13 @@ class March:
             value = target if size >= abs(way) else self.values[load] + np.copysign(size, way)
             if value == self.values[load]:
                 raise StoppedError(*reason)
-            spent = self.iterations
+            spent, closed = self.iterations, len(self.penalties)
             trouble = self._step(load, value, rate)
             if trouble is None:
                 easy = self.iterations - spent <= _EASY
                 stride, cuts = 2.0 * size if easy else size, 0
-            elif not searching and self._loosen(Pair):
+                searching = searching and len(self.penalties) == closed
+            elif not searching and self._loosen():
                 searching = True
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
@@ -130,9 +130,9 @@ class March:
                 Ending.STEP_TOO_SMALL,
                 f"beyond {self._shown(load, start)} the nearest equilibrium is on another branch",
             )
-        touched = [pair for pair in self.open if zones_of(self.model, pair, system.z).least < 0.0]
+        touched = bool(self.open) and self._least_gap(system) < 0.0
         if touched:
-            found = self._first_touch(load, start, value, rate, system)
+            found = self._first_touch(load, {start: self.system, value: system})
             if found is None:
                 return (
                     Ending.STEP_TOO_SMALL,
@@ -153,30 +153,61 @@ class March:
                 )
         self.values[load], self.system = value, system
         if touched:
+            self._close_tightly(load, value - start)
             self._watch_what_touches(load)
         return None
 
-    def _first_touch(
-        self, load: int, start: float, end: float, rate: Array, beyond: System
-    ) -> tuple[float, System] | None:
-        """The value at which the least gap of the open contacts is zero, on the equilibria without them."""
-        known = {start: self.system, end: beyond}
+    def _first_touch(self, load: int, known: dict[float, System]) -> tuple[float, System] | None:
+        """The value at which the least gap of the open contacts is zero, on the equilibria without them.
+
+        ``known`` are two equilibria by their values, before and beyond it.
+        """
 
         def least_gap(value: float) -> float:
             if value not in known:
-                guess = advance(self.model, self.system.z, (value - start) * rate)
+                low, high = max(v for v in known if v < value), min(v for v in known if v > value)
+                between = known[high].z.values - known[low].z.values
+                guess = advance(self.model, known[low].z, (value - low) / (high - low) * between)
                 system = self._solve(load, value, guess)
                 if system is None:
                     raise ArithmeticError
                 known[value] = system
-            return min(zones_of(self.model, pair, known[value].z).least for pair in self.open)
+            return self._least_gap(known[value])
 
+        one, other = known
         try:
-            root = float(brentq(least_gap, start, end, xtol=1e-11 * abs(end), rtol=1e-11))
+            root = float(brentq(least_gap, one, other, xtol=1e-11 * max(abs(one), abs(other)), rtol=1e-11))
             least_gap(root)
         except (ArithmeticError, ValueError):
             return None
         return root, known[root]
+
+    def _close_tightly(self, load: int, way: float) -> None:
+        """Where a contact has closed, tighten the others and find again where it does.
+
+        What sinks into loose penalties closes elsewhere.  ``way`` is that of the step.  If nothing is found, an open
+        contact stays open.
+        """
+        loose = dict(self.penalties)
+        self._tighten()
+        if self.penalties == loose:
+            return
+        value, gap = float(self.values[load]), self._least_gap(self.system)
+        for share in _NEARBY:
+            other = value + np.copysign(share, gap) * way
+            guess = advance(self.model, self.system.z, (other - value) * self._rate(load))
+            beyond = self._solve(load, other, guess)
+            if beyond is None:
+                return
+            if self._least_gap(beyond) * gap <= 0.0:
+                found = self._first_touch(load, {value: self.system, other: beyond})
+                if found is not None:
+                    self.values[load], self.system = found
+                return
+
+    def _least_gap(self, system: System) -> float:
+        """Of the open contacts."""
+        return min(zones_of(self.model, pair, system.z).least for pair in self.open)
 
     def _watch_what_touches(self, load: int) -> None:
         """Give a penalty to every open contact whose gap has vanished."""
@@ -187,19 +218,19 @@ class March:
                 self.closing[pair.name] = float(self.values[load]) * self.model.stepped[load].unit
         self.system = assemble(self.model, self.penalties, self.settings.quadrature, self.values, self.system.z)
 
-    def _loosen(self, kind: type[Circle | Pair]) -> bool:
+    def _loosen(self) -> bool:
         """Go back to the loosest penalties: the ends of a zone move by a layer's width per iteration.
 
-        Returns whether it could be done.  Circles do it before every station, beams only if a step fails, since most
-        of them touch in a point.
+        Returns whether it could be done.
         """
         looser = {
-            pair: Penalty(pair.loosest) if isinstance(pair, kind) and pair.loosest < now.stiffness else now
-            for pair, now in self.penalties.items()
+            pair: Penalty(pair.loosest) if pair.loosest < now.stiffness else now for pair, now in self.penalties.items()
         }
         if looser == self.penalties:
             return False
-        solved = equilibrium(self.model, self.settings, looser, self.values, self.system.z, self._depths(), self._pushes())
+        solved = equilibrium(
+            self.model, self.settings, looser, self.values, self.system.z, self._depths(), self._pushes()
+        )
         self.iterations += solved.iterations
         if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
             self.system, self.penalties = solved.system, looser

@@ -94,9 +94,9 @@ class Penalty:
 class Touch:
     """A contact at its k Gauss points.
 
-    ``stiffness`` (k,) is the penalty's times the length that a point stands for, ``gap`` (k,) that to where the pressure
-    begins, ``gap_by`` (m, k) and ``gap_by_twice`` (m, m, k) its derivatives by the unknowns ``dofs`` (m, k): those of
-    the element of the first beam, then those of the second's or of the circle's body, if that is free.
+    ``stiffness`` (k,) is the penalty's times the length that a point stands for, ``gap`` (k,) that to where the
+    pressure begins, ``gap_by`` (m, k) and ``gap_by_twice`` (m, m, k) its derivatives by the unknowns ``dofs`` (m, k):
+    those of the element of the first beam, then those of the second's or of the circle's body, if that is free.
     Places ``zeta`` (k,) on the first beam and ``zeta_m`` on the second (empty for a circle), points ``x`` of the
     first beam's neutral line and ``x_m`` of the second's or of the circle's edge (2, k), the ``normal`` (2, k) away
     from what it touches.
@@ -134,9 +134,7 @@ class Touch:
 
     def hessian(self, pushes: Array) -> Array:
         """Of the penalty's energy by the unknowns, (m, m, k), if the points push with ``pushes`` (k,)."""
-        return np.asarray(
-            self.stiffness * self.gap_by[:, None] * self.gap_by[None, :] - pushes * self.gap_by_twice
-        )
+        return np.asarray(self.stiffness * self.gap_by[:, None] * self.gap_by[None, :] - pushes * self.gap_by_twice)
 
     def foreseen(self, step: Array) -> Array:
         """What the points will push with after a ``step`` (size,) of the unknowns, to first order, (k,)."""
