@@ -1,4 +1,19 @@
-"""Newton's method for one equilibrium."""
+"""Newton's method for one equilibrium.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+g       gap at a point of a contact, to where its pressure begins; δz is a step
+k       stiffness of the point, the penalty times the length that it stands for
+λ       push of the point, an unknown of its own
+======  =====================================================================================
+
+A step overlaps by its square, and a stiff penalty makes of that a force thousands of times the contact's own, and of
+the force a geometric stiffness in which the next step gets lost.  Taken for an unknown with the equation λ = −k g, the
+push after a step is −k (g + ∂g δz), with the step's overlap left out.  Eliminated point by point, it leaves the
+residual as it is, with −k g, and the tangent k ∂g ∂gᵀ − λ ∂²g: the equilibria are the same, and so is the order of
+convergence (Magisano, Leonetti and Garcea, Comput. Methods Appl. Mech. Engrg. 313 (2017) 986).
+"""
 
 from __future__ import annotations
 
@@ -45,7 +60,8 @@ def equilibrium(
     """Seek the equilibrium near ``z`` under load ``values``.
 
     ``depths`` are the penetrations of the contacts that were closed in the equilibrium before: these are held
-    until their penetration is near that again, or until they pull.
+    until their penetration is near that again, or until they pull.  ``before`` is what the points of the contacts
+    pushed with there, (k,) each.
     """
     moving = np.concatenate([model.node_dofs.ravel(), *(b.dofs for b in model.bodies if b.dofs is not None)])
     correction = np.inf

@@ -69,8 +69,8 @@ def assemble(
         values: of the loads and then of the drives (number of both,), without units.
         z: the unknowns.
         held: the contacts that are held at a depth, see :func:`~fea_reference.contact.touch`.
-        foreseen: what the points of contacts were foreseen to push with by the step that led here; the tangent takes
-            these for what they do push with.
+        foreseen: what the points of contacts (k,) were foreseen to push with; the tangent takes it for what they do
+            push with, see :mod:`fea_reference.newton`.
     """
     elements = forces(model.elements, model.element_dofs, z)
     touches = tuple(touch(model, pair, penalty, quadrature, z, held.get(pair)) for pair, penalty in penalties.items())
@@ -96,7 +96,10 @@ def assemble(
 
 
 def _pushes(one: Touch, foreseen: Array | None) -> Array:
-    """What a contact's points push with for the tangent, (k,): as foreseen, if need be in sum only."""
+    """What a contact's points push with for the tangent, (k,): as foreseen.
+
+    Where the points are others by now, it is less than they do if their sum was foreseen to be less.
+    """
     if foreseen is None:
         return one.pushes
     if foreseen.size == one.pushes.size:
