@@ -24,7 +24,7 @@ def test_tips_that_slide_along_one_another_arrive_in_long_steps(kinematics):
 def test_a_little_penetration_in_few_stations_arrives():
     """A 256th of the standard penetration: the penalties of both contacts are the stiffest that are ever asked for."""
     scene = with_stations(cases.opened("gripper"), 9.6, 16.0)
-    found = answer(scene, Settings(elements=160, kinematics="bending", penetration=1e-4 / 256))
+    found = answer(scene, Settings(elements=320, kinematics="bending", penetration=1e-4 / 256))
     assert found.ending is Ending.COMPLETED, found.sentence
 
 
