@@ -9,6 +9,7 @@ import io
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import cycle, islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,6 +40,7 @@ _STYLE: dict[Any, Any] = {  # the stubs name every key of every version
     "legend.frameon": False,
     "savefig.dpi": 150.0,
 }
+LOOKS = (("-", "o"), ("--", "s"), (":", "^"), ("-.", "D"))  # of the probes in one figure: lines and markers
 FEW_PLACES = 8  # of contact, that are drawn large
 
 
@@ -238,17 +240,18 @@ def _against_load(scene: Scene, rows: list[Row], quantity: str, what: str) -> Pi
     axes = figure.add_subplot()
     factor, unit = scaled_unit(rows[0].unit, max(row.scale for row in rows))
     last = scene.stages[-1]
-    for name in dict.fromkeys(row.probe.name for row in rows):
+    names = list(dict.fromkeys(row.probe.name for row in rows))
+    for name, (line, marker) in zip(names, islice(cycle(LOOKS), len(names)), strict=True):
         for stage in scene.stages:
             if stage.steps != last.steps:  # another load or drive has another axis
                 continue
             mine = [row for row in rows if row.probe.name == name and row.stage == stage.name]
             load = [row.station for row in mine]
-            axes.plot(load, [row.fea[0] / factor for row in mine], "-", color=RED, label=f"{name}, FEA")
+            axes.plot(load, [row.fea[0] / factor for row in mine], line, color=RED, label=f"{name}, FEA")
             axes.plot(
                 load,
                 [row.cprbm[0] / factor for row in mine],
-                "o",
+                marker,
                 color=BLUE,
                 markersize=4,
                 label=f"{name}, CPRBM",

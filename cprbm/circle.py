@@ -188,8 +188,8 @@ class Circle:
 
     def _places(self, line: smooth.SmoothLine) -> tuple[Array, Flags]:
         """Arc lengths of the rows, and which of them move with a minimum."""
-        s = smooth.halves(self.a)
-        A = line.at(s)
+        A = line.sampled
+        s = A.s
         rho, n = self._away(A)
         D = self.distance(A) - self.offset
         near = np.zeros(len(s), dtype=bool)
@@ -274,7 +274,7 @@ class Circle:
         """Least gap anywhere along the beam, units of length; negative where it overlaps."""
         line, here = self.line(state, at), self.placed(at)
         s, _ = here._places(line)
-        D = here.distance(line.at(np.concatenate((smooth.halves(self.a), s))))
+        D = np.concatenate((here.distance(line.sampled), here.distance(line.at(s))))
         return float(np.min(D)) - self.offset
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm import smooth
 from cprbm.boundary import FittedBoundary, fitted_boundary
 from cprbm.circle import Circle, circle_of
 from cprbm.closure import closure_of
@@ -79,7 +78,7 @@ class Mechanism:
                 before.bodies + part * (after.bodies - before.bodies),
             )
             at = positions(self.problem.model, state)
-            places = circle.line(state, at).at(smooth.halves(circle.a))
+            places = circle.line(state, at).sampled
             if np.max(circle.offset - circle.placed(at).distance(places)) > allowed:
                 return True
         return False

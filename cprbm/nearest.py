@@ -51,7 +51,7 @@ from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
 
 FOOT_ITERATIONS = 8
-FOOT_TOLERANCE = 1e-13  # of t·r, units of length
+FOOT_TOLERANCE = 1e-13  # of σ, and of t·r, units of length
 CLOSEST_ITERATIONS = 50
 LEAST_CURVATURE = 1e-3  # of D, 1/ℓ: elements that end elsewhere on either beam leave as much in a zone
 REACH = 0.1  # minima and ends with gaps wider than this part of the longest beam are no constraints yet
@@ -142,7 +142,7 @@ class Pair:
         """D″ at arc lengths ``s`` of A whose feet are at ``sigma``; between springs the curvature goes evenly."""
         facing = np.sign(np.cos(lines[0].at(s).psi - lines[1].at(sigma).psi))
         bend_A, bend_B = (
-            np.interp(places, line.chain.s[1:-1], line.at(line.chain.s[1:-1]).bend)
+            np.interp(places, line.chain.s[1:-1], line.sampled.bend[2:-2:2])
             for line, places in zip(lines, (s, sigma), strict=True)
         )
         return np.asarray(self.side * (facing * bend_A - bend_B / (1.0 - self.side * D * bend_B)))
@@ -303,11 +303,9 @@ class Pair:
 
 def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Flags]:
     """Signed distance D of A from B at arc lengths ``s``: D, σ (k,), and whether a foot exists (k,)."""
-    A = lines[0].at(s)
-    grid = smooth.halves(pair.b)
-    G = lines[1].at(grid)
+    A, G = lines[0].at(s), lines[1].sampled
     _, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(np.stack((A.x, A.y), axis=1))
-    return _feet(pair, lines[1], A, grid[nearest])
+    return _feet(pair, lines[1], A, G.s[nearest])
 
 
 def _feet(pair: Pair, line: smooth.SmoothLine, A: smooth.Points, sigma: Array) -> tuple[Array, Array, Flags]:
@@ -316,11 +314,10 @@ def _feet(pair: Pair, line: smooth.SmoothLine, A: smooth.Points, sigma: Array) -
         B = line.at(sigma)
         along, across = _seen_from(B, A)
         step = along / (B.speed * np.maximum(1.0 - B.bend * across, 0.2))
-        sigma = np.minimum(np.maximum(sigma + np.minimum(np.maximum(step, -pair.b.h), pair.b.h), 0.0), pair.b.s[-1])
-        if np.max(np.abs(along)) < FOOT_TOLERANCE:
+        ahead = np.minimum(np.maximum(sigma + np.minimum(np.maximum(step, -pair.b.h), pair.b.h), 0.0), pair.b.s[-1])
+        if np.max(np.abs(ahead - sigma)) < FOOT_TOLERANCE:
             break
-    B = line.at(sigma)
-    along, across = _seen_from(B, A)
+        sigma = ahead
     foot = np.abs(along) <= PARALLEL * np.maximum(np.abs(across), pair.b.h)
     return pair.side * across, sigma, foot
 
@@ -361,7 +358,7 @@ def closest_places(pair: Pair, lines: Lines) -> tuple[Places, Places]:
 def _facing_ends(pair: Pair, lines: Lines) -> Places:
     """The ends of B that face A within reach, and their feet on A; the keys follow A's joints."""
     a, b, reach = pair.a, pair.b, pair.offset + REACH
-    A, ends = lines[0].at(smooth.halves(a)), lines[1].at(b.s[[0, -1]])
+    A, ends = lines[0].sampled, lines[1].at(b.s[[0, -1]])
     away = np.array([np.min(np.hypot(A.x - x, A.y - y)) for x, y in zip(ends.x, ends.y, strict=True)])
     near = np.flatnonzero(away < reach + a.h)
     if not near.size:
@@ -390,16 +387,15 @@ def _held_together(one: Chain, other: Chain, end: int, foot: float) -> bool:
 
 def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     """D at the joints of A and half-way between them, infinite where it is out of reach, and σ, (2N+3,) each."""
-    s, grid = smooth.halves(pair.a), smooth.halves(pair.b)
-    A, G = lines[0].at(s), lines[1].at(grid)
+    A, G = lines[0].sampled, lines[1].sampled
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
     rough, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(
         np.stack((A.x, A.y), axis=1), distance_upper_bound=pair.offset + REACH + pair.a.h + pair.b.h
     )
     close = np.flatnonzero(np.isfinite(rough))
-    D, sigma = np.full(len(s), np.inf), np.zeros(len(s))
+    D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
     if close.size:
-        distance, sigma[close], foot = _feet(pair, lines[1], lines[0].at(s[close]), grid[nearest[close]])
+        distance, sigma[close], foot = _feet(pair, lines[1], lines[0].at(A.s[close]), G.s[nearest[close]])
         D[close] = np.where(foot, distance, np.inf)
     return D, sigma
 

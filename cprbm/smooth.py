@@ -34,6 +34,7 @@ element, κ⁰′h²/8: of fifth order in h.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -49,7 +50,7 @@ VERSINE = (1 / 2, -1 / 24, 1 / 720, -1 / 40320, 1 / 3628800, -1 / 479001600)
 COTANGENT = (1.0, -1 / 3, -1 / 45, -2 / 945, -1 / 4725, -2 / 93555, -1382 / 638512875)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Points:
     """Some points of one beam's smooth line, arrays (k,) unless said otherwise.
 
@@ -60,7 +61,7 @@ class Points:
         cos, sin: of the link's angle: e = (cos, sin), n = (−sin, cos).
         a, w, a1, w1: coordinates in the link's frame and their derivatives over s.
         before: whether each lies before the border, in the element of the link's first joint.
-        h, turn, ratio, xi: of its element h, Θ, Θ⁰; ξ.
+        h, turn, radius, ratio, xi: of its element h, Θ, R, Θ⁰; ξ.
         lean: (2, k), cos and sin of the tangent at the border against the link.
     """
 
@@ -81,22 +82,28 @@ class Points:
     before: Flags
     h: Array
     turn: Array
+    radius: Array
     ratio: Array
     xi: Array
     lean: Array
 
-    @property
+    @cached_property
+    def over_turn(self) -> tuple[Array, Array, Array]:
+        """∂(a, w), ∂(a′, w′) and ∂²(a, w) over δ of the point's element, (2, k) each; ′ is the derivative over s."""
+        return _over_turn(self)
+
+    @cached_property
     def e(self) -> Array:
         """Direction of the link, (k, 2)."""
         return np.stack((self.cos, self.sin), axis=1)
 
-    @property
+    @cached_property
     def n(self) -> Array:
         """Left normal of the link, (k, 2)."""
         return np.stack((-self.sin, self.cos), axis=1)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class SmoothLine:
     """One beam's smooth line in one state.
 
@@ -104,7 +111,7 @@ class SmoothLine:
         chain: the beam.
         unit_length: ℓ, m.
         theta, cos, sin: angles of the links (N+1,).
-        turns: δ of the springs (N,).
+        turns, radii: δ and R of the springs (N,).
         x, y: joints (N+2,).
     """
 
@@ -114,8 +121,14 @@ class SmoothLine:
     cos: Array
     sin: Array
     turns: Array
+    radii: Array
     x: Array
     y: Array
+
+    @cached_property
+    def sampled(self) -> Points:
+        """Points at :func:`halves`."""
+        return self.at(halves(self.chain))
 
     def at(self, s: Array) -> Points:
         """Points at arc lengths ``s`` (k,), units of length; beyond the ends the end itself."""
@@ -131,7 +144,7 @@ class SmoothLine:
         xi = np.abs(off) / h
         ratio = chain.turns[spring]
         turn = ratio + self.turns[spring]
-        R, phi = _radius(turn, ratio), turn * xi
+        R, phi = self.radii[spring], turn * xi
         R_cos, R_sin = R * np.cos(phi), R * np.sin(phi)
         # A − A⁰ and W − W⁰ and their derivatives over u
         A, W = h * xi * R * _series(SINE, phi * phi), h * xi * R * phi * _series(VERSINE, phi * phi)
@@ -172,6 +185,7 @@ class SmoothLine:
             before=before,
             h=h,
             turn=turn,
+            radius=R,
             ratio=ratio,
             xi=xi,
             lean=lean,
@@ -181,13 +195,15 @@ class SmoothLine:
 def smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -> SmoothLine:
     """The smooth line of ``chain`` in a state."""
     theta = state.theta[chain.links]
+    turns = np.diff(theta) - np.diff(chain.rest)
     return SmoothLine(
         chain=chain,
         unit_length=unit_length,
         theta=theta,
         cos=np.cos(theta),
         sin=np.sin(theta),
-        turns=np.diff(theta) - np.diff(chain.rest),
+        turns=turns,
+        radii=_radius(chain.turns + turns, chain.turns),
         x=at.x[chain.joints],
         y=at.y[chain.joints],
     )
@@ -203,9 +219,11 @@ def halves(chain: Chain) -> Array:
 
 def _series(coefficients: tuple[float, ...], z: Array) -> Array:
     """Σ c_k z^k."""
-    total = np.full_like(z, coefficients[-1])
-    for coefficient in coefficients[-2::-1]:
-        total = total * z + coefficient
+    total = coefficients[-1] * z
+    total += coefficients[-2]
+    for coefficient in coefficients[-3::-1]:
+        total *= z
+        total += coefficient
     return total
 
 
@@ -232,12 +250,11 @@ def _leant(lean: Array, along: Array, across: Array) -> tuple[Array, Array]:
 
 
 def _over_turn(points: Points) -> tuple[Array, Array, Array]:
-    """∂(a, w), ∂(a′, w′) and ∂²(a, w) over δ of the point's element, (2, k) each; ′ is the derivative over s."""
     x, y, xi, turn = 0.5 * points.ratio, 0.5 * points.turn, points.xi, points.turn
     phi, q = turn * xi, (turn * xi) ** 2
     s0, s1 = _series(SINE, x * x), 0.5 * x * _series(VERSINE, x * x)
     T1, T2 = _series(COTANGENT_1, y * y), _series(COTANGENT_2, y * y)
-    R = _radius(turn, points.ratio)
+    R = points.radius
     R_1, R_2 = s0 * y * T1 + s1, 0.5 * s0 * (T1 + 2.0 * y * y * T2)
     S1, S2 = _series(SINE_1, q), _series(SINE_2, q)
     V, V1, V2 = _series(VERSINE, q), _series(VERSINE_1, q), _series(VERSINE_2, q)
@@ -270,7 +287,7 @@ def position_slopes(points: Points) -> Array:
     """∂C over the local numbers (x_i, y_i, θ_{i−1}, θ_i, θ_{i+1}), (k, 2, 5)."""
     slopes = np.zeros((len(points.s), 2, LOCALS))
     slopes[:, 0, 0] = slopes[:, 1, 1] = 1.0
-    slopes[:, :, 2:] = _vector(points, _over_turn(points)[0])[:, :, None] * _over_angles(points)[:, None, :]
+    slopes[:, :, 2:] = _vector(points, points.over_turn[0])[:, :, None] * _over_angles(points)[:, None, :]
     slopes[:, :, 3] += points.a[:, None] * points.n - points.w[:, None] * points.e
     return slopes
 
@@ -279,7 +296,7 @@ def position_curvature(points: Points, along: Array) -> Array:
     """Second derivatives of along·C over the local numbers for directions ``along`` (k, 2): (k, 5, 5)."""
     second = np.zeros((len(points.s), LOCALS, LOCALS))
     on_e, on_n = np.sum(along * points.e, axis=1), np.sum(along * points.n, axis=1)
-    once, _, twice = _over_turn(points)
+    once, _, twice = points.over_turn
     turns = _over_angles(points)
     second[:, 2:, 2:] = (twice[0] * on_e + twice[1] * on_n)[:, None, None] * turns[:, :, None] * turns[:, None, :]
     over = (once[0] * on_n - once[1] * on_e)[:, None] * turns
@@ -292,7 +309,7 @@ def position_curvature(points: Points, along: Array) -> Array:
 def angle_slopes(points: Points) -> Array:
     """∂ψ over the local numbers, (k, 5)."""
     slopes = np.zeros((len(points.s), LOCALS))
-    a1_, w1_ = _over_turn(points)[1]
+    a1_, w1_ = points.over_turn[1]
     slopes[:, 2:] = ((points.a1 * w1_ - points.w1 * a1_) / points.speed**2)[:, None] * _over_angles(points)
     slopes[:, 3] += 1.0
     return slopes
@@ -301,6 +318,6 @@ def angle_slopes(points: Points) -> Array:
 def tangent_slopes(points: Points) -> Array:
     """∂C_s over the local numbers, (k, 2, 5)."""
     slopes = np.zeros((len(points.s), 2, LOCALS))
-    slopes[:, :, 2:] = _vector(points, _over_turn(points)[1])[:, :, None] * _over_angles(points)[:, None, :]
+    slopes[:, :, 2:] = _vector(points, points.over_turn[1])[:, :, None] * _over_angles(points)[:, None, :]
     slopes[:, :, 3] += points.a1[:, None] * points.n - points.w1[:, None] * points.e
     return slopes

@@ -156,6 +156,19 @@ def test_the_scene_may_ask_for_more(hinge):
     assert verdict(strict, *RIGHT).word is Word.UNDECIDED
 
 
+def test_a_probe_may_be_allowed_more_than_the_scene_and_the_sentence_says_so(hinge):
+    crude = MadeUp("cprbm", 2e-2), MadeUp("fea", -5e-4)
+    wider = tuple(probe.model_copy(update={"verdict_limit": 0.2}) for probe in hinge.probes)
+    said = verdict(hinge.model_copy(update={"probes": wider}), *crude)
+    assert said.word is Word.AGREE
+    assert "20.0 % for C.reaction" in said.sentence
+    one = tuple(probe.model_copy(update={"verdict_limit": 1e-4 if probe.of == "C" else None}) for probe in hinge.probes)
+    said = verdict(hinge.model_copy(update={"probes": one}), *RIGHT)
+    assert said.word is Word.UNDECIDED
+    assert "least of all C." in said.sentence
+    assert "more than 0.0100 %" in said.sentence
+
+
 def test_identical_numbers_agree_though_every_uncertainty_is_zero(hinge):
     exact = MadeUp("cprbm", 0.0), MadeUp("fea", 0.0)
     said = verdict(hinge, *exact, kinematics="bending")
