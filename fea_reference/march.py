@@ -45,7 +45,8 @@ class March:
 
     ``values`` are the loads' and then the drives' without units; ``penalties`` the contacts that have closed so
     far, with their stiffness; ``closing`` the value of the stepped load or drive at which each did; ``iterations``
-    are counted since the last station.
+    are counted since the last station; ``far`` is whether zones have been too far from one station to the next for
+    tight penalties, and the way to the next one begins with loose ones on circles.
     """
 
     model: Model
@@ -56,6 +57,7 @@ class March:
     penalties: dict[Contact, Penalty] = field(default_factory=dict)
     closing: dict[str, float] = field(default_factory=dict)
     iterations: int = 0
+    far: bool = False
 
     def reach(self, load: int, target: float) -> None:
         """March one load or drive to ``target`` and land on it exactly.
@@ -65,6 +67,8 @@ class March:
         """
         self.iterations = 0
         self._watch_what_touches(load)
+        if self.far and self.values[load] != target:
+            self._loosen(Circle)
         stride, cuts, searching = np.inf, 0, False
         reason = (Ending.STEP_TOO_SMALL, "")
         while self.values[load] != target:
@@ -88,8 +92,8 @@ class March:
                 easy = self.iterations - spent <= _EASY
                 stride, cuts = 2.0 * size if easy else size, 0
                 searching = searching and len(self.penalties) == closed
-            elif not searching and self._loosen():
-                searching = True
+            elif not searching and self._loosen(Circle, Pair):
+                searching = self.far = True
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
         self._tighten()
@@ -218,13 +222,14 @@ class March:
                 self.closing[pair.name] = float(self.values[load]) * self.model.stepped[load].unit
         self.system = assemble(self.model, self.penalties, self.settings.quadrature, self.values, self.system.z)
 
-    def _loosen(self) -> bool:
+    def _loosen(self, *kinds: type[Circle | Pair]) -> bool:
         """Go back to the loosest penalties: the ends of a zone move by a layer's width per iteration.
 
-        Returns whether it could be done.
+        Returns whether it could be done.  Most pairs of beams touch in a point, whose zone is found all the same.
         """
         looser = {
-            pair: Penalty(pair.loosest) if pair.loosest < now.stiffness else now for pair, now in self.penalties.items()
+            pair: Penalty(pair.loosest) if isinstance(pair, kinds) and pair.loosest < now.stiffness else now
+            for pair, now in self.penalties.items()
         }
         if looser == self.penalties:
             return False
