@@ -27,6 +27,8 @@ _EASY = 6  # iterations: a step that took more is not followed by a longer one
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _TIGHTENINGS = 25
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
+_NEARBY = (1e-3, 1e-2, 1e-1)  # of a step: where to look for a closing under tighter penalties
+_CLOSED = 1e-9  # of the thickness, a gap that is none
 _SLACK = 1.3  # on the penalty foreseen for the penetration asked
 
 
@@ -44,7 +46,8 @@ class March:
 
     ``values`` are the loads' and then the drives' without units; ``penalties`` the contacts that have closed so
     far, with their stiffness; ``closing`` the value of the stepped load or drive at which each did; ``iterations``
-    are counted since the last station.
+    are counted since the last station; ``far`` is whether zones have been too far from one station to the next for
+    tight penalties, and the way to the next one begins with loose ones on circles.
     """
 
     model: Model
@@ -55,6 +58,7 @@ class March:
     penalties: dict[Contact, Penalty] = field(default_factory=dict)
     closing: dict[str, float] = field(default_factory=dict)
     iterations: int = 0
+    far: bool = False
 
     def reach(self, load: int, target: float) -> None:
         """March one load or drive to ``target`` and land on it exactly.
@@ -64,7 +68,7 @@ class March:
         """
         self.iterations = 0
         self._watch_what_touches(load)
-        if self.values[load] != target:
+        if self.far and self.values[load] != target:
             self._loosen(Circle)
         stride, cuts, searching = np.inf, 0, False
         reason = (Ending.STEP_TOO_SMALL, "")
@@ -83,13 +87,14 @@ class March:
             value = target if size >= abs(way) else self.values[load] + np.copysign(size, way)
             if value == self.values[load]:
                 raise StoppedError(*reason)
-            spent = self.iterations
+            spent, closed = self.iterations, len(self.penalties)
             trouble = self._step(load, value, rate)
             if trouble is None:
                 easy = self.iterations - spent <= _EASY
                 stride, cuts = 2.0 * size if easy else size, 0
-            elif not searching and self._loosen(Pair):
-                searching = True
+                searching = searching and len(self.penalties) == closed
+            elif not searching and self._loosen(Circle, Pair):
+                searching = self.far = True
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
         self._tighten()
@@ -111,7 +116,7 @@ class March:
         """Equilibrium at ``value`` near ``z``; None if there is none to be found."""
         values = self.values.copy()
         values[load] = value
-        solved = equilibrium(self.model, self.settings, self.penalties, values, z, self._depths())
+        solved = equilibrium(self.model, self.settings, self.penalties, values, z, self._depths(), self._pushes())
         self.iterations += solved.iterations
         return solved.system if solved.converged else None
 
@@ -130,9 +135,9 @@ class March:
                 Ending.STEP_TOO_SMALL,
                 f"beyond {self._shown(load, start)} the nearest equilibrium is on another branch",
             )
-        touched = [pair for pair in self.open if zones_of(self.model, pair, system.z).least < 0.0]
+        touched = bool(self.open) and self._least_gap(system) < 0.0
         if touched:
-            found = self._first_touch(load, start, value, rate, system)
+            found = self._first_touch(load, {start: self.system, value: system})
             if found is None:
                 return (
                     Ending.STEP_TOO_SMALL,
@@ -140,7 +145,8 @@ class March:
                 )
             value, system = found
         for pair in self.open:
-            if pair not in touched and self._overlapped_between(pair, before, system.z):
+            closing = zones_of(self.model, pair, system.z).least <= _CLOSED * pair.scale
+            if not closing and self._overlapped_between(pair, before, system.z):
                 return (
                     Ending.BEAMS_CROSSED,
                     f"beyond {self._shown(load, start)} what may touch in {pair.name} passes through each other",
@@ -159,6 +165,7 @@ class March:
                 )
         self.values[load], self.system = value, system
         if touched:
+            self._close_tightly(load, value - start)
             self._watch_what_touches(load)
         return None
 
@@ -180,50 +187,81 @@ class March:
     def _finest(self) -> float:
         return min(float(self.model.line(beam, self.model.start).lengths.min()) for beam in self.model.beams)
 
-    def _first_touch(
-        self, load: int, start: float, end: float, rate: Array, beyond: System
-    ) -> tuple[float, System] | None:
-        """The value at which the least gap of the open contacts is zero, on the equilibria without them."""
-        known = {start: self.system, end: beyond}
+    def _first_touch(self, load: int, known: dict[float, System]) -> tuple[float, System] | None:
+        """The value at which the least gap of the open contacts is zero, on the equilibria without them.
+
+        ``known`` are two equilibria by their values, before and beyond it.
+        """
 
         def least_gap(value: float) -> float:
             if value not in known:
-                guess = advance(self.model, self.system.z, (value - start) * rate)
+                low, high = max(v for v in known if v < value), min(v for v in known if v > value)
+                between = known[high].z.values - known[low].z.values
+                guess = advance(self.model, known[low].z, (value - low) / (high - low) * between)
                 system = self._solve(load, value, guess)
                 if system is None:
                     raise ArithmeticError
                 known[value] = system
-            return min(zones_of(self.model, pair, known[value].z).least for pair in self.open)
+            return self._least_gap(known[value])
 
+        one, other = known
         try:
-            root = float(brentq(least_gap, start, end, xtol=1e-11 * abs(end), rtol=1e-11))
+            root = float(brentq(least_gap, one, other, xtol=1e-11 * max(abs(one), abs(other)), rtol=1e-11))
             least_gap(root)
         except (ArithmeticError, ValueError):
             return None
         return root, known[root]
 
+    def _close_tightly(self, load: int, way: float) -> None:
+        """Where a contact has closed, tighten the others and find again where it does.
+
+        What sinks into loose penalties closes elsewhere.  ``way`` is that of the step.  If nothing is found, an open
+        contact stays open.
+        """
+        loose = dict(self.penalties)
+        self._tighten()
+        if self.penalties == loose:
+            return
+        value, gap = float(self.values[load]), self._least_gap(self.system)
+        for share in _NEARBY:
+            other = value + np.copysign(share, gap) * way
+            guess = advance(self.model, self.system.z, (other - value) * self._rate(load))
+            beyond = self._solve(load, other, guess)
+            if beyond is None:
+                return
+            if self._least_gap(beyond) * gap <= 0.0:
+                found = self._first_touch(load, {value: self.system, other: beyond})
+                if found is not None:
+                    self.values[load], self.system = found
+                return
+
+    def _least_gap(self, system: System) -> float:
+        """Of the open contacts."""
+        return min(zones_of(self.model, pair, system.z).least for pair in self.open)
+
     def _watch_what_touches(self, load: int) -> None:
         """Give a penalty to every open contact whose gap has vanished."""
         for pair in list(self.open):
-            if zones_of(self.model, pair, self.system.z).least <= 1e-9 * pair.scale:
+            if zones_of(self.model, pair, self.system.z).least <= _CLOSED * pair.scale:
                 self.open.remove(pair)
                 self.penalties[pair] = Penalty(pair.stiffness)
                 self.closing[pair.name] = float(self.values[load]) * self.model.stepped[load].unit
         self.system = assemble(self.model, self.penalties, self.settings.quadrature, self.values, self.system.z)
 
-    def _loosen(self, kind: type[Circle | Pair]) -> bool:
+    def _loosen(self, *kinds: type[Circle | Pair]) -> bool:
         """Go back to the loosest penalties: the ends of a zone move by a layer's width per iteration.
 
-        Returns whether it could be done.  Circles do it before every station, beams only if a step fails, since most
-        of them touch in a point.
+        Returns whether it could be done.  Most pairs of beams touch in a point, whose zone is found all the same.
         """
         looser = {
-            pair: Penalty(pair.loosest) if isinstance(pair, kind) and pair.loosest < now.stiffness else now
+            pair: Penalty(pair.loosest) if isinstance(pair, kinds) and pair.loosest < now.stiffness else now
             for pair, now in self.penalties.items()
         }
         if looser == self.penalties:
             return False
-        solved = equilibrium(self.model, self.settings, looser, self.values, self.system.z, self._depths())
+        solved = equilibrium(
+            self.model, self.settings, looser, self.values, self.system.z, self._depths(), self._pushes()
+        )
         self.iterations += solved.iterations
         if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
             self.system, self.penalties = solved.system, looser
@@ -243,7 +281,7 @@ class March:
                 factor = min(wanted, most)
                 stiffness = factor * self.penalties[pair].stiffness
                 tighter[pair] = Penalty(stiffness, pressures[pair] / stiffness)
-            solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, {})
+            solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, {}, self._pushes())
             self.iterations += solved.iterations
             if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
                 self.system, self.penalties = solved.system, tighter
@@ -282,9 +320,13 @@ class March:
             one.pair: max(one.penetration, allowed * one.pair.scale)
             for one in self.system.touches
             if isinstance(one.pair, Pair)
-            and one.zones.least <= 1e-9 * one.pair.scale
+            and one.zones.least <= _CLOSED * one.pair.scale
             and self.penalties[one.pair].stiffness >= one.pair.stiffness
         }
+
+    def _pushes(self) -> dict[Contact, Array]:
+        """What the points of the closed contacts push with."""
+        return {one.pair: one.pushes for one in self.system.touches if one.closed}
 
     def _moved(self, system: System, z: State) -> float:
         """The most by which anything differs."""

@@ -25,6 +25,7 @@ from scene.answer import Array
 _ROUND_OFF = 3.0  # measured: up to two from 20 to 1280 elements, of both of its parts
 _NOTHING = 10.0  # floors: a force below this is round-off itself
 _NONE_HELD: Mapping[Contact, float] = frozendict()
+_NOTHING_FORESEEN: Mapping[Contact, Array] = frozendict()
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,6 +58,7 @@ def assemble(
     values: Array,
     z: State,
     held: Mapping[Contact, float] = _NONE_HELD,
+    foreseen: Mapping[Contact, Array] = _NOTHING_FORESEEN,
 ) -> System:
     """Sum everything up in state ``z``.
 
@@ -67,6 +69,8 @@ def assemble(
         values: of the loads and then of the drives (number of both,), without units.
         z: the unknowns.
         held: the contacts that are held at a depth, see :func:`~fea_reference.contact.touch`.
+        foreseen: what the points of contacts (k,) were foreseen to push with; the tangent takes it for what they do
+            push with, see :mod:`fea_reference.newton`.
     """
     elements = forces(model.elements, model.element_dofs, z)
     touches = tuple(touch(model, pair, penalty, quadrature, z, held.get(pair)) for pair, penalty in penalties.items())
@@ -75,7 +79,7 @@ def assemble(
     for one in touches:
         if one.closed:
             vectors.append(_vector(one.dofs, one.gradient, model.size))
-            matrices.append(_matrix(one.dofs, one.hessian, model.size))
+            matrices.append(_matrix(one.dofs, one.hessian(_pushes(one, foreseen.get(one.pair))), model.size))
     rigid, rows, columns, entries = _rigid(model, values, z)
     matrices.append(COOData(np.array([rows, columns]), np.array(entries), (model.size, model.size), local_shape=None))
     residual = sum(vectors).toarray() + rigid
@@ -89,6 +93,19 @@ def assemble(
     floor += sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
     scale = largest if largest > _NOTHING * floor else 1.0
     return System(z, residual, tangent, elements, touches, scale, floor)
+
+
+def _pushes(one: Touch, foreseen: Array | None) -> Array:
+    """What a contact's points push with for the tangent, (k,): as foreseen.
+
+    Where the points are others by now, it is less than they do if their sum was foreseen to be less.
+    """
+    if foreseen is None:
+        return one.pushes
+    if foreseen.size == one.pushes.size:
+        return foreseen
+    share = float(foreseen.sum()) / one.push if one.push != 0.0 else 0.0
+    return min(1.0, max(-1.0, share)) * one.pushes
 
 
 def _round_off(model: Model, touch: Touch, stiffness: float) -> float:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from fea_reference.edge import Edge
 from fea_reference.hermite import Index
 from fea_reference.zones import Zones
@@ -92,26 +94,51 @@ class Penalty:
 class Touch:
     """A contact at its k Gauss points.
 
-    ``gradient`` (m, k) and ``hessian`` (m, m, k) of the penalty's energy by the unknowns ``dofs`` (m, k): those
-    of the element of the first beam, then those of the second's or of the circle's body, if that is free.
+    ``stiffness`` (k,) is the penalty's times the length that a point stands for, ``gap`` (k,) that to where the
+    pressure begins, ``gap_by`` (m, k) and ``gap_by_twice`` (m, m, k) its derivatives by the unknowns ``dofs`` (m, k):
+    those of the element of the first beam, then those of the second's or of the circle's body, if that is free.
     Places ``zeta`` (k,) on the first beam and ``zeta_m`` on the second (empty for a circle), points ``x`` of the
-    first beam's neutral line and ``x_m`` of the second's or of the circle's edge (2, k), the forces ``force`` on
-    the first beam (2, k), the ``normal`` (2, k) away from what it touches.
+    first beam's neutral line and ``x_m`` of the second's or of the circle's edge (2, k), the ``normal`` (2, k) away
+    from what it touches.
     ``missing`` is the force that ends of the second beam leave out.
     """
 
     pair: Contact
     zones: Zones
     dofs: Index
-    gradient: Array
-    hessian: Array
+    stiffness: Array
+    gap: Array
+    gap_by: Array
+    gap_by_twice: Array
     zeta: Array
     zeta_m: Array
     x: Array
     x_m: Array
-    force: Array
     normal: Array
     missing: float
+
+    @property
+    def pushes(self) -> Array:
+        """What each point pushes the first beam away with, (k,)."""
+        return -self.stiffness * self.gap
+
+    @property
+    def force(self) -> Array:
+        """On the first beam, (2, k)."""
+        return self.pushes * self.normal
+
+    @property
+    def gradient(self) -> Array:
+        """Of the penalty's energy by the unknowns, (m, k)."""
+        return -self.pushes * self.gap_by
+
+    def hessian(self, pushes: Array) -> Array:
+        """Of the penalty's energy by the unknowns, (m, m, k), if the points push with ``pushes`` (k,)."""
+        return np.asarray(self.stiffness * self.gap_by[:, None] * self.gap_by[None, :] - pushes * self.gap_by_twice)
+
+    def foreseen(self, step: Array) -> Array:
+        """What the points will push with after a ``step`` (size,) of the unknowns, to first order, (k,)."""
+        return np.asarray(self.pushes - self.stiffness * (self.gap_by * step[self.dofs]).sum(axis=0))
 
     @property
     def penetration(self) -> float:
@@ -121,7 +148,7 @@ class Touch:
     @property
     def push(self) -> float:
         """The resultant with its sign: negative while a held contact pulls."""
-        return float((self.force * self.normal).sum())
+        return float(self.pushes.sum())
 
     @property
     def closed(self) -> bool:

@@ -36,6 +36,7 @@ SAMPLES_PER_ELEMENT = 4
 _ITERATIONS = 60
 _END_ITERATIONS = 15
 _INSIDE = 1e-6  # elements
+_ARRIVED = 1e-8  # elements
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +182,7 @@ def negative(
 
 def _reach(first: NeutralLine, second: NeutralLine, T: float) -> float:
     """Where no node of the second beam is nearer than this, neither a place nor its neighbours can touch."""
-    return float(2.0 * T + 2.0 * second.lengths.max() + first.lengths.max())
+    return float(2.0 * abs(T) + 2.0 * second.lengths.max() + first.lengths.max())
 
 
 def _samples(first: NeutralLine, second: NeutralLine, T: float) -> Array:
@@ -236,9 +237,10 @@ def _roots(
         low, high = np.where(below, x, low), np.where(below, high, x)
         safe = np.where(df == 0.0, 1.0, df)
         newton = x - f / safe
-        good = (newton > low) & (newton < high) & (df != 0.0)
-        moved = np.where(f == 0.0, x, np.where(good, newton, 0.5 * (low + high)))
-        done = np.abs(moved - x).max() < 1e-8  # as in a projection, the last step's error is of second order
+        # A step that rounding takes out of the bracket has arrived; halving would begin again from afar.
+        good = (newton > low - _ARRIVED) & (newton < high + _ARRIVED) & (df != 0.0)
+        moved = np.where(f == 0.0, x, np.where(good, np.clip(newton, low, high), 0.5 * (low + high)))
+        done = np.abs(moved - x).max() < _ARRIVED  # as in a projection, the last step's error is of second order
         x = moved
         if done:
             break

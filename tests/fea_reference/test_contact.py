@@ -6,6 +6,7 @@ import pytest
 from fea_reference import Settings, answer
 from fea_reference.crossing import cross
 from fea_reference.hermite import NeutralLine
+from fea_reference.zones import find
 from scene import Ending
 from scene.reading import scene_from
 
@@ -197,3 +198,26 @@ def test_an_integral_along_the_wrong_beam_is_not_certified(monkeypatch):
     got = answer(end_under_side(("upper", "lower")), Settings(elements=30, penetration=1e-6))
     assert got.ending is Ending.NOT_CERTIFIED
     assert "an end of lower presses on the side of upper" in got.sentence
+
+
+@pytest.mark.parametrize("depth", 10.0 ** np.arange(-9.0, -3.0, 0.37))
+@pytest.mark.parametrize("angle", [0.07, 0.3, 1.1])
+def test_a_tip_s_zone_ends_where_its_gap_does(depth, angle):
+    """A straight beam's tip, ``depth`` inside another straight beam that it meets at an ``angle``.
+
+    The gap grows by sin(angle) per length, and the zone is (depth/sin(angle)) long, with all digits of that.
+    """
+    n = 80
+    s = np.arange(n + 1) / n
+    level = NeutralLine.through(
+        np.stack([s, 0.0 * s]), 0.0 * s, np.full(n, 1 / n), np.zeros((2, n + 1)), np.zeros(n), np.zeros(n)
+    )
+    way = np.array([np.cos(angle), -np.sin(angle)])
+    points = np.array([[0.612], [-depth]]) - way[:, None] * (1.0 - s)
+    steep = NeutralLine.through(
+        points, np.full(n + 1, -angle), np.full(n, 1 / n), np.zeros((2, n + 1)), np.zeros(n), np.zeros(n)
+    )
+    found = find(steep, level, 1.0, 0.0)
+    begin, end = found.intervals.min(), found.intervals.max()
+    assert end == n
+    assert n - begin == pytest.approx(n * depth / np.sin(angle), rel=1e-6, abs=4e-14 * n)

@@ -87,7 +87,7 @@ def test_the_contacts_derivatives(hinge, shift, thicker):
         one = touch(model, pair, Penalty(1.0), 12, State.of(z))
         beam = model.line(model.beams[0], State.of(z))
         gradient, hessian = np.zeros(model.size), np.zeros((model.size, model.size))
-        for dofs, g, H in zip(one.dofs.T, one.gradient.T, one.hessian.T, strict=True):
+        for dofs, g, H in zip(one.dofs.T, one.gradient.T, one.hessian(one.pushes).T, strict=True):
             gradient[dofs] += g
             hessian[np.ix_(dofs, dofs)] += H
         # ½ ε g² ds = ½ |force| |g|, and ε is one: |force| = |g| ds
