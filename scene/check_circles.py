@@ -73,6 +73,7 @@ def circle_overlaps(scene: Scene) -> Iterator[Mistake]:
 
 def _edge_from(beam: Beam, curve: Curve, center: Point, length: float) -> float:
     """The least of d − (t − t₀)/2 along a beam whose thickness t varies, t₀ where it is thinnest; in beam's lengths."""
+
     def apart(u: Array) -> Array:
         distance = np.hypot(*(points_on(curve, u) - np.array(center)).T)
         return np.asarray(distance - 0.5 * (beam.thickness_at(u) - beam.thinnest) / length)
