@@ -77,9 +77,7 @@ def command(
     methods: tuple[Method, ...] = benchmark.METHODS if solver == "both" else (solver,)
     choices = Choices(formulation=formulation, kinematics=kinematics)
     plan = benchmark.Plan({name: benchmark.sizes_of(name, sizes) for name in methods}, choices, repeat, at_most)
-    showing.room_for(json_file)
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
+    showing.room_for(json_file, out)
     with showing.current(shown=not quiet) as say:
         done = benchmark.measured(
             scene,
