@@ -20,7 +20,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from scene.check_shapes import OVERLAP, SHORTEST, is_beam
+from scene.check_overlaps import OVERLAP
+from scene.check_shapes import SHORTEST, is_beam
 from scene.geometry import Array, arc_length, distance_to, points_on, scaled
 from scene.mistakes import Mistake
 from scene.sampling import least
