@@ -74,13 +74,18 @@ class OffsetRow:
 
 @dataclass(frozen=True, slots=True)
 class OffsetComparison:
-    """An offset question, its rows and the verdict; ``seconds`` of the two routes, and the route for pictures."""
+    """An offset question, its rows and the verdict.
+
+    Attributes:
+        seconds: of the two routes.
+        shown: the calculated points of the first spacing at the numbers and offsets to be shown, (k, n, 2), m, each.
+    """
 
     question: OffsetQuestion
     rows: tuple[OffsetRow, ...]
     verdict: Verdict
     seconds: Mapping[str, float]
-    construct: OffsetConstruction
+    shown: tuple[Array, ...]
 
 
 def compared_offset(question: OffsetQuestion, construct: OffsetConstruction = cprbm_offset_points) -> OffsetComparison:
@@ -104,7 +109,7 @@ def compared_offset(question: OffsetQuestion, construct: OffsetConstruction = cp
         for chain, ((name, _), each) in enumerate(zip(chains, found, strict=True))
         for place in range(len(distances))
     )
-    return OffsetComparison(question, rows, _judged(question, rows), frozendict(seconds), construct)
+    return OffsetComparison(question, rows, _judged(question, rows), frozendict(seconds), _shown(question, construct))
 
 
 def claim_of_offset(question: OffsetQuestion, n: int) -> OffsetClaim | None:
@@ -130,6 +135,13 @@ def _row(question: OffsetQuestion, name: str, place: int, found: Offsets, exact:
         round_off=_ROUND_OFF * (np.max(np.abs(points)) + t) / tilt / over,
         over_offset=float(np.max(apart)) / t,
     )
+
+
+def _shown(question: OffsetQuestion, construct: OffsetConstruction) -> tuple[Array, ...]:
+    if question.shown is None:
+        return ()
+    spacing, distances = next(iter(question.spacings.values())), question.sign * np.array(question.shown.offsets)
+    return tuple(construct(question.curve, spacing, n, distances).points for n in question.shown.numbers)
 
 
 def _judged(question: OffsetQuestion, rows: tuple[OffsetRow, ...]) -> Verdict:
