@@ -22,14 +22,13 @@ import numpy as np
 from frozendict import frozendict
 
 from comparisons.formats import percent
+from comparisons.measures import SAFETY, SHARE_OF_LARGEST
 from comparisons.offset_exact import ordinates
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
 from comparisons.verdict import Verdict, Word
 from scene import OffsetClaim, OffsetQuestion
 from scene.answer import Array
 
-SAFETY = 1.25
-QUARTER = 0.25  # of the largest estimate along the chain, below which none is taken: none is small by accident
 _ROUND_OFF = 64.0 * float(np.finfo(float).eps)
 
 
@@ -125,7 +124,7 @@ def _row(question: OffsetQuestion, name: str, place: int, found: Offsets, exact:
     tilt = np.abs(np.cos(found.tangents) if question.axis == "y" else np.sin(found.tangents))
     over = np.full(len(exact), t) if question.relative_to == "offset" else np.abs(exact)
     stated = SAFETY * found.off_curve[place] / tilt
-    stated = np.maximum(stated, QUARTER * np.max(stated))
+    stated = np.maximum(stated, SHARE_OF_LARGEST * np.max(stated))
     return OffsetRow(
         name,
         len(exact),
