@@ -7,7 +7,6 @@ as that does not vanish.  Claims have no part in the verdict.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -81,6 +80,4 @@ def standings(scene: Scene, rows: Sequence[Row]) -> tuple[Standing, ...]:
 
 def _is_about(claim: Claim, row: Row) -> bool:
     """Whether a claim is about a row; without a station it is about all of its probe."""
-    if claim.probe != row.probe.name:
-        return False
-    return claim.station is None or math.isclose(claim.station, row.station, rel_tol=1e-12)
+    return claim.probe == row.probe.name and claim.speaks_of(row.station)

@@ -28,8 +28,8 @@ error: C is then small, and what the estimate leaves out (terms of higher order,
 between joints) is all that is left.  S = 1 + F allows an estimate to be wrong by its share F.  By how much it is
 wrong does not pass through zero with it, and that share of the stage's largest is kept at every station.
 
-Where a contact or a kink falls between joints can make the CPRBM's error uneven in N, and two N may meet by accident: what
-the even law through v and V does not foretell of w, times S, is added to u_c.
+Where a contact or a kink falls between joints can make the CPRBM's error uneven in N, and two N may meet by
+accident: what the even law through v and V does not foretell of w, times S, is added to u_c.
 
 The formulation ``paper`` holds joints apart and not what lies between them, so that its error depends on where
 a contact falls between joints and no two N tell it. There u_c = |v_c − v_a| + S·4/3·|v_a − V_c|: its distance from the
