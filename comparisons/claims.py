@@ -7,7 +7,6 @@ as that does not vanish.  Claims have no part in the verdict.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -70,20 +69,15 @@ def standings(scene: Scene, rows: Sequence[Row]) -> tuple[Standing, ...]:
     """Every claim that some row can be held against, in the scene's order."""
     found = []
     for claim in scene.claims:
-        mine = [(difference, row) for row in rows if (difference := _held_against(claim, row)) is not None]
+        about = [row for row in rows if _is_about(claim, row)]
+        mine = [(difference, row) for row in about if (difference := claim_difference(row)) is not None]
         if mine:
             worst = max(mine, key=lambda each: each[0])[1]
-            met = sum(difference <= claim.bound for difference, _ in mine)
+            met = sum(claim_met(claim, row) is True for _, row in mine)
             found.append(Standing(claim, worst, met, len(mine)))
     return tuple(found)
 
 
-def _held_against(claim: Claim, row: Row) -> float | None:
-    return claim_difference(row) if _is_about(claim, row) else None
-
-
 def _is_about(claim: Claim, row: Row) -> bool:
     """Whether a claim is about a row; without a station it is about all of its probe."""
-    if claim.probe != row.probe.name:
-        return False
-    return claim.station is None or math.isclose(claim.station, row.station, rel_tol=1e-12)
+    return claim.probe == row.probe.name and claim.speaks_of(row.station)

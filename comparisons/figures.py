@@ -6,7 +6,7 @@ The same answers give the same bytes: no dates, and identifiers from a fixed sal
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import cycle, islice
@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from comparisons.benchmark import METHODS, Benchmark, Method, trend
 from comparisons.formats import scaled_unit
 from comparisons.geometry import length, points
 from comparisons.measures import Row, load_unit
@@ -22,7 +21,7 @@ from comparisons.pairing import Runs
 from comparisons.scales import norm
 from comparisons.sheets import last_rows
 from comparisons.verdict import Comparison
-from scene import CircleContact, Ending, Scene, StationAnswer
+from scene import CircleContact, Scene, StationAnswer
 from scene.statement import FreeEnd
 
 if TYPE_CHECKING:
@@ -56,138 +55,72 @@ class Picture:
 
 def of_comparison(compared: Comparison) -> tuple[Picture, ...]:
     """All figures of a comparison; none where a run gave no whole answer."""
-    import matplotlib as mpl
-
     if not compared.rows:
         return ()
-    pictures = []
-    with mpl.rc_context(_STYLE):
-        pictures.append(_shapes(compared.scene, compared.runs))
-        stresses = [row for row in last_rows(compared) if row.probe.quantity == "bending_stress"]
-        if stresses:
-            pictures.append(_stresses(stresses))
-        for quantity, what in (("rotation", "Rotation"), ("force", "Contact force")):
-            rows = [row for row in compared.rows if row.probe.quantity == quantity]
-            if len(rows) > 1:
-                pictures.append(_against_load(compared.scene, rows, quantity, what))
+    pictures = [_shapes(compared.scene, compared.runs)]
+    stresses = [row for row in last_rows(compared) if row.probe.quantity == "bending_stress"]
+    if stresses:
+        pictures.append(_stresses(stresses))
+    for quantity, what in (("rotation", "Rotation"), ("force", "Contact force")):
+        rows = [row for row in compared.rows if row.probe.quantity == quantity]
+        if len(rows) > 1:
+            pictures.append(_against_load(compared.scene, rows, quantity, what))
     return tuple(pictures)
-
-
-def of_benchmark(measured: Benchmark) -> Picture:
-    """Seconds and iterations against N, both axes logarithmic."""
-    import matplotlib as mpl
-    from matplotlib.figure import Figure
-
-    with mpl.rc_context(_STYLE):
-        figure = Figure(figsize=(6.4, 6.4), layout="constrained")
-        seconds, iterations = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-        sizes = sorted({timing.n for timing in measured.timings})
-        for method, colour, marker in zip(METHODS, (BLUE, RED), "os", strict=True):
-            if measured.of(method):
-                _timings(measured, method, seconds, iterations, colour, marker)
-        for axes in (seconds, iterations):
-            axes.set_xscale("log")
-            axes.set_yscale("log")
-            axes.set_xticks(sizes, [str(n) for n in sizes])
-            axes.minorticks_off()
-            axes.grid(visible=True, which="major", color="#e4e4e4", linewidth=0.6)
-        for axes, values in (
-            (seconds, [timing.median for timing in measured.timings]),
-            (iterations, [max(timing.total_iterations, 1) for timing in measured.timings]),
-        ):
-            _decades(axes, values)
-        seconds.set_ylabel("seconds of a whole answer")
-        seconds.legend(loc="upper left")
-        iterations.set_ylabel("iterations, all stations")
-        iterations.set_xlabel("links or elements per beam, N")
-        return picture(
-            figure,
-            "bench",
-            "Median time with the quartiles, and iterations, against the number of links or elements per beam.",
-        )
-
-
-def _timings(measured: Benchmark, method: Method, seconds: Axes, iterations: Axes, colour: str, marker: str) -> None:
-    """A method's runs that completed with their fit, and crosses for those that did not."""
-    done = [timing for timing in measured.of(method) if timing.ending is Ending.COMPLETED]
-    ended = [timing for timing in measured.of(method) if timing.ending is not Ending.COMPLETED]
-    label = measured.label(method)
-    found = trend(measured, method)
-    if found.exponent is not None and found.factor is not None:
-        span = np.array([found.sizes[0], found.sizes[-1]], dtype=float)
-        seconds.plot(span, found.factor * span**found.exponent, "--", color=colour, linewidth=1.0)
-        label += f": exponent {found.exponent:.2f}"
-    n = [timing.n for timing in done]
-    if done:
-        median = np.array([timing.median for timing in done])
-        quartiles = np.array([np.percentile(timing.seconds, (25.0, 75.0)) for timing in done]).T
-        bars = np.abs(quartiles - median)
-        seconds.errorbar(n, median, bars, fmt=marker, color=colour, markersize=5, capsize=3, label=label)
-        iterations.plot(n, [timing.total_iterations for timing in done], marker, color=colour, markersize=5)
-    if ended:
-        label = f"{measured.label(method)}: did not complete"
-        times = [timing.median for timing in ended]
-        seconds.plot([timing.n for timing in ended], times, "x", color=colour, markersize=7, label=label)
-
-
-def _decades(axes: Axes, values: Sequence[float]) -> None:
-    """Whole decades round the values, so that a logarithmic axis always has two ticks or more."""
-    low, high = np.floor(np.log10(min(values))), np.ceil(np.log10(max(values)))
-    axes.set_ylim(10.0**low, 10.0 ** max(high, low + 1.0))
 
 
 def _shapes(scene: Scene, runs: Runs) -> Picture:
     """The mechanism before and after, in the manner of the paper's Fig. 8."""
-    from matplotlib.figure import Figure
     from matplotlib.patches import Circle
 
-    figure = Figure(figsize=(6.4, 6.0), layout="constrained")
-    axes = figure.add_subplot()
-    for contact in scene.contacts.values():
-        if isinstance(contact, CircleContact):
-            (x, y), stands = contact.center, scene.bodies[contact.body].motion == "fixed"
-            style = "-" if stands else "--"  # one that moves is shown where it began
-            # an artist, no patch: a large circle must not make the beams small
-            axes.add_artist(
-                Circle((1e3 * x, 1e3 * y), 1e3 * contact.radius, fill=False, edgecolor=GREY, linestyle=style)
-            )
-    cprbm, fea = runs.cprbm[0].stations[-1], runs.reference.stations[-1]
-    ends: dict[str, list[tuple[float, float]]] = {}
-    for place, beam in enumerate(scene.beams.values()):
-        x, y = 1e3 * points(beam.curve, np.linspace(0.0, length(beam.curve), 200)).T
-        axes.plot(x, y, "--", color=GREY, linewidth=1.0, label="undeformed" if place == 0 else None)
-        for end, point in ((beam.start, 0), (beam.end, -1)):
-            if not isinstance(end, FreeEnd):
-                ends.setdefault(scene.body_of(end.point), []).append((x[point], y[point]))
-    _links(axes, ends, "--", GREY)
-    _links(axes, _ends(scene, fea), "-", "black")
-    for place, beam_name in enumerate(scene.beams):
-        shape = fea.shapes[beam_name]
-        label = f"FEA ({runs.kinematics})" if place == 0 else None
-        axes.plot(1e3 * shape.x, 1e3 * shape.y, "-", color=RED, linewidth=2.2, label=label)
-        shape = cprbm.shapes[beam_name]
-        label = "CPRBM" if place == 0 else None
-        axes.plot(1e3 * shape.x, 1e3 * shape.y, ".", color=BLUE, markersize=3.5, label=label)
-    for name, station, marker, colour in (("FEA", fea, "x", RED), ("CPRBM", cprbm, "o", BLUE)):
-        for place, spots in enumerate(station.touching.values()):
-            label = f"contact, {name}" if place == 0 else None
-            x, y = 1e3 * spots.T
-            # the many places of a zone would hide the beam behind them
-            size = 9.0 if len(spots) <= FEW_PLACES else 2.5
-            axes.plot(x, y, marker, color=colour, markersize=size, markerfacecolor="none", linestyle="", label=label)
-    for body in scene.bodies.values():
-        for name, (x, y) in body.points.items():
-            axes.annotate(name, (1e3 * x, 1e3 * y), textcoords="offset points", xytext=(-4, 7), ha="right")
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel("x, mm")
-    axes.set_ylabel("y, mm")
-    axes.margins(0.08)
-    figure.legend(loc="outside lower center", ncols=3)
-    return picture(
-        figure,
-        "shapes",
-        f"Neutral lines before and at {cprbm.stage} {cprbm.value:g}, with the places of contact.",
-    )
+    with canvas(6.4, 6.0) as figure:
+        axes = figure.add_subplot()
+        for contact in scene.contacts.values():
+            if isinstance(contact, CircleContact):
+                (x, y), stands = contact.center, scene.bodies[contact.body].motion == "fixed"
+                style = "-" if stands else "--"  # one that moves is shown where it began
+                # an artist, no patch: a large circle must not make the beams small
+                axes.add_artist(
+                    Circle((1e3 * x, 1e3 * y), 1e3 * contact.radius, fill=False, edgecolor=GREY, linestyle=style)
+                )
+        cprbm, fea = runs.cprbm[0].stations[-1], runs.reference.stations[-1]
+        ends: dict[str, list[tuple[float, float]]] = {}
+        for place, beam in enumerate(scene.beams.values()):
+            x, y = 1e3 * points(beam.curve, np.linspace(0.0, length(beam.curve), 200)).T
+            axes.plot(x, y, "--", color=GREY, linewidth=1.0, label="undeformed" if place == 0 else None)
+            for end, point in ((beam.start, 0), (beam.end, -1)):
+                if not isinstance(end, FreeEnd):
+                    ends.setdefault(scene.body_of(end.point), []).append((x[point], y[point]))
+        _links(axes, ends, "--", GREY)
+        _links(axes, _ends(scene, fea), "-", "black")
+        for place, beam_name in enumerate(scene.beams):
+            shape = fea.shapes[beam_name]
+            label = f"FEA ({runs.kinematics})" if place == 0 else None
+            axes.plot(1e3 * shape.x, 1e3 * shape.y, "-", color=RED, linewidth=2.2, label=label)
+            shape = cprbm.shapes[beam_name]
+            label = "CPRBM" if place == 0 else None
+            axes.plot(1e3 * shape.x, 1e3 * shape.y, ".", color=BLUE, markersize=3.5, label=label)
+        for name, station, marker, colour in (("FEA", fea, "x", RED), ("CPRBM", cprbm, "o", BLUE)):
+            for place, spots in enumerate(station.touching.values()):
+                label = f"contact, {name}" if place == 0 else None
+                x, y = 1e3 * spots.T
+                # the many places of a zone would hide the beam behind them
+                size = 9.0 if len(spots) <= FEW_PLACES else 2.5
+                axes.plot(
+                    x, y, marker, color=colour, markersize=size, markerfacecolor="none", linestyle="", label=label
+                )
+        for body in scene.bodies.values():
+            for name, (x, y) in body.points.items():
+                axes.annotate(name, (1e3 * x, 1e3 * y), textcoords="offset points", xytext=(-4, 7), ha="right")
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.set_xlabel("x, mm")
+        axes.set_ylabel("y, mm")
+        axes.margins(0.08)
+        figure.legend(loc="outside lower center", ncols=3)
+        return picture(
+            figure,
+            "shapes",
+            f"Neutral lines before and at {cprbm.stage} {cprbm.value:g}, with the places of contact.",
+        )
 
 
 def _ends(scene: Scene, station: StationAnswer) -> dict[str, list[tuple[float, float]]]:
@@ -210,56 +143,52 @@ def _links(axes: Axes, ends: dict[str, list[tuple[float, float]]], style: str, c
 
 def _stresses(rows: list[Row]) -> Picture:
     """Bending stress along each beam, in the manner of the paper's Fig. 10."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.2, 2.8 * len(rows)), layout="constrained")
-    factor, unit = scaled_unit("Pa", max(norm("bending_stress", row.fea) for row in rows))
-    for place, row in enumerate(rows):
-        axes = figure.add_subplot(len(rows), 1, place + 1)
-        if row.arc_length is None:
-            continue
-        axes.axhline(0.0, color=GREY, linewidth=0.6)
-        axes.plot(1e3 * row.arc_length, row.fea / factor, "-", color=RED, linewidth=1.8, label="FEA")
-        axes.plot(1e3 * row.arc_length, row.cprbm / factor, ".", color=BLUE, markersize=5, label="CPRBM")
-        axes.set_title(row.probe.of, loc="left")
-        axes.set_ylabel(f"bending stress, {unit}")
-        axes.legend(loc="best")
-        axes.set_xlabel("initial arc length, mm")
-    return picture(
-        figure,
-        "stress",
-        f"Bending stress along the beams at {rows[0].stage} {rows[0].station:g}; where it is "
-        "positive the load turns the tangent counter-clockwise along the beam.",
-    )
+    with canvas(7.2, 2.8 * len(rows)) as figure:
+        factor, unit = scaled_unit("Pa", max(norm("bending_stress", row.fea) for row in rows))
+        for place, row in enumerate(rows):
+            axes = figure.add_subplot(len(rows), 1, place + 1)
+            if row.arc_length is None:
+                continue
+            axes.axhline(0.0, color=GREY, linewidth=0.6)
+            axes.plot(1e3 * row.arc_length, row.fea / factor, "-", color=RED, linewidth=1.8, label="FEA")
+            axes.plot(1e3 * row.arc_length, row.cprbm / factor, ".", color=BLUE, markersize=5, label="CPRBM")
+            axes.set_title(row.probe.of, loc="left")
+            axes.set_ylabel(f"bending stress, {unit}")
+            axes.legend(loc="best")
+            axes.set_xlabel("initial arc length, mm")
+        return picture(
+            figure,
+            "stress",
+            f"Bending stress along the beams at {rows[0].stage} {rows[0].station:g}; where it is "
+            "positive the load turns the tangent counter-clockwise along the beam.",
+        )
 
 
 def _against_load(scene: Scene, rows: list[Row], quantity: str, what: str) -> Picture:
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.4, 3.6), layout="constrained")
-    axes = figure.add_subplot()
-    factor, unit = scaled_unit(rows[0].unit, max(row.scale for row in rows))
-    last = scene.stages[-1]
-    names = list(dict.fromkeys(row.probe.name for row in rows))
-    for name, (line, marker) in zip(names, islice(cycle(LOOKS), len(names)), strict=True):
-        for stage in scene.stages:
-            if stage.steps != last.steps:  # another load or drive has another axis
-                continue
-            mine = [row for row in rows if row.probe.name == name and row.stage == stage.name]
-            load = [row.station for row in mine]
-            axes.plot(load, [row.fea[0] / factor for row in mine], line, color=RED, label=f"{name}, FEA")
-            axes.plot(
-                load,
-                [row.cprbm[0] / factor for row in mine],
-                marker,
-                color=BLUE,
-                markersize=4,
-                label=f"{name}, CPRBM",
-            )
-    axes.set_xlabel(f"{last.steps}, {load_unit(scene, last)}")
-    axes.set_ylabel(f"{what.lower()}, {unit}")
-    axes.legend(loc="best")
-    return picture(figure, quantity, f"{what} against {last.steps}.")
+    with canvas(6.4, 3.6) as figure:
+        axes = figure.add_subplot()
+        factor, unit = scaled_unit(rows[0].unit, max(row.scale for row in rows))
+        last = scene.stages[-1]
+        names = list(dict.fromkeys(row.probe.name for row in rows))
+        for name, (line, marker) in zip(names, islice(cycle(LOOKS), len(names)), strict=True):
+            for stage in scene.stages:
+                if stage.steps != last.steps:  # another load or drive has another axis
+                    continue
+                mine = [row for row in rows if row.probe.name == name and row.stage == stage.name]
+                load = [row.station for row in mine]
+                axes.plot(load, [row.fea[0] / factor for row in mine], line, color=RED, label=f"{name}, FEA")
+                axes.plot(
+                    load,
+                    [row.cprbm[0] / factor for row in mine],
+                    marker,
+                    color=BLUE,
+                    markersize=4,
+                    label=f"{name}, CPRBM",
+                )
+        axes.set_xlabel(f"{last.steps}, {load_unit(scene, last)}")
+        axes.set_ylabel(f"{what.lower()}, {unit}")
+        axes.legend(loc="best")
+        return picture(figure, quantity, f"{what} against {last.steps}.")
 
 
 @contextmanager

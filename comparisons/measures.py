@@ -11,7 +11,7 @@ v_b, V_b    the same in the theory ``bending``, the CPRBM's own
 v_s         at n in the theory ``stretch``
 p           order of convergence that the error estimate assumes, 2; see :mod:`comparisons.order`
 S           safety factor of the error estimate, 1.25
-w           the CPRBM's value at N + N/7 links, where there is contact
+w           the CPRBM's value at N + N/7 links, where there is contact or a section has a kink
 d           v_c − v_f, the difference
 u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (or n), and no less than F times the
             probe's largest in the stage
@@ -28,8 +28,8 @@ error: C is then small, and what the estimate leaves out (terms of higher order,
 between joints) is all that is left.  S = 1 + F allows an estimate to be wrong by its share F.  By how much it is
 wrong does not pass through zero with it, and that share of the stage's largest is kept at every station.
 
-Where a contact falls between joints can make the CPRBM's error uneven in N, and two N may meet by accident: what
-the even law through v and V does not foretell of w, times S, is added to u_c.
+Where a contact or a kink falls between joints can make the CPRBM's error uneven in N, and two N may meet by
+accident: what the even law through v and V does not foretell of w, times S, is added to u_c.
 
 The formulation ``paper`` holds joints apart and not what lies between them, so that its error depends on where
 a contact falls between joints and no two N tell it. There u_c = |v_c − v_a| + S·4/3·|v_a − V_c|: its distance from the

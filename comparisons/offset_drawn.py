@@ -53,14 +53,13 @@ def _errors_map(compared: OffsetComparison) -> Picture:
 def _offset_points(compared: OffsetComparison, shown: Shown) -> Picture:
     """The curve, its exact offsets and the calculated points, in the manner of the paper's Fig. 5."""
     question = compared.question
-    name, spacing = next(iter(question.spacings.items()))
+    name = next(iter(question.spacings))
     distances = question.sign * np.array(shown.offsets)
     u = np.linspace(0.0, 1.0, 400)
     with canvas(4.6 * len(shown.numbers), 3.2) as figure:
         plots = figure.subplots(1, len(shown.numbers), sharey=True, squeeze=False)[0]
-        for axes, n in zip(plots, shown.numbers, strict=True):
+        for axes, n, points in zip(plots, shown.numbers, compared.shown, strict=True):
             axes.plot(*offset_curve(question.curve, u, 0.0).T, color="black", linewidth=1.4, label="curve")
-            points = compared.construct(question.curve, spacing, n, distances).points
             for place, (t, found) in enumerate(zip(distances, points, strict=True)):
                 label = ("exact offset", "calculated") if place == 0 else (None, None)
                 exact = offset_curve(question.curve, u, float(t))

@@ -22,14 +22,13 @@ import numpy as np
 from frozendict import frozendict
 
 from comparisons.formats import percent
+from comparisons.measures import SAFETY, SHARE_OF_LARGEST
 from comparisons.offset_exact import ordinates
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
 from comparisons.verdict import Verdict, Word
 from scene import OffsetClaim, OffsetQuestion
 from scene.answer import Array
 
-SAFETY = 1.25
-QUARTER = 0.25  # of the largest estimate along the chain, below which none is taken: none is small by accident
 _ROUND_OFF = 64.0 * float(np.finfo(float).eps)
 
 
@@ -74,13 +73,18 @@ class OffsetRow:
 
 @dataclass(frozen=True, slots=True)
 class OffsetComparison:
-    """An offset question, its rows and the verdict; ``seconds`` of the two routes, and the route for pictures."""
+    """An offset question, its rows and the verdict.
+
+    Attributes:
+        seconds: of the two routes.
+        shown: the calculated points of the first spacing at the numbers and offsets to be shown, (k, n, 2), m, each.
+    """
 
     question: OffsetQuestion
     rows: tuple[OffsetRow, ...]
     verdict: Verdict
     seconds: Mapping[str, float]
-    construct: OffsetConstruction
+    shown: tuple[Array, ...]
 
 
 def compared_offset(question: OffsetQuestion, construct: OffsetConstruction = cprbm_offset_points) -> OffsetComparison:
@@ -104,7 +108,7 @@ def compared_offset(question: OffsetQuestion, construct: OffsetConstruction = cp
         for chain, ((name, _), each) in enumerate(zip(chains, found, strict=True))
         for place in range(len(distances))
     )
-    return OffsetComparison(question, rows, _judged(question, rows), frozendict(seconds), construct)
+    return OffsetComparison(question, rows, _judged(question, rows), frozendict(seconds), _shown(question, construct))
 
 
 def claim_of_offset(question: OffsetQuestion, n: int) -> OffsetClaim | None:
@@ -120,7 +124,7 @@ def _row(question: OffsetQuestion, name: str, place: int, found: Offsets, exact:
     tilt = np.abs(np.cos(found.tangents) if question.axis == "y" else np.sin(found.tangents))
     over = np.full(len(exact), t) if question.relative_to == "offset" else np.abs(exact)
     stated = SAFETY * found.off_curve[place] / tilt
-    stated = np.maximum(stated, QUARTER * np.max(stated))
+    stated = np.maximum(stated, SHARE_OF_LARGEST * np.max(stated))
     return OffsetRow(
         name,
         len(exact),
@@ -130,6 +134,13 @@ def _row(question: OffsetQuestion, name: str, place: int, found: Offsets, exact:
         round_off=_ROUND_OFF * (np.max(np.abs(points)) + t) / tilt / over,
         over_offset=float(np.max(apart)) / t,
     )
+
+
+def _shown(question: OffsetQuestion, construct: OffsetConstruction) -> tuple[Array, ...]:
+    if question.shown is None:
+        return ()
+    spacing, distances = next(iter(question.spacings.values())), question.sign * np.array(question.shown.offsets)
+    return tuple(construct(question.curve, spacing, n, distances).points for n in question.shown.numbers)
 
 
 def _judged(question: OffsetQuestion, rows: tuple[OffsetRow, ...]) -> Verdict:

@@ -11,8 +11,9 @@ z           local numbers of the beam (5), and the centre's place where it moves
 P           (I − n nᵀ)/ρ, derivative of n over r = C − o
 ==========  ===================================================================================
 
-A row stands at every joint that is close, and where D has a minimum with a place of its own (:mod:`cprbm.wells`).
-There s moves with the minimum, D_s = 0:
+A row stands where D has a minimum with a place of its own (:mod:`cprbm.wells`), at every joint that is close but not
+beside such a minimum, where zones end on this mesh, and where the edge has a corner that stands out.  At a minimum s
+moves with it, D_s = 0:
 
     D_z = n·r_z,     D_zz = n·C_zz + r_zᵀ P r_z − D_zs D_sz / D_ss     (last term only where s moves)
     D_s = n·C_s − T_s,     D_sz = n·C_sz + C_sᵀ P r_z,     D_ss = n·C_ss + C_sᵀ P C_s
@@ -219,7 +220,7 @@ class Circle:
         return np.concatenate((fixed, places)), np.arange(len(fixed) + len(places)) >= len(fixed)
 
     def _refined(self, line: smooth.SmoothLine, s: Array) -> tuple[Array, Flags]:
-        """Newton's method on D_s = 0; the flags say where it found a minimum nearby that is no part of a zone."""
+        """Newton's method on D_s = 0; the flags say where it settled at a minimum nearby."""
         start = s
         if not s.size:
             return s, np.zeros(0, dtype=bool)

@@ -10,10 +10,10 @@ g           D − ½(t₁+t₂), the gap of the edges; constraint c = −g ≤ 0
 z           local numbers of A (5) and of B (5)
 ==========  ==================================================================================
 
-σ is the foot of the perpendicular, t·r = 0 (i).  A row stands at every joint of A that is close to B, at the
-ends of A and, with the beams' parts exchanged, of B; and where D has a minimum within A with a place of
-its own (:mod:`cprbm.wells`).  There s moves with the minimum: the tangents are parallel, ψ_A − ψ_B = const
-(ii).  The conditions hold for every z, which gives s and σ as functions of z; so
+σ is the foot of the perpendicular, t·r = 0 (i).  A row stands where D has a minimum within A with a place of its
+own (:mod:`cprbm.wells`), at every joint of A that is close to B but not beside such a minimum or an end of B, at the
+ends of A and, with the beams' parts exchanged, of B.  At a minimum s moves with it: the tangents are parallel,
+ψ_A − ψ_B = const (ii).  The conditions hold for every z, which gives s and σ as functions of z; so
 
     ∂D/∂z_k = side·n·r_k
     ∂²D/∂z_k∂z_l = side·(n·r_kl − (t·r_k)·dψ_B/dz_l + n·C_A,sk·ds/dz_l − n·C_B,σk·dσ/dz_l)

@@ -1,4 +1,4 @@
-"""Meshes for contact over a length, and carrying a state from one mesh to another.
+"""Meshes fitted to where contact is and to short spans, and carrying a state from one mesh to another.
 
 ==========  ====================================================================================
 N_k         links of the meshes, N/4^k; the coarsest is where a solve begins

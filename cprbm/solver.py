@@ -1,7 +1,7 @@
 """From a scene to an answer: marching through the stations, load steps that cut and grow.
 
 The march goes on even elements, on a coarse mesh where many are asked.  What is handed out at a station is solved
-from there on the mesh that was asked, fitted to where contacts begin and end (:mod:`cprbm.refining`).
+from there on the mesh that was asked, fitted to where contact is (:mod:`cprbm.refining`).
 """
 
 from __future__ import annotations

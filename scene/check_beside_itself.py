@@ -21,12 +21,13 @@ graph that turns so far moves along its axis by ∫ cos φ dφ/κ > 1.9 t.  A li
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import hypot, pi
+from math import pi
 
 import numpy as np
 
-from scene.check_shapes import OVERLAP, is_beam
-from scene.geometry import arc_angle
+from scene.check_overlaps import OVERLAP
+from scene.check_shapes import is_beam
+from scene.geometry import arc_angle, distance
 from scene.mistakes import Mistake
 from scene.statement import Arc, Scene
 
@@ -37,7 +38,7 @@ def beside_themselves(scene: Scene) -> Iterator[Mistake]:
         curve = beam.curve
         if not (isinstance(curve, Arc) and is_beam(beam) and abs(arc_angle(curve)) > pi):
             continue
-        apart = hypot(curve.end[0] - curve.start[0], curve.end[1] - curve.start[1])
+        apart = distance(curve.start, curve.end)
         thickness = float(np.mean(beam.thickness_at(np.array([0.0, 1.0]))))
         if thickness - apart > OVERLAP * thickness:
             yield Mistake(

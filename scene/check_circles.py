@@ -20,13 +20,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from scene.check_shapes import OVERLAP, SHORTEST, is_beam
+from scene.check_overlaps import OVERLAP
+from scene.check_shapes import SHORTEST, is_beam
 from scene.geometry import Array, arc_length, distance_to, points_on, scaled
 from scene.mistakes import Mistake
+from scene.sampling import least
 from scene.statement import Beam, CircleContact, Curve, Point, Scene
 
 _SAMPLES = 2001  # of a beam whose thickness varies
-_REFINED = 5
 
 
 def wrong_circles(scene: Scene) -> Iterator[Mistake]:
@@ -73,24 +74,12 @@ def circle_overlaps(scene: Scene) -> Iterator[Mistake]:
 
 def _edge_from(beam: Beam, curve: Curve, center: Point, length: float) -> float:
     """The least of d − (t − t₀)/2 along a beam whose thickness t varies, t₀ where it is thinnest; in beam's lengths."""
-    from scipy.optimize import minimize_scalar  # loaded when a thickness varies, not with every scene
 
     def apart(u: Array) -> Array:
         distance = np.hypot(*(points_on(curve, u) - np.array(center)).T)
         return np.asarray(distance - 0.5 * (beam.thickness_at(u) - beam.thinnest) / length)
 
-    u = np.union1d(np.linspace(0.0, 1.0, _SAMPLES), beam.knots)
-    sampled = apart(u)
-    fence = np.pad(sampled, 1, constant_values=np.inf)
-    minima = np.flatnonzero((sampled <= fence[:-2]) & (sampled <= fence[2:]))
-    found = [float(sampled.min())]
-    for i in minima[np.argsort(sampled[minima], kind="stable")[:_REFINED]]:
-        beside = (float(u[max(i - 1, 0)]), float(u[min(i + 1, len(u) - 1)]))
-        refined = minimize_scalar(
-            lambda v: float(apart(np.array([v]))[0]), bounds=beside, method="bounded", options={"xatol": 1e-12}
-        )
-        found.append(float(refined.fun))
-    return min(found)
+    return least(apart, np.union1d(np.linspace(0.0, 1.0, _SAMPLES), beam.knots))
 
 
 def _out_of_proportion(name: str, contact: CircleContact, beam: Beam) -> Mistake | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import isclose
 
 from scene.check_names import RESERVED, point_names
 from scene.mistakes import Mistake, unknown_name
@@ -61,7 +60,7 @@ def wrong_claims(scene: Scene) -> Iterator[Mistake]:
     for i, claim in enumerate(scene.claims):
         if claim.probe not in probes:
             yield unknown_name(f"claims[{i}].probe", claim.probe, "probe", probes)
-        if claim.station is not None and not any(isclose(claim.station, value, rel_tol=1e-9) for value in stations):
+        if claim.station is not None and not any(map(claim.speaks_of, stations)):
             listed = ", ".join(f"{value:g}" for value in stations)
             yield Mistake(f"claims[{i}].station", f"{claim.station:g}", f"a station of a stage: {listed}")
 

@@ -9,10 +9,11 @@ from scene.check_circles import circle_overlaps, wrong_circles
 from scene.check_drives import wrong_drives, wrong_slides
 from scene.check_motion import wrong_loads, wrong_stages, wrong_supports
 from scene.check_names import repeated_names, unknown_names
+from scene.check_overlaps import overlaps, wrong_contacts
 from scene.check_paper import wrong_hints, wrong_spacings
 from scene.check_profiles import thick_contacts, wrong_profiles
 from scene.check_questions import wrong_claims, wrong_probes
-from scene.check_shapes import overlaps, wrong_contacts, wrong_curves, wrong_ends, wrong_sections
+from scene.check_shapes import wrong_curves, wrong_ends, wrong_sections
 from scene.mistakes import Mistake
 from scene.statement import Scene
 

@@ -51,7 +51,7 @@ def arc_length(curve: Curve) -> float:
         return polynomial.length(curve)
     if isinstance(curve, Arc):
         return abs(arc_angle(curve)) * _radius(curve)
-    return hypot(curve.end[0] - curve.start[0], curve.end[1] - curve.start[1])
+    return distance(curve.start, curve.end)
 
 
 def largest_curvature(curve: Curve) -> float:
@@ -143,17 +143,28 @@ def _refined(
     return ClosestPair(distance=squared(best) ** 0.5 * scale, u1=float(u[0]), u2=float(u[1]))
 
 
+def distance(a: Point, b: Point) -> float:
+    """Distance of two points, m."""
+    return hypot(b[0] - a[0], b[1] - a[1])
+
+
+def largest_coordinate(curve: Curve) -> float:
+    """The largest magnitude of a coordinate among a curve's ends and an arc's center, m."""
+    places = [curve.start, curve.end, *([curve.center] if isinstance(curve, Arc) else [])]
+    return max(abs(coordinate) for place in places for coordinate in place)
+
+
 def distance_to(curve: Curve, point: Point) -> float:
     """Distance of the neutral line's nearest point from ``point``, m."""
     if isinstance(curve, Polynomial):
         return polynomial.distance_to(curve, point)
-    ends = min(_apart(curve.start, point), _apart(curve.end, point))
+    ends = min(distance(curve.start, point), distance(curve.end, point))
     if isinstance(curve, Arc):
         turn, towards = arc_angle(curve), _angle(curve, point)
         beyond = (towards - _angle(curve, curve.start)) * (1.0 if turn > 0.0 else -1.0) % tau
         if beyond > abs(turn):
             return ends
-        return min(ends, abs(_apart(curve.center, point) - _radius(curve)))
+        return min(ends, abs(distance(curve.center, point) - _radius(curve)))
     length = arc_length(curve)
     tx, ty = (curve.end[0] - curve.start[0]) / length, (curve.end[1] - curve.start[1]) / length
     rx, ry = point[0] - curve.start[0], point[1] - curve.start[1]
@@ -183,13 +194,9 @@ def scaled(curve: Curve, size: float) -> Curve:
     return curve.model_copy(update=lengths)
 
 
-def _apart(a: Point, b: Point) -> float:
-    return hypot(b[0] - a[0], b[1] - a[1])
-
-
 def _angle(arc: Arc, point: Point) -> float:
     return atan2(point[1] - arc.center[1], point[0] - arc.center[0])
 
 
 def _radius(arc: Arc) -> float:
-    return hypot(arc.start[0] - arc.center[0], arc.start[1] - arc.center[1])
+    return distance(arc.start, arc.center)

@@ -12,19 +12,26 @@ from scene.statement import Record, Scene
 
 def keys_at(loc: tuple[int | str, ...], root: type[Record] = Scene) -> tuple[str, ...]:
     """Keys of the table at ``loc``, a place in ``root`` as pydantic names it (tags of unions included)."""
-    place: Any = root
-    for part in loc:
-        place = _below(_bare(place), part)
-    record = _bare(place)
+    record = _bare(_place(loc, root))
     return tuple(key for key in record.model_fields if (record, key) != (root, "file"))
+
+
+def is_tag(loc: tuple[int | str, ...], depth: int, root: type[Record] = Scene) -> bool:
+    """Whether pydantic put the tag of a union at ``depth`` of ``loc``, where no key stands."""
+    return get_origin(_bare(_place(loc[:depth], root))) in (Union, UnionType)
 
 
 def tags_at(loc: tuple[int | str, ...], root: type[Record] = Scene) -> tuple[str, ...]:
     """Kinds (or joints, or motions) of which the table at ``loc`` may be one."""
+    return tuple(tag for record in get_args(_bare(_place(loc, root))) for tag in _tags(record))
+
+
+def _place(loc: tuple[int | str, ...], root: type[Record]) -> Any:  # noqa: ANN401 - annotations are whatever they are
+    """The annotation at ``loc``."""
     place: Any = root
     for part in loc:
         place = _below(_bare(place), part)
-    return tuple(tag for record in get_args(_bare(place)) for tag in _tags(record))
+    return place
 
 
 def _below(place: Any, part: int | str) -> Any:  # noqa: ANN401 - annotations are whatever they are

@@ -43,3 +43,8 @@ def unknown_name(key: str, name: str, what: str, known: Iterable[str]) -> Mistak
     hint = f" (is {near[0]!r} meant?)" if near else ""
     listed = ", ".join(repr(each) for each in names) or "there is none"
     return Mistake(key, f"{name!r}, which names no {what}{hint}", f"the name of a {what}: {listed}")
+
+
+def written_place(place: tuple[float, float]) -> str:
+    """A place as a mistake says it."""
+    return f"({place[0]:.9g}, {place[1]:.9g})"

@@ -25,6 +25,7 @@ from numpy.polynomial import polynomial
 from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
+from scene.sampling import least
 from scene.statement import Point, Polynomial
 
 Array = NDArray[np.float64]
@@ -34,7 +35,6 @@ _SETTLED = 1e-14  # of the length
 _NEWTON_STEPS = 30
 _CLOSE = 1e-10  # a Newton step of this part of the range leaves nothing for a further one
 _SAMPLES = 2001
-_REFINED = 5
 _NOTHING = 1e-14  # of the largest coefficient: a higher power that does not count
 _REAL = 1e-6  # imaginary part of a root that is taken as real
 
@@ -116,8 +116,6 @@ def tangents(curve: Polynomial, u: Array) -> Array:
 
 def distance_to(curve: Polynomial, point: Point) -> float:
     """Distance of the nearest point from ``point``, m."""
-    from scipy.optimize import minimize_scalar  # loaded when a curve is measured, not with every scene
-
     graph = _graph(curve)
     offset = (np.array(point) - np.array(curve.start)) / graph.extent
     along, across = offset if curve.axis == "x" else offset[::-1]
@@ -125,16 +123,7 @@ def distance_to(curve: Polynomial, point: Point) -> float:
     def distance(w: Array) -> Array:
         return np.asarray(np.hypot(graph.sense * w - along, polynomial.polyval(w, graph.g) - across))
 
-    w = _places(graph, np.linspace(0.0, 1.0, _SAMPLES))
-    sampled = distance(w)
-    fence = np.pad(sampled, 1, constant_values=np.inf)
-    minima = np.flatnonzero((sampled <= fence[:-2]) & (sampled <= fence[2:]))
-    found = [float(np.min(sampled))]
-    for i in minima[np.argsort(sampled[minima], kind="stable")[:_REFINED]]:
-        beside = (float(w[max(i - 1, 0)]), float(w[min(i + 1, len(w) - 1)]))
-        refined = minimize_scalar(distance, bounds=beside, method="bounded", options={"xatol": 1e-12})
-        found.append(float(refined.fun))
-    return min(found) * graph.extent
+    return least(distance, _places(graph, np.linspace(0.0, 1.0, _SAMPLES))) * graph.extent
 
 
 def scaled(curve: Polynomial, size: float) -> Polynomial:

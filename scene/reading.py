@@ -12,7 +12,7 @@ from pydantic_core import ErrorDetails
 
 from scene.check_offset import mistakes_in_offset
 from scene.checks import mistakes_in
-from scene.keys import keys_at, tags_at
+from scene.keys import is_tag, keys_at, tags_at
 from scene.mistakes import Mistake, SceneError, unknown_name
 from scene.offset import OffsetQuestion
 from scene.statement import Record, Scene
@@ -34,10 +34,6 @@ _ALLOWED = {
     "string_unicode": "a text in quotes",
     "string_pattern_mismatch": "a name of letters, digits, '_' and '-' that starts with a letter or '_'",
 }
-
-_CURVES = {"line", "arc", "polynomial"}
-_JOINTS = {"weld", "pin", "free"}
-_SIZES = {"number", "profile"}
 
 
 def read(path: str | Path) -> Scene:
@@ -137,7 +133,7 @@ def _tuples(value: Any) -> Any:  # noqa: ANN401 - whatever TOML holds
 def _mistake(details: ErrorDetails, file: str, root: type[Record]) -> Mistake:
     """Pydantic's finding in the house's words."""
     kind, loc = details["type"], details["loc"]
-    key = _key_path(loc)
+    key = _key_path(loc, root)
     context = details.get("ctx", {})
     found = _shown(details.get("input"))
     match kind:
@@ -162,6 +158,8 @@ def _mistake(details: ErrorDetails, file: str, root: type[Record]) -> Mistake:
             allowed = f"at most {context['max_length']} characters"
         case "literal_error":
             allowed = f"one of {context['expected']}"
+        case "float_type" if loc[-1] == "number":
+            allowed = "a number, or a table with the keys 'at' and 'values'"
         case "union_tag_invalid" | "union_tag_not_found":
             tag = context["discriminator"].strip("'")
             key = f"{key}.{tag}"
@@ -198,28 +196,11 @@ def _shown(value: object) -> str:
     return text if len(text) <= 80 else text[:77] + "..."
 
 
-def _key_path(loc: tuple[int | str, ...]) -> str:
+def _key_path(loc: tuple[int | str, ...], root: type[Record]) -> str:
     """``("beams", "b", "curve", "arc", "center")`` as ``beams.b.curve.center``: a tag is no key."""
     path = ""
     for depth, part in enumerate(loc):
-        if part == "[key]" or _is_tag(loc, depth):
+        if part == "[key]" or is_tag(loc, depth, root):
             continue
         path += f"[{part}]" if isinstance(part, int) else f".{part}"
     return path.removeprefix(".")
-
-
-def _is_tag(loc: tuple[int | str, ...], depth: int) -> bool:
-    """Whether pydantic put the tag of a union there: below a body, a load, a drive, a contact, a beam's parts."""
-    if loc[0] == "curve":
-        return depth == 1 and loc[1] in _CURVES
-    if loc[0] == "bodies":
-        return depth == 2 and loc[2] in {"fixed", "free", "slides"}
-    if loc[0] == "loads":
-        return depth == 2 and loc[2] in {"moment", "force"}
-    if loc[0] == "drives":
-        return depth == 2 and loc[2] in {"displacement", "rotation"}
-    if loc[0] == "contacts":
-        return depth == 2 and loc[2] in {"beam-beam", "beam-circle"}
-    in_beam = loc[0] == "beams" and depth == 3
-    tags = {"curve": _CURVES, "start": _JOINTS, "end": _JOINTS, "thickness": _SIZES, "width": _SIZES}
-    return in_beam and loc[3] in tags.get(str(loc[2]), set())

@@ -12,6 +12,7 @@ record with a ``kind`` (or ``joint``, or ``motion``) of its own, and nothing her
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import isclose
 from typing import Annotated, Literal, TypeVar
 
 import numpy as np
@@ -381,6 +382,10 @@ class Claim(Record):
     station: float | None = None
     bound: Positive
     text: str = ""
+
+    def speaks_of(self, station: float) -> bool:
+        """Whether the claim is made at a station: at its own, whose digits may be written in another way, or at all."""
+        return self.station is None or isclose(self.station, station, rel_tol=1e-9)
 
 
 class Scene(Record):

@@ -66,7 +66,7 @@ def command(
     out: Path | None,
 ) -> int:
     """Time the solvers on one scene at growing numbers of links and elements."""
-    from comparisons import benchmark, cases, documents, figures, machine, sheets
+    from comparisons import benchmark, benchmark_drawn, cases, documents, machine, sheets
     from comparisons.choices import Choices
     from comparisons.cli import showing
     from comparisons.pairing import Solvers
@@ -77,9 +77,7 @@ def command(
     methods: tuple[Method, ...] = benchmark.METHODS if solver == "both" else (solver,)
     choices = Choices(formulation=formulation, kinematics=kinematics)
     plan = benchmark.Plan({name: benchmark.sizes_of(name, sizes) for name in methods}, choices, repeat, at_most)
-    showing.room_for(json_file)
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
+    showing.room_for(json_file, out)
     with showing.current(shown=not quiet) as say:
         done = benchmark.measured(
             scene,
@@ -92,7 +90,7 @@ def command(
     if json_file is not None:
         showing.json(json_file, data)
     if out is not None:
-        picture = figures.of_benchmark(done)
+        picture = benchmark_drawn.of_benchmark(done)
         write(out / scene.name / "bench.json", documents.text(data))
         write(out / scene.name / f"{picture.name}.svg", picture.svg)
         write(out / scene.name / f"{picture.name}.png", picture.png)

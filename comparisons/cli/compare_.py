@@ -56,9 +56,7 @@ def command(
     _distinct([scene.name for scene in scenes])
     if out is None and "all" in asked:
         out = Path("report")
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
-    showing.room_for(json_file)
+    showing.room_for(json_file, out)
     printing = str(json_file) != "-"
     finished: list[Comparison | OffsetComparison] = []
     chapters: tuple[report.Chapter, ...] = ()

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from comparisons.cli.commands import Commands
 from scene import SceneError
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ WRONG_QUESTION = 2
 INTERRUPTED = 130
 
 
-class _Commands(click.Group):
+class _SubCommands(Commands):
     """Finds a sub-command in the module of its name, so that only the one that runs is imported."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
@@ -63,7 +64,7 @@ def _version(ctx: click.Context, param: click.Parameter, value: bool) -> None:  
         ctx.exit()
 
 
-@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=_SubCommands, context_settings={"help_option_names": ["-h", "--help"]})
 @click.option(
     "--version", is_flag=True, is_eager=True, expose_value=False, callback=_version, help="Show the version and exit."
 )

@@ -43,14 +43,16 @@ def json(file: Path, data: Plain) -> None:
     write(file, text(data))
 
 
-def room_for(file: Path | None) -> None:
-    """See before anything is solved that JSON has a folder to go to.
+def room_for(file: Path | None, out: Path | None = None) -> None:
+    """See before anything is solved that JSON has a folder to go to, and a report its own.
 
     Raises:
-        OSError: the folder cannot be made.
+        OSError: a folder cannot be made.
     """
     if file is not None and str(file) != "-":
         file.parent.mkdir(parents=True, exist_ok=True)
+    if out is not None:
+        out.mkdir(parents=True, exist_ok=True)
 
 
 def progress(items: Sequence[T], *, shown: bool) -> Iterator[T]:

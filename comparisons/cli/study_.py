@@ -7,30 +7,14 @@ from typing import TYPE_CHECKING
 
 import click
 
+from comparisons.cli.commands import Commands
 from comparisons.cli.options import folder, output, positive, whole
 
 if TYPE_CHECKING:
     from comparisons.studies.told import Told
 
 
-class _Studies(click.Group):
-    """The studies; one that there is not is refused with those that there are."""
-
-    def resolve_command(
-        self, ctx: click.Context, args: list[str]
-    ) -> tuple[str | None, click.Command | None, list[str]]:
-        """The study that the arguments begin with.
-
-        Raises:
-            click.UsageError: there is none of that name.
-        """
-        name = args[0]
-        if self.get_command(ctx, name) is None:
-            ctx.fail(f"study: found {name!r}; allowed: {', '.join(self.list_commands(ctx))}")
-        return super().resolve_command(ctx, args)
-
-
-@click.group("study", cls=_Studies, invoke_without_command=True)
+@click.group("study", cls=Commands, invoke_without_command=True)
 @click.pass_context
 def command(ctx: click.Context) -> None:
     """Answer one of the longer questions; without a name, say which there are."""
@@ -55,7 +39,7 @@ def materials(
     from comparisons.studies import materials as study
     from comparisons.studies.materials_told import told
 
-    _room(json_file, out)
+    showing.room_for(json_file, out)
     solvers = planted if isinstance(planted, Solvers) else Solvers()
     found = study.Materials()
     try:
@@ -94,7 +78,7 @@ def table1(
     from comparisons.studies import table1 as study
     from comparisons.studies.table1_told import told
 
-    _room(json_file, out)
+    showing.room_for(json_file, out)
     solvers = planted if isinstance(planted, Solvers) else Solvers()
     found = study.begun(solvers, machine.described())
     try:
@@ -103,15 +87,6 @@ def table1(
     finally:
         _show(told(found), json_file, out, quiet=quiet)
     return 1 if found.unfinished else 0
-
-
-def _room(json_file: Path | None, out: Path | None) -> None:
-    """See before anything is solved that there is room for what will be written."""
-    from comparisons.cli import showing
-
-    showing.room_for(json_file)
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
 
 
 def _show(told: Told, json_file: Path | None, out: Path | None, *, quiet: bool) -> None:

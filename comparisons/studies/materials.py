@@ -29,6 +29,7 @@ from comparisons.measures import station_of
 from comparisons.pairing import Solvers, paired
 from comparisons.scales import norm
 from comparisons.soundness import complaints
+from comparisons.studies.last_loads import at_last_loads
 from comparisons.verdict import Comparison, compared
 from scene import Answer, Claim, Material, Probe, Scene
 
@@ -42,6 +43,7 @@ MATERIALS: Mapping[str, Material] = frozendict(
 )
 
 POISSON_RATIOS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5)
+WITHOUT_SHEAR: tuple[Kinematics, ...] = ("bending", "stretch")
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,12 +154,11 @@ def of_material(scene: Scene, material: Material) -> Scene:
 
 def question(specimen: Specimen) -> Scene:
     """The specimen's displacements and contact forces at the end of every stage, with the claim about each."""
-    scene = cases.opened(specimen.case)
-    stages = tuple(stage.model_copy(update={"stations": stage.stations[-1:]}) for stage in scene.stages)
+    scene = at_last_loads(cases.opened(specimen.case))
     displaced = tuple(Probe(of=point, quantity="displacement") for point in specimen.displaced)
     forces = tuple(Probe(of=contact, quantity="force") for contact in scene.contacts)
     claims = tuple(Claim(probe=probe.name, bound=specimen.bound) for probe in displaced)
-    return scene.model_copy(update={"stages": stages, "probes": (*displaced, *forces), "claims": claims})
+    return scene.model_copy(update={"probes": (*displaced, *forces), "claims": claims})
 
 
 def _testing(specimen: Specimen, material: str) -> Piece:
@@ -176,7 +177,7 @@ def _sweeping(specimen: Specimen) -> Piece:
         scene, choices = question(specimen), specimen.choices
         cprbm = solvers.cprbm(scene, choices)  # ν is not in it
         finer = choices.finer()
-        without = {kinematics: solvers.fea(scene, finer.within(kinematics)) for kinematics in _WITHOUT_SHEAR}
+        without = {kinematics: solvers.fea(scene, finer.within(kinematics)) for kinematics in WITHOUT_SHEAR}
         fea = [solvers.fea(with_ratio(scene, ratio), finer) for ratio in POISSON_RATIOS]
         probes = [probe for probe in scene.probes if probe.quantity == "displacement"]
         return Sweep(
@@ -194,9 +195,6 @@ def _sweeping(specimen: Specimen) -> Piece:
         )
 
     return swept
-
-
-_WITHOUT_SHEAR: tuple[Kinematics, ...] = ("bending", "stretch")
 
 
 def with_ratio(scene: Scene, ratio: float) -> Scene:

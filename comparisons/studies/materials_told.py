@@ -8,7 +8,7 @@ from comparisons.formats import percent, scaled_unit, vector
 from comparisons.measures import Row
 from comparisons.sheets import Sheet
 from comparisons.studies.drawn import error_against_ratio
-from comparisons.studies.materials import MATERIALS, Materials, Sweep, Tested
+from comparisons.studies.materials import MATERIALS, WITHOUT_SHEAR, Materials, Sweep, Tested
 from comparisons.studies.told import Told
 
 _ABSENT = ("–",)
@@ -80,7 +80,7 @@ def _errors(found: Materials) -> Sheet:
 def _forces(found: Materials) -> Sheet:
     body = []
     for tested, row in _rows(found, "force"):
-        factor, unit = scaled_unit(row.unit, max(row.scale / tested.scaled, 0.0))
+        factor, unit = scaled_unit(row.unit, row.scale / tested.scaled)
         body.append(
             (
                 tested.specimen.case,
@@ -125,7 +125,7 @@ def _ratios(found: Materials) -> Sheet:
         (
             sweep.specimen.case,
             probe,
-            *(percent(sweep.without_shear[probe][kinematics]) for kinematics in ("bending", "stretch")),
+            *(percent(sweep.without_shear[probe][kinematics]) for kinematics in WITHOUT_SHEAR),
             *map(percent, errors),
         )
         for sweep in found.sweeps
@@ -134,7 +134,7 @@ def _ratios(found: Materials) -> Sheet:
     ratios = found.sweeps[0].poisson_ratios if found.sweeps else ()
     return Sheet(
         "Error against Poisson's ratio",
-        ("case", "probe", "bending", "stretch", *(f"ν = {ratio:g}" for ratio in ratios)),
+        ("case", "probe", *WITHOUT_SHEAR, *(f"ν = {ratio:g}" for ratio in ratios)),
         tuple(body),
         "Beside the finite elements in bending, in stretch, and in shear with that ratio; with twice the elements.",
     )
@@ -228,7 +228,7 @@ def _data(found: Materials) -> Plain:
                 "probe": probe,
                 "poisson_ratio": list(sweep.poisson_ratios),
                 "difference": list(errors),
-                **{kinematics: sweep.without_shear[probe][kinematics] for kinematics in ("bending", "stretch")},
+                **{kinematics: sweep.without_shear[probe][kinematics] for kinematics in WITHOUT_SHEAR},
             }
             for sweep in found.sweeps
             for probe, errors in sweep.errors.items()

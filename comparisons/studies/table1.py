@@ -19,6 +19,7 @@ from comparisons import cases
 from comparisons.benchmark import Method, middle, quartiles_apart, timed
 from comparisons.choices import Choices, Count
 from comparisons.pairing import Solver, Solvers
+from comparisons.studies.last_loads import at_last_loads
 from scene import Answer, Ending, Scene, SceneError
 
 THEIR_MACHINE = "Intel Core i5-8500, MATLAB R2018b for the CPRBM, ANSYS 19.1 for the finite elements"
@@ -137,9 +138,7 @@ def solved(table: Table, cell: Cell, solvers: Solvers, at_most: float) -> Table:
 
 def question(cell: Cell) -> Scene:
     """A cell's scene: every stage's last station alone, and without contact where the cell has none."""
-    scene = cases.opened(cell.case)
-    stages = tuple(stage.model_copy(update={"stations": stage.stations[-1:]}) for stage in scene.stages)
-    scene = scene.model_copy(update={"stages": stages, "claims": ()})
+    scene = at_last_loads(cases.opened(cell.case)).model_copy(update={"claims": ()})
     if cell.contact:
         return scene
     probes = tuple(probe for probe in scene.probes if probe.of not in scene.contacts)

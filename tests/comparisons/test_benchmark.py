@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from comparisons import documents, figures, machine, sheets
+from comparisons import benchmark_drawn, documents, machine, sheets
 from comparisons.benchmark import Plan, measured, sizes_of, trend
 from comparisons.choices import Choices
 from comparisons.cli.main import run
@@ -151,7 +151,7 @@ def test_the_document_has_the_documented_keys(hinge):
 
 def test_the_figure_is_the_same_bytes_every_time(hinge):
     ends = lambda n: (0.1, 5, Ending.STEP_TOO_SMALL) if n == 80 else power(1.0)(n)  # noqa: E731
-    drawn = [figures.of_benchmark(benchmark(hinge, Clock(ends, power(1.0)), repeat=2)) for _ in range(2)]
+    drawn = [benchmark_drawn.of_benchmark(benchmark(hinge, Clock(ends, power(1.0)), repeat=2)) for _ in range(2)]
     assert drawn[0] == drawn[1]
     assert b"<dc:date>" not in drawn[0].svg
 

@@ -1,6 +1,7 @@
 """Claims: at one station or at all, of a displacement or of a force, beside rows written by hand."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -12,6 +13,7 @@ from comparisons.pairing import paired
 from comparisons.verdict import compared
 from scene import Claim, Probe
 from scene.answer import frozen_array
+from scene.checks import mistakes_in
 
 
 def row(value, reference, *, station=1.0, quantity="reaction", scale=100.0):
@@ -25,6 +27,7 @@ def claiming(hinge, *claims):
     return hinge.model_copy(update={"claims": claims})
 
 
+ROTATION = Probe(of="BD", quantity="rotation")
 EVERYWHERE = Claim(probe="BD.rotation", bound=0.005, text="rotation within 0.5 % everywhere")
 
 
@@ -88,6 +91,12 @@ def test_of_a_force_that_vanishes_it_is_of_the_stages_largest():
 
 def test_a_place_is_measured_by_the_beam():
     assert claim_difference(row(10.2, 10.0, quantity="centre")) == pytest.approx(0.002)
+
+
+def test_every_station_that_the_scenes_check_lets_pass_has_its_row(hinge):
+    near = Claim(probe="BD.rotation", station=0.67 * (1.0 + 1e-10), bound=0.01)
+    assert mistakes_in(claiming(hinge, near)) == []
+    assert standings(claiming(hinge, near), [replace(row(1.0, 1.0, station=0.67), probe=ROTATION)])
 
 
 def test_a_row_without_a_difference_meets_nothing(hinge):

@@ -71,7 +71,7 @@ def test_a_wrong_profile_is_named(key, value, where, words):
 @pytest.mark.parametrize("value", ["thin", [0.001, 0.002], None])
 def test_what_is_neither_number_nor_profile(value):
     found = mistakes((f"{BEAM}/thickness", value), base=two_lines(0.01, thick=False))
-    assert "a number" in found["beams.lower.thickness"]
+    assert "a number, or a table with the keys 'at' and 'values'" in found["beams.lower.thickness"]
 
 
 @pytest.mark.parametrize("thickness", [0.021, 0.9e-6])
