@@ -34,6 +34,7 @@ from scene.answer import Array
 from scene.statement import Curve
 
 Solver = Callable[[Scene, Choices], Answer]
+Job = tuple[Solver, Scene, Choices]
 
 PAPER_BESIDE_AUTO = 160
 """Most links per beam with which ``paper`` is run beside ``auto``: its time grows with the cube of N."""
@@ -149,14 +150,63 @@ class Runs:
             yield "cprbm beside", self.beside
 
 
-def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1) -> Runs:
+@dataclass(frozen=True, slots=True)
+class Crew:
+    """Processes that share the runs of one case after the other; without a pool all stays in this one."""
+
+    pool: ProcessPoolExecutor | None = None
+
+    def answers(self, jobs: list[Job]) -> list[Answer]:
+        """The answers to some jobs, in their order.
+
+        Raises:
+            SceneError: a solver refuses one.
+        """
+        if self.pool is None:
+            return [solver(scene, choices) for solver, scene, choices in jobs]
+        # The finest runs take longest, and they stand last: handed out first, they leave no worker idle.
+        with _workers_deaf_at_first():
+            futures: dict[Future[Answer | tuple[Mistake, ...]], int] = {
+                self.pool.submit(_job, solver, scene, choices): place
+                for place, (solver, scene, choices) in reversed(list(enumerate(jobs)))
+            }
+        answers: dict[int, Answer] = {}
+        try:
+            for future in as_completed(futures):
+                result = future.result()
+                if isinstance(result, tuple):
+                    raise SceneError(result)
+                answers[futures[future]] = result
+        finally:
+            for future in futures:
+                future.cancel()
+        return [answers[place] for place in range(len(jobs))]
+
+
+ALONE = Crew()
+
+
+@contextmanager
+def crew_of(workers: int) -> Iterator[Crew]:
+    """A crew of so many processes, which end with the context; one worker is this process itself."""
+    if workers <= 1:
+        yield ALONE
+        return
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_quiet_worker)
+    try:
+        yield Crew(pool)
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE) -> Runs:
     """Run both solvers on a scene.
 
     Args:
         scene: the question.
         choices: how finely, and by which variants.
         solvers: who answers.
-        workers: processes to share the runs; with one everything stays in this process.
+        crew: processes to share the runs.
 
     Raises:
         SceneError: a solver refuses the question.
@@ -177,7 +227,7 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, *, workers: int = 1
         for level, settings in enumerate(levels):
             places.append((kinematics, level))
             jobs.append((solvers.fea, scene, settings))
-    answers = _in_order(jobs, min(workers, len(jobs)))
+    answers = crew.answers(jobs)
     fea: dict[Kinematics, tuple[Answer, ...]] = {}
     for (kinematics, _), answer in zip(places, answers[first:], strict=True):
         fea[kinematics] = (*fea.get(kinematics, ()), answer)
@@ -208,28 +258,6 @@ def _paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
         return solvers.cprbm(scene, replace(choices, formulation="paper"))
     except SceneError:  # at this number of links it lacks something, and nothing that was asked for depends on it
         return None
-
-
-def _in_order(jobs: list[tuple[Solver, Scene, Choices]], workers: int) -> list[Answer]:
-    if workers <= 1:
-        return [solver(scene, choices) for solver, scene, choices in jobs]
-    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_quiet_worker)
-    try:
-        # The finest runs take longest, and they stand last: handed out first, they leave no worker idle.
-        with _workers_deaf_at_first():
-            futures: dict[Future[Answer | tuple[Mistake, ...]], int] = {
-                pool.submit(_job, solver, scene, choices): place
-                for place, (solver, scene, choices) in reversed(list(enumerate(jobs)))
-            }
-        answers: dict[int, Answer] = {}
-        for future in as_completed(futures):
-            result = future.result()
-            if isinstance(result, tuple):
-                raise SceneError(result)
-            answers[futures[future]] = result
-    finally:
-        pool.shutdown(cancel_futures=True)
-    return [answers[place] for place in range(len(jobs))]
 
 
 def _job(solver: Solver, scene: Scene, choices: Choices) -> Answer | tuple[Mistake, ...]:

@@ -41,7 +41,7 @@ def command(
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
     from comparisons.offset_verdict import OffsetComparison, compared_offset
-    from comparisons.pairing import Solvers, paired
+    from comparisons.pairing import Solvers, crew_of, paired
     from comparisons.verdict import compared
     from scene import OffsetQuestion
 
@@ -60,27 +60,28 @@ def command(
     printing = str(json_file) != "-"
     finished: list[Comparison | OffsetComparison] = []
     chapters: tuple[report.Chapter, ...] = ()
-    for scene in showing.progress(scenes, shown=not quiet):
-        comparison: Comparison | OffsetComparison
-        if isinstance(scene, OffsetQuestion):
-            comparison = compared_offset(scene, solvers.offset)
-        else:
-            comparison = compared(scene, paired(scene, choices, solvers, workers=workers))
-        finished.append(comparison)
-        if out is not None:
-            chapters = report.add(out, chapters, comparison)
-        if json_file is not None and str(json_file) != "-":
-            showing.json(json_file, {"cases": [_document(one) for one in finished]})
-        if printing:
-            if not quiet:
-                if isinstance(comparison, OffsetComparison):
-                    showing.tables(offset_pages.sheets_of(comparison))
-                else:
-                    showing.tables(sheets.of_comparison(comparison))
-                    for sentence in sheets.explanation(comparison):
-                        click.echo(sentence + "\n")
-            verdict = comparison.verdict
-            click.echo(f"{scene.name}: {verdict.word.value}. {verdict.sentence}")
+    with crew_of(workers) as crew:
+        for scene in showing.progress(scenes, shown=not quiet):
+            comparison: Comparison | OffsetComparison
+            if isinstance(scene, OffsetQuestion):
+                comparison = compared_offset(scene, solvers.offset)
+            else:
+                comparison = compared(scene, paired(scene, choices, solvers, crew))
+            finished.append(comparison)
+            if out is not None:
+                chapters = report.add(out, chapters, comparison)
+            if json_file is not None and str(json_file) != "-":
+                showing.json(json_file, {"cases": [_document(one) for one in finished]})
+            if printing:
+                if not quiet:
+                    if isinstance(comparison, OffsetComparison):
+                        showing.tables(offset_pages.sheets_of(comparison))
+                    else:
+                        showing.tables(sheets.of_comparison(comparison))
+                        for sentence in sheets.explanation(comparison):
+                            click.echo(sentence + "\n")
+                verdict = comparison.verdict
+                click.echo(f"{scene.name}: {verdict.word.value}. {verdict.sentence}")
     if json_file is not None and str(json_file) == "-":
         showing.json(json_file, {"cases": [_document(one) for one in finished]})
     if out is not None and printing and not quiet:

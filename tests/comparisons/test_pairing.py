@@ -7,7 +7,7 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
+from comparisons.pairing import Solvers, cprbm_answer, crew_of, fea_answer, paired
 from scene import Mistake, SceneError
 from tests.comparisons.made_up import MadeUp
 
@@ -65,10 +65,13 @@ def test_paper_stands_beside_auto_where_it_was_told_all_and_is_quick(right, case
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_refusal_of_paper_alone_is_none(hinge, right, workers):
-    runs = paired(hinge, Choices(), Solvers(RefusingPaper(), right.fea), workers=workers)
-    assert runs.paper is runs.formulations is None
-    with pytest.raises(SceneError):
-        paired(hinge, Choices(formulation="paper"), Solvers(RefusingPaper(), right.fea), workers=workers)
+    solvers = Solvers(RefusingPaper(), right.fea)
+    with crew_of(workers) as crew:
+        runs = paired(hinge, Choices(), solvers, crew)
+        assert runs.paper is runs.formulations is None
+        with pytest.raises(SceneError):
+            paired(hinge, Choices(formulation="paper"), solvers, crew)
+        assert paired(hinge, Choices(), solvers, crew).paper is None, "a refusal leaves the crew as it was"
 
 
 class RefusingPaper:
@@ -87,7 +90,8 @@ def test_counts_by_beam_are_doubled_beam_by_beam():
 
 
 def test_two_processes_give_the_answers_of_one(hinge, right):
-    one, two = paired(hinge, Choices(), right), paired(hinge, Choices(), right, workers=2)
+    with crew_of(2) as crew:
+        one, two = paired(hinge, Choices(), right), paired(hinge, Choices(), right, crew)
     assert [name for name, _ in one.everything()] == [name for name, _ in two.everything()]
     for (_, mine), (_, theirs) in zip(one.everything(), two.everything(), strict=True):
         assert mine.settings == theirs.settings
@@ -106,8 +110,8 @@ class Refusing:
 
 @pytest.mark.parametrize("workers", [1, 2])
 def test_a_refusal_keeps_its_words(hinge, workers):
-    with pytest.raises(SceneError) as caught:
-        paired(hinge, Choices(), Solvers(MadeUp("cprbm", 0.0), Refusing()), workers=workers)
+    with crew_of(workers) as crew, pytest.raises(SceneError) as caught:
+        paired(hinge, Choices(), Solvers(MadeUp("cprbm", 0.0), Refusing()), crew)
     assert caught.value.mistakes == (Mistake("beams.beam1", "a beam", "another beam", "file.toml"),)
 
 

@@ -11,7 +11,7 @@ import pytest
 import cprbm
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
+from comparisons.pairing import Solvers, cprbm_answer, crew_of, fea_answer, paired
 from comparisons.verdict import Word, compared
 from scene import Scene
 from tests.together.test_wrong_solvers import COARSE, without_contact
@@ -28,7 +28,8 @@ def at(case: str, stations: tuple[float, ...]) -> Scene:
 @pytest.fixture(scope="module")
 def driven():
     scene = at("gripper-driven", DISPLACEMENTS)
-    return compared(scene, paired(scene, Choices(links=PAPERS), Solvers(), workers=2))
+    with crew_of(2) as crew:
+        return compared(scene, paired(scene, Choices(links=PAPERS), Solvers(), crew))
 
 
 def test_driven_the_verdict_is_agree_and_the_reactions_claim_is_met(driven):
