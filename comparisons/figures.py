@@ -22,7 +22,7 @@ from comparisons.scales import norm
 from comparisons.sheets import last_rows
 from comparisons.verdict import Comparison
 from scene import CircleContact, Scene, StationAnswer
-from scene.statement import FreeEnd
+from scene.statement import FixedBody, FreeEnd
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,8 +90,8 @@ def _shapes(scene: Scene, runs: Runs) -> Picture:
             for end, point in ((beam.start, 0), (beam.end, -1)):
                 if not isinstance(end, FreeEnd):
                     ends.setdefault(scene.body_of(end.point), []).append((x[point], y[point]))
-        _links(axes, ends, "--", GREY)
-        _links(axes, _ends(scene, fea), "-", "black")
+        _links(axes, scene, ends, "--", GREY)
+        _links(axes, scene, _ends(scene, fea), "-", "black")
         for place, beam_name in enumerate(scene.beams):
             shape = fea.shapes[beam_name]
             label = f"FEA ({runs.kinematics})" if place == 0 else None
@@ -135,10 +135,12 @@ def _ends(scene: Scene, station: StationAnswer) -> dict[str, list[tuple[float, f
     return ends
 
 
-def _links(axes: Axes, ends: dict[str, list[tuple[float, float]]], style: str, colour: str) -> None:
-    for places in ends.values():
+def _links(axes: Axes, scene: Scene, ends: dict[str, list[tuple[float, float]]], style: str, colour: str) -> None:
+    """Bodies as lines from end to end; of the ground, which is everywhere, the ends alone."""
+    for name, places in ends.items():
         x, y = np.array(places).T
-        axes.plot(x, y, style, color=colour, linewidth=1.2, marker="s", markersize=4)
+        line = "none" if isinstance(scene.bodies[name], FixedBody) else style
+        axes.plot(x, y, linestyle=line, color=colour, linewidth=1.2, marker="s", markersize=4)
 
 
 def _stresses(rows: list[Row]) -> Picture:
