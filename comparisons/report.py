@@ -12,8 +12,9 @@ from pathlib import Path
 from comparisons import archive, documents, figures, offset_drawn, offset_pages, reactions_drawn, sheets
 from comparisons.offset_verdict import OffsetComparison
 from comparisons.rendering import Embedded, embedded, rendered
-from comparisons.verdict import Comparison
+from comparisons.verdict import Comparison, Verdict
 from comparisons.writing import write
+from scene import Question
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +29,7 @@ class Chapter:
     sheets: tuple[sheets.Sheet, ...]
     explanation: tuple[str, ...]
     pictures: tuple[Embedded, ...]
-    files: tuple[str, ...] = ("comparison.json", "answers.json")
+    files: tuple[str, ...]
 
 
 def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison | OffsetComparison) -> tuple[Chapter, ...]:
@@ -77,28 +78,32 @@ def page(chapters: tuple[Chapter, ...]) -> str:
 
 def chapter(compared: Comparison, pictures: tuple[figures.Picture, ...]) -> Chapter:
     """What the page shows of a case and its figures."""
-    return Chapter(
-        name=compared.scene.name,
-        title=compared.scene.title or compared.scene.name,
-        source=compared.scene.source,
-        word=compared.verdict.word.value,
-        sentence=compared.verdict.sentence,
-        sheets=sheets.of_comparison(compared),
-        explanation=sheets.explanation(compared),
-        pictures=tuple(embedded(picture) for picture in pictures),
-    )
+    told = sheets.of_comparison(compared), sheets.explanation(compared)
+    return _chapter(compared.scene, compared.verdict, *told, pictures, ("comparison.json", "answers.json"))
 
 
 def offset_chapter(compared: OffsetComparison, pictures: tuple[figures.Picture, ...]) -> Chapter:
     """What the page shows of an offset question and its figures."""
+    told = offset_pages.sheets_of(compared)
+    return _chapter(compared.question, compared.verdict, told, (), pictures, ("comparison.json",))
+
+
+def _chapter(
+    asked: Question,
+    verdict: Verdict,
+    tables: tuple[sheets.Sheet, ...],
+    explanation: tuple[str, ...],
+    pictures: tuple[figures.Picture, ...],
+    files: tuple[str, ...],
+) -> Chapter:
     return Chapter(
-        name=compared.question.name,
-        title=compared.question.title or compared.question.name,
-        source=compared.question.source,
-        word=compared.verdict.word.value,
-        sentence=compared.verdict.sentence,
-        sheets=offset_pages.sheets_of(compared),
-        explanation=(),
+        name=asked.name,
+        title=asked.title or asked.name,
+        source=asked.source,
+        word=verdict.word.value,
+        sentence=verdict.sentence,
+        sheets=tables,
+        explanation=explanation,
         pictures=tuple(embedded(picture) for picture in pictures),
-        files=("comparison.json",),
+        files=files,
     )

@@ -44,7 +44,6 @@ from scene.answer import Array, Flags, Ints
 ALONE, WITH_CENTRE = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4])
 CLOSEST_ITERATIONS = 12
 LEAST_CURVATURE = 1e-6  # of D, 1/ℓ, below which its minimum has no place of its own
-BESIDE_MINIMUM = 2.5  # a joint closer than this many h to a minimum with a place of its own leaves it to that
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 ON_IT = 1e-9  # gap of a clamped end, and how far its normal passes from the centre, where it is clamped on the circle
 BESIDE_ROW = 1e-3  # a corner of the edge closer than this many h to a row has none of its own
@@ -120,6 +119,7 @@ class Circle:
         A = line.at(s)
         rho, n = self._away(A)
         across = np.stack((-n[:, 1], n[:, 0]), axis=1)
+        q_s = self._across(A, n)
         C_z, C_sz = smooth.position_slopes(A), smooth.tangent_slopes(A)
         second = smooth.position_curvature(A, n)
         if self.body >= 0:
@@ -129,10 +129,8 @@ class Circle:
         D_z = np.einsum("mi,mik->mk", n, C_z)
         q_z = np.einsum("mi,mik->mk", across, C_z)
         second += q_z[:, :, None] * q_z[:, None, :] / rho[:, None, None]
-        C_s = A.speed[:, None] * np.stack((np.cos(A.psi), np.sin(A.psi)), axis=1)
-        q_s = np.sum(across * C_s, axis=1)
         D_sz = np.einsum("mi,mik->mk", n, C_sz) + (q_s / rho)[:, None] * q_z
-        D_ss = self._convexity(A, n, q_s, rho)
+        D_ss = self._convexity(A)
         moving = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
         second -= moving[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
 
@@ -183,17 +181,26 @@ class Circle:
                 found.append(rows if outer < inner else rows[::-1])
         return found
 
-    def _convexity(self, A: smooth.Points, n: Array, q_s: Array, rho: Array) -> Array:
+    def _across(self, A: smooth.Points, n: Array) -> Array:
+        """Part of C_s across n, along the circle clockwise."""
+        return np.asarray(A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi)))
+
+    def slope(self, A: smooth.Points) -> Array:
+        """D_s."""
+        _, n = self._away(A)
+        return np.asarray(A.speed * (n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi)) - self.widening(A.s))
+
+    def _convexity(self, A: smooth.Points) -> Array:
         """D_ss."""
+        rho, n = self._away(A)
         cos, sin = np.cos(A.psi), np.sin(A.psi)
         facing, leaning = n[:, 1] * cos - n[:, 0] * sin, n[:, 0] * cos + n[:, 1] * sin
-        return np.asarray(facing * A.speed * A.bend + leaning * A.gain + q_s**2 / rho)
+        return np.asarray(facing * A.speed * A.bend + leaning * A.gain + self._across(A, n) ** 2 / rho)
 
     def _places(self, line: smooth.SmoothLine) -> tuple[Array, Flags]:
         """Arc lengths of the rows, and which of them move with a minimum."""
         A = line.sampled
         s = A.s
-        rho, n = self._away(A)
         D = self.distance(A) - self.offset
         near = np.zeros(len(s), dtype=bool)
         near[::2] = D[::2] < JOINT_REACH * self.a.h**2 * (1.0 / self.radius + 1.0)
@@ -201,7 +208,7 @@ class Circle:
         held = self.a.start.body == self.body, self.a.end is not None and self.a.end.body == self.body
         near[[0, -1]] &= ~np.array(held)
         # at an end that is lowest the minimum lies within if the way to it rises
-        slope = n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi) - self.widening(s)
+        slope = self.slope(A)
         fence = [
             np.inf if inwards and not fixed else -np.inf
             for inwards, fixed in zip((slope[0] < -ON_IT, slope[-1] > ON_IT), held, strict=True)
@@ -210,12 +217,11 @@ class Circle:
         # the two joints beside a clamp on the circle press together, a place of its own among them would part them
         first, last = (4 if clamped else -1 for clamped in self.clamped)
         lowest = lowest[self.own_places & (lowest > first) & (lowest < 2 * (self.a.n + 1) - last)]
-        q_s = A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi))
-        found = wells.wells(self.a, D, self._convexity(A, n, q_s, rho)[::2], lowest, LEAST_CURVATURE)
+        found = wells.wells(self.a, D, self._convexity(A)[::2], lowest, LEAST_CURVATURE)
         places, settled = self._refined(line, s[found.samples])
         places = places[settled & found.held(self.distance(line.at(places)) - self.offset)]
         for place in places:
-            near &= np.abs(s - place) > BESIDE_MINIMUM * self.a.size_at(place)
+            near &= np.abs(s - place) > wells.BESIDE * self.a.size_at(place)
         fixed = np.concatenate((s[near], self.ends))
         return np.concatenate((fixed, places)), np.arange(len(fixed) + len(places)) >= len(fixed)
 
@@ -226,11 +232,8 @@ class Circle:
             return s, np.zeros(0, dtype=bool)
         for _ in range(CLOSEST_ITERATIONS):
             A = line.at(s)
-            rho, n = self._away(A)
-            q_s = A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi))
-            slope = A.speed * (n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi)) - self.widening(s)
-            D_ss = self._convexity(A, n, q_s, rho)
-            step = -slope / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
+            D_ss = self._convexity(A)
+            step = -self.slope(A) / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
             s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
             if np.max(np.abs(step)) < 1e-13:
                 break
@@ -303,8 +306,7 @@ def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:
     )
     state = rest_state(model)
     ends = circle.line(state, positions(model, state)).at(chain.s[[0, -1]])
-    towards = (ends.x - circle.x) * np.cos(ends.psi) + (ends.y - circle.y) * np.sin(ends.psi)
-    towards -= np.hypot(ends.x - circle.x, ends.y - circle.y) * circle.widening(ends.s)
+    towards = np.hypot(ends.x - circle.x, ends.y - circle.y) * circle.slope(ends)
     on_it = (np.abs(circle.distance(ends) - offset) <= ON_IT) & (np.abs(towards) <= ON_IT)
     start, end = (held is not None and held.body == body and held.welded for held in (chain.start, chain.end))
     return replace(

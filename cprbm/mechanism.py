@@ -55,7 +55,7 @@ class Mechanism:
 
     def overlap(self, contact: str, state: State, at: Positions) -> float:
         """Largest constraint value of ``contact``, units of length: positive where it is violated."""
-        groups = self._groups(contact)(state, at)
+        groups = _groups(contact, self.pairs, self.boundaries)(state, at)
         return max((float(group.values.max()) for group in groups), default=float("-inf"))
 
     def passed(self, before: Point, after: Point) -> str:
@@ -82,9 +82,6 @@ class Mechanism:
             if np.max(circle.offset - circle.placed(at).distance(places)) > allowed:
                 return True
         return False
-
-    def _groups(self, contact: str) -> Groups:
-        return _groups(contact, self.pairs, self.boundaries)
 
 
 def _groups(

@@ -61,7 +61,6 @@ SAME = 1e-3  # lengths that differ by less than this part are one
 PLACE_TOLERANCE = 1e-13  # of a minimum's place, units of length
 SETTLED = 1e-9  # slope of D at a minimum
 BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces A leaves its place to that
-BESIDE_MINIMUM = 2.5  # and to a minimum, from which D rises more than the curvature's steps can undo
 
 STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
 ON_IT = 1e-9  # gap and slope of two clamped ends, and how far they lie apart along the beams, where they touch
@@ -341,7 +340,7 @@ def closest_places(pair: Pair, lines: Lines) -> tuple[Places, Places]:
     # D and feet at the joints are every other sample
     bends = np.abs(lines[0].at(a.s).bend) + np.abs(lines[1].at(sigma[::2]).bend)
     near = D[::2] - pair.offset < JOINT_REACH * a.h**2 * (1.0 + bends)
-    for places, apart in ((s, BESIDE_MINIMUM), (ends.sigma, BESIDE_END)):
+    for places, apart in ((s, wells.BESIDE), (ends.sigma, BESIDE_END)):
         for place in places:
             near[1:-1] &= np.abs(a.s[1:-1] - place) > apart * a.size_at(place)
     for end in (0, -1):

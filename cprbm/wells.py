@@ -24,6 +24,7 @@ from cprbm.model import Chain
 from cprbm.smooth import halves
 from scene.answer import Array, Flags, Ints
 
+BESIDE = 2.5  # a joint closer than this many h to a place of its own leaves what presses to that
 HELD = 2e-3  # of h², 1/ℓ: gaps that a zone may leave at its joints
 LEVEL = 0.01  # of the larger gap beside a minimum: less on its other side is the end of a zone
 

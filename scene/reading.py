@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -85,11 +86,7 @@ def scene_from(data: dict[str, Any], *, file: str = "") -> Scene:
     Raises:
         SceneError: anything in it is wrong; all mistakes are named.
     """
-    scene = _record(Scene, data, file)
-    found = mistakes_in(scene)
-    if found:
-        raise SceneError(found)
-    return scene
+    return _record(Scene, data, file, mistakes_in)
 
 
 def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
@@ -98,23 +95,25 @@ def offset_from(data: dict[str, Any], *, file: str = "") -> OffsetQuestion:
     Raises:
         SceneError: anything in it is wrong; all mistakes are named.
     """
-    question = _record(OffsetQuestion, data, file)
-    found = mistakes_in_offset(question)
-    if found:
-        raise SceneError(found)
-    return question
+    return _record(OffsetQuestion, data, file, mistakes_in_offset)
 
 
-def _record(kind: type[Asked], data: dict[str, Any], file: str) -> Asked:
+def _record(
+    kind: type[Asked], data: dict[str, Any], file: str, mistakes_between: Callable[[Asked], list[Mistake]]
+) -> Asked:
     if "file" in data:
         raise SceneError([replace(unknown_name("file", "file", "key here", keys_at((), kind)), file=file)])
     try:
-        return kind.model_validate({**_tuples(data), "file": file})
+        record = kind.model_validate({**_tuples(data), "file": file})
     except ValidationError as error:
         mistakes = [_mistake(details, file, kind) for details in error.errors() if not _says_it_again(details)]
         raise SceneError(mistakes) from None
     except RecursionError:
         raise SceneError([Mistake("", "tables nested too deeply", "a scene", file)]) from None
+    found = mistakes_between(record)
+    if found:
+        raise SceneError(found)
+    return record
 
 
 def _file_error(path: Path, found: str) -> SceneError:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from comparisons.choices import KINEMATICS, Kinematics
-from comparisons.cli.options import counts, folder, output, positive, whole
+from comparisons.cli.options import counts, folder, output, timed
 
 if TYPE_CHECKING:
     from comparisons.benchmark import Method
@@ -25,15 +25,7 @@ NOT_COMPLETED = 1
     help="Links and elements per beam; unless given 40, 80, 160 and so on doubled up to 5120 links, "
     "and up to 1280 elements.",
 )
-@click.option("--repeat", callback=whole, default="5", show_default=True, help="How often each size is solved.")
-@click.option(
-    "--at-most",
-    callback=positive,
-    metavar="SECONDS",
-    default="60",
-    show_default=True,
-    help="A solve that takes longer is not repeated, and no larger size of its solver is begun.",
-)
+@timed("How often each size is solved.", "is not repeated, and no larger size of its solver is begun.")
 @click.option("--solver", type=click.Choice(["cprbm", "fea", "both"]), default="both", show_default=True)
 @click.option(
     "--formulation",
@@ -69,7 +61,7 @@ def command(
     from comparisons import benchmark, benchmark_drawn, cases, documents, machine, sheets
     from comparisons.choices import Choices
     from comparisons.cli import showing
-    from comparisons.pairing import Solvers
+    from comparisons.pairing import solvers_of
     from comparisons.writing import write
     from scene import Ending
 
@@ -82,7 +74,7 @@ def command(
         done = benchmark.measured(
             scene,
             plan,
-            planted if isinstance(planted, Solvers) else Solvers(),
+            solvers_of(planted),
             machine.described(),
             watch=lambda repetition, method, n: say(f"{method} N = {n}, {repetition + 1} of {repeat}"),
         )

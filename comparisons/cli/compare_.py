@@ -41,12 +41,12 @@ def command(
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
     from comparisons.offset_verdict import OffsetComparison, compared_offset
-    from comparisons.pairing import Solvers, crew_of, paired
+    from comparisons.pairing import Solvers, crew_of, paired, solvers_of
     from comparisons.verdict import compared
     from scene import OffsetQuestion
 
     workers = 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
-    solvers = planted if isinstance(planted, Solvers) else Solvers()
+    solvers = solvers_of(planted)
     names = [name for text in asked for name in (cases.names() if text == "all" else (text,))]
     scenes = [cases.asked(name) for name in dict.fromkeys(names)]
     choices = Choices(links, formulation, elements, kinematics, penetration)

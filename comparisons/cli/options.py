@@ -117,3 +117,14 @@ def output(command: Decorated) -> Decorated:
 def folder(text: str) -> Callable[[Decorated], Decorated]:
     """``--out``, with the help ``text`` of what is put there."""
     return click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help=text)
+
+
+def timed(repeated: str, longer: str) -> Callable[[Decorated], Decorated]:
+    """``--repeat`` and ``--at-most``: how often a solve is ``repeated``, and what happens if it takes ``longer``."""
+
+    def both(command: Decorated) -> Decorated:
+        command = click.option("--at-most", callback=positive, metavar="SECONDS", default="60", show_default=True,
+                               help=f"A solve that takes longer {longer}")(command)  # fmt: skip
+        return click.option("--repeat", callback=whole, default="5", show_default=True, help=repeated)(command)
+
+    return both

@@ -24,7 +24,7 @@ DEPARTED = 1
 def command(planted: object, asked: str, reason: str | None, day: str | None, folder: Path) -> int:
     """Compare today's numbers with the accepted ones, or accept them."""
     from comparisons import cases, regression
-    from comparisons.pairing import Solvers
+    from comparisons.pairing import solvers_of
 
     if (reason is None) != (day is None) or (reason is not None and not reason.strip()):
         raise click.UsageError("--accept REASON and --date YYYY-MM-DD belong together, and neither is empty.")
@@ -33,7 +33,7 @@ def command(planted: object, asked: str, reason: str | None, day: str | None, fo
             date.fromisoformat(day)
         except ValueError:
             raise click.UsageError(f"--date: found {day!r}; allowed: a date as YYYY-MM-DD.") from None
-    solvers = planted if isinstance(planted, Solvers) else Solvers()
+    solvers = solvers_of(planted)
     code = 0
     for scene in [cases.opened(name) for name in (cases.scenes() if asked == "all" else (asked,))]:
         file = folder / f"{scene.name}.json"

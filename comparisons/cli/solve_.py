@@ -36,9 +36,9 @@ def command(
     from comparisons import cases, documents, sheets
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
-    from comparisons.pairing import Solvers
+    from comparisons.pairing import solvers_of
 
-    solvers = planted if isinstance(planted, Solvers) else Solvers()
+    solvers = solvers_of(planted)
     scene = cases.opened(case)
     choices = Choices(links, formulation, elements, kinematics, penetration)
     check(choices, scene)

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import click
 
 from comparisons.cli.commands import Commands
-from comparisons.cli.options import folder, output, positive, whole
+from comparisons.cli.options import folder, output, timed
 
 if TYPE_CHECKING:
     from comparisons.studies.told import Told
+
+Found = TypeVar("Found")
+Step = TypeVar("Step")
 
 
 @click.group("study", cls=Commands, invoke_without_command=True)
@@ -35,31 +40,20 @@ def materials(
 ) -> int:
     """ABS, titanium and steel at one deformation: what of the error a material can change."""
     from comparisons.cli import showing
-    from comparisons.pairing import Solvers
+    from comparisons.pairing import solvers_of
     from comparisons.studies import materials as study
     from comparisons.studies.materials_told import told
 
     showing.room_for(json_file, out)
-    solvers = planted if isinstance(planted, Solvers) else Solvers()
-    found = study.Materials()
-    try:
-        for piece in showing.progress(study.pieces(), shown=not quiet):
-            found = found.with_piece(piece(solvers))
-    finally:
-        _show(told(found), json_file, out, quiet=quiet)
+    solvers = solvers_of(planted)
+    show = partial(_show, json_file=json_file, out=out, quiet=quiet)
+    pieces = showing.progress(study.pieces(), shown=not quiet)
+    found = _answered(study.Materials(), pieces, lambda found, piece: found.with_piece(piece(solvers)), told, show)
     return 0 if all(tested.comparison.verdict.completed for tested in found.tested) else 1
 
 
 @command.command("table1")
-@click.option("--repeat", callback=whole, default="5", show_default=True, help="How often each cell is solved.")
-@click.option(
-    "--at-most",
-    callback=positive,
-    metavar="SECONDS",
-    default="60",
-    show_default=True,
-    help="A solve that takes longer is not repeated.",
-)
+@timed("How often each cell is solved.", "is not repeated.")
 @output
 @folder("Folder for the page, the numbers and the figure.")
 @click.pass_obj
@@ -74,19 +68,33 @@ def table1(
     """Run times of both solvers at the paper's discretisations, beside its Table 1."""
     from comparisons import machine
     from comparisons.cli import showing
-    from comparisons.pairing import Solvers
+    from comparisons.pairing import solvers_of
     from comparisons.studies import table1 as study
     from comparisons.studies.table1_told import told
 
     showing.room_for(json_file, out)
-    solvers = planted if isinstance(planted, Solvers) else Solvers()
-    found = study.begun(solvers, machine.described())
-    try:
-        for run in showing.progress(study.runs(repeat), shown=not quiet):
-            found = study.solved(found, run, solvers, at_most)
-    finally:
-        _show(told(found), json_file, out, quiet=quiet)
+    solvers = solvers_of(planted)
+    show = partial(_show, json_file=json_file, out=out, quiet=quiet)
+    runs = showing.progress(study.runs(repeat), shown=not quiet)
+    begun = study.begun(solvers, machine.described())
+    found = _answered(begun, runs, lambda found, run: study.solved(found, run, solvers, at_most), told, show)
     return 1 if found.unfinished else 0
+
+
+def _answered(
+    found: Found,
+    steps: Iterable[Step],
+    taken: Callable[[Found, Step], Found],
+    told: Callable[[Found], Told],
+    show: Callable[[Told], None],
+) -> Found:
+    """A study step by step; what there is of it is shown even where it is stopped."""
+    try:
+        for step in steps:
+            found = taken(found, step)
+    finally:
+        show(told(found))
+    return found
 
 
 def _show(told: Told, json_file: Path | None, out: Path | None, *, quiet: bool) -> None:

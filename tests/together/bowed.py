@@ -6,7 +6,6 @@ from typing import Any
 
 YOUNG, THICKNESS, WIDTH = 2.3e9, 2e-3, 8e-3
 RIGIDITY = YOUNG * WIDTH * THICKNESS**3 / 12.0
-CURVATURE = 2 * 14.64  # of the parabola at its clamp, 1/m
 PARABOLA = {"kind": "polynomial", "axis": "y", "coefficients": [0.05, 0.0, 14.64], "range": [0.0, 0.05]}
 CLAMP, TIP = [0.05, 0.0], [0.0866, 0.05]
 

@@ -14,7 +14,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solvers, cprbm_answer, crew_of, fea_answer, paired
 from comparisons.verdict import Word, compared
 from scene import Scene
-from tests.together.test_wrong_solvers import COARSE, without_contact
+from tests.together.planted import COARSE, without_contact
 
 PAPERS = {"beam1": 30, "beam2": 40}
 DISPLACEMENTS = (0.012, 0.023, 0.024, 0.031, 0.04)  # before either contact, beside the circle's first, after both

@@ -32,8 +32,7 @@ from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer,
 from comparisons.verdict import Verdict, Word, compared
 from scene import Answer, Ending, Scene
 from scene.answer import Array, frozen_array
-
-COARSE = Choices(elements=20, kinematics="bending")
+from tests.together.planted import COARSE, without_contact
 
 
 def remembered(runs: Runs) -> Solvers:
@@ -84,24 +83,6 @@ def untapered(scene: Scene) -> Scene:
 
 def asked_of(solver: Solver, altered: Callable[[Scene], Scene]) -> Solver:
     return lambda scene, choices: solver(altered(scene), choices)
-
-
-def without_contact(solver: Solver) -> Solver:
-    def answer(scene: Scene, choices: Choices) -> Answer:
-        others = tuple(probe for probe in scene.probes if probe.of not in scene.contacts)
-        bare = scene.model_copy(update={"contacts": frozendict(), "probes": others})
-        found = solver(bare, choices)
-        open_contact = {
-            probe.name: frozen_array([0.0] if probe.quantity == "force" else [])
-            for probe in scene.probes
-            if probe.of in scene.contacts
-        }
-        stations = tuple(
-            replace(station, values=frozendict({**station.values, **open_contact})) for station in found.stations
-        )
-        return replace(found, stations=stations)
-
-    return answer
 
 
 def stopping(solver: Solver, ending: Ending) -> Solver:
