@@ -160,9 +160,7 @@ def _within(part: Part, s: Array) -> Array:
     return np.concatenate([through(xi).T, np.tile(start[4:, None], (1, len(s)))])
 
 
-def start_of(
-    equations: Equations, known: Known, values: Mapping[str, float | Array], guesses: Mapping[Any, float]
-) -> Array:
+def start_of(equations: Equations, known: Known, guesses: Mapping[Any, float]) -> Array:
     """Unknowns (n,) of a structure, read off a state with perhaps another.
 
     Args:
