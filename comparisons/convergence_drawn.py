@@ -60,8 +60,8 @@ def of_convergence(found: Convergence) -> tuple[Picture, ...]:
             picture(
                 figure,
                 "convergence",
-                f"Distance from the limit at {stage.name} {stage.stations[-1]:g}; hollow where the limit itself is no "
-                f"surer than that.{' Crosses: distance from the exact value.' if known else ''}",
+                f"Distance from the limit at {stage.name} {stage.stations[-1]:g}; above it the limit's uncertainty, "
+                f"hollow where that is the larger.{' Crosses: distance from the exact value.' if known else ''}",
             ),
         )
 
@@ -84,6 +84,7 @@ def _draw(axes: Axes, family: Family, place: int) -> None:
     for n, error in errors.items():
         face = colour if error > unsure else "white"
         axes.plot([n], [error], marker, color=colour, markersize=4.5, markerfacecolor=face)
+        axes.plot([n, n], [error, error + unsure], color=colour, linewidth=0.7)
     truth = {n: family.true_error(n) for n in ns}
     true = {n: error / family.scale for n, error in truth.items() if error is not None}
     axes.plot(list(true), list(true.values()), "x", color=colour, markersize=6.5)

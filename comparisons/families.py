@@ -37,6 +37,7 @@ from scene.answer import Array
 SIZES = (10, 20, 40, 80, 160, 320)
 STANDARD_AT = 40
 LOOSEST = 0.05
+_BESIDE_A_KINK = 1.5  # elements: the one that holds it, and half of those beside it
 _COMPONENTS: Mapping[str, tuple[str, str]] = {
     "displacement": ("x", "y"),
     "reaction": ("x", "y"),
@@ -219,6 +220,7 @@ def _complaints(scene: Scene, answers: Mapping[int, Answer]) -> dict[int, str]:
 def _families(scene: Scene, series: Sequence[Series], exact: Answer | None) -> tuple[Family, ...]:
     """Every probe at every station in every series that has a whole answer."""
     present = [one for one in series if one.whole]
+    sizes = sorted({n for one in present for n in one.whole})
     finest = tuple(one.whole[max(one.whole)] for one in present)
     floors = {
         (id(one), probe.name): round_off(scene, probe, tuple(one.whole.values()), (best,))
@@ -230,22 +232,28 @@ def _families(scene: Scene, series: Sequence[Series], exact: Answer | None) -> t
         for stage in scene.stages
         for value in stage.stations
         for probe in scene.probes
-        for places in (_places(scene, probe, stage, value, finest),)
+        for places in (_places(scene, probe, stage, value, finest, sizes),)
         for one in present
     )
 
 
-def _places(scene: Scene, probe: Probe, stage: Stage, value: float, finest: tuple[Answer, ...]) -> slice:
+def _places(
+    scene: Scene, probe: Probe, stage: Stage, value: float, finest: tuple[Answer, ...], sizes: Sequence[int]
+) -> slice:
     """Of a stress the one place at which it is followed, of all else everything.
 
     It is where the stress is largest in the finest answers among the places at which it is compared
-    (:mod:`comparisons.spots`); where none is compared, among all.
+    (:mod:`comparisons.spots`) and that are no nearer to a kink of the section than its elements at the three finest
+    sizes reach, beside which the stress shows no order; where there are none, among all.
     """
     if probe.quantity != "bending_stress":
         return slice(None)
     stations = tuple(station_of(answer, stage.name, value) for answer in finest)
     largest = np.max([np.abs(station.values[probe.name]) for station in stations], axis=0)
     clear = clear_of_spots(scene, probe.of, arc_lengths(scene, probe), stations)
+    kinks = scene.beams[probe.of].knots[1:-1]
+    away = np.abs(np.linspace(0.0, 1.0, probe.points)[:, None] - kinks)
+    clear = clear & np.all(away > _BESIDE_A_KINK / sizes[-3:][0], axis=1)
     place = int(np.argmax(np.where(clear, largest, -1.0) if clear.any() else largest))
     return slice(place, place + 1)
 
