@@ -99,7 +99,7 @@ def between(cprbm: Family, fea: Family) -> tuple[float, float] | None:
 def _limits(found: Convergence) -> Sheet:
     n = shown_size(found)
     stage = found.scene.stages[-1]
-    exact = found.exact is not None
+    exact = any(family.exact is not None for family in found.families)
     body = []
     for cprbm, fea in beside(found):
         if (cprbm.stage, cprbm.station) != (stage.name, stage.stations[-1]):

@@ -6,8 +6,10 @@ same equations) and, where another theory was chosen, the finite elements' in th
 A penalty leaves an error that is proportional to the penetration.  To fall with the fourth power of N, as the
 elements' own, the penetration is P (40/N)⁴, P the standard one: at twice the N a sixteenth, as from any comparison's
 run to its finer one.  That error is then a part of the same law and does not bend it, however large it is beside the
-elements'.  So many elements leave a fortieth of the thickness at N = 10 and at N = 320 little enough
-that round-off in positions over the penetration is still small; a twentieth is the most that is left to any N.
+elements'.  It leaves a fortieth of the thickness at N = 10 (a twentieth is the most that is left to any N) and at
+N = 160 a few ten-millionths.  Below that round-off in the positions becomes a share of the penetration, and the
+penetration falls with the square of N only: enough for the order that :mod:`comparisons.convergence` tries beside the
+fourth, so that what is left shows in the limit's uncertainty.
 
 Of a probe at a station a size counts if its run gave a whole answer and the contact that the probe speaks of is as
 closed there as at the finest size; of the sizes that do not, the coarser ones do not count either, since a contact
@@ -24,7 +26,7 @@ from typing import Literal
 import numpy as np
 
 from comparisons.choices import Choices, Kinematics
-from comparisons.convergence import Limit, limit, observed, orders
+from comparisons.convergence import COMMON, Limit, limit, observed, orders
 from comparisons.measures import arc_lengths, round_off, station_of, unit_of
 from comparisons.order import OWN, order_of
 from comparisons.pairing import Crew, Job, Solvers
@@ -36,6 +38,7 @@ from scene.answer import Array
 
 SIZES = (10, 20, 40, 80, 160, 320)
 STANDARD_AT = 40
+STIFF_AT = 160
 LOOSEST = 0.05
 _BESIDE_A_KINK = 1.5  # elements: the one that holds it, and half of those beside it
 _COMPONENTS: Mapping[str, tuple[str, str]] = {
@@ -164,7 +167,6 @@ class Convergence:
     sizes: tuple[int, ...]
     series: tuple[Series, ...]
     families: tuple[Family, ...]
-    exact: Answer | None
 
     @property
     def completed(self) -> bool:
@@ -174,8 +176,8 @@ class Convergence:
 
 def at(choices: Choices, n: int) -> Choices:
     """The choices of the family's member of size N."""
-    penetration = min(LOOSEST, choices.penetration * (STANDARD_AT / n) ** OWN["fea"])
-    return replace(choices, links=n, elements=n, penetration=penetration)
+    share = (STANDARD_AT / min(n, STIFF_AT)) ** OWN["fea"] * (STIFF_AT / max(n, STIFF_AT)) ** COMMON
+    return replace(choices, links=n, elements=n, penetration=min(LOOSEST, choices.penetration * share))
 
 
 def converged(
@@ -184,7 +186,6 @@ def converged(
     choices: Choices,
     solvers: Solvers,
     crew: Crew,
-    exact: Answer | None = None,
 ) -> Convergence:
     """Solve a scene at all sizes and see how every probe goes with N.
 
@@ -192,9 +193,8 @@ def converged(
         scene: the question.
         sizes: N, two or more, ascending.
         choices: the formulation and the beam theory; the sizes and the penetration are the family's own.
-        solvers: who answers.
+        solvers: who answers, and who knows the exact answer as far as there is one.
         crew: processes to share the runs.
-        exact: the exact answer in the theory ``bending``, as far as it is known.
 
     Raises:
         SceneError: a solver refuses the question.
@@ -205,11 +205,14 @@ def converged(
         jobs["cprbm", choices.formulation, n] = (solvers.cprbm, scene, at(choices, n))
         for theory in theories:
             jobs["fea", theory, n] = (solvers.fea, scene, at(choices, n).within(theory))
+    known = [] if solvers.exact is None else [(solvers.exact, scene, choices)]
+    found = crew.answers([*jobs.values(), *known])
+    exact = found.pop() if known else None
     answers: dict[tuple[Method, str], dict[int, Answer]] = {}
-    for (method, variant, n), answer in zip(jobs, crew.answers(list(jobs.values())), strict=True):
+    for (method, variant, n), answer in zip(jobs, found, strict=True):
         answers.setdefault((method, variant), {})[n] = answer
     series = [Series(*which, own, _complaints(scene, own)) for which, own in answers.items()]
-    return Convergence(scene, tuple(sizes), tuple(series), _families(scene, series, exact), exact)
+    return Convergence(scene, tuple(sizes), tuple(series), _families(scene, series, exact))
 
 
 def _complaints(scene: Scene, answers: Mapping[int, Answer]) -> dict[int, str]:

@@ -20,8 +20,8 @@ SIZES = (10, 20, 40, 80)
 LAST = 0.67
 
 
-def _found(hinge, solvers, sizes=SIZES, exact=None, kinematics="bending"):
-    return converged(hinge, sizes, Choices(kinematics=kinematics), solvers, ALONE, exact)
+def _found(hinge, solvers, sizes=SIZES, kinematics="bending"):
+    return converged(hinge, sizes, Choices(kinematics=kinematics), solvers, ALONE)
 
 
 def _family(found, probe, station=LAST, method="cprbm"):
@@ -89,6 +89,7 @@ def test_the_penetration_falls_with_the_fourth_power_and_is_never_large():
     assert at(Choices(), 80).penetration == Choices().finer().penetration
     assert at(Choices(), 10).penetration == pytest.approx(256.0 * Choices().penetration)
     assert at(Choices(), 4).penetration == 0.05
+    assert at(Choices(), 160).penetration / at(Choices(), 320).penetration == pytest.approx(4.0)
     assert (at(Choices(), 20).links, at(Choices(), 20).elements) == (20, 20)
 
 
@@ -147,8 +148,8 @@ def test_a_stress_is_followed_at_one_place_that_is_compared(hinge, right):
 
 def test_the_exact_values_stand_beside_where_they_are_known(hinge, right):
     known = MadeUp("cprbm", 0.0)(hinge, Choices())
-    covered = replace(known, stations=known.stations[3:], ending=Ending.STEP_TOO_SMALL)
-    found = _found(hinge, right, exact=covered, kinematics="shear")
+    covered = replace(known, stations=known.stations[3:], ending=Ending.NOT_COVERED)
+    found = _found(hinge, replace(right, exact=lambda scene, choices: covered), kinematics="shear")
     family = _family(found, "BD.rotation")
     assert family.true_error(20) == pytest.approx(family.apart(20), rel=1e-6)
     assert _family(found, "BD.rotation", hinge.stages[0].stations[0]).exact is None
