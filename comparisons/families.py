@@ -40,6 +40,7 @@ SIZES = (10, 20, 40, 80, 160, 320)
 STANDARD_AT = 40
 STIFF_AT = 160
 LOOSEST = 0.05
+_AS_LARGE = 1e-3  # of the largest stress, by which a place may have less and count as one with it
 _BESIDE_A_KINK = 1.5  # elements: the one that holds it, and half of those beside it
 _COMPONENTS: Mapping[str, tuple[str, str]] = {
     "displacement": ("x", "y"),
@@ -249,7 +250,8 @@ def _places(
 
     It is where the stress is largest in the finest answers among the places at which it is compared
     (:mod:`comparisons.spots`) and that are no nearer to a kink of the section than its elements at the three finest
-    sizes reach, beside which the stress shows no order; where there are none, among all.
+    sizes reach, beside which the stress shows no order; where there are none, among all.  Of places that are equally
+    large, as all are along a circle, it is the first.
     """
     if probe.quantity != "bending_stress":
         return slice(None)
@@ -259,7 +261,8 @@ def _places(
     kinks = scene.beams[probe.of].knots[1:-1]
     away = np.abs(np.linspace(0.0, 1.0, probe.points)[:, None] - kinks)
     clear = clear & np.all(away > _BESIDE_A_KINK / sizes[-3:][0], axis=1)
-    place = int(np.argmax(np.where(clear, largest, -1.0) if clear.any() else largest))
+    among = np.where(clear, largest, -1.0) if clear.any() else largest
+    place = int(np.argmax(among >= (1.0 - _AS_LARGE) * among.max()))
     return slice(place, place + 1)
 
 
@@ -326,4 +329,4 @@ def _exactly(
         found = station_of(exact, stage.name, value).values[probe.name][places]
     except KeyError:  # the station is not covered, or the probe
         return None
-    return found if found.shape == like.shape else None
+    return found if found.size and found.shape == like.shape else None
