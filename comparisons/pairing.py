@@ -70,6 +70,13 @@ def fea_answer(scene: Scene, choices: Choices) -> Answer:
     return fea_reference.answer(scene, settings)
 
 
+def exact_answer(scene: Scene, choices: Choices) -> Answer:
+    """The exact answer in the theory ``bending``, or as much of it as is known; the choices have no part in it."""
+    import exact
+
+    return exact.answer(scene, exact.Settings())
+
+
 class Offsets(Protocol):
     """Offset points (k, n, 2), m, at k distances, their tangents' angles (n,), how far off they may be (k, n), m."""
 
@@ -94,16 +101,21 @@ def cprbm_offset_points(curve: Curve, spacing: Spacing, n: int, distances: Array
 
 @dataclass(frozen=True, slots=True)
 class Solvers:
-    """The functions that are compared; others can be planted in their place."""
+    """The functions that are compared; others can be planted in their place.
+
+    ``exact`` stands beside them where it is given: an exact answer is that of the real beams, and no measure of what
+    is planted in the place of the solvers.
+    """
 
     cprbm: Solver = cprbm_answer
     fea: Solver = fea_answer
     offset: OffsetConstruction = cprbm_offset_points
+    exact: Solver | None = None
 
 
 def solvers_of(planted: object) -> Solvers:
-    """What was ``planted`` in the place of the two solvers, or these."""
-    return planted if isinstance(planted, Solvers) else Solvers()
+    """What was ``planted`` in the place of the solvers, or these with the exact answer beside them."""
+    return planted if isinstance(planted, Solvers) else Solvers(exact=exact_answer)
 
 
 @dataclass(frozen=True, slots=True)
