@@ -1,0 +1,67 @@
+"""The account of a case's differences: its budgets, and what its claims would need.  Two rounds of runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from comparisons.budget import Budget, budgets_of
+from comparisons.budget_runs import Asked, BudgetRuns, budgeted
+from comparisons.choices import Choices
+from comparisons.pairing import ALONE, Crew, Solvers
+from comparisons.poisson import ClaimedRatio, claimed_ratios, rerun, with_ratio
+from comparisons.soundness import complaints
+from scene import Answer, Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Account:
+    """What the differences of a case are made of.
+
+    Attributes:
+        scene: the question.
+        runs: all answers that it rests on.
+        budgets: at every station; none where an answer is not whole.
+        claims: those of the last station.
+        missing: why there are no budgets, in sentences; empty where there are.
+    """
+
+    scene: Scene
+    runs: BudgetRuns
+    budgets: tuple[Budget, ...]
+    claims: tuple[ClaimedRatio, ...]
+    missing: tuple[str, ...]
+
+
+def accounted(
+    scene: Scene,
+    choices: Choices,
+    solvers: Solvers,
+    crew: Crew = ALONE,
+    known: Mapping[Asked, Answer] | None = None,
+) -> Account:
+    """Run what an error budget needs, and draw it up.
+
+    Args:
+        scene: the question.
+        choices: how finely, and by which variants.
+        solvers: who answers.
+        crew: processes to share the runs.
+        known: answers to this scene by :func:`comparisons.budget_runs.asked`; what is there is not run again.
+
+    Raises:
+        SceneError: a solver refuses the question.
+    """
+    runs = budgeted(scene, choices, solvers, crew, known)
+    missing = tuple(
+        f"{name}: {what}" for name, answer in runs.everything() for what in complaints(scene, answer)
+    )
+    if missing:
+        return Account(scene, runs, (), (), missing)
+    budgets = budgets_of(scene, runs)
+    claims = claimed_ratios(scene, runs, budgets)
+    ratios = [ratio for claim in claims for ratio in claim.ratios]
+    answers = iter(crew.answers([(solvers.fea, with_ratio(scene, ratio), choices) for ratio in ratios]))
+    return Account(
+        scene, runs, budgets, tuple(rerun(claim, [next(answers) for _ in claim.ratios]) for claim in claims), ()
+    )
