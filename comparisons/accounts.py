@@ -53,9 +53,7 @@ def accounted(
         SceneError: a solver refuses the question.
     """
     runs = budgeted(scene, choices, solvers, crew, known)
-    missing = tuple(
-        f"{name}: {what}" for name, answer in runs.everything() for what in complaints(scene, answer)
-    )
+    missing = tuple(f"{name}: {what}" for name, answer in runs.everything() for what in complaints(scene, answer))
     if missing:
         return Account(scene, runs, (), (), missing)
     budgets = budgets_of(scene, runs)

@@ -21,8 +21,9 @@ difference at all, parts that cancel are told along v_f.
 
 The limits in N and n are :func:`comparisons.convergence.limit`'s, of the order that :mod:`comparisons.order` assumes.
 What the penalty does is proportional to p once p is small: v_0 is extrapolated from p/4 and p/16, and v(p) beside
-that line says whether p is small as well.  In every theory L_t is extrapolated in n at p/16, less δ.  On a circle the
-elements' length decides how deep a beam presses, whatever p: there the penalty is a part of ``elements``.
+that line says whether p is small as well.  In every theory L_t is extrapolated in n from values less what the
+penalty does to them, δ at n elements and p/16 and δ/16 at 2n and p/256.  On a circle the elements' length decides how
+deep a beam presses, whatever p: there the penalty is a part of ``elements``.
 
 Where ``auto`` was chosen, the distance of ``paper`` at N is told beside the parts and belongs to no sum.  Nor does what
 both solvers leave out of a stress alike, :mod:`comparisons.curved_beam`.
@@ -30,13 +31,11 @@ both solvers leave out of a stress alike, :mod:`comparisons.curved_beam`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from comparisons.budget_runs import ELEMENTS, LEVELS, TIGHTNESS, BudgetRuns
+from comparisons.budget_runs import DEEPER, ELEMENTS, LEVELS, TIGHTNESS, BudgetRuns
 from comparisons.convergence import limit
 from comparisons.curved_beam import inner_edge_factor
 from comparisons.geometry import bentness_on, length
@@ -46,6 +45,9 @@ from comparisons.scales import denominator, norm, probe_scale
 from comparisons.spots import clear_of_spots
 from scene import Answer, Probe, Scene, Stage
 from scene.answer import Array
+
+LEAST = 1e-9
+"""Parts that come to less, as a fraction, tell of tolerances and of no part."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,19 +77,29 @@ class Budget:
     Attributes:
         row: the values, their difference and what fractions are taken of.
         parts: the sum.
-        unsettled: how far L_c − L_b may be off, by the limits' own uncertainties.
+        rest_uncertainty: how far L_c − L_b may be off, by the limits' own uncertainties.
+        elements_uncertainty: the same of L_f.
         off_line: distance of v_f from the line through the values at p/4 and p/16.
         paper: component of ``paper`` less ``auto`` at N along the difference; None where one of them is missing.
-        curved: of a stress the largest that the curved beam's inner edge has more than the straight-beam formula
-            says of the finite elements' stress, at the places that take part; None for other probes.
+        inner_edge: of a stress K (k,) at all places, the curved beam's inner edge over the straight-beam formula; None
+            of other probes.
+        curved: the largest (K − 1)|v_f| at the places that take part.
     """
 
     row: Row
     parts: Parts
-    unsettled: float
+    rest_uncertainty: float
+    elements_uncertainty: float
     off_line: float
     paper: float | None
+    inner_edge: Array | None
     curved: float | None
+
+    @property
+    def all_parts(self) -> float:
+        """Σ|part| as a fraction; 0 where it is no more than tolerances of two iterations leave."""
+        found = self.row.fraction(sum(map(abs, self.parts.by_name().values()))) or 0.0
+        return found if found > LEAST else 0.0
 
 
 def budgets_of(scene: Scene, runs: BudgetRuns) -> tuple[Budget, ...]:
@@ -128,19 +140,24 @@ def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: f
     tighter = np.array([v(answer) for answer in runs.penalty[1:]])
     v_0 = limit(TIGHTNESS[1:], tighter, 1.0).value
     delta = tighter[-1] - v_0
-    L = [limit(ELEMENTS, np.array([v(answer) for answer in answers]), order) for answers in runs.fea.values()]
+    left = np.outer(DEEPER, delta)
+    L = [limit(ELEMENTS, np.array([v(each) for each in answers]) - left, order) for answers in runs.fea.values()]
     d = v_c - v_f
     along = direction(probe.quantity, d if d.any() else v_f)
-    ladder = [v_c, v_a, L_c.value, *(each.value - delta for each in L), v_0, v_f]
+    ladder = [v_c, v_a, L_c.value, *(each.value for each in L), v_0, v_f]
     contact, links, rest, *theory, elements, penalty = components(ladder, along)
     stretch, shear = theory + [0.0] * (2 - len(theory))
+    paper = _in_paper(runs, row)
+    K = _inner_edge(scene, row)
     return Budget(
         row=replace(row, difference=norm(probe.quantity, d)),
         parts=Parts(contact, links, rest, stretch, shear, elements, penalty),
-        unsettled=float(np.dot(L_c.uncertainty + L[0].uncertainty, np.abs(along))),
+        rest_uncertainty=float(np.dot(L_c.uncertainty + L[0].uncertainty, np.abs(along))),
+        elements_uncertainty=float(np.dot(L[-1].uncertainty, np.abs(along))),
         off_line=norm(probe.quantity, v_f - (v_0 + TIGHTNESS[-1] * delta)),
-        paper=_paper(runs, v, v_a, along),
-        curved=_curved(scene, row, counts),
+        paper=None if paper is None else float(np.dot(paper[counts] - v_a, along)),
+        inner_edge=K,
+        curved=None if K is None else float(np.max((K - 1.0)[counts] * np.abs(v_f))),
     )
 
 
@@ -162,18 +179,17 @@ def _row(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: floa
     )
 
 
-def _paper(runs: BudgetRuns, v: Callable[[Answer], Array], v_a: Array, along: Array) -> float | None:
-    """The component of ``paper`` less ``auto``; None where there is no value in ``paper``."""
+def _in_paper(runs: BudgetRuns, row: Row) -> Array | None:
+    """The value in ``paper`` at N; None where there is none, or one of a contact that is open there alone."""
     if runs.paper is None or not runs.paper.completed:
         return None
-    found = v(runs.paper)
-    return float(np.dot(found - v_a, along)) if found.shape == v_a.shape else None
+    found = station_of(runs.paper, row.stage, row.station).values[row.probe.name]
+    return found if found.shape == row.cprbm.shape else None
 
 
-def _curved(scene: Scene, row: Row, counts: NDArray[np.bool_]) -> float | None:
-    """The largest (K − 1)|σ| of the finite elements at the places that count; None of what is no stress."""
+def _inner_edge(scene: Scene, row: Row) -> Array | None:
+    """K at the places of a stress; None of other probes."""
     if row.arc_length is None:
         return None
     beam = scene.beams[row.probe.of]
-    K = inner_edge_factor(bentness_on(beam, row.arc_length / length(beam.curve)))
-    return float(np.max((K - 1.0)[counts] * np.abs(row.fea)[counts]))
+    return inner_edge_factor(bentness_on(beam, row.arc_length / length(beam.curve)))

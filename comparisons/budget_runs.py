@@ -8,8 +8,7 @@ p           the penetration of the choices
 ==========  ================================================================================================
 
 The CPRBM runs as it was chosen and, in ``auto``, at N, 2N and 4N.  The finite elements run in the chosen theory at n
-elements and p, p/4 and p/16; and in every theory up to the chosen one at n and 2n elements and p/16, which is small
-enough that the rest of what the penalty does goes with p.
+elements and p, p/4 and p/16; and in every theory up to the chosen one at n elements and p/16 and at 2n and p/256.
 """
 
 from __future__ import annotations
@@ -30,6 +29,9 @@ LEVELS = (1, 2, 4)
 ELEMENTS = (1, 2)
 """Elements over n."""
 
+DEEPER = (1.0, 1.0 / 16.0)
+"""Penetration over that at n elements, for each of them; as :meth:`Choices.finer` has it."""
+
 TIGHTNESS = (1, 4, 16)
 """p over the penetration of a run."""
 
@@ -44,7 +46,8 @@ class BudgetRuns:
         auto: in the formulation ``auto``, at each of :data:`LEVELS`.
         paper: in ``paper`` at N; None where that cannot be asked. No sum contains it unless it was chosen.
         penalty: the finite elements in the chosen theory at n elements and each of :data:`TIGHTNESS`.
-        fea: by theory, from ``bending`` up to the chosen one, at each of :data:`ELEMENTS` and the last penetration.
+        fea: by theory, from ``bending`` up to the chosen one: at n elements and the last of those penetrations, and
+            finer, at each of :data:`ELEMENTS` and with :data:`DEEPER` times its penetration.
     """
 
     kinematics: Kinematics
@@ -110,8 +113,7 @@ def budgeted(
     cprbm = [asked("cprbm", choices)]
     auto = [asked("cprbm", each) for each in (even, even.finer(), even.finer().finer())]
     penalty = [asked("fea", each) for each in tight]
-    # choices.finer() has the last of the penetrations as well
-    fea = [asked("fea", each.within(theory)) for theory in theories for each in (tight[-1], choices.finer())]
+    fea = [asked("fea", each.within(theory)) for theory in theories for each in (tight[-1], tight[-1].finer())]
     answers = dict(known or {})
     missing = [each for each in dict.fromkeys((*cprbm, *auto, *penalty, *fea)) if each not in answers]
     functions = {"cprbm": solvers.cprbm, "fea": solvers.fea}

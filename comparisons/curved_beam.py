@@ -40,8 +40,6 @@ def inner_edge_factor(bentness: Array) -> Array:
     series = h < _SERIES_BELOW
     at = np.where(series, _SERIES_BELOW, h)
     powers = 2.0 * np.arange(_TERMS)
-    b = np.where(
-        series, np.sum(h[..., None] ** powers / (powers + 3.0), axis=-1), (np.arctanh(at) / at - 1.0) / at**2
-    )
+    b = np.where(series, np.sum(h[..., None] ** powers / (powers + 3.0), axis=-1), (np.arctanh(at) / at - 1.0) / at**2)
     a = 1.0 + h**2 * b
     return np.asarray((a - h * b) / (3.0 * b * (1.0 - h)))

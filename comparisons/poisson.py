@@ -46,15 +46,15 @@ class ClaimedRatio:
     Attributes:
         claim: what is claimed.
         budget: ours, at the scene's own ratio.
-        least, most: our difference towards both ends of :data:`BOUNDS`, fractions as the claim takes them.
+        without_shear, incompressible: our difference for ν → −1 and at ν = 1/2, fractions as the claim takes them.
         ratios: where it is the claimed one, ascending; none where there is no such ratio.
         reruns: what a run at each of them gives instead; empty before they are run.
     """
 
     claim: Claim
     budget: Budget
-    least: float
-    most: float
+    without_shear: float
+    incompressible: float
     ratios: tuple[float, ...]
     reruns: tuple[float | None, ...] = ()
 
@@ -66,7 +66,7 @@ def with_ratio(scene: Scene, ratio: float) -> Scene:
 
 
 def claimed_ratios(scene: Scene, runs: BudgetRuns, budgets: Sequence[Budget]) -> tuple[ClaimedRatio, ...]:
-    """Every claim about the last station; none where the theory is another than shear, or ratios differ in the scene."""
+    """Every claim about the last station; none without shear, or where the materials' ratios are not one."""
     own = {material.poisson_ratio for material in scene.materials.values()}
     if runs.kinematics != "shear" or len(own) != 1:
         return ()
@@ -77,9 +77,7 @@ def claimed_ratios(scene: Scene, runs: BudgetRuns, budgets: Sequence[Budget]) ->
 def last_budgets(scene: Scene, budgets: Sequence[Budget]) -> tuple[Budget, ...]:
     """The budgets of the last station of the last stage."""
     last = scene.stages[-1]
-    return tuple(
-        each for each in budgets if each.row.stage == last.name and each.row.station == last.stations[-1]
-    )
+    return tuple(each for each in budgets if each.row.stage == last.name and each.row.station == last.stations[-1])
 
 
 def rerun(found: ClaimedRatio, answers: Sequence[Answer]) -> ClaimedRatio:
