@@ -177,7 +177,9 @@ def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
     Raises:
         KeyError: an answer lacks a station or a probe.
     """
-    unsettled = {probe.name: _round_off(scene, runs, probe) for probe in scene.probes}
+    everyone = tuple(answer for _, answer in runs.everything())
+    compared = (runs.cprbm[0], runs.reference)
+    unsettled = {probe.name: round_off(scene, probe, everyone, compared) for probe in scene.probes}
     return _none_small_by_accident(
         tuple(
             _row(scene, runs, probe, stage, value, unsettled[probe.name])
@@ -200,19 +202,26 @@ def station_of(answer: Answer, stage: str, value: float) -> StationAnswer:
     raise KeyError(f"{answer.solver} has no station {stage} {value:g}")
 
 
-def _round_off(scene: Scene, runs: Runs, probe: Probe) -> float:
-    """What the certificates of all stations leave unsettled of a probe, in its unit."""
+def round_off(scene: Scene, probe: Probe, everyone: tuple[Answer, ...], compared: tuple[Answer, ...]) -> float:
+    """What the certificates of all stations leave unsettled of a probe, in its unit.
+
+    Args:
+        scene: the question.
+        probe: the probe.
+        everyone: the answers whose certificates count.
+        compared: the answers of whose values a share is left unsettled.
+
+    Raises:
+        KeyError: an answer lacks a station.
+    """
     largest = 0.0
     for stage in scene.stages:
         largest = max(largest, ROUND_OFF * natural_scale(scene, probe.quantity, stage, contact=probe.of))
         for value in stage.stations:
-            everyone = [station_of(answer, stage.name, value) for _, answer in runs.everything()]
-            floor = max(max(s.certificate.residual, s.certificate.residual_floor) for s in everyone)
+            stations = [station_of(answer, stage.name, value) for answer in everyone]
+            floor = max(max(s.certificate.residual, s.certificate.residual_floor) for s in stations)
             here = stage.model_copy(update={"stations": (value,)})
-            alone = tuple(
-                replace(answer, stations=(station_of(answer, stage.name, value),))
-                for answer in (runs.cprbm[0], runs.reference)
-            )
+            alone = tuple(replace(answer, stations=(station_of(answer, stage.name, value),)) for answer in compared)
             largest = max(largest, floor * family_size(scene, probe.quantity, here, alone, contact=probe.of))
     return largest
 

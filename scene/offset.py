@@ -11,7 +11,10 @@ from pydantic import Field
 
 from scene.statement import Curve, Fraction, Name, Named, Positive, Record
 
-Number = Annotated[int, Field(ge=4, le=200)]
+FEWEST, MOST = 4, 200
+"""Springs that a question may ask for."""
+
+Number = Annotated[int, Field(ge=FEWEST, le=MOST)]
 Offsets = Annotated[tuple[Positive, ...], Field(min_length=1, max_length=100)]
 Numbers = Annotated[tuple[Number, ...], Field(min_length=1, max_length=100)]
 

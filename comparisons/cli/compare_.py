@@ -37,9 +37,10 @@ def command(
     out: Path | None,
 ) -> int:
     """Answer scenes with both solvers and say whether they agree."""
-    from comparisons import cases, offset_pages, report, sheets
+    from comparisons import offset_pages, report, sheets
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
+    from comparisons.cli.asking import questions
     from comparisons.offset_verdict import OffsetComparison, compared_offset
     from comparisons.pairing import Solvers, crew_of, paired, solvers_of
     from comparisons.verdict import compared
@@ -47,13 +48,11 @@ def command(
 
     workers = 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
     solvers = solvers_of(planted)
-    names = [name for text in asked for name in (cases.names() if text == "all" else (text,))]
-    scenes = [cases.asked(name) for name in dict.fromkeys(names)]
+    scenes = questions(asked)
     choices = Choices(links, formulation, elements, kinematics, penetration)
     for scene in scenes:
         if not isinstance(scene, OffsetQuestion):
             check(choices, scene)
-    _distinct([scene.name for scene in scenes])
     if out is None and "all" in asked:
         out = Path("report")
     showing.room_for(json_file, out)
@@ -104,9 +103,3 @@ def _document(one: Comparison | OffsetComparison) -> Plain:
     from comparisons.offset_verdict import OffsetComparison
 
     return offset_pages.document(one) if isinstance(one, OffsetComparison) else documents.comparison(one)
-
-
-def _distinct(names: list[str]) -> None:
-    twice = sorted({name for name in names if names.count(name) > 1})
-    if twice:
-        raise click.UsageError(f"Several scenes have the name {', '.join(twice)}; allowed: a name for each.")

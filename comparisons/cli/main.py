@@ -21,7 +21,7 @@ from scene import SceneError
 if TYPE_CHECKING:
     from comparisons.pairing import Solvers
 
-_COMMANDS = ("list", "solve", "compare", "bench", "study", "regress")
+_COMMANDS = ("list", "solve", "compare", "converge", "bench", "study", "regress")
 
 WRONG_QUESTION = 2
 INTERRUPTED = 130
@@ -43,6 +43,8 @@ class _SubCommands(Commands):
                 from comparisons.cli.solve_ import command
             case "compare":
                 from comparisons.cli.compare_ import command
+            case "converge":
+                from comparisons.cli.converge_ import command
             case "bench":
                 from comparisons.cli.bench_ import command
             case "study":

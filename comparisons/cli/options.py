@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -55,6 +56,18 @@ def counts(ctx: click.Context, param: click.Parameter, value: str | None) -> tup
     return None if value is None else tuple(_whole(text.strip()) for text in value.split(","))
 
 
+def family_sizes(ctx: click.Context, param: click.Parameter, value: str) -> tuple[int, ...]:
+    """Two whole numbers or more that ascend.
+
+    Raises:
+        click.BadParameter: the text is something else.
+    """
+    found = tuple(_whole(text.strip()) for text in value.split(","))
+    if len(found) < 2 or any(b <= a for a, b in pairwise(found)):
+        raise click.BadParameter(f"found {value!r}; allowed: two numbers or more, each larger than the one before")
+    return found
+
+
 def positive(ctx: click.Context, param: click.Parameter, value: str) -> float:
     """A positive, finite number.
 
@@ -86,16 +99,22 @@ def _number(text: str) -> float:
         return math.nan
 
 
+def variants(command: Decorated) -> Decorated:
+    """``--formulation`` and ``--kinematics``."""
+    standard = Choices()
+    command = click.option("--kinematics", type=click.Choice(KINEMATICS), default=standard.kinematics,
+                           show_default=True, help="Beam theory of the finite elements.")(command)  # fmt: skip
+    return click.option("--formulation", type=click.Choice(["auto", "paper"]), default=standard.formulation,
+                        show_default=True, help="Contact formulation of the CPRBM.")(command)  # fmt: skip
+
+
 def numerical(command: Decorated) -> Decorated:
     """The options that make up :class:`comparisons.choices.Choices`."""
     standard = Choices()
+    command = click.option("--penetration", callback=fraction, default=str(standard.penetration), show_default=True,
+                           help="Overlap that the finite elements may leave, over the thickness.")(command)  # fmt: skip
+    command = variants(command)
     for option in (
-        click.option("--penetration", callback=fraction, default=str(standard.penetration), show_default=True,
-                     help="Overlap that the finite elements may leave, over the thickness."),
-        click.option("--kinematics", type=click.Choice(KINEMATICS), default=standard.kinematics,
-                     show_default=True, help="Beam theory of the finite elements."),
-        click.option("--formulation", type=click.Choice(["auto", "paper"]), default=standard.formulation,
-                     show_default=True, help="Contact formulation of the CPRBM."),
         click.option("--elements", callback=count, metavar="COUNT", default=str(standard.elements),
                      show_default=True, help="Finite elements per beam: one number or beam1=60,beam2=80."),
         click.option("-n", "links", callback=count, metavar="COUNT", default=str(standard.links),

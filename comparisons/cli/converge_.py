@@ -1,0 +1,101 @@
+"""``cprbm converge``: both solvers at a family of sizes, the limits of all numbers and their orders."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from comparisons.choices import Kinematics
+from comparisons.cli.options import family_sizes, folder, output, variants
+
+if TYPE_CHECKING:
+    from comparisons.choices import Choices
+    from comparisons.convergence_report import Told
+    from comparisons.pairing import Crew, Solvers
+    from scene import Question
+
+NOT_COMPLETED = 1
+
+
+@click.command("converge")
+@click.argument("asked", nargs=-1, required=True, metavar="CASE|FILE.toml...|all")
+@click.option(
+    "--sizes",
+    callback=family_sizes,
+    metavar="N,N,...",
+    default="10,20,40,80,160,320",
+    show_default=True,
+    help="Links and elements per beam, two or more.",
+)
+@variants
+@output
+@folder("Folder of the page, the numbers and the figures; 'convergence' for 'converge all', else none unless given.")
+@click.pass_obj
+def command(
+    planted: object,
+    asked: tuple[str, ...],
+    sizes: tuple[int, ...],
+    formulation: Literal["auto", "paper"],
+    kinematics: Kinematics,
+    json_file: Path | None,
+    quiet: bool,  # noqa: FBT001 - click hands it over by name
+    out: Path | None,
+) -> int:
+    """See how the error falls with N, with which order, and to which limit."""
+    from comparisons import convergence_report
+    from comparisons.choices import Choices
+    from comparisons.cli import showing
+    from comparisons.cli.asking import questions
+    from comparisons.pairing import Solvers, crew_of, solvers_of
+
+    workers = 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
+    solvers = solvers_of(planted)
+    wanted = questions(asked)
+    if out is None and "all" in asked:
+        out = Path("convergence")
+    showing.room_for(json_file, out)
+    choices = Choices(formulation=formulation, kinematics=kinematics)
+    printing = str(json_file) != "-"
+    finished: list[Told] = []
+    chapters: tuple[convergence_report.Chapter, ...] = ()
+    with crew_of(workers) as crew:
+        for question in showing.progress(wanted, shown=not quiet):
+            told = _told(question, sizes, choices, solvers, crew)
+            finished.append(told)
+            if out is not None:
+                chapters = convergence_report.add(out, chapters, told)
+            if json_file is not None and printing:
+                showing.json(json_file, {"cases": [one.data for one in finished]})
+            if printing and not quiet:
+                showing.tables(told.sheets)
+            if printing:
+                for sentence in told.sentences:
+                    click.echo(f"{question.name}: {sentence}")
+    if json_file is not None and not printing:
+        showing.json(json_file, {"cases": [one.data for one in finished]})
+    if out is not None and printing and not quiet:
+        click.echo(f"report: {out / 'index.html'}")
+    return 0 if all(told.completed for told in finished) else NOT_COMPLETED
+
+
+def _told(question: Question, sizes: tuple[int, ...], choices: Choices, solvers: Solvers, crew: Crew) -> Told:
+    """Everything that there is to tell of one question."""
+    from comparisons import convergence_drawn, convergence_told, offset_converged
+    from comparisons.convergence_report import Told
+    from comparisons.families import converged
+    from scene import OffsetQuestion
+
+    if isinstance(question, OffsetQuestion):
+        return offset_converged.told(question, sizes, solvers.offset)
+    found = converged(question, sizes, choices, solvers, crew)
+    return Told(
+        question,
+        convergence_told.sheets_of(found),
+        convergence_told.sentences_of(found),
+        convergence_drawn.of_convergence(found),
+        convergence_told.document(found),
+        found.completed,
+    )

@@ -1,0 +1,57 @@
+"""The folder of ``converge``: a page, rewritten after every finished case, and per case the numbers and the figure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from comparisons import documents
+from comparisons.documents import Plain
+from comparisons.figures import Picture
+from comparisons.rendering import Embedded, embedded, rendered
+from comparisons.sheets import Sheet
+from comparisons.writing import write
+from scene import Question
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What there is to tell of one case; ``data`` is its documented JSON."""
+
+    asked: Question
+    sheets: tuple[Sheet, ...]
+    sentences: tuple[str, ...]
+    pictures: tuple[Picture, ...]
+    data: Plain
+    completed: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Chapter:
+    """What the page shows of one case."""
+
+    name: str
+    title: str
+    source: str
+    sentences: tuple[str, ...]
+    sheets: tuple[Sheet, ...]
+    pictures: tuple[Embedded, ...]
+
+
+def add(folder: Path, earlier: tuple[Chapter, ...], told: Told) -> tuple[Chapter, ...]:
+    """Write a finished case into the folder, which is made where it is missing; all chapters that it holds now.
+
+    Raises:
+        OSError: the folder cannot be written to.
+    """
+    asked = told.asked
+    own = folder / asked.name
+    write(own / "convergence.json", documents.text({"cases": [told.data]}))
+    for picture in told.pictures:
+        write(own / f"{picture.name}.svg", picture.svg)
+        write(own / f"{picture.name}.png", picture.png)
+    pictures = tuple(embedded(picture) for picture in told.pictures)
+    mine = Chapter(asked.name, asked.title or asked.name, asked.source, told.sentences, told.sheets, pictures)
+    chapters = (*earlier, mine)
+    write(folder / "index.html", rendered("convergence.html", {"cases": chapters}))
+    return chapters

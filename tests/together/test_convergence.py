@@ -1,0 +1,185 @@
+"""Orders and limits of both solvers, against elasticas that are known to many digits.
+
+References: tests.references.hinge (a boundary-value problem with one point of contact) and tests.references.wrapped
+(a closed form for contact over a length), which import no solver and hold in the theory ``bending``.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from statistics import median
+
+import numpy as np
+import pytest
+
+from comparisons import cases
+from comparisons.choices import Choices
+from comparisons.convergence import limit
+from comparisons.convergence_told import beside, between
+from comparisons.families import Convergence, Family, converged
+from comparisons.pairing import ALONE, Solvers
+from scene import Scene
+from tests.references import hinge as exact
+from tests.together.test_calibration import truth_of, wrapped_truth
+
+APART, TOUCHING = (0.201, 0.268), (0.402, 0.67)  # N·m on the hinge, which closes at 0.32
+QUIET = 1e-9  # of the scale: below this a change is no matter of discretisation
+
+
+def _at(case: str, stations: tuple[float, ...]) -> Scene:
+    scene = cases.opened(case)
+    (stage,) = scene.stages
+    return scene.model_copy(update={"stages": (stage.model_copy(update={"stations": stations}),)})
+
+
+def _converged(scene: Scene, *sizes: int) -> Convergence:
+    return converged(scene, sizes, Choices(kinematics="bending"), Solvers(), ALONE)
+
+
+@pytest.fixture(scope="module")
+def hinge() -> Convergence:
+    return _converged(_at("hinge", (*APART, *TOUCHING)), 10, 20, 40, 80, 160)
+
+
+@pytest.fixture(scope="module")
+def wrapped() -> Convergence:
+    return _converged(_at("wrapped", (97.0, 191.0)), 20, 40, 80, 160)
+
+
+@pytest.fixture(scope="module")
+def gripper() -> Convergence:
+    return _converged(_at("gripper", (12.0, 16.0)), 20, 40, 80)
+
+
+def _families(found: Convergence, method: str) -> dict[tuple[str, float], Family]:
+    return {(one.probe.name, one.station): one for one in found.families if one.series.method == method}
+
+
+@lru_cache
+def _solved(moment: float) -> tuple[exact.HingeSolution, float]:
+    return exact.solve(exact.PAPER, moment), exact.closing_moment(exact.PAPER)
+
+
+def _hinge_truth(probe: str, moment: float, arc: np.ndarray | None = None) -> np.ndarray:
+    return np.asarray(truth_of(*_solved(moment), probe, arc), dtype=float)
+
+
+SMOOTH = (
+    "B.displacement",
+    "D.displacement",
+    "BD.rotation",
+    "A.reaction",
+    "C.reaction_moment",
+    "scene.potential_energy",
+)
+CONTACT = ("contact.force", "contact.closing_load")
+
+
+def _observed(families: dict[tuple[str, float], Family], probes: tuple[str, ...], stations: tuple[float, ...]):
+    """All orders; of the finest sizes there is none where the fourth order has brought a change down to round-off."""
+    every = [families[probe, station].orders for probe in probes for station in stations]
+    assert all(orders[0] is not None for orders in every)
+    return [order for orders in every for order in orders if order is not None]
+
+
+@pytest.mark.parametrize("stations", [APART, TOUCHING])
+def test_the_order_of_the_cprbm_without_contact_and_with_contact_in_a_point(hinge, stations):
+    probes = SMOOTH if stations is APART else (*SMOOTH, *CONTACT)
+    found = _observed(_families(hinge, "cprbm"), probes, stations)
+    assert found == pytest.approx([2.0] * len(found), abs=0.1)
+
+
+@pytest.mark.parametrize(("probes", "stations"), [(SMOOTH, APART), (("contact.closing_load",), TOUCHING)])
+def test_the_order_of_the_elements_before_anything_presses(hinge, probes, stations):
+    found = _observed(_families(hinge, "fea"), probes, stations)
+    assert found == pytest.approx([4.0] * len(found), abs=0.1)
+
+
+def test_the_order_of_the_elements_where_a_penalty_presses(hinge):
+    # The penetration that is allowed falls with the fourth power of N, what a penalty leaves of it is up to the march:
+    # a quarter of that at one size and all of it at the next are two orders more or less.
+    found = _observed(_families(hinge, "fea"), (*SMOOTH, *CONTACT), TOUCHING)
+    assert median(found) == pytest.approx(4.0, abs=0.05)
+    assert 2.0 < min(found) <= max(found) < 6.0
+
+
+def test_the_order_of_the_cprbm_where_it_lies_on_a_circle(wrapped):
+    probes = ("T.displacement", "tip.rotation", "C.reaction_moment", "scene.potential_energy")
+    found = _observed(_families(wrapped, "cprbm"), probes, (97.0, 191.0))
+    assert found == pytest.approx([2.0] * len(found), abs=0.15)
+    assert median(found) == pytest.approx(2.0, abs=0.02)
+
+
+def test_the_order_of_the_elements_where_they_lie_on_a_circle(wrapped):
+    # Where the beam leaves the circle a point force stands somewhere within an element, and the curvature has a kink:
+    # over that element's length h a cubic's curvature is off by h, and the energy by the square of it, h² times h.
+    found = _observed(_families(wrapped, "fea"), ("scene.potential_energy",), (97.0, 191.0))
+    assert found == pytest.approx([3.0] * len(found), abs=0.15)
+
+
+def test_the_limits_of_the_hinge_are_the_exact_ones(hinge):
+    for method in ("cprbm", "fea"):
+        for (probe, station), family in _families(hinge, method).items():
+            if probe in ("BD.rotation", "B.displacement", "D.displacement"):
+                truth = _hinge_truth(probe, station)
+                assert np.linalg.norm(family.found.value - truth) <= 2e-5 * np.linalg.norm(truth), (method, probe)
+
+
+def test_the_limits_of_the_wrapped_cantilever_are_the_exact_ones(wrapped):
+    for method in ("cprbm", "fea"):
+        families = _families(wrapped, method)
+        for station in (97.0, 191.0):
+            for probe in ("contact.ends", "T.displacement"):
+                truth = np.asarray(wrapped_truth(probe, station))
+                error = np.linalg.norm(families[probe, station].found.value - truth)
+                assert error <= 5e-5 * np.linalg.norm(truth), (method, probe, station)
+
+
+def test_the_limits_of_the_gripper_meet(gripper):
+    for cprbm, fea in beside(gripper):
+        if cprbm.probe.quantity in ("displacement", "force"):
+            apart, _ = between(cprbm, fea)
+            assert apart <= (2e-4 if cprbm.probe.quantity == "displacement" else 5e-4) * cprbm.scale, cprbm.probe.name
+
+
+@pytest.mark.parametrize("method", ["cprbm", "fea"])
+@pytest.mark.parametrize("case", ["hinge", "wrapped"])
+def test_limits_and_sizes_are_as_near_the_truth_as_they_say(request, case, method):
+    found = request.getfixturevalue(case)
+    shares: list[float] = []
+    outside: list[str] = []
+    for (probe, station), family in _families(found, method).items():
+        if family.found is None or not family.values[family.used[-1]].size:
+            continue
+        arc = np.array(family.components) if family.probe.quantity == "bending_stress" else None
+        if case == "hinge":
+            truth = _hinge_truth(probe, station, arc)
+        elif arc is None:
+            truth = np.asarray(wrapped_truth(probe, station))
+        else:
+            truth = wrapped_truth(probe, station)[np.isclose(np.linspace(0.0, 0.0973, 81), arc)]
+        assert truth.shape == family.found.value.shape
+        for what, value, stated in (
+            ("limit", family.found.value, family.found.uncertainty),
+            *((f"N = {n}", family.values[n], family.error(n)) for n in family.used),
+        ):
+            error, may = family.size(value - truth), family.size(stated)
+            if max(error, may) > QUIET * family.scale:
+                shares.append(error / may)
+                if error > may:
+                    outside.append(f"{probe} at {station:g}, {what}: {error / may:.2f}")
+    assert len(shares) > 60
+    assert len(outside) <= 0.05 * len(shares), outside
+    assert median(shares) >= 0.1
+
+
+def test_two_coarse_solutions_extrapolated(hinge):
+    # the bound is 2e-4 of the exact value; the finer of the two alone is five times as far off
+    families = _families(hinge, "cprbm")
+    for probe in ("BD.rotation", "B.displacement", "D.displacement"):
+        for station in (*APART, *TOUCHING):
+            values = families[probe, station].values
+            truth = _hinge_truth(probe, station)
+            found = limit((20, 40), np.array([values[20], values[40]]), 2.0)
+            assert np.linalg.norm(found.value - truth) <= 2e-4 * np.linalg.norm(truth)
+            assert np.linalg.norm(values[40] - truth) >= 4e-4 * np.linalg.norm(truth)
