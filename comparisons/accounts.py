@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from comparisons.budget import Budget, budgets_of
-from comparisons.budget_runs import Asked, BudgetRuns, budgeted
-from comparisons.choices import Choices
+from comparisons.budget_runs import Asked, BudgetRuns, asked, budgeted
+from comparisons.choices import KINEMATICS, Choices
+from comparisons.convergence_told import shown_size
+from comparisons.families import Convergence, Method, at
 from comparisons.pairing import ALONE, Crew, Solvers
 from comparisons.poisson import ClaimedRatio, claimed_ratios, rerun, with_ratio
 from comparisons.soundness import complaints
@@ -31,6 +33,24 @@ class Account:
     budgets: tuple[Budget, ...]
     claims: tuple[ClaimedRatio, ...]
     missing: tuple[str, ...]
+
+
+def account_of(found: Convergence, choices: Choices, solvers: Solvers, crew: Crew) -> Account:
+    """The account at the size whose values ``converge`` shows, N links and 2N elements, which spares its own runs.
+
+    Raises:
+        SceneError: a solver refuses the question.
+    """
+    solved = {(series.method, series.variant): series.answers for series in found.series}
+    variants: list[tuple[Method, str, Choices]] = [("cprbm", choices.formulation, choices)]
+    variants += [("fea", theory, choices.within(theory)) for theory in KINEMATICS]
+    known = {
+        asked(method, at(own, n)): answer
+        for method, variant, own in variants
+        for n, answer in solved.get((method, variant), {}).items()
+    }
+    n = shown_size(found)
+    return accounted(found.scene, replace(choices, links=n, elements=2 * n), solvers, crew, known)
 
 
 def accounted(
