@@ -22,6 +22,7 @@ class Account:
 
     Attributes:
         scene: the question.
+        choices: how finely, and by which variants.
         runs: all answers that it rests on.
         budgets: at every station; none where an answer is not whole.
         claims: those of the last station.
@@ -29,6 +30,7 @@ class Account:
     """
 
     scene: Scene
+    choices: Choices
     runs: BudgetRuns
     budgets: tuple[Budget, ...]
     claims: tuple[ClaimedRatio, ...]
@@ -75,11 +77,16 @@ def accounted(
     runs = budgeted(scene, choices, solvers, crew, known)
     missing = tuple(f"{name}: {what}" for name, answer in runs.everything() for what in complaints(scene, answer))
     if missing:
-        return Account(scene, runs, (), (), missing)
+        return Account(scene, choices, runs, (), (), missing)
     budgets = budgets_of(scene, runs)
     claims = claimed_ratios(scene, runs, budgets)
     ratios = [ratio for claim in claims for ratio in claim.ratios]
     answers = iter(crew.answers([(solvers.fea, with_ratio(scene, ratio), choices) for ratio in ratios]))
     return Account(
-        scene, runs, budgets, tuple(rerun(claim, [next(answers) for _ in claim.ratios]) for claim in claims), ()
+        scene,
+        choices,
+        runs,
+        budgets,
+        tuple(rerun(claim, [next(answers) for _ in claim.ratios]) for claim in claims),
+        (),
     )

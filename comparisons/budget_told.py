@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from comparisons.accounts import Account
 from comparisons.budget import Budget
+from comparisons.choices import Count
 from comparisons.claims import claim_difference
 from comparisons.documents import Plain, plain
 from comparisons.formats import number, percent
@@ -110,7 +111,8 @@ def _budgets(account: Account) -> Sheet:
             "formula says, t/(3R) to first order."
         )
     return Sheet(
-        f"Error budget at {stage.name} {stage.stations[-1]:g}, %",
+        f"Error budget at {stage.name} {stage.stations[-1]:g} with {_count(account.choices.links)} links and "
+        f"{_count(account.choices.elements)} elements per beam, %",
         (*headers, *(("paper",) if beside else ()), *(("curved",) if curved else ())),
         tuple(body),
         note,
@@ -145,6 +147,10 @@ def _cell(budget: Budget, value: float | None, *, sign: bool = False) -> str:
     if fraction is None:
         return "–"
     return f"{_sign(fraction) if sign else ''}{number(100.0 * abs(fraction))}"
+
+
+def _count(count: Count) -> str:
+    return str(count) if isinstance(count, int) else ",".join(f"{beam}={number}" for beam, number in count.items())
 
 
 def _sign(fraction: float) -> str:

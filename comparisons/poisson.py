@@ -48,7 +48,7 @@ class ClaimedRatio:
         budget: ours, at the scene's own ratio.
         without_shear, incompressible: our difference for ν → −1 and at ν = 1/2, fractions as the claim takes them.
         ratios: where it is the claimed one, ascending; none where there is no such ratio.
-        reruns: what a run at each of them gives instead; empty before they are run.
+        reruns: what a run at each of them gives instead, None where it ended early; empty before they are run.
     """
 
     claim: Claim
@@ -83,8 +83,11 @@ def last_budgets(scene: Scene, budgets: Sequence[Budget]) -> tuple[Budget, ...]:
 def rerun(found: ClaimedRatio, answers: Sequence[Answer]) -> ClaimedRatio:
     """The claim with what the finite elements' ``answers`` at its ratios, in their order, make of our difference."""
     row = found.budget.row
-    values = [station_of(each, row.stage, row.station).values[row.probe.name] for each in answers if each.completed]
-    return replace(found, reruns=tuple(_difference(row, value) for value in values))
+    reruns = tuple(
+        _difference(row, station_of(each, row.stage, row.station).values[row.probe.name]) if each.completed else None
+        for each in answers
+    )
+    return replace(found, reruns=reruns)
 
 
 def _claimed(scene: Scene, runs: BudgetRuns, budget: Budget, own: float) -> ClaimedRatio | None:

@@ -11,6 +11,7 @@ from comparisons.accounts import accounted
 from comparisons.budget import Budget, budgets_of
 from comparisons.budget_runs import asked, budgeted
 from comparisons.choices import Choices
+from comparisons.cli.main import run
 from comparisons.documents import text
 from comparisons.pairing import Solvers
 from scene import Material, Stage
@@ -224,3 +225,30 @@ def test_the_picture_shows_every_part_that_there_is(hinge, right):
 def test_a_case_without_differences_has_no_picture(hinge):
     same = Solvers(MadeUp("cprbm", 0.0), MadeUp("fea", 0.0))
     assert budget_drawn.of_account(accounted(hinge, Choices(kinematics="bending"), same)) == ()
+
+
+def test_converge_tells_the_budget_and_spares_its_own_runs(hinge, right, capsys):
+    calls = []
+
+    def counting(name):
+        def answer(scene, choices):
+            calls.append(asked(name, choices))
+            return getattr(right, name)(scene, choices)
+
+        return answer
+
+    command = ["converge", "hinge", "--sizes", "20,40,80,160", "--json", "-"]
+    assert run(command, Solvers(counting("cprbm"), counting("fea"))) == 0
+    (case,) = json.loads(capsys.readouterr().out)["cases"]
+    assert {row["probe"] for row in case["budget"]} == {probe.name for probe in hinge.probes}
+    assert [claim["probe"] for claim in case["budget_claims"]] == ["B.displacement", "D.displacement"]
+    assert len(calls) == len(set(calls))
+    # four sizes, three times; then two penetrations in shear, n and 2n in stretch, and paper
+    assert len(calls) == 4 * 3 + 2 + 2 + 1
+
+
+def test_converge_shows_the_budget_and_writes_its_figure(right, tmp_path, capsys):
+    assert run(["converge", "hinge", "--sizes", "40,80", "--out", str(tmp_path)], right) == 0
+    assert "Error budget at load 0.67 with 40 links and 80 elements per beam" in capsys.readouterr().out
+    assert (tmp_path / "hinge" / "budget.svg").read_bytes().startswith(b"<?xml")
+    assert "Error budget" in (tmp_path / "index.html").read_text(encoding="utf-8")
