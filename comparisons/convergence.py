@@ -27,6 +27,10 @@ for r = 2 no more than that step for every q from 1 on, and a third of it for q 
 do not double.  Two extrapolations may meet by accident; so the step before, reduced by what it must have fallen
 since, counts as well.
 
+Theory may promise more than 2 where a kink, a penalty or a place of contact between nodes keeps the values from it.
+Since U is honest for either, the limit is taken with p or with 2, whichever U is the smaller: with the order that the
+values bear out.
+
 Of two sizes alone there is no second extrapolation, and nothing but theory says what the order is: U is then the whole
 correction |d/(r^p − 1)|.
 
@@ -46,6 +50,8 @@ from scipy.optimize import brentq
 from scene.answer import Array
 
 SAFETY = 1.25
+COMMON = 2.0
+"""The order that is tried beside a higher one."""
 _LEAST, _HIGHEST = 0.999, 16.0
 """The least order that U provides for, beside which 1 is another; none is looked for beyond the highest."""
 
@@ -57,12 +63,14 @@ class Limit:
     Attributes:
         value: the extrapolated value, (k,).
         uncertainty: how far from it the true limit may be, (k,), in the values' unit.
+        assumed: the order of the extrapolation.
         order: observed at the three finest sizes, by the norms of the changes; None where there is none.
         why: why there is no order; empty where there is one.
     """
 
     value: Array
     uncertainty: Array
+    assumed: float
     order: float | None
     why: str
 
@@ -87,22 +95,27 @@ def limit(ns: Sequence[int], values: Array, order: float, floor: float = 0.0) ->
     n, v = _checked(ns, values)
     if not order > 0.0:
         raise ValueError(f"an order of {order:g}; it must be positive")
+    if len(n) == 2:
+        correction = np.diff(v, axis=0)[-1] / ((n[1] / n[0]) ** order - 1.0)
+        return Limit(v[-1] + correction, np.abs(correction) + floor, order, None, "two sizes show no order")
+    found, why = observed(ns[-3:], v[-3:], floor)
+    candidates = [(p, *_extrapolated(n, v, p)) for p in dict.fromkeys((order, min(order, COMMON)))]
+    p, value, uncertainty = min(candidates, key=lambda one: float(np.linalg.norm(one[2])))
+    return Limit(value, uncertainty + floor, p, found, why)
+
+
+def _extrapolated(n: Array, v: Array, p: float) -> tuple[Array, Array]:
+    """V_m and U without f, (k,) each, of three sizes or more."""
     d = np.diff(v, axis=0)
     r = n[1:] / n[:-1]
-    extrapolated = v[1:] + d / (r**order - 1.0)[:, None]
-    if len(n) == 2:
-        uncertainty = np.abs(extrapolated[-1] - v[-1])
-        found, why = None, "two sizes show no order"
-    else:
-        steps = np.abs(np.diff(extrapolated, axis=0))
-        # what the extrapolations leave of C N^−q, C = 1
-        before, last = (n[1:] ** -_LEAST * (1.0 - (r**_LEAST - 1.0) / (r**order - 1.0)))[-2:]
-        uncertainty = steps[-1] * abs(last / (last - before))
-        if len(steps) > 1:
-            uncertainty = np.maximum(uncertainty, steps[-2] / r[-1] ** order)
-        uncertainty = SAFETY * uncertainty
-        found, why = observed(ns[-3:], v[-3:], floor)
-    return Limit(extrapolated[-1], uncertainty + floor, found, why)
+    extrapolated = v[1:] + d / (r**p - 1.0)[:, None]
+    steps = np.abs(np.diff(extrapolated, axis=0))
+    # what the extrapolations leave of C N^−q, C = 1
+    before, last = (n[1:] ** -_LEAST * (1.0 - (r**_LEAST - 1.0) / (r**p - 1.0)))[-2:]
+    uncertainty = steps[-1] * abs(last / (last - before))
+    if len(steps) > 1:
+        uncertainty = np.maximum(uncertainty, steps[-2] / r[-1] ** p)
+    return extrapolated[-1], SAFETY * uncertainty
 
 
 def orders(ns: Sequence[int], values: Array, floor: float = 0.0) -> tuple[float | None, ...]:

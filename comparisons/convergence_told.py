@@ -45,6 +45,7 @@ def _entries(found: Convergence, family: Family) -> Iterable[Plain]:
             "values": [None if v is None or v.size <= place else plain(float(v[place])) for v in values],
             "errors": [None if e is None else plain(float(e[place])) for e in errors.values()],
             "order": plain(family.component_order(place)),
+            "order_assumed": None if limit is None else limit.assumed,
             "order_of_probe": None if limit is None else plain(limit.order),
             "orders_of_probe": [plain(order) for order in family.orders],
             "limit": None if limit is None else plain(float(limit.value[place])),

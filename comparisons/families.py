@@ -220,6 +220,8 @@ def _complaints(scene: Scene, answers: Mapping[int, Answer]) -> dict[int, str]:
 def _families(scene: Scene, series: Sequence[Series], exact: Answer | None) -> tuple[Family, ...]:
     """Every probe at every station in every series that has a whole answer."""
     present = [one for one in series if one.whole]
+    if not present:
+        return ()
     sizes = sorted({n for one in present for n in one.whole})
     finest = tuple(one.whole[max(one.whole)] for one in present)
     floors = {

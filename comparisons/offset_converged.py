@@ -70,6 +70,7 @@ def _entry(spacing: str, offset: float, rows: list[OffsetRow]) -> Plain:
         "values": errors,
         "errors": errors,
         "order": found[-1],
+        "order_assumed": None,
         "order_of_probe": found[-1],
         "orders_of_probe": found,
         "limit": 0.0,

@@ -408,4 +408,6 @@ def test_the_version_is_a_line_whether_or_not_the_package_is_installed(capsys, m
 def test_an_unknown_command_is_refused_with_those_that_there_are(capsys):
     assert run(["compar", "hinge"]) == 2
     said = capsys.readouterr().err
-    assert "found 'compar', which is no command of 'cprbm'; allowed: list, solve, compare, bench, study" in said
+    assert (
+        "found 'compar', which is no command of 'cprbm'; allowed: list, solve, compare, converge, bench, study" in said
+    )

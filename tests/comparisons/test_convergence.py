@@ -43,6 +43,11 @@ def test_the_uncertainty_holds_whatever_the_order_is(order, assumed, ns):
     assert abs(found.value[0] - 3.0) <= found.uncertainty[0] + 1e-14
 
 
+@pytest.mark.parametrize(("order", "assumed"), [(4.0, 4.0), (3.0, 4.0), (2.0, 2.0), (1.0, 2.0)])
+def test_a_high_order_is_assumed_only_where_the_values_bear_it_out(order, assumed):
+    assert limit(NS, _sequence(order), 4.0).assumed == assumed
+
+
 @pytest.mark.parametrize("next_", [-50.0, -5.0, 5.0, 50.0])
 def test_a_term_of_higher_order_lies_within_the_uncertainty_and_does_not_drown_in_it(next_):
     found = limit(NS, _sequence(2.0, next_=next_), 2.0)
