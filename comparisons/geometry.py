@@ -60,7 +60,12 @@ def bentness(beam: Beam) -> float:
     if not beam.tapered:
         return beam.thickest / radius(beam.curve)
     u = np.union1d(np.linspace(0.0, 1.0, _SAMPLES), beam.knots)
-    return float(np.max(beam.thickness_at(u) * curvature_on(beam.curve, u)))
+    return float(np.max(bentness_on(beam, u)))
+
+
+def bentness_on(beam: Beam, u: Array) -> Array:
+    """Thickness over radius at fractions ``u`` of the arc length of a beam at rest, in the same shape."""
+    return np.asarray(beam.thickness_at(u) * curvature_on(beam.curve, u))
 
 
 def points(curve: Curve, s: Array) -> Array:

@@ -55,7 +55,7 @@ themselves.  A contact that is open in every run has no force, and nothing is le
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -345,17 +345,30 @@ def arc_lengths(scene: Scene, probe: Probe) -> Array:
     return np.linspace(0.0, length(scene.beams[probe.of].curve), probe.points)
 
 
+def direction(quantity: Quantity, way: Array) -> Array:
+    """The unit vector (k,) along ``way`` (k,), zero where that is.
+
+    Of a stress, whose norm is its largest magnitude, it points along the component where that stands.
+    """
+    if not way.any():
+        return np.zeros_like(way)
+    if quantity == "bending_stress":
+        along = np.zeros_like(way)
+        worst = int(np.argmax(np.abs(way)))
+        along[worst] = np.sign(way[worst])
+        return along
+    return np.asarray(way / np.linalg.norm(way))
+
+
+def components(ladder: Sequence[Array], along: Array) -> tuple[float, ...]:
+    """Each step down a ladder of values (k,), its component along the unit vector ``along`` (k,)."""
+    return tuple(float(np.dot(a - b, along)) for a, b in pairwise(ladder))
+
+
 def _steps(quantity: Quantity, ladder: list[Array]) -> Steps | None:
     """Each step from the CPRBM to ``auto``, bending, stretch and shear, along the whole way; None if that is zero."""
     d = ladder[0] - ladder[-1]
     if not d.any():
         return None
-    if quantity == "bending_stress":  # the norm is the largest magnitude: the share is taken where that stands
-        along = np.zeros_like(d)
-        worst = int(np.argmax(np.abs(d)))
-        along[worst] = np.sign(d[worst])
-    else:
-        along = d / np.linalg.norm(d)
-    steps = [float(np.dot(a - b, along)) for a, b in pairwise(ladder)]
-    contact, own, stretch, shear = steps + [0.0] * (4 - len(steps))
-    return Steps(contact, own, stretch, shear)
+    steps = components(ladder, direction(quantity, d))
+    return Steps(*steps, *(0.0,) * (4 - len(steps)))

@@ -253,7 +253,7 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE)
         (answers[0], answers[1]),
         frozendict(fea),
         auto=answers[2] if extra else None,
-        paper=None if extra else _paper(scene, choices, solvers),
+        paper=None if extra else in_paper(scene, choices, solvers),
         beside=answers[2 + len(extra)] if beside else None,
         ratio=_links(even) / _links(even.beside()),
         nearby=answers[first - 1] if round_each else None,
@@ -264,8 +264,8 @@ def _links(choices: Choices) -> int:
     return choices.links if isinstance(choices.links, int) else sum(choices.links.values())
 
 
-def _paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
-    """The CPRBM in the formulation ``paper``, where that can be asked and does not take long."""
+def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
+    """The CPRBM at N in the formulation ``paper``; None where that cannot be asked or takes long."""
     finest = choices.links if isinstance(choices.links, int) else max(choices.links.values())
     contacts = scene.contacts.values()
     told = all(isinstance(contact, CircleContact) or contact.paper is not None for contact in contacts)

@@ -44,7 +44,7 @@ def command(
     quiet: bool,  # noqa: FBT001 - click hands it over by name
     out: Path | None,
 ) -> int:
-    """See how the error falls with N, with which order, and to which limit."""
+    """See how the error falls with N, with which order and to which limit, and what a difference is made of."""
     from comparisons import convergence_report
     from comparisons.choices import Choices
     from comparisons.cli import showing
@@ -83,7 +83,8 @@ def command(
 
 def _told(question: Question, sizes: tuple[int, ...], choices: Choices, solvers: Solvers, crew: Crew) -> Told:
     """Everything that there is to tell of one question."""
-    from comparisons import convergence_drawn, convergence_told, offset_converged
+    from comparisons import budget_drawn, budget_told, convergence_drawn, convergence_told, offset_converged
+    from comparisons.accounts import account_of
     from comparisons.convergence_report import Told
     from comparisons.families import converged
     from scene import OffsetQuestion
@@ -91,11 +92,12 @@ def _told(question: Question, sizes: tuple[int, ...], choices: Choices, solvers:
     if isinstance(question, OffsetQuestion):
         return offset_converged.told(question, sizes, solvers.offset)
     found = converged(question, sizes, choices, solvers, crew)
+    account = account_of(found, choices, solvers, crew)
     return Told(
         question,
-        convergence_told.sheets_of(found),
-        convergence_told.sentences_of(found),
-        convergence_drawn.of_convergence(found),
-        convergence_told.document(found),
-        found.completed,
+        (*convergence_told.sheets_of(found), *budget_told.sheets_of(account)),
+        (*convergence_told.sentences_of(found), *budget_told.sentences_of(account)),
+        (*convergence_drawn.of_convergence(found), *budget_drawn.of_account(account)),
+        {**convergence_told.document(found), **budget_told.data_of(account)},
+        found.completed and not account.missing,
     )

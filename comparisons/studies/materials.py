@@ -27,6 +27,7 @@ from comparisons import cases
 from comparisons.choices import Choices, Count, Kinematics
 from comparisons.measures import station_of
 from comparisons.pairing import Solvers, paired
+from comparisons.poisson import with_ratio
 from comparisons.scales import norm
 from comparisons.soundness import complaints
 from comparisons.studies.last_loads import at_last_loads
@@ -195,12 +196,6 @@ def _sweeping(specimen: Specimen) -> Piece:
         )
 
     return swept
-
-
-def with_ratio(scene: Scene, ratio: float) -> Scene:
-    """The scene with another Poisson's ratio of all its materials."""
-    materials = {name: own.model_copy(update={"poisson_ratio": ratio}) for name, own in scene.materials.items()}
-    return scene.model_copy(update={"materials": frozendict(materials)})
 
 
 def error_of(scene: Scene, probe: Probe, cprbm: Answer, fea: Answer) -> float | None:

@@ -25,8 +25,8 @@ THEORY = {"bending": 0.0, "stretch": 0.002, "shear": 0.005}
 
 @dataclass(frozen=True)
 class MadeUp:
-    """An answer function: ``error`` is C/N² at N = 40, relative; ``paper`` what that formulation adds; the rest
-    plants faults."""
+    """An answer function: ``error`` is C/N² at N = 40, relative; ``paper`` what that formulation adds; ``penalty``
+    what a penetration of 1e-4 does; the rest plants faults."""
 
     solver: str
     error: float
@@ -36,13 +36,16 @@ class MadeUp:
     until: int | None = None
     spoilt: Callable[[StationAnswer], StationAnswer] | None = None
     paper: float = 0.0
+    penalty: float = 0.0
 
     def __call__(self, scene: Scene, choices: Choices) -> Answer:
         count = choices.links if self.solver == "cprbm" else choices.elements
         n = count if isinstance(count, int) else min(count.values())
         variant = self.paper * (choices.formulation == "paper")
         theory = variant if self.solver == "cprbm" else THEORY[choices.kinematics]
-        factor = (1.0 + self.error * (40.0 / n) ** 2 + theory) / self.stiffness
+        factor = (
+            1.0 + self.error * (40.0 / n) ** 2 + theory + self.penalty * choices.penetration / 1e-4
+        ) / self.stiffness
         stations = [
             self._station(scene, stage.name, value, factor) for stage in scene.stages for value in stage.stations
         ]

@@ -1,0 +1,195 @@
+"""What the difference of a CPRBM value from the finite elements' is made of: part by part, probe by probe.
+
+==========  ================================================================================================
+symbol      meaning
+==========  ================================================================================================
+N, n, p     links, elements and penetration of the choices
+v_c, v_f    the CPRBM's value, the finite elements' in the chosen theory: those that are compared
+v_a         the CPRBM's in the formulation ``auto`` at N; v_c unless ``paper`` was chosen
+L_c         limit of v_a for N → ∞
+v_0         limit of v_f for p → 0 at n elements
+L_t         limit for p → 0 and n → ∞ in the theory t: b (``bending``), s (``stretch``) or f (the chosen one)
+δ           v(p/16) − v_0, what the penalty does where it is stiffest
+==========  ================================================================================================
+
+    v_c − v_f = (v_c − v_a) + (v_a − L_c) + (L_c − L_b) + (L_b − L_s) + (L_s − L_f) + (L_f − v_0) + (v_0 − v_f)
+                 contact       links         rest          stretch       shear         elements      penalty
+
+Each part is its component along v_c − v_f, with its sign: the parts sum to the difference's norm, and a part below
+zero makes the difference smaller.  Of a stress they are taken where the difference is largest.  Where there is no
+difference at all, parts that cancel are told along v_f.
+
+The limits in N and n are :func:`comparisons.convergence.limit`'s, of the order that :mod:`comparisons.order` assumes.
+What the penalty does is proportional to p once p is small: v_0 is extrapolated from p/4 and p/16, and v(p) beside
+that line says whether p is small as well.  In every theory L_t is extrapolated in n from values less what the
+penalty does to them, δ at n elements and p/16 and δ/16 at 2n and p/256.  On a circle the elements' length decides how
+deep a beam presses, whatever p: there the penalty is a part of ``elements``.
+
+Where ``auto`` was chosen, the distance of ``paper`` at N is told beside the parts and belongs to no sum.  Nor does what
+both solvers leave out of a stress alike, :mod:`comparisons.curved_beam`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from comparisons.budget_runs import DEEPER, ELEMENTS, LEVELS, TIGHTNESS, BudgetRuns
+from comparisons.convergence import limit
+from comparisons.curved_beam import inner_edge_factor
+from comparisons.geometry import bentness_on, length
+from comparisons.measures import Row, arc_lengths, components, direction, station_of, unit_of
+from comparisons.order import order_of
+from comparisons.scales import denominator, norm, probe_scale
+from comparisons.spots import clear_of_spots
+from scene import Answer, Probe, Scene, Stage
+from scene.answer import Array
+
+LEAST = 1e-9
+"""Parts that come to less, as a fraction, tell of tolerances and of no part."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """The parts of a difference in the order of the sum, each along it, in the probe's unit."""
+
+    contact: float
+    links: float
+    rest: float
+    stretch: float
+    shear: float
+    elements: float
+    penalty: float
+
+    def by_name(self) -> dict[str, float]:
+        """The parts by their names, in the order of the sum."""
+        return {each.name: getattr(self, each.name) for each in fields(self)}
+
+
+PARTS = tuple(each.name for each in fields(Parts))
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """What one probe's difference at one station is made of; all in the probe's unit.
+
+    Attributes:
+        row: the values, their difference and what fractions are taken of.
+        parts: the sum.
+        rest_uncertainty: how far L_c − L_b may be off, by the limits' own uncertainties.
+        elements_uncertainty: the same of L_f.
+        off_line: distance of v_f from the line through the values at p/4 and p/16.
+        paper: component of ``paper`` less ``auto`` at N along the difference; None where one of them is missing.
+        inner_edge: of a stress K (k,) at all places, the curved beam's inner edge over the straight-beam formula; None
+            of other probes.
+        curved: the largest (K − 1)|v_f| at the places that take part.
+    """
+
+    row: Row
+    parts: Parts
+    rest_uncertainty: float
+    elements_uncertainty: float
+    off_line: float
+    paper: float | None
+    inner_edge: Array | None
+    curved: float | None
+
+    @property
+    def all_parts(self) -> float:
+        """Σ|part| as a fraction; 0 where it is no more than tolerances of two iterations leave."""
+        found = self.row.fraction(sum(map(abs, self.parts.by_name().values()))) or 0.0
+        return found if found > LEAST else 0.0
+
+
+def budgets_of(scene: Scene, runs: BudgetRuns) -> tuple[Budget, ...]:
+    """All budgets in the order of stages, stations and probes; none where a contact is open.
+
+    Every answer of :meth:`BudgetRuns.everything` must be complete, as :func:`comparisons.soundness.complaints` finds.
+
+    Raises:
+        KeyError: an answer lacks a station or a probe.
+    """
+    found = (
+        _budget(scene, runs, probe, stage, value)
+        for stage in scene.stages
+        for value in stage.stations
+        for probe in scene.probes
+    )
+    return tuple(each for each in found if each is not None)
+
+
+def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: float) -> Budget | None:
+    stations = tuple(station_of(answer, stage.name, value) for _, answer in runs.everything())
+    every = [station.values[probe.name] for station in stations]
+    if every[0].size == 0 or any(v.shape != every[0].shape for v in every) or not any(v.any() for v in every):
+        return None
+    row = _row(scene, runs, probe, stage, value)
+    counts = np.ones(row.cprbm.shape, dtype=bool)
+    if row.arc_length is not None:
+        counts = clear_of_spots(scene, probe.of, row.arc_length, stations)
+        if not counts.any():
+            return None
+
+    def v(answer: Answer) -> Array:
+        return station_of(answer, stage.name, value).values[probe.name][counts]
+
+    order = order_of(scene, probe)
+    v_c, v_a, v_f = v(runs.cprbm), v(runs.auto[0]), v(runs.reference)
+    L_c = limit(LEVELS, np.array([v(answer) for answer in runs.auto]), order)
+    tighter = np.array([v(answer) for answer in runs.penalty[1:]])
+    v_0 = limit(TIGHTNESS[1:], tighter, 1.0).value
+    delta = tighter[-1] - v_0
+    left = np.outer(DEEPER, delta)
+    L = [limit(ELEMENTS, np.array([v(each) for each in answers]) - left, order) for answers in runs.fea.values()]
+    d = v_c - v_f
+    along = direction(probe.quantity, d if d.any() else v_f)
+    ladder = [v_c, v_a, L_c.value, *(each.value for each in L), v_0, v_f]
+    contact, links, rest, *theory, elements, penalty = components(ladder, along)
+    stretch, shear = theory + [0.0] * (2 - len(theory))
+    paper = _in_paper(runs, row)
+    K = _inner_edge(scene, row)
+    return Budget(
+        row=replace(row, difference=norm(probe.quantity, d)),
+        parts=Parts(contact, links, rest, stretch, shear, elements, penalty),
+        rest_uncertainty=float(np.dot(L_c.uncertainty + L[0].uncertainty, np.abs(along))),
+        elements_uncertainty=float(np.dot(L[-1].uncertainty, np.abs(along))),
+        off_line=norm(probe.quantity, v_f - (v_0 + TIGHTNESS[-1] * delta)),
+        paper=None if paper is None else float(np.dot(paper[counts] - v_a, along)),
+        inner_edge=K,
+        curved=None if K is None else float(np.max((K - 1.0)[counts] * np.abs(v_f))),
+    )
+
+
+def _row(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: float) -> Row:
+    """The two values that are compared, as :mod:`comparisons.measures` shows them, and no difference yet."""
+    compared = (runs.cprbm, runs.reference)
+    scale = probe_scale(scene, probe, stage, compared)
+    v_c, v_f = (station_of(answer, stage.name, value).values[probe.name] for answer in compared)
+    return Row(
+        probe=probe,
+        stage=stage.name,
+        station=value,
+        unit=unit_of(scene, probe, stage),
+        cprbm=v_c,
+        fea=v_f,
+        scale=scale,
+        denominator=denominator(probe, v_f, scale),
+        arc_length=arc_lengths(scene, probe) if probe.quantity == "bending_stress" else None,
+    )
+
+
+def _in_paper(runs: BudgetRuns, row: Row) -> Array | None:
+    """The value in ``paper`` at N; None where there is none, or one of a contact that is open there alone."""
+    if runs.paper is None or not runs.paper.completed:
+        return None
+    found = station_of(runs.paper, row.stage, row.station).values[row.probe.name]
+    return found if found.shape == row.cprbm.shape else None
+
+
+def _inner_edge(scene: Scene, row: Row) -> Array | None:
+    """K at the places of a stress; None of other probes."""
+    if row.arc_length is None:
+        return None
+    beam = scene.beams[row.probe.of]
+    return inner_edge_factor(bentness_on(beam, row.arc_length / length(beam.curve)))

@@ -1,0 +1,108 @@
+"""The figure of an error budget: what each probe's difference is made of, and how large it is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from comparisons.accounts import Account
+from comparisons.budget import PARTS, Budget
+from comparisons.figures import GREY, Picture, canvas, picture
+from comparisons.formats import percent
+from comparisons.poisson import last_budgets
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+LOOKS = {
+    "contact": ("#7b4ea3", "contact: paper to auto"),
+    "links": ("#1f5fa8", "CPRBM: links"),
+    "rest": ("#222222", "rest between the limits"),
+    "stretch": ("#f0a35e", "theory: stretch"),
+    "shear": ("#c8321e", "theory: shear"),
+    "elements": ("#3f8f5b", "FEA: elements"),
+    "penalty": ("#8fd0b5", "FEA: penalty"),
+}
+
+
+def of_account(account: Account) -> tuple[Picture, ...]:
+    """The figure at the last station; none where there is no budget."""
+    budgets = [each for each in last_budgets(account.scene, account.budgets) if each.all_parts > 0.0]
+    if not budgets:
+        return ()
+    with canvas(10.4, 1.9 + 0.34 * len(budgets)) as figure:
+        left, right = figure.subplots(1, 2, sharey=True, width_ratios=(5, 2))
+        _composition(left, budgets)
+        _sizes(right, budgets)
+        left.set_yticks(range(len(budgets)), [each.row.probe.name for each in budgets])
+        left.invert_yaxis()
+        handles, labels = left.get_legend_handles_labels()
+        further = right.get_legend_handles_labels()
+        figure.legend(
+            [*handles, *further[0]], [*labels, *further[1]], loc="outside lower center", ncols=4, fontsize=9.0
+        )
+        stage = account.scene.stages[-1]
+        return (
+            picture(
+                figure,
+                "budget",
+                f"What the difference of the CPRBM from the finite elements in {account.runs.kinematics} is made of at "
+                f"{stage.name} {stage.stations[-1]:g}: parts that make it larger to the right, those that make it "
+                "smaller to the left, as shares of all of them; the diamond is their sum, which the panel beside shows "
+                "in per cent.",
+            ),
+        )
+
+
+def _composition(axes: Axes, budgets: Sequence[Budget]) -> None:
+    shown = [name for name in PARTS if any(getattr(each.parts, name) != 0.0 for each in budgets)]
+    ends = [[0.0, 0.0] for _ in budgets]
+    for name in shown:
+        colour, label = LOOKS[name]
+        shares = [100.0 * _share(each, name) for each in budgets]
+        starts = [end[share < 0.0] for end, share in zip(ends, shares, strict=True)]
+        axes.barh(range(len(budgets)), shares, left=starts, height=0.66, color=colour, label=label)
+        for end, share in zip(ends, shares, strict=True):
+            end[share < 0.0] += share
+    net = [sum(end) for end in ends]
+    axes.plot(net, range(len(budgets)), "D", color="white", markeredgecolor="black", markersize=5.0, label="their sum")
+    axes.axvline(0.0, color="black", linewidth=0.8)
+    axes.set_xlabel("share of all parts, %")
+
+
+def _share(budget: Budget, name: str) -> float:
+    return (budget.row.fraction(getattr(budget.parts, name)) or 0.0) / budget.all_parts
+
+
+def _sizes(axes: Axes, budgets: Sequence[Budget]) -> None:
+    for label, marker, colour, sizes in (
+        ("difference, %", "D", "black", [each.row.difference for each in budgets]),
+        ("paper beside auto, %", "o", LOOKS["contact"][0], [_beside(each) for each in budgets]),
+        ("curved beam, %", "^", GREY, [each.curved for each in budgets]),
+    ):
+        known = [(100.0 * fraction, place) for place, fraction in enumerate(_fractions(budgets, sizes)) if fraction]
+        if known:
+            x, y = zip(*known, strict=True)
+            face = colour if marker == "D" else "none"
+            axes.plot(x, y, marker, color=colour, markersize=5.0, markerfacecolor=face, label=label)
+    for place, budget in enumerate(budgets):
+        axes.annotate(
+            percent(budget.row.fraction(budget.row.difference)),
+            (1.02, place),
+            xycoords=("axes fraction", "data"),
+            va="center",
+            fontsize=9.0,
+        )
+    axes.set_xscale("log")
+    axes.tick_params(axis="y", length=0.0)
+    axes.grid(visible=True, which="major", axis="x", color="#e4e4e4", linewidth=0.6)
+    axes.set_xlabel("size, %")
+
+
+def _beside(budget: Budget) -> float | None:
+    """How far ``paper`` is from ``auto`` where it is no part of the sum."""
+    return None if budget.paper is None or budget.parts.contact != 0.0 else abs(budget.paper)
+
+
+def _fractions(budgets: Sequence[Budget], sizes: Sequence[float | None]) -> list[float]:
+    return [0.0 if size is None else each.row.fraction(size) or 0.0 for each, size in zip(budgets, sizes, strict=True)]

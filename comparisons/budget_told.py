@@ -1,0 +1,186 @@
+"""What is told of an error budget: tables, sentences made of the numbers, and the documented JSON."""
+
+from __future__ import annotations
+
+from comparisons.accounts import Account
+from comparisons.budget import Budget
+from comparisons.choices import Count
+from comparisons.claims import claim_difference
+from comparisons.documents import Plain, plain
+from comparisons.formats import number, percent
+from comparisons.poisson import ClaimedRatio, last_budgets
+from comparisons.sheets import Sheet
+
+_HEADERS = {
+    "contact": "contact",
+    "links": "links",
+    "rest": "rest",
+    "stretch": "stretch",
+    "shear": "shear",
+    "elements": "elements",
+    "penalty": "penalty",
+}
+_TOLD = 0.02
+"""Parts below this share of a difference are told together."""
+
+
+def sheets_of(account: Account) -> tuple[Sheet, ...]:
+    """The budgets of the last station, and what claims about it would need."""
+    return tuple(sheet for sheet in (_budgets(account), _claims(account)) if sheet.rows)
+
+
+def sentences_of(account: Account) -> tuple[str, ...]:
+    """Of each claim what our difference is made of; or why there is no budget."""
+    if account.missing:
+        return (f"{account.scene.name} has no error budget: {'; '.join(account.missing)}.",)
+    return tuple(f"{_made_of(found.budget)} {_as_theirs(found)}" for found in account.claims)
+
+
+def data_of(account: Account) -> Plain:
+    """Keys for one case of ``converge``: ``budget`` and ``budget_claims``, fractions as in ``compare``'s rows."""
+    return {
+        "budget": [_data(each) for each in account.budgets],
+        "budget_claims": [
+            {
+                "probe": found.claim.probe,
+                "station": found.budget.row.station,
+                "claim": found.claim.bound,
+                "difference": claim_difference(found.budget.row),
+                "without_shear": found.without_shear,
+                "incompressible": found.incompressible,
+                "poisson_ratios": list(found.ratios),
+                "differences_there": plain(found.reruns),
+            }
+            for found in account.claims
+        ],
+        "budget_missing": list(account.missing),
+    }
+
+
+def _data(budget: Budget) -> Plain:
+    row = budget.row
+    return {
+        "probe": row.probe.name,
+        "stage": row.stage,
+        "station": row.station,
+        "unit": row.unit,
+        "difference": row.fraction(row.difference),
+        "parts": {name: row.fraction(part) for name, part in budget.parts.by_name().items()},
+        "rest_uncertainty": row.fraction(budget.rest_uncertainty),
+        "elements_uncertainty": row.fraction(budget.elements_uncertainty),
+        "penalty_off_line": row.fraction(budget.off_line),
+        "paper": None if budget.paper is None else row.fraction(budget.paper),
+        "curved_beam": None if budget.curved is None else row.fraction(budget.curved),
+        "inner_edge_factor": plain(budget.inner_edge),
+        "scale": row.scale,
+        "denominator": row.denominator,
+    }
+
+
+def _budgets(account: Account) -> Sheet:
+    rows = last_budgets(account.scene, account.budgets)
+    chosen = any(budget.parts.contact != 0.0 for budget in rows)
+    beside = not chosen and any(budget.paper is not None for budget in rows)
+    curved = any(budget.curved for budget in rows)
+    names = [name for name in _HEADERS if chosen or name != "contact"]
+    body = []
+    for budget in rows:
+        told = budget.all_parts > 0.0
+        cells = [_cell(budget, budget.row.difference)]
+        for name in names:
+            cells.append(_cell(budget, getattr(budget.parts, name), sign=True) if told else "–")
+            if name == "rest":
+                cells.append(_cell(budget, budget.rest_uncertainty) if told else "–")
+        cells += [_cell(budget, budget.paper, sign=True)] if beside else []
+        cells += [_cell(budget, budget.curved)] if curved else []
+        body.append((budget.row.probe.name, *cells))
+    headers = ["probe", "difference"]
+    for name in names:
+        headers += [_HEADERS[name], "±"] if name == "rest" else [_HEADERS[name]]
+    stage = account.scene.stages[-1]
+    note = (
+        "Per cent of what the case's table has its differences in. The parts sum to the difference; those below zero "
+        "make it smaller. Links, elements, penalty: value beside its limit. Rest: between the solvers' limits in "
+        "bending, and how far these may be off. Stretch, shear: between the finite elements' limits."
+    )
+    if beside:
+        note += " Beside the sum: what paper would add to the difference at the same number of links."
+    if curved:
+        note += (
+            " Curved: what the inner edge of a beam that is curved at rest has more than both solvers' straight-beam "
+            "formula says, t/(3R) to first order."
+        )
+    return Sheet(
+        f"Error budget at {stage.name} {stage.stations[-1]:g} with {_count(account.choices.links)} links and "
+        f"{_count(account.choices.elements)} elements per beam, %",
+        (*headers, *(("paper",) if beside else ()), *(("curved",) if curved else ())),
+        tuple(body),
+        note,
+    )
+
+
+def _claims(account: Account) -> Sheet:
+    body = tuple(
+        (
+            found.claim.text or found.claim.probe,
+            percent(found.claim.bound),
+            percent(claim_difference(found.budget.row)),
+            percent(found.without_shear),
+            percent(found.incompressible),
+            ", ".join(number(ratio) for ratio in found.ratios) or "none",
+            ", ".join(percent(each) for each in found.reruns) or "–",
+        )
+        for found in account.claims
+    )
+    return Sheet(
+        "Claims and Poisson's ratio",
+        ("claim", "theirs", "ours", "without shear", "ν = 1/2", "as theirs at ν", "run there"),
+        body,
+        "Shear goes with 1 + ν. As theirs: the ratio at which our difference would be the source's figure, if there is "
+        "one in (−1, 1/2]; run there: the difference that the finite elements give at it.",
+    )
+
+
+def _cell(budget: Budget, value: float | None, *, sign: bool = False) -> str:
+    """A size in per cent of what the row's fractions are of, without the unit."""
+    fraction = None if value is None else budget.row.fraction(value)
+    if fraction is None:
+        return "–"
+    return f"{_sign(fraction) if sign else ''}{number(100.0 * abs(fraction))}"
+
+
+def _count(count: Count) -> str:
+    return str(count) if isinstance(count, int) else ",".join(f"{beam}={number}" for beam, number in count.items())
+
+
+def _sign(fraction: float) -> str:
+    return "" if fraction == 0.0 else "−" if fraction < 0.0 else "+"
+
+
+def _signed(budget: Budget, value: float) -> str:
+    return f"{_cell(budget, value, sign=True)} %"
+
+
+def _made_of(budget: Budget) -> str:
+    row = budget.row
+    parts = budget.parts.by_name()
+    told = {name: part for name, part in parts.items() if abs(part) > _TOLD * row.difference}
+    listed = ", ".join(f"{_HEADERS[name]} {_signed(budget, part)}" for name, part in told.items())
+    left = sum(part for name, part in parts.items() if name not in told)
+    return (
+        f"{row.probe.name} at {row.station:g}: our difference of {percent(row.fraction(row.difference))} is "
+        f"{listed}, and {_signed(budget, left)} for all else."
+    )
+
+
+def _as_theirs(found: ClaimedRatio) -> str:
+    theirs = percent(found.claim.bound)
+    if not found.ratios:
+        return (
+            f"It would be the source's {theirs} at no Poisson's ratio: it is {percent(found.without_shear)} without "
+            f"shear and {percent(found.incompressible)} at ν = 1/2."
+        )
+    ratios = " or ".join(number(ratio) for ratio in found.ratios)
+    return f"It would be the source's {theirs} at ν = {ratios}; a run there gives " + (
+        f"{' and '.join(percent(each) for each in found.reruns)}."
+    )

@@ -1,0 +1,254 @@
+"""Error budgets of made-up answers whose parts are known, and what is told of them."""
+
+import json
+
+import numpy as np
+import pytest
+from frozendict import frozendict
+
+from comparisons import budget_drawn, budget_told
+from comparisons.accounts import accounted
+from comparisons.budget import Budget, budgets_of
+from comparisons.budget_runs import asked, budgeted
+from comparisons.choices import Choices
+from comparisons.cli.main import run
+from comparisons.documents import text
+from comparisons.pairing import Solvers
+from scene import Material, Stage
+from tests.comparisons.made_up import THEORY, MadeUp
+
+LOAD = 0.067
+"""Before the contact closes: there the rotation is 0.9 times the load, and 1 plus every error."""
+
+
+def budget_at(scene, solvers, choices=None, probe="BD.rotation") -> Budget:
+    """The budget at the load before contact, as ``paper`` may be run there."""
+    before = scene.model_copy(update={"stages": (Stage(name="load", steps="M", stations=(LOAD,)),), "claims": ()})
+    runs = budgeted(before, choices or Choices(), solvers)
+    (found,) = [each for each in budgets_of(before, runs) if each.row.probe.name == probe]
+    return found
+
+
+def test_each_part_is_the_planted_one(hinge):
+    """v_c = 1.004/1.001, v_f = 1 − 0.008/4 + 0.005 + 0.0005: the links' share, the fault, the theories, and so on."""
+    solvers = Solvers(MadeUp("cprbm", 4e-3, stiffness=1.001, paper=3e-3), MadeUp("fea", -8e-3, penalty=5e-4))
+    found = budget_at(hinge, solvers)
+    rotation, sign = 0.9 * LOAD, -1.0  # the difference 1.004/1.001 − 1.0035 is below zero
+    assert found.row.difference == pytest.approx(rotation * (1.0035 - 1.004 / 1.001), rel=1e-9)
+    expected = {
+        "contact": 0.0,
+        "links": sign * 4e-3 / 1.001,
+        "rest": sign * (1.0 / 1.001 - 1.0),
+        "stretch": -sign * THEORY["stretch"],
+        "shear": -sign * (THEORY["shear"] - THEORY["stretch"]),
+        "elements": sign * 8e-3 / 4.0,
+        "penalty": -sign * 5e-4,
+    }
+    for name, part in found.parts.by_name().items():
+        assert part == pytest.approx(rotation * expected[name], rel=1e-9, abs=1e-15), name
+    assert found.paper == pytest.approx(sign * rotation * 3e-3 / 1.001, rel=1e-9)
+    assert found.off_line < 1e-15
+
+
+def test_where_paper_was_chosen_the_contact_is_a_part(hinge):
+    solvers = Solvers(MadeUp("cprbm", 4e-3, paper=3e-3), MadeUp("fea", 0.0))
+    found = budget_at(hinge, solvers, Choices(formulation="paper"))
+    rotation = 0.9 * LOAD
+    assert found.row.difference == pytest.approx(rotation * (0.007 - 0.005), rel=1e-9)
+    assert found.parts.contact == found.paper == pytest.approx(rotation * 3e-3, rel=1e-9)
+    assert found.parts.links == pytest.approx(rotation * 4e-3, rel=1e-9)
+
+
+@pytest.mark.parametrize("formulation", ["auto", "paper"])
+def test_the_parts_sum_to_the_difference(hinge, formulation):
+    solvers = Solvers(MadeUp("cprbm", 2e-3, paper=1e-3), MadeUp("fea", -5e-4, penalty=2e-4))
+    budgets = budgets_of(hinge, budgeted(hinge, Choices(formulation=formulation), solvers))
+    assert len(budgets) > 100
+    for each in budgets:
+        assert sum(each.parts.by_name().values()) == pytest.approx(each.row.difference, rel=1e-9, abs=1e-18)
+
+
+@pytest.mark.parametrize(("kinematics", "stretch", "shear"), [("bending", False, False), ("stretch", True, False)])
+def test_a_theory_that_was_not_chosen_has_no_part(hinge, right, kinematics, stretch, shear):
+    found = budget_at(hinge, right, Choices(kinematics=kinematics))
+    assert (found.parts.stretch != 0.0, found.parts.shear != 0.0) == (stretch, shear)
+    assert sum(found.parts.by_name().values()) == pytest.approx(found.row.difference, rel=1e-9)
+
+
+def test_no_difference_has_no_parts(hinge):
+    same = Solvers(MadeUp("cprbm", 0.0), MadeUp("fea", 0.0))
+    found = budget_at(hinge, same, Choices(kinematics="bending"))
+    assert found.row.difference == 0.0
+    assert set(found.parts.by_name().values()) == {0.0}
+    assert found.all_parts == 0.0
+
+
+def test_parts_that_cancel_are_told_along_the_value(hinge):
+    """2e-3 too much at 40 links, and as much at 80 elements: 8e-3 (40/80)²."""
+    same = Solvers(MadeUp("cprbm", 2e-3), MadeUp("fea", 8e-3))
+    found = budget_at(hinge, same, Choices(kinematics="bending"))
+    assert found.row.difference == 0.0
+    assert found.parts.links == pytest.approx(0.9 * LOAD * 2e-3, rel=1e-9)
+    assert found.parts.elements == pytest.approx(-found.parts.links, rel=1e-9)
+
+
+def test_an_open_contact_has_no_budget(hinge, right):
+    budgets = budgets_of(hinge, budgeted(hinge, Choices(), right))
+    of_contact = {(each.row.probe.name, each.row.station) for each in budgets if each.row.probe.of == "contact"}
+    names = {name for name, station in of_contact if station == 0.67}
+    assert names == {"contact.force", "contact.centre", "contact.closing_load"}
+    assert not any(station < 0.2 for _, station in of_contact)  # it closes at a load of 0.2
+
+
+def test_a_penalty_that_does_not_go_with_the_penetration_is_off_the_line(hinge, right):
+    def uneven(scene, choices):
+        return MadeUp("fea", 0.0, penalty=1e-3 if choices.penetration == 1e-4 else 0.0)(scene, choices)
+
+    found = budget_at(hinge, Solvers(right.cprbm, uneven))
+    assert found.off_line == pytest.approx(0.9 * LOAD * 1e-3, rel=1e-9)
+    assert abs(found.parts.penalty) == pytest.approx(0.9 * LOAD * 1e-3, rel=1e-9)
+
+
+def test_what_is_known_is_not_run_again(hinge, right):
+    calls = []
+
+    def counting(solver, name):
+        def answer(scene, choices):
+            calls.append(asked(name, choices))
+            return solver(scene, choices)
+
+        return answer
+
+    solvers = Solvers(counting(right.cprbm, "cprbm"), counting(right.fea, "fea"))
+    choices = Choices(links=frozendict({"beam1": 30, "beam2": 40}))
+    first = budgeted(hinge, choices, solvers)
+    every = [each for each in calls if each[1].formulation == "auto"]
+    assert len(every) == len(set(every)) == 3 + 3 + 2 + 2 + 1  # links, penetrations, n and 2n; n in shear is known
+    known = {each: {"cprbm": right.cprbm, "fea": right.fea}[each[0]](hinge, each[1]) for each in every}
+    calls.clear()
+    again = budgeted(hinge, choices, solvers, known=known)
+    assert {each[1].formulation for each in calls} == {"paper"}
+    for one, other in zip(budgets_of(hinge, first), budgets_of(hinge, again), strict=True):
+        assert one.parts == other.parts
+
+
+def test_a_solver_does_not_heed_the_others_choices():
+    assert asked("cprbm", Choices(elements=20, penetration=1e-5)) == asked("cprbm", Choices())
+    assert asked("fea", Choices(links=20, formulation="paper")) == asked("fea", Choices())
+    assert asked("fea", Choices(kinematics="bending")) != asked("fea", Choices())
+    assert asked("cprbm", Choices(links={"a": 1})) == asked("cprbm", Choices(links=frozendict({"a": 1})))
+
+
+def test_an_answer_that_is_not_whole_leaves_no_budget_and_says_so(hinge, right):
+    account = accounted(hinge, Choices(), Solvers(right.cprbm, MadeUp("fea", 0.0, until=3)))
+    assert account.budgets == account.claims == ()
+    assert any("fea bending" in why for why in account.missing)
+    assert budget_told.sheets_of(account) == ()
+    assert "no error budget" in budget_told.sentences_of(account)[0]
+    assert budget_drawn.of_account(account) == ()
+
+
+def without_contact(scene, choices):
+    """Finite elements whose shear adds 0.003 at ν = 0.35, in proportion to 1 + ν."""
+    (ratio,) = {material.poisson_ratio for material in scene.materials.values()}
+    shear = 0.003 * (1.0 + ratio) / 1.35 if choices.kinematics == "shear" else 0.0
+    stretch = 0.0 if choices.kinematics == "bending" else 0.002
+    softer = MadeUp("fea", 0.0, stiffness=1.0 / (1.0 + stretch + shear), contact=False)
+    return softer(scene, Choices(elements=choices.elements, kinematics="bending"))
+
+
+def test_the_ratio_at_which_a_claim_would_be_ours(hinge):
+    """Every displacement is the load times a factor, 1 and v = 1.002 + 0.003 (1 + ν)/1.35; 0.0025 = (v − 1)/v."""
+    claims = tuple(claim.model_copy(update={"bound": 0.0025}) for claim in hinge.claims)
+    probes = tuple(probe for probe in hinge.probes if probe.quantity == "displacement")
+    asked_for = hinge.model_copy(update={"claims": claims, "probes": probes})
+    account = accounted(asked_for, Choices(), Solvers(MadeUp("cprbm", 0.0, contact=False), without_contact))
+    assert [found.claim.probe for found in account.claims] == ["B.displacement", "D.displacement"]
+    ratio = (1.0 / (1.0 - 0.0025) - 1.002) * 1.35 / 0.003 - 1.0
+    for found in account.claims:
+        assert found.ratios == pytest.approx((ratio,), rel=1e-6)
+        assert found.reruns == pytest.approx((0.0025,), rel=1e-6)
+        assert found.without_shear == pytest.approx(0.002 / 1.002, rel=1e-6)
+        assert found.incompressible == pytest.approx(1.0 - 1.0 / (1.002 + 0.003 * 1.5 / 1.35), rel=1e-6)
+    assert f"ν = {ratio:.3f}" in budget_told.sentences_of(account)[0]
+
+
+def test_a_claim_beyond_every_ratio_has_none(hinge, right):
+    account = accounted(
+        hinge, Choices(), right
+    )  # 0.35 % at ν = 0.35, of which 0.3 % is shear; claims of 0.62 and 0.81 %
+    assert [found.ratios for found in account.claims] == [(), ()]
+    assert "at no Poisson's ratio" in budget_told.sentences_of(account)[0]
+
+
+def test_materials_of_two_ratios_or_a_theory_without_shear_have_no_such_ratio(hinge, right):
+    assert accounted(hinge, Choices(kinematics="stretch"), right).claims == ()
+    two = {**hinge.materials, "steel": Material(youngs_modulus=2e11, poisson_ratio=0.3)}
+    assert accounted(hinge.model_copy(update={"materials": frozendict(two)}), Choices(), right).claims == ()
+
+
+def test_the_table_has_every_probe_with_a_value_at_the_last_station(hinge, right):
+    account = accounted(hinge, Choices(), right)
+    budgets, claims = budget_told.sheets_of(account)
+    assert [row[0] for row in budgets.rows] == [probe.name for probe in hinge.probes]
+    for sheet in (budgets, claims):
+        assert {len(row) for row in sheet.rows} == {len(sheet.headers)}
+    signs = dict(zip(budgets.headers, budgets.rows[2], strict=True))  # of the rotation; both are below the FEA's
+    assert signs["shear"].startswith("+")
+    assert signs["links"].startswith("−")
+
+
+def test_json_has_every_station_and_sums(hinge, right):
+    account = accounted(hinge, Choices(), right)
+    data = json.loads(text(budget_told.data_of(account)))
+    assert len({row["station"] for row in data["budget"]}) == 10
+    for row in data["budget"]:
+        assert sum(row["parts"].values()) == pytest.approx(row["difference"], rel=1e-9, abs=1e-15)
+    stress = next(row for row in data["budget"] if row["probe"] == "beam1.bending_stress")
+    # 1 + t/(3R) + ..., t/R = 2/25
+    np.testing.assert_allclose(stress["inner_edge_factor"], 81 * [1.0273], rtol=1e-4)
+    assert 0.0 < stress["curved_beam"] <= 0.0274
+
+
+def test_the_picture_shows_every_part_that_there_is(hinge, right):
+    account = accounted(hinge, Choices(), right)
+    (picture,) = budget_drawn.of_account(account)
+    assert picture.name == "budget"
+    (again,) = budget_drawn.of_account(account)
+    assert again.svg == picture.svg
+    for name, (colour, _) in budget_drawn.LOOKS.items():
+        shown = any(getattr(each.parts, name) != 0.0 for each in account.budgets)
+        assert (colour.encode() in picture.svg) == shown or name == "contact", name
+    assert not any(each.parts.contact for each in account.budgets)
+
+
+def test_a_case_without_differences_has_no_picture(hinge):
+    same = Solvers(MadeUp("cprbm", 0.0), MadeUp("fea", 0.0))
+    assert budget_drawn.of_account(accounted(hinge, Choices(kinematics="bending"), same)) == ()
+
+
+def test_converge_tells_the_budget_and_spares_its_own_runs(hinge, right, capsys):
+    calls = []
+
+    def counting(name):
+        def answer(scene, choices):
+            calls.append(asked(name, choices))
+            return getattr(right, name)(scene, choices)
+
+        return answer
+
+    command = ["converge", "hinge", "--sizes", "20,40,80,160", "--json", "-"]
+    assert run(command, Solvers(counting("cprbm"), counting("fea"))) == 0
+    (case,) = json.loads(capsys.readouterr().out)["cases"]
+    assert {row["probe"] for row in case["budget"]} == {probe.name for probe in hinge.probes}
+    assert [claim["probe"] for claim in case["budget_claims"]] == ["B.displacement", "D.displacement"]
+    assert len(calls) == len(set(calls))
+    # four sizes, three times; then two penetrations in shear, n and 2n in stretch, and paper
+    assert len(calls) == 4 * 3 + 2 + 2 + 1
+
+
+def test_converge_shows_the_budget_and_writes_its_figure(right, tmp_path, capsys):
+    assert run(["converge", "hinge", "--sizes", "40,80", "--out", str(tmp_path)], right) == 0
+    assert "Error budget at load 0.67 with 40 links and 80 elements per beam" in capsys.readouterr().out
+    assert (tmp_path / "hinge" / "budget.svg").read_bytes().startswith(b"<?xml")
+    assert "Error budget" in (tmp_path / "index.html").read_text(encoding="utf-8")
