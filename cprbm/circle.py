@@ -231,7 +231,7 @@ class Circle:
         # the two joints beside a clamp on the circle press together, a place of its own among them would part them
         first, last = (4 if clamped else -1 for clamped in self.clamped)
         lowest = lowest[self.own_places & (lowest > first) & (lowest < 2 * (self.a.n + 1) - last)]
-        found = wells.wells(self.a, D, self._convexity(A)[::2], lowest, LEAST_CURVATURE)
+        found = wells.wells(self.a, D, self._convexity(A)[::2], lowest, LEAST_CURVATURE, self.kinks.places)
         places, settled = self._refined(line, s[found.samples])
         places = places[settled & found.held(self.distance(line.at(places)) - self.offset)]
         for place in places:

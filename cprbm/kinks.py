@@ -28,7 +28,7 @@ import numpy as np
 
 from cprbm.kinematics import State
 from cprbm.model import Chain, Kinks
-from scene.answer import Array, Ints
+from scene.answer import Array, Flags, Ints
 
 SPRINGS = 2  # on either side of the pressed element
 
@@ -78,15 +78,21 @@ def _element(chain: Chain, s: Array) -> Ints:
     return np.clip(np.searchsorted(chain.borders, s, side="right") - 1, 0, chain.n - 1)
 
 
+def within(chain: Chain, places: Array) -> Flags:
+    """Whether there is an element on either side of those that arc lengths ``places`` (k,) lie in."""
+    element = _element(chain, places)
+    return np.asarray((element > 0) & (element < chain.n - 1))
+
+
 def kinks_at(chain: Chain, state: State, places: Array) -> Kinks:
-    """The kinks of ``chain`` at arc lengths ``places`` (k,) in a state; none too near to an end to be seen."""
+    """The kinks of ``chain`` at arc lengths ``places`` (k,) in a state, slopes nought where springs are too few."""
     element = _element(chain, places)
     seen = (element >= SPRINGS) & (element < chain.n - SPRINGS)
-    element, places = element[seen], places[seen]
     kappa = (np.diff(state.theta[chain.links]) - np.diff(chain.rest)) / chain.sizes
     springs = chain.s[1:-1]
 
-    def slope(one: Ints, other: Ints) -> Array:
-        return np.asarray((kappa[other] - kappa[one]) / (springs[other] - springs[one]))
+    def slope(one: int, other: int) -> Array:
+        i, j = np.where(seen, element + one, 0), np.where(seen, element + other, 1)
+        return np.where(seen, (kappa[j] - kappa[i]) / (springs[j] - springs[i]), 0.0)
 
-    return Kinks(places, slope(element - 2, element - 1), slope(element + 1, element + 2))
+    return Kinks(places, slope(-2, -1), slope(1, 2))

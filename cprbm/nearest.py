@@ -436,7 +436,7 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
     lowest = lowest[pair.own_places & (lowest > first) & (lowest < 2 * (pair.a.n + 1) - last)]
     parting, near = np.full(pair.a.n + 2, np.inf), np.isfinite(D[::2])
     parting[near] = pair.parting_at(lines, pair.a.s[near], sigma[::2][near], D[::2][near])
-    found = wells.wells(pair.a, D - pair.offset, parting, lowest, LEAST_CURVATURE)
+    found = wells.wells(pair.a, D - pair.offset, parting, lowest, LEAST_CURVATURE, pair.kinks[0].places)
     if not found.samples.size:
         return np.zeros(0), np.zeros(0)
     low, high, s, sigma = (of[found.samples + step] for of, step in ((s, -1), (s, 1), (s, 0), (sigma, 0)))

@@ -27,7 +27,7 @@ from cprbm.contact import Rows
 from cprbm.equilibrium import Point, point_at
 from cprbm.kinematics import State, positions
 from cprbm.mechanism import Mechanism
-from cprbm.kinks import kinks_at
+from cprbm.kinks import kinks_at, within
 from cprbm.model import Chain, Fit, Kinks
 from cprbm.settings import Settings
 from cprbm.zones import Zone, zones_of
@@ -117,20 +117,24 @@ def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
 
 
 def _kinks(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]]) -> dict[str, tuple[Kinks, ...]]:
-    """Those of the contacts in points, of their first beam and of their second."""
+    """Those of the contacts in points, of their first beam and of their second; none where a beam's end presses."""
     found = {}
-    for group, lam in point.rows.shares(point.lam):
-        name, pair = group.contact, mechanism.pairs[group.contact]
-        moving = group.arc[(np.array(group.keys) < 0) & (lam > 0.0)]
-        if not moving.size or any(zone.long for zone in zones.get(name, ())):
+    for name, mine in zones.items():
+        if any(zone.long for zone in mine):
             continue
-        kinks = []
+        pair, middles = mechanism.pairs[name], np.array([0.5 * (zone.begin + zone.end) for zone in mine])
+        places = []
         for chain in pair.chains:
-            pressed = pair.pressed(point.state, point.at, chain, moving)
+            pressed = pair.pressed(point.state, point.at, chain, middles)
             assert pressed is not None
-            kinks.append(kinks_at(chain, point.state, pressed[1]))
-        if any(each.places.size for each in kinks):
-            found[name] = tuple(kinks)
+            places.append(pressed[1])
+        inner = np.all([within(chain, arc) for chain, arc in zip(pair.chains, places, strict=True)], axis=0)
+        if np.any(inner):
+            now = tuple(
+                kinks_at(chain, point.state, arc[inner]) for chain, arc in zip(pair.chains, places, strict=True)
+            )
+            made = mechanism.fit.kinks.get(name, now)
+            found[name] = tuple(each.eased(before) for each, before in zip(now, made, strict=True))
     return found
 
 
@@ -184,9 +188,7 @@ def _same(made: Mapping[str, tuple[Kinks, ...]], now: Mapping[str, tuple[Kinks, 
     """Whether the same contacts press in points, with nearly the same slopes beside them."""
     return made.keys() == now.keys() and all(
         len(one.places) == len(other.places)
-        and np.allclose(
-            (one.before, one.behind), (other.before, other.behind), rtol=0.0, atol=BENT * other.largest
-        )
+        and np.allclose((one.before, one.behind), (other.before, other.behind), rtol=0.0, atol=BENT * other.largest)
         for name in now
         for one, other in zip(made[name], now[name], strict=True)
     )
