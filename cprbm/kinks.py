@@ -30,6 +30,7 @@ from cprbm.kinematics import State
 from cprbm.model import Chain, Kinks
 from scene.answer import Array, Flags, Ints
 
+SLIGHT = 1e-3  # of h² and the largest slope: γ is at most an eighth
 SPRINGS = 2  # on either side of the pressed element
 
 
@@ -96,3 +97,9 @@ def kinks_at(chain: Chain, state: State, places: Array) -> Kinks:
         return np.where(seen, (kappa[j] - kappa[i]) / (springs[j] - springs[i]), 0.0)
 
     return Kinks(places, slope(-2, -1), slope(1, 2))
+
+
+def slight(chain: Chain, kinks: Kinks) -> bool:
+    """Whether γ at the places is next to nothing, as at a border or by symmetry in an element's middle."""
+    size = chain.sizes[_element(chain, kinks.places)]
+    return bool(np.all(np.abs(missed(chain, kinks, kinks.places).angle) <= SLIGHT * size**2 * kinks.largest))

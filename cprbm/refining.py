@@ -26,8 +26,8 @@ import numpy as np
 from cprbm.contact import Rows
 from cprbm.equilibrium import Point, point_at
 from cprbm.kinematics import State, positions
+from cprbm.kinks import kinks_at, slight, within
 from cprbm.mechanism import Mechanism
-from cprbm.kinks import kinks_at, within
 from cprbm.model import Chain, Fit, Kinks
 from cprbm.settings import Settings
 from cprbm.zones import Zone, zones_of
@@ -133,8 +133,10 @@ def _kinks(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
             now = tuple(
                 kinks_at(chain, point.state, arc[inner]) for chain, arc in zip(pair.chains, places, strict=True)
             )
-            made = mechanism.fit.kinks.get(name, now)
-            found[name] = tuple(each.eased(before) for each, before in zip(now, made, strict=True))
+            made = mechanism.fit.kinks.get(name)
+            if made is None and all(slight(chain, kinks) for chain, kinks in zip(pair.chains, now, strict=True)):
+                continue
+            found[name] = now if made is None else tuple(map(Kinks.eased, now, made))
     return found
 
 

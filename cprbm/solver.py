@@ -32,6 +32,7 @@ SETTLE = 0.1  # of the way between stations: in shorter steps steady rows may se
 NEARLY = 0.05  # of a closing load: it lies no farther from that on even elements
 AGAIN = 12  # iterations on a mesh that fits a little better
 FITS = 4  # of the mesh to where contact is, at most
+FITS_TO_ZONES = 3  # where there is one over a length
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
 
 
@@ -127,8 +128,10 @@ class _March:
         """The present state on the mesh that was asked, its borders where zones of contact end."""
         mechanism, point, iterations = self.mechanism, self.point, certificate.iterations
         asked, now = self.family[-1], self.settings
-        for settings in (*self.family[1:-1], *[asked] * FITS):
+        for times, settings in enumerate((*self.family[1:-1], *[asked] * FITS), start=2 - len(self.family)):
             zones = all_zones(mechanism, point)
+            if times >= FITS_TO_ZONES and long_ones(zones):
+                break
             if settings is not asked and not long_ones(zones):
                 continue  # a few places need no mesh between the coarsest and the finest
             fit = fitted(mechanism, point, zones, settings)
@@ -137,10 +140,13 @@ class _March:
             target = mechanism_of(self.scene, settings, fit)
             start = carried_over(mechanism, point, target, self.values)
             # the first mesh may settle which places there are; the next ones know them, and begin close by
-            settle = mechanism is self.mechanism or now is not asked
-            most = settings.iterations if settle else min(settings.iterations, AGAIN)
-            solved = equilibrium(target.problem, self.values, start, settings.tolerance, most, settle=settle)
-            iterations += solved.iterations
+            first = mechanism is self.mechanism
+            most = settings.iterations if first else min(settings.iterations, AGAIN)
+            for settle in (False, True) if first and now is asked else (now is not asked,):
+                solved = equilibrium(target.problem, self.values, start, settings.tolerance, most, settle=settle)
+                iterations += solved.iterations
+                if solved.converged:
+                    break
             turned = float(np.max(np.abs(solved.point.state.theta - start.state.theta)))
             if not solved.converged or turned > FOLLOWED:
                 if now is asked:  # on a mesh that fits a little less it stands already
