@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm.kinks import kinks_at, missed
 from cprbm.kinematics import State
+from cprbm.kinks import kinks_at, missed
 from cprbm.model import Kinks, build
 from scene.reading import read
 from tests.cprbm.scenes import cantilever, force
