@@ -23,7 +23,8 @@ from scene.answer import Array
 
 _STEP = 1e-40  # of the complex step: far below round-off, no subtraction takes place
 _LARGEST = 1e3  # of a residual, without dimension, that may still be mended
-_SETTLED = 1e-11
+_SETTLED = 1e-11  # of a residual that a further step does not make less
+_ROUND_OFF = 1e-14  # of one that no step makes less
 
 Condition = Callable[[Columns, Evaluation], Columns]
 """Of z (n, K) and everything there: (K,), zero where it holds."""
@@ -65,7 +66,7 @@ def solve(
         if not np.isfinite(size) or size > _LARGEST or not np.all(np.isfinite(J)):
             raise LostError
         here = State(asked, z, lam, found.real(), size, 0.0)
-        if size < _SETTLED and size >= 0.5 * last:
+        if size < _ROUND_OFF or (size < _SETTLED and size >= 0.5 * last):
             sign, _ = np.linalg.slogdet(J[:n, :n])
             return replace(here, sign=float(sign))
         last = size

@@ -17,6 +17,8 @@ from exact.spectral import rule
 from exact.structure import Structure, Wrap
 from scene.answer import Array
 
+_AT_START = 1e-16  # of a piece
+
 
 class Known(Protocol):
     """Something that knows (x, y, θ, m, Fx, Fy) (6, n) along every beam, and unknowns that have names of their own."""
@@ -157,6 +159,7 @@ def _within(part: Part, s: Array) -> Array:
     points, weights = _through(len(solved.theta))
     through = BarycentricInterpolator(points, values.T, wi=weights)
     xi = (s - a) / h if h != 0.0 else np.zeros_like(s)
+    xi = np.where(np.abs(xi) < _AT_START, 0.0, xi)  # the interpolation divides by its distance from its points
     return np.concatenate([through(xi).T, np.tile(start[4:, None], (1, len(s)))])
 
 
