@@ -36,7 +36,8 @@ import numpy as np
 from cprbm import smooth, wells
 from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State, positions, rest_state
-from cprbm.model import EVEN, Chain, Fit, Model
+from cprbm.kinks import missed
+from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
 from scene import CircleContact, Scene
 from scene.answer import Array, Flags, Ints
 
@@ -66,6 +67,7 @@ class Circle:
         ends: arc lengths at which zones end on this mesh, where element borders are, and where the edge has a corner
             that stands out; rows stand there too.
         own_places: whether minima of D have rows of their own.
+        kinks: of the beam where the contact is in points.
     """
 
     name: str
@@ -80,6 +82,12 @@ class Circle:
     clamped: tuple[bool, bool] = (False, False)
     ends: tuple[float, ...] = ()
     own_places: bool = True
+    kinks: Kinks = NO_KINKS
+
+    @property
+    def chains(self) -> tuple[Chain, ...]:
+        """The beam."""
+        return (self.a,)
 
     def placed(self, at: Positions) -> Circle:
         """The same circle where it is in a state."""
@@ -126,11 +134,12 @@ class Circle:
             moves = np.tile(-np.eye(2), (len(s), 1, 1))
             C_z, C_sz = np.concatenate((C_z, moves), axis=2), np.concatenate((C_sz, 0.0 * moves), axis=2)
             second = np.pad(second, ((0, 0), (0, 2), (0, 2)))
+        beyond = missed(self.a, self.kinks, s)
         D_z = np.einsum("mi,mik->mk", n, C_z)
         q_z = np.einsum("mi,mik->mk", across, C_z)
         second += q_z[:, :, None] * q_z[:, None, :] / rho[:, None, None]
         D_sz = np.einsum("mi,mik->mk", n, C_sz) + (q_s / rho)[:, None] * q_z
-        D_ss = self._convexity(A)
+        D_ss = self._convexity(A) + self._leading(A) * beyond.bend
         moving = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
         second -= moving[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
 
@@ -139,7 +148,8 @@ class Circle:
         order = ALONE
         if self.body >= 0:
             joints, order = np.stack((joints[:, 0], np.full(len(s), self.mark)), axis=1), WITH_CENTRE
-        values, slopes, second = self.offset - self.distance(A), -D_z[:, order], second[:, order[:, None], order]
+        values = self.offset - self.distance(A) - np.where(free, self._leading(A) * beyond.integral, 0.0)
+        slopes, second = -D_z[:, order], second[:, order[:, None], order]
         angles = self.a.first_link + np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n)), axis=1)
         keys = np.where(free, -1, np.searchsorted(self.a.s, s))
         at_ends = np.isin(s, self.ends)
@@ -181,6 +191,10 @@ class Circle:
                 found.append(rows if outer < inner else rows[::-1])
         return found
 
+    def _leading(self, A: smooth.Points) -> Array:
+        """By how much D_s grows as the tangent leads, ±1: whether the circle is on the beam's right or left."""
+        return np.where((A.y - self.y) * np.cos(A.psi) > (A.x - self.x) * np.sin(A.psi), 1.0, -1.0)
+
     def _across(self, A: smooth.Points, n: Array) -> Array:
         """Part of C_s across n, along the circle clockwise."""
         return np.asarray(A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi)))
@@ -217,7 +231,7 @@ class Circle:
         # the two joints beside a clamp on the circle press together, a place of its own among them would part them
         first, last = (4 if clamped else -1 for clamped in self.clamped)
         lowest = lowest[self.own_places & (lowest > first) & (lowest < 2 * (self.a.n + 1) - last)]
-        found = wells.wells(self.a, D, self._convexity(A)[::2], lowest, LEAST_CURVATURE)
+        found = wells.wells(self.a, D, self._convexity(A)[::2], lowest, LEAST_CURVATURE, self.kinks.places)
         places, settled = self._refined(line, s[found.samples])
         places = places[settled & found.held(self.distance(line.at(places)) - self.offset)]
         for place in places:
@@ -231,9 +245,10 @@ class Circle:
         if not s.size:
             return s, np.zeros(0, dtype=bool)
         for _ in range(CLOSEST_ITERATIONS):
-            A = line.at(s)
-            D_ss = self._convexity(A)
-            step = -self.slope(A) / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
+            A, beyond = line.at(s), missed(self.a, self.kinks, s)
+            leading = self._leading(A)
+            D_ss = self._convexity(A) + leading * beyond.bend
+            step = -(self.slope(A) + leading * beyond.angle) / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
             s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
             if np.max(np.abs(step)) < 1e-13:
                 break
@@ -313,6 +328,7 @@ def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:
         circle,
         clamped=(start and bool(on_it[0]), end and bool(on_it[1])),
         ends=_places_of_rows(chain, chain.s[-1] * fit.ends.get(name, np.zeros(0)), corners=contact.thick),
+        kinks=fit.kinks.get(name, (NO_KINKS,))[0],
     )
 
 

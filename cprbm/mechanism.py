@@ -114,7 +114,7 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism
     """
     model = build(scene, settings, fit)
     pairs = {
-        name: pair_of(scene, model, name) if isinstance(contact, BeamContact) else circle_of(scene, model, name, fit)
+        name: (pair_of if isinstance(contact, BeamContact) else circle_of)(scene, model, name, fit)
         for name, contact in scene.contacts.items()
     }
     boundaries: dict[str, FittedBoundary | RigidCircle] = {}

@@ -167,16 +167,46 @@ class Model:
 
 
 @dataclass(frozen=True, slots=True)
+class Kinks:
+    """Where contacts press a beam in points, and how its curvature goes there, :mod:`cprbm.kinks`.
+
+    Attributes:
+        places: arc lengths (k,), units of length ℓ.
+        before, behind: slopes of the change of curvature on either side (k,), 1/ℓ².
+    """
+
+    places: Array
+    before: Array
+    behind: Array
+
+    def eased(self, before: Kinks) -> Kinks:
+        """These places with the mean of these slopes and those ``before``, lest the two take turns."""
+        if len(before.places) != len(self.places):
+            return self
+        return Kinks(self.places, 0.5 * (self.before + before.before), 0.5 * (self.behind + before.behind))
+
+    @property
+    def largest(self) -> float:
+        """The largest of the slopes."""
+        return float(np.max(np.abs((self.before, self.behind)), initial=0.0))
+
+
+NO_KINKS = Kinks(np.zeros(0), np.zeros(0), np.zeros(0))
+
+
+@dataclass(frozen=True, slots=True)
 class Fit:
-    """A mesh that is fitted to contact over a length.
+    """A mesh that is fitted to contact.
 
     Attributes:
         borders: for beams whose elements are not even, where they end, (N+1,) from 0 to 1 of the length.
         ends: for contacts on them, where they begin and end within the first beam, (k,) shares of its length.
+        kinks: for contacts in points, those of each of their beams.
     """
 
     borders: Mapping[str, Array]
     ends: Mapping[str, Array]
+    kinks: Mapping[str, tuple[Kinks, ...]] = frozendict()
 
 
 EVEN = Fit(frozendict(), frozendict())

@@ -46,7 +46,8 @@ from cprbm import smooth, wells
 from cprbm.contact import Group
 from cprbm.gathering import Touches, gathered
 from cprbm.kinematics import Positions, State, positions, rest_state
-from cprbm.model import Chain, Model
+from cprbm.kinks import missed
+from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
 from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
 
@@ -100,6 +101,7 @@ class Pair:
         unit_length: ℓ, m.
         clamps: for the start and the end of A and of B, whether it is clamped together with an end of the other.
         own_places: whether minima of D have rows of their own.
+        kinks: of A and of B where the contact is in points.
     """
 
     name: str
@@ -111,6 +113,7 @@ class Pair:
     unit_length: float
     clamps: tuple[tuple[bool, bool], tuple[bool, bool]] = ((False, False), (False, False))
     own_places: bool = True
+    kinks: tuple[Kinks, ...] = (NO_KINKS, NO_KINKS)
 
     def lines(self, state: State, at: Positions) -> Lines:
         """The smooth lines of A and B in a state."""
@@ -121,7 +124,20 @@ class Pair:
 
     def exchanged(self) -> Pair:
         """The same contact with the parts of A and B exchanged."""
-        return replace(self, a=self.b, b=self.a, side=self.across, across=self.side, clamps=self.clamps[::-1])
+        return replace(
+            self,
+            a=self.b,
+            b=self.a,
+            side=self.across,
+            across=self.side,
+            clamps=self.clamps[::-1],
+            kinks=self.kinks[::-1],
+        )
+
+    @property
+    def chains(self) -> tuple[Chain, ...]:
+        """A and B."""
+        return self.a, self.b
 
     @property
     def shared(self) -> int:
@@ -282,8 +298,12 @@ class Pair:
         facing = np.cos(A.psi - B.psi)
         of_foot = -B.speed + distance * B.bend
         one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
-        determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.speed, 1.0)
-        s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
+        more_A, more_B = missed(self.a, self.kinks[0], s), missed(self.b, self.kinks[1], sigma)
+        bend_A, bend_B = A.bend + more_A.bend, B.bend + more_B.bend
+        determinant = np.where(free, bend_A * of_foot + bend_B * facing * A.speed, 1.0)
+        s_z = np.where(free[:, None], of_foot[:, None] * one + bend_B[:, None] * two, 0.0) / determinant[:, None]
+        # what D gains over s by the tangents' γ, the foot going along
+        gained = np.sign(facing) * (more_A.integral + of_foot / (facing * A.speed) * more_B.integral)
         sigma_z = (two - (facing * A.speed)[:, None] * s_z) / of_foot[:, None]
         turning = psi_B + B.bend[:, None] * sigma_z
         second = np.zeros((m, 2 * k, 2 * k))
@@ -293,9 +313,10 @@ class Pair:
         n_B = np.concatenate((zeros, np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(B))), axis=1)
         second += -t_r[:, :, None] * turning[:, None, :]
         second += n_A[:, :, None] * s_z[:, None, :] - n_B[:, :, None] * sigma_z[:, None, :]
+        second = 0.5 * (second + np.swapaxes(second, 1, 2))  # γ leaves a part of its own size uneven
 
         return Touches(
-            values=self.offset - self.side * distance,
+            values=self.offset - self.side * (distance + np.where(free, gained, 0.0)),
             slopes=-self.side * n_r,
             second=-self.side * second,
             links=np.stack((A.link, B.link)),
@@ -415,7 +436,7 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
     lowest = lowest[pair.own_places & (lowest > first) & (lowest < 2 * (pair.a.n + 1) - last)]
     parting, near = np.full(pair.a.n + 2, np.inf), np.isfinite(D[::2])
     parting[near] = pair.parting_at(lines, pair.a.s[near], sigma[::2][near], D[::2][near])
-    found = wells.wells(pair.a, D - pair.offset, parting, lowest, LEAST_CURVATURE)
+    found = wells.wells(pair.a, D - pair.offset, parting, lowest, LEAST_CURVATURE, pair.kinks[0].places)
     if not found.samples.size:
         return np.zeros(0), np.zeros(0)
     low, high, s, sigma = (of[found.samples + step] for of, step in ((s, -1), (s, 1), (s, 0), (sigma, 0)))
@@ -425,9 +446,11 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
         facing, shortened = np.cos(A.psi - B.psi), B.speed - B.bend * across
         # what is left to the foot, and the slope there
         left = along / shortened
-        slope = pair.side * (np.sin(A.psi - B.psi) - facing * B.bend * left)
+        more_A, more_B = missed(pair.a, pair.kinks[0], s), missed(pair.b, pair.kinks[1], sigma)
+        bend_B, ahead_of = B.bend + more_B.bend, more_A.angle - more_B.angle
+        slope = pair.side * (np.sin(A.psi - B.psi + ahead_of) - facing * bend_B * left)
         towards = facing * A.speed / shortened  # dσ/ds
-        convex = pair.side * facing * (A.bend - B.bend * towards)
+        convex = pair.side * facing * (A.bend + more_A.bend - bend_B * towards)
         low, high = np.where(slope < 0.0, s, low), np.where(slope < 0.0, high, s)
         ahead = s - slope / np.where(convex > LEAST_CURVATURE, convex, np.inf)
         newton = (convex > LEAST_CURVATURE) & (ahead >= low) & (ahead <= high)
@@ -440,7 +463,7 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
     return s[settled], sigma[settled]
 
 
-def pair_of(scene: Scene, model: Model, name: str) -> Pair:
+def pair_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Pair:
     """One of the scene's contacts, its sides read from the stress-free state."""
     contact = scene.contacts[name]
     assert isinstance(contact, BeamContact)
@@ -451,7 +474,8 @@ def pair_of(scene: Scene, model: Model, name: str) -> Pair:
     pair = Pair(name, a, b, 1.0, 1.0, half, model.unit_length)
     lines = pair.lines(state, at)
     pair = replace(pair, side=_side(pair, lines), across=_side(pair.exchanged(), lines[::-1]))
-    return replace(pair, clamps=(_clamped(pair, lines), _clamped(pair.exchanged(), lines[::-1])))
+    clamps = _clamped(pair, lines), _clamped(pair.exchanged(), lines[::-1])
+    return replace(pair, clamps=clamps, kinks=fit.kinks.get(name, pair.kinks))
 
 
 def _clamped(pair: Pair, lines: Lines) -> tuple[bool, bool]:

@@ -22,6 +22,10 @@ class Touching(Protocol):
         """The first beam."""
 
     @property
+    def chains(self) -> tuple[Chain, ...]:
+        """The beams: one where the other side is rigid."""
+
+    @property
     def clamped(self) -> tuple[bool, bool]:
         """Whether the beam's start and end are clamped in touch with the other."""
 

@@ -26,8 +26,9 @@ import numpy as np
 from cprbm.contact import Rows
 from cprbm.equilibrium import Point, point_at
 from cprbm.kinematics import State, positions
+from cprbm.kinks import kinks_at, slight, within
 from cprbm.mechanism import Mechanism
-from cprbm.model import Chain, Fit
+from cprbm.model import Chain, Fit, Kinks
 from cprbm.settings import Settings
 from cprbm.zones import Zone, zones_of
 from scene.answer import Array, Flags
@@ -40,6 +41,7 @@ LEAST = 1e-3  # of the largest pressure, on a joint within a zone
 SHARE = 4  # a span between marks has one of so many of the beam's elements at least
 FIXED = 0.75  # of a beam's elements, the most that such shares may take
 SHORTEST = 0.1  # elements: marks closer than this leave the elements even
+BENT = 0.05  # of the largest slope of a curvature beside a place: slopes that differ by less are the same
 MOVED = 0.02  # elements: ends that have moved less since the mesh was made are where the mesh has them
 
 
@@ -111,7 +113,31 @@ def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
             continue
         borders[chain.name] = np.interp(np.arange(n + 1), numbers, np.concatenate(([0.0], marks, [1.0])))
         kept |= {name: ends[name] for name in names}
-    return Fit(borders, kept)
+    return Fit(borders, kept, _kinks(mechanism, point, zones))
+
+
+def _kinks(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]]) -> dict[str, tuple[Kinks, ...]]:
+    """Those of the contacts in points, of their first beam and of their second; none where a beam's end presses."""
+    found = {}
+    for name, mine in zones.items():
+        if any(zone.long for zone in mine):
+            continue
+        pair, middles = mechanism.pairs[name], np.array([0.5 * (zone.begin + zone.end) for zone in mine])
+        places = []
+        for chain in pair.chains:
+            pressed = pair.pressed(point.state, point.at, chain, middles)
+            assert pressed is not None
+            places.append(pressed[1])
+        inner = np.all([within(chain, arc) for chain, arc in zip(pair.chains, places, strict=True)], axis=0)
+        if np.any(inner):
+            now = tuple(
+                kinks_at(chain, point.state, arc[inner]) for chain, arc in zip(pair.chains, places, strict=True)
+            )
+            made = mechanism.fit.kinks.get(name)
+            if made is None and all(slight(chain, kinks) for chain, kinks in zip(pair.chains, now, strict=True)):
+                continue
+            found[name] = now if made is None else tuple(map(Kinks.eased, now, made))
+    return found
 
 
 def _places_on(
@@ -150,12 +176,23 @@ def fits(mechanism: Mechanism, fit: Fit) -> bool:
     made = mechanism.fit
     return (
         made.ends.keys() == fit.ends.keys()
+        and _same(made.kinks, fit.kinks)
         and made.borders.keys() == fit.borders.keys()
         and all(
             len(made.borders[beam]) == len(borders)
             and np.all(np.abs(made.borders[beam] - borders) <= MOVED / (len(borders) - 1))
             for beam, borders in fit.borders.items()
         )
+    )
+
+
+def _same(made: Mapping[str, tuple[Kinks, ...]], now: Mapping[str, tuple[Kinks, ...]]) -> bool:
+    """Whether the same contacts press in points, with nearly the same slopes beside them."""
+    return made.keys() == now.keys() and all(
+        len(one.places) == len(other.places)
+        and np.allclose((one.before, one.behind), (other.before, other.behind), rtol=0.0, atol=BENT * other.largest)
+        for name in now
+        for one, other in zip(made[name], now[name], strict=True)
     )
 
 

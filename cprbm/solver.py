@@ -7,10 +7,10 @@ from there on the mesh that was asked, fitted to where contact is (:mod:`cprbm.r
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.optimize import brentq
+from scipy.optimize import brentq, root_scalar
 from threadpoolctl import threadpool_limits
 
 from cprbm.boundary import FittedBoundary
@@ -29,7 +29,10 @@ GROWTH = 2.0
 EVENT_TOLERANCE = 1e-10  # of the load step in which a contact closed
 CLOSER = 8
 SETTLE = 0.1  # of the way between stations: in shorter steps steady rows may settle which places there are
-FITS = 3  # of the mesh to where contact is, at most
+NEARLY = 0.05  # of a closing load: it lies no farther from that on even elements
+AGAIN = 12  # iterations on a mesh that fits a little better
+FITS = 4  # of the mesh to where contact is, at most
+FITS_TO_ZONES = 3  # where there is one over a length
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
 
 
@@ -125,8 +128,10 @@ class _March:
         """The present state on the mesh that was asked, its borders where zones of contact end."""
         mechanism, point, iterations = self.mechanism, self.point, certificate.iterations
         asked, now = self.family[-1], self.settings
-        for settings in (*self.family[1:-1], *[asked] * FITS):
+        for times, settings in enumerate((*self.family[1:-1], *[asked] * FITS), start=2 - len(self.family)):
             zones = all_zones(mechanism, point)
+            if times >= FITS_TO_ZONES and long_ones(zones):
+                break
             if settings is not asked and not long_ones(zones):
                 continue  # a few places need no mesh between the coarsest and the finest
             fit = fitted(mechanism, point, zones, settings)
@@ -134,10 +139,14 @@ class _March:
                 break
             target = mechanism_of(self.scene, settings, fit)
             start = carried_over(mechanism, point, target, self.values)
-            solved = equilibrium(
-                target.problem, self.values, start, settings.tolerance, settings.iterations, settle=now is not asked
-            )
-            iterations += solved.iterations
+            # the first mesh may settle which places there are; the next ones know them, and begin close by
+            first = mechanism is self.mechanism
+            most = settings.iterations if first else min(settings.iterations, AGAIN)
+            for settle in (False, True) if first and now is asked else (now is not asked,):
+                solved = equilibrium(target.problem, self.values, start, settings.tolerance, most, settle=settle)
+                iterations += solved.iterations
+                if solved.converged:
+                    break
             turned = float(np.max(np.abs(solved.point.state.theta - start.state.theta)))
             if not solved.converged or turned > FOLLOWED:
                 if now is asked:  # on a mesh that fits a little less it stands already
@@ -230,31 +239,73 @@ class _March:
         if len(self.family) > 1:
             asked = mechanism_of(self.scene, self.family[-1])
             mechanism, point = asked, carried_over(mechanism, point, asked, self.values)
-        problem = mechanism.without(name)
-        solved = {begin: point_at(problem, self.values, point.state, point.mu, np.zeros(0), NO_ROWS)}
-
-        def overlap(value: float) -> float:
-            values = {**self.values, load: value}
-            near = solved[min(solved, key=lambda other: abs(other - value))]
-            found = equilibrium(problem, values, near, self.settings.tolerance, self.settings.iterations)
-            if not found.converged:
-                return float("nan")
-            solved[value] = found.point
-            return max(mechanism.overlap(name, found.point.state, found.point.at), -1.0)
-
+        gap = _Gap(replace(mechanism, problem=mechanism.without(name)), name, self.values, load, self.settings)
+        gap.known(begin, point)
         # without the contact the far end may be out of reach: come closer until it is not
-        low, high = overlap(begin), overlap(target)
+        low, high = gap.overlap(begin), gap.overlap(target)
         for _ in range(CLOSER):
             if not np.isnan(high):
                 break
             target = 0.5 * (begin + target)
-            high = overlap(target)
+            high = gap.overlap(target)
         if not low <= 0.0 <= high:
             return None
+        tolerance = EVENT_TOLERANCE * abs(target - begin)
         try:
-            return float(brentq(overlap, begin, target, xtol=EVENT_TOLERANCE * abs(target - begin), rtol=8.9e-16))
+            closing = float(brentq(gap.overlap, begin, target, xtol=tolerance, rtol=8.9e-16))
         except ValueError:  # between the two the mechanism has no equilibrium without the contact
             return None
+        return self._closing_fitted(gap, closing, 1e-3 * (target - begin), tolerance)
+
+    def _closing_fitted(self, gap: _Gap, closing: float, step: float, tolerance: float) -> float:
+        """The same on the mesh that is fitted to where the other contacts are then."""
+        for _ in range(FITS):
+            mechanism, point = gap.mechanism, gap.nearest(closing)
+            fit = fitted(mechanism, point, all_zones(mechanism, point), self.family[-1])
+            if fits(mechanism, fit):
+                break
+            target = mechanism_of(self.scene, self.family[-1], fit)
+            gap = replace(gap, mechanism=replace(target, problem=target.without(gap.contact)), solved={})
+            gap.known(closing, carried_over(mechanism, point, gap.mechanism, {**self.values, gap.load: closing}))
+            found = root_scalar(gap.overlap, method="secant", x0=closing, x1=closing + step, xtol=tolerance)
+            if not found.converged or not abs(found.root - closing) <= NEARLY * abs(closing):
+                break  # on a mesh that fits a little less it is known already
+            closing = float(found.root)
+        return closing
+
+
+@dataclass(frozen=True, slots=True)
+class _Gap:
+    """How far a contact that holds nothing apart is open or violated, as a function of the load.
+
+    ``mechanism`` is without the contact; ``solved`` are the states that are known, by the load's value.
+    """
+
+    mechanism: Mechanism
+    contact: str
+    values: dict[str, float]
+    load: str
+    settings: Settings
+    solved: dict[float, Point] = field(default_factory=dict)
+
+    def known(self, value: float, point: Point) -> None:
+        """Begin from a state near ``value``."""
+        problem, values = self.mechanism.problem, {**self.values, self.load: value}
+        self.solved[value] = point_at(problem, values, point.state, point.mu, np.zeros(0), NO_ROWS)
+
+    def nearest(self, value: float) -> Point:
+        """The state whose load is nearest."""
+        return self.solved[min(self.solved, key=lambda other: abs(other - value))]
+
+    def overlap(self, value: float) -> float:
+        """Largest overlap at a value of the load, units of length; NaN where there is no equilibrium."""
+        values = {**self.values, self.load: value}
+        start, settings = self.nearest(value), self.settings
+        found = equilibrium(self.mechanism.problem, values, start, settings.tolerance, settings.iterations)
+        if not found.converged:
+            return float("nan")
+        self.solved[value] = found.point
+        return max(self.mechanism.overlap(self.contact, found.point.state, found.point.at), -1.0)
 
 
 def _presses(point: Point, contact: str) -> bool:

@@ -25,6 +25,7 @@ from cprbm.smooth import halves
 from scene.answer import Array, Flags, Ints
 
 BESIDE = 2.5  # a joint closer than this many h to a place of its own leaves what presses to that
+NEAR = 1.5  # h between a minimum and a place that is known to be one
 HELD = 2e-3  # of h², 1/ℓ: gaps that a zone may leave at its joints
 LEVEL = 0.01  # of the larger gap beside a minimum: less on its other side is the end of a zone
 
@@ -40,7 +41,7 @@ class Wells:
 
     Attributes:
         samples: the lowest samples (k,).
-        parted: whether D″ is positive all round.
+        parted: whether D″ is positive all round, or the place is known.
         apart: the lesser gap of the joints on either side, zero where it is next to nothing.
     """
 
@@ -53,7 +54,7 @@ class Wells:
         return np.asarray(self.parted | (self.apart + gap > 0.0))
 
 
-def wells(chain: Chain, gap: Array, parting: Array, samples: Ints, least: float) -> Wells:
+def wells(chain: Chain, gap: Array, parting: Array, samples: Ints, least: float, known: Array) -> Wells:
     """What may be a well, of the lowest samples (k,).
 
     Args:
@@ -62,8 +63,12 @@ def wells(chain: Chain, gap: Array, parting: Array, samples: Ints, least: float)
         parting: D″ at the joints (N+2,), infinite where it is not known.
         samples: the lowest, as :func:`lowest` finds them.
         least: D″ that is no more than the lines' own unevenness.
+        known: arc lengths (j,) where the contact is known to be in a point: what is near is one.
     """
-    parted, apart = _parted(parting, samples, least), _apart(gap, samples, chain.size_at(halves(chain)[samples]))
+    s = halves(chain)[samples]
+    h = chain.size_at(s)
+    near = np.any(np.abs(s[:, None] - known) <= NEAR * h[:, None], axis=1)
+    parted, apart = near | _parted(parting, samples, least), _apart(gap, samples, h)
     likely = parted | (apart > 0.0)
     return Wells(samples[likely], parted[likely], apart[likely])
 

@@ -18,7 +18,8 @@ before them, and continued as a parabola.  At a beam's end, or where the other b
 the zone ends there itself.
 
 Of a contact in a point, χ is positive on either side: continued through the point, both sides reach zero beyond it, so
-that the zone would begin behind its end, or beside its pressure.  Then it is the pressure's centre.
+that the zone would begin behind its end, or beside its pressure; or χ falls on the way out and has no zero inwards.
+Then it is the pressure's centre.
 """
 
 from __future__ import annotations
@@ -66,9 +67,12 @@ def _continued(model: Model, system: System, touch: Touch, at: int, outwards: fl
     way = np.abs(beyond - zeta)
     a, b, c = np.polyfit(way, chi, 2)
     roots = np.roots([a, b, c])
-    real = roots[np.isreal(roots)].real
-    inwards = real[real <= 0.0]
-    return float(zeta + outwards * inwards.max()) if inwards.size else zeta
+    # where it just misses zero, its lowest place
+    inwards = roots.real[roots.real <= 0.0]
+    if inwards.size:
+        return float(zeta + outwards * inwards.max())
+    # open there, and more so further in: no way leads to a zone's end, and the contact is in a point
+    return float(-outwards * np.inf) if chi[0] > 0.0 and chi[-1] <= chi[0] else zeta
 
 
 def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array, facing: float) -> Array | None:

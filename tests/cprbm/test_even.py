@@ -1,0 +1,127 @@
+"""Errors that fall evenly with N: N² times the error is the same from each number of links to the next.
+
+Limits are Richardson's, from 80 and 160 links; that the order is two is part of what is tested.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import cprbm
+from cprbm.kinematics import State
+from cprbm.kinks import kinks_at, missed
+from cprbm.model import Kinks, build
+from scene.reading import read
+from tests.cprbm.scenes import cantilever, force
+
+CASES = Path(__file__).parents[2] / "comparisons" / "cases"
+CONSECUTIVE = range(37, 48)
+COARSER, FINER = 80, 160
+
+
+def families(case, *stations):
+    """A built-in case at some stations: for each, by the number of links, values by probe."""
+    scene = read(CASES / f"{case}.toml")
+    stage = scene.stages[0].model_copy(update={"stations": stations})
+    scene = scene.model_copy(update={"stages": (stage,)})
+    found = {}
+    for links in (*CONSECUTIVE, COARSER, FINER):
+        answer = cprbm.answer(scene, cprbm.Settings(links=links))
+        assert answer.completed, answer.sentence
+        found[links] = [station.values for station in answer.stations]
+    return [{links: values[i] for links, values in found.items()} for i in range(len(stations))]
+
+
+def scaled(found, probe):
+    """N² times the error's norm for all N in CONSECUTIVE, and for COARSER."""
+    coarse, fine = found[COARSER][probe], found[FINER][probe]
+    limit = fine + (fine - coarse) / 3.0
+    errors = [n**2 * np.linalg.norm(found[n][probe] - limit) for n in (*CONSECUTIVE, COARSER)]
+    return np.array(errors[:-1]), errors[-1]
+
+
+@pytest.fixture(scope="module")
+def gripper():
+    """Just after beam 2 has left the clamp on the circle; and on the circle and beam 1 in points anywhere."""
+    return families("gripper", 6.4, 12.8)
+
+
+@pytest.mark.parametrize(
+    ("probe", "part"),
+    [
+        ("A.displacement", 0.03),
+        ("B.displacement", 0.03),
+        ("scene.potential_energy", 0.02),
+        ("circle.force", 0.06),
+        ("C.reaction", 0.06),
+        ("contact.closing_load", 0.03),
+        ("contact.centre", 0.12),
+        ("circle.centre", 0.2),
+    ],
+)
+def test_the_error_is_even_where_contacts_are_in_points(gripper, probe, part):
+    errors, finer = scaled(gripper[1], probe)
+    assert np.max(np.abs(errors / errors.mean() - 1.0)) < part
+    assert finer == pytest.approx(errors.mean(), rel=part)
+
+
+def test_the_error_is_even_just_after_a_contact_has_left_the_clamp(gripper):
+    # even elements, of which there are two before the place, take it for a wrap that goes on from the clamp
+    errors, finer = scaled(gripper[0], "A.displacement")
+    assert np.max(np.abs(errors / errors.mean() - 1.0)) < 0.1
+    assert finer == pytest.approx(errors.mean(), rel=0.1)
+    forces, _ = scaled(gripper[0], "circle.force")
+    assert np.max(forces / np.array(CONSECUTIVE) ** 2) < 0.015 * gripper[0][FINER]["circle.force"][0]
+
+
+@pytest.mark.parametrize(
+    ("probe", "part"),
+    [("T.displacement", 0.05), ("tip.rotation", 0.05), ("contact.centre", 0.15), ("scene.potential_energy", 0.01)],
+)
+def test_the_error_is_even_on_a_wrap(wrapped, probe, part):
+    errors, finer = scaled(wrapped, probe)
+    assert np.max(np.abs(errors / errors.mean() - 1.0)) < part
+    assert finer == pytest.approx(errors.mean(), rel=part)
+
+
+@pytest.fixture(scope="module")
+def wrapped():
+    return families("wrapped", 137.0)[0]
+
+
+def bent_by_two_moments(places, place, p, q, kappa):
+    """Angles of links and true tangents at ``places`` of a beam whose curvature is a broken line with its corner."""
+
+    def angle(s):
+        off = s - place
+        return kappa * off + 0.5 * np.where(off < 0.0, p, q) * off**2
+
+    return angle(places)
+
+
+@pytest.mark.parametrize("part", [0.0, 0.2, 0.5, 0.9])
+def test_what_is_missed_of_the_tangent_is_what_a_broken_line_of_curvature_says(part):
+    # the reference is the integral of that line, exact at the elements' borders
+    chain = build(cantilever(force(0.0, -1.0), [1.0]), cprbm.Settings(links=10)).chains[0]
+    place, p, q, kappa = chain.borders[5] + part * chain.sizes[5], 2.3, -1.7, 0.9
+    theta = bent_by_two_moments(chain.borders, place, p, q, kappa)
+    kinks = kinks_at(chain, State(chain.rest + theta, np.zeros((1, 3))), np.array([place]))
+    assert kinks.before == pytest.approx([p])
+    assert kinks.behind == pytest.approx([q])
+    within = (place - chain.borders[5]) / chain.sizes[5]
+    even = theta[5] + within * (theta[6] - theta[5])
+    true = bent_by_two_moments(place, place, p, q, kappa)
+    assert missed(chain, kinks, np.array([place])).angle == pytest.approx([true - even], abs=1e-14)
+
+
+def test_bend_and_integral_of_what_is_missed_are_its_own():
+    # central differences, in the pressed element and in those beside it
+    chain = build(cantilever(force(0.0, -1.0), [1.0]), cprbm.Settings(links=10)).chains[0]
+    kinks = Kinks(np.array([0.537]), np.array([2.3]), np.array([-1.7]))
+    s, step = np.array([0.43, 0.49, 0.51, 0.56, 0.62, 0.68]), 1e-6
+    more, less, here = (missed(chain, kinks, s + d) for d in (step, -step, 0.0))
+    assert (more.angle - less.angle) / (2.0 * step) == pytest.approx(here.bend, abs=1e-8)
+    assert (more.integral - less.integral) / (2.0 * step) == pytest.approx(here.angle, abs=1e-8)
+    far = missed(chain, kinks, np.array([0.15, 0.85]))
+    assert not np.any(far.angle)
