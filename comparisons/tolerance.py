@@ -17,11 +17,11 @@ Two ways to meet τ, by what must be solved:
 * *plain*: the value at N, whose f comes from N and 2N (and from N + N/7, where the error may be uneven in N);
 * *settled*: of N/2, N and 2N the value at 2N, or what N and 2N extrapolate to, whichever states less, probe by probe.
 
-A solve's time grows with its N, so the way whose finest N is the smallest is the cheapest.  From f = C/N^p follows
-where the plain way would pass: at M·g·N.  If that is below 2N, its finest N is below 4N, the next that the settled way
-could try, and it is tried at once; else N doubles, which costs one solve and not more than all before together, and
-makes both ways possible with what is already solved.  Where extrapolation is not to be had (an error that is uneven in
-N by its nature), N goes to M·g·N in one step.
+A solve's work grows with its N.  From f = C/N^p follows where the plain way would pass: at N' = M·g·N.  It must solve
+N' and 2N'; to double N must solve 4N alone, and makes both ways possible with what is solved already.  So N goes to N'
+where 3N' < 4N, and else to 2N: never further than the double of what did not do, and all that is solved together is
+not more than twice the finest.  Where extrapolation is not to be had (an error that is uneven in N by its nature), N
+goes to N' in one step.
 """
 
 from __future__ import annotations
@@ -168,7 +168,7 @@ def search(levels: Levels, tolerance: float, largest: int, *, extrapolates: bool
             if n > FIRST:
                 last = levels.settled(n)
                 tried.append(Found(n, last, last.fraction <= tolerance, settled=True))
-            if not tried[-1].met and _predicted(n, growth) < 2 * n:
+            if not tried[-1].met and 3 * _predicted(n, growth) < 4 * n:
                 tried.append(_plainly(levels, _predicted(n, growth), tolerance))
         if tried[-1].met:
             return tried[-1]
@@ -187,8 +187,12 @@ def _plainly(levels: Levels, n: int, tolerance: float) -> Found:
 
 
 def _predicted(n: int, growth: float) -> int:
-    """M·g·N; where g says nothing, because a value comes and goes, 2N."""
-    return max(n + 1, math.ceil(MARGIN * growth * n)) if math.isfinite(growth) else 2 * n
+    """N' = M·g·N; where g says nothing, because a value comes and goes, 2N.
+
+    It is even as the first N is, so that the middle of a beam, where what is symmetric touches, stays a border: a
+    prediction from one kind of mesh is worth little for another.
+    """
+    return 2 * math.ceil(max(n + 1, MARGIN * growth * n) / 2) if math.isfinite(growth) else 2 * n
 
 
 def _hopeless(estimate: Estimate, finest: float, tolerance: float, largest: int) -> bool:
