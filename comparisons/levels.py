@@ -59,15 +59,18 @@ class SceneLevels:
         return self._plain(n, beside=self.beside and may_be_uneven(self.scene))
 
     def settled(self, n: int) -> Estimate:
-        """Of the values at 2n or what n and 2n extrapolate to, from n/2, n and 2n."""
-        return self._settled(n, self.extrapolated(n))
+        """Of the values at 2n or what n and 2n extrapolate to, from n/2, n and 2n.
 
-    def extrapolated(self, n: int) -> frozenset[str]:
-        """The probes that state less extrapolated from n and 2n than at 2n, in their worst row."""
-        kept, all_ = (
-            _worst_of_probes(self._settled(n, probes)) for probes in ((), [probe.name for probe in self.scene.probes])
-        )
-        return frozenset(name for name, fraction in all_.items() if fraction < kept[name])
+        A probe is extrapolated, in all theories, if its worst row states less so.
+        """
+        names = [probe.name for probe in self.scene.probes]
+        kept, all_ = (self._settled(n, probes) for probes in ((), names))
+        if kept.trouble:
+            return kept
+        before, after = _worst_of_probes(kept), _worst_of_probes(all_)
+        probes = frozenset(name for name, fraction in after.items() if fraction < before[name])
+        rows = zip(kept.rows, all_.rows, strict=True)
+        return Estimate(tuple(b if a.probe in probes else a for a, b in rows), extrapolated=probes)
 
     def answer(self, theory: Kinematics, n: int) -> Answer:
         """The answer at ``n``."""

@@ -19,9 +19,9 @@ Two ways to meet τ, by what must be solved:
 
 A solve's work grows with its N.  From f = C/N^p follows where the plain way would pass: at N' = M·g·N.  It must solve
 N' and 2N'; to double N must solve 4N alone, and makes both ways possible with what is solved already.  So N goes to N'
-where 3N' < 4N, and else to 2N: never further than the double of what did not do, and all that is solved together is
-not more than twice the finest.  Where extrapolation is not to be had (an error that is uneven in N by its nature), N
-goes to N' in one step.
+where that is little work (3N' ≤ 5N), and else to 2N: never further than the double of what did not do.  Where
+extrapolation is not to be had (an error that is uneven in N by its nature), N goes to N' in one step, as soon as two N
+have shown the order.
 """
 
 from __future__ import annotations
@@ -75,10 +75,17 @@ class Stated:
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """What the solves at and about one N state, row by row; ``trouble`` says why they state nothing."""
+    """What the solves at and about one N state.
+
+    Attributes:
+        rows: one for each that has a value.
+        trouble: why nothing is stated; empty otherwise.
+        extrapolated: names of the probes whose values are.
+    """
 
     rows: tuple[Stated, ...]
     trouble: str = ""
+    extrapolated: frozenset[str] = frozenset()
 
     @property
     def worst(self) -> Stated | None:
@@ -168,11 +175,12 @@ def search(levels: Levels, tolerance: float, largest: int, *, extrapolates: bool
             if n > FIRST:
                 last = levels.settled(n)
                 tried.append(Found(n, last, last.fraction <= tolerance, settled=True))
-            if not tried[-1].met and 3 * _predicted(n, growth) < 4 * n:
+            if not tried[-1].met and 3 * _predicted(n, growth) <= 5 * n:
                 tried.append(_plainly(levels, _predicted(n, growth), tolerance))
         if tried[-1].met:
             return tried[-1]
-        further = 2 * n if extrapolates else min(_predicted(n, growth), round(_LARGEST_STEP * n))
+        step = 2.0 if extrapolates or before is None else _LARGEST_STEP
+        further = 2 * n if extrapolates else min(_predicted(n, growth), round(step * n))
         further = min(further, largest // 2)
         if further <= n or (n >= ENOUGH and _hopeless(last, 2.0 * n, tolerance, largest)):
             return min(tried, key=lambda each: each.estimate.fraction)

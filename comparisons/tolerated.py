@@ -26,17 +26,16 @@ LARGEST_PAPER = 640
 
 @dataclass(frozen=True, slots=True)
 class _Reached:
-    """Where a search has ended, with the levels that it went through and which probes are extrapolated there."""
+    """Where a search has ended, with the levels that it went through."""
 
     levels: SceneLevels
     found: Found
-    probes: frozenset[str]
 
     def pair(self, theory: Kinematics) -> tuple[Answer, Answer]:
         """The answer and the one that it is held against."""
         n = self.found.n
         if self.found.settled:
-            return self.levels.pair(theory, n, self.probes)
+            return self.levels.pair(theory, n, self.found.estimate.extrapolated)
         return self.levels.answer(theory, n), self.levels.answer(theory, 2 * n)
 
     def value(self, theory: Kinematics) -> Answer:
@@ -109,7 +108,7 @@ def _reached(
     levels = SceneLevels(scene, answers, choices, theories, memory, beside=is_cprbm, reference=reference)
     largest = 2 * LARGEST_PAPER if paper else LARGEST[solver]
     found = search(levels, tolerance, largest, extrapolates=not paper)
-    return _Reached(levels, found, levels.extrapolated(found.n) if found.settled else frozenset())
+    return _Reached(levels, found)
 
 
 def _families(fea: _Reached, chosen: Kinematics) -> frozendict[Kinematics, tuple[Answer, ...]]:
@@ -141,7 +140,7 @@ def _told(reached: _Reached, solver: Method, tolerance: float) -> Tolerance:
         n=2 * found.n if found.settled else found.n,
         worst=None if estimate.trouble else estimate.worst,
         trouble=estimate.trouble,
-        extrapolated=(found.n, 2 * found.n) if reached.probes else (),
-        probes=tuple(sorted(reached.probes)),
+        extrapolated=(found.n, 2 * found.n) if estimate.extrapolated else (),
+        probes=tuple(sorted(estimate.extrapolated)),
         solved=levels.solved(),
     )
