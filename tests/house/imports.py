@@ -11,14 +11,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOMS = ("scene", "cprbm", "fea_reference", "comparisons")
+ROOMS = ("scene", "cprbm", "fea_reference", "exact", "comparisons")
 MAY_IMPORT = {
     "scene": {"scene"},
     "cprbm": {"cprbm", "scene"},
     "fea_reference": {"fea_reference", "scene"},
+    "exact": {"exact", "scene"},
     "comparisons": {"comparisons", "scene"},
 }
-SOLVERS = {"cprbm", "fea_reference"}
+SOLVERS = {"cprbm", "fea_reference", "exact"}
 DOOR_TO_SOLVERS = "comparisons.pairing"
 HEAVY = ("matplotlib", "pyvista", "gmsh", "meshio")
 HEAVY_ROOMS = {"skfem": "fea_reference"}

@@ -1,0 +1,203 @@
+"""The equations of a mechanism of elasticas: pieces joined at bodies, knots and contacts.
+
+==========  ================================================================================================
+symbol      meaning
+==========  ================================================================================================
+z           unknowns, see :mod:`exact.layout`
+λ           value of the load or drive that is stepped
+==========  ================================================================================================
+
+Source: S. S. Antman, Nonlinear Problems of Elasticity, chapter 4 (balance laws of planar rods), without stretch and
+shear.  At a knot everything is continuous; contacts are :mod:`exact.touching` and :mod:`exact.wrapping`; the forces
+and moments on every body that moves vanish together.
+
+Derivatives are taken by the complex step, all columns at once: unknowns have the shape (n, K), with one real part
+in all columns.  A piece's end follows from its start by its own exact derivatives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from exact.evaluation import Columns, Evaluation, Held, Part
+from exact.layout import Layout, layout
+from exact.model import Model, Strip
+from exact.spectral import piece, rule
+from exact.structure import Structure
+from exact.touching import touch_points
+from exact.wrapping import lie_between, lie_from_clamp
+from scene import CircleContact
+from scene.answer import Array
+from scene.statement import DisplacementDrive, Force, SlidingBody
+
+Guess = Callable[[str, Array], Array]
+"""θ (n,) of a beam at arc lengths (n,)."""
+
+
+@dataclass(frozen=True)
+class Equations:
+    """The equations of a structure under given loads.
+
+    Attributes:
+        model: the mechanism.
+        structure: which contacts are closed.
+        stepped: the load or drive whose value is λ.
+        others: values of the others, without dimension.
+        nodes: Gauss points of a piece.
+        guess: tangent angles from which pieces are solved.
+    """
+
+    model: Model
+    structure: Structure
+    stepped: str
+    others: Mapping[str, float]
+    nodes: int
+    guess: Guess
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Where the unknowns stand."""
+        return layout(self.model, self.structure)
+
+    def __call__(self, z: Columns, lam: Columns) -> Evaluation:
+        """Everything at z (n, K) and λ (K,).
+
+        Raises:
+            UnsolvableError: a piece cannot be integrated.
+        """
+        out = Evaluation(self.model)
+        self._place_bodies(out, z)
+        for strip in self.model.strips.values():
+            self._beam(out, strip, z)
+        touch_points(out, self.structure, self.layout, z)
+        self._loads(out, z, lam)
+        for name, freedoms in self.model.moving.items():
+            balance = out.on_body[name]
+            along = self._along(name)
+            out.rows += list(balance) if freedoms == 3 else [along[0] * balance[0] + along[1] * balance[1]]
+        return out
+
+    # ------------------------------------------------------------------------------------------ bodies
+
+    def _place_bodies(self, out: Evaluation, z: Columns) -> None:
+        scene, bodies = self.model.scene, self.layout.bodies
+        nowhere = np.zeros((3, z.shape[1]), dtype=z.dtype)
+        for name in scene.bodies:
+            if self.model.moving.get(name) == 1:
+                along = self._along(name)
+                out.placements[name] = np.outer([along[0], along[1], 0.0], z[bodies[name]][0])
+            else:
+                out.placements[name] = z[bodies[name]] if name in bodies else nowhere
+            out.on_body[name] = nowhere
+        for name, contact in scene.contacts.items():
+            if isinstance(contact, CircleContact):
+                out.centres[name] = out.moved(contact.body, np.array(contact.center) / self.model.unit_length)
+
+    def _along(self, body: str) -> Array:
+        """The direction (2,) of a slide; of no meaning for others."""
+        record = self.model.scene.bodies[body]
+        return unit(record.along) if isinstance(record, SlidingBody) else np.zeros(2)
+
+    def _loads(self, out: Evaluation, z: Columns, lam: Columns) -> None:
+        scene, nothing = self.model.scene, np.zeros((2, len(lam)), dtype=lam.dtype)
+        for name, load in scene.loads.items():
+            value = lam if name == self.stepped else np.full_like(lam, self.others.get(name, 0.0))
+            if isinstance(load, Force):
+                body = scene.body_of(load.point)
+                out.act(body, out.moved(body, self.model.rest(load.point)), np.outer(unit(load.direction), value))
+            else:
+                out.act(load.body, nothing, nothing, value)
+        for name, drive in scene.drives.items():
+            value = lam if name == self.stepped else np.full_like(lam, self.others.get(name, 0.0))
+            reaction = z[self.layout.drives[name]]
+            if isinstance(drive, DisplacementDrive):
+                body, rest = scene.body_of(drive.point), self.model.rest(drive.point)
+                direction, place = unit(drive.direction), out.moved(body, rest)
+                out.act(body, place, np.outer(direction, reaction))
+                out.rows.append(direction @ (place - rest[:, None]) - value)
+            else:
+                out.act(drive.body, nothing, nothing, reaction)
+                out.rows.append(out.placements[drive.body][2] - value)
+
+    # ------------------------------------------------------------------------------------------- beams
+
+    def _beam(self, out: Evaluation, strip: Strip, z: Columns) -> None:
+        """A beam's pieces, with the rows at its ends and knots and along circles."""
+        name, order = strip.name, self.structure.order[strip.name]
+        wraps = {wrap.contact: wrap for wrap in self.structure.wraps(name)}
+        begins, stops = self._borders(strip, z)
+        parts = out.parts[name] = [
+            self._integrated(strip, a, b, z[index])
+            for index, a, b in zip(self.layout.pieces[name], begins, stops, strict=True)
+        ]
+        if not any(wrap.from_start for wrap in wraps.values()):
+            self._end(out, strip, "start", parts[0].start)
+        if not any(wrap.to_end for wrap in wraps.values()):
+            self._end(out, strip, "end", np.concatenate([parts[-1].end, parts[-1].force]))
+        k = 0
+        for item in order:
+            wrap = wraps.get(item) if isinstance(item, str) else None
+            if wrap is not None and wrap.held:
+                lie_from_clamp(out, self.layout, wrap, z)
+                continue
+            before, after = parts[k], parts[k + 1]
+            k += 1
+            if wrap is not None:
+                lie_between(out, self.layout, wrap, before, after, z)
+                continue
+            out.rows += list(after.start[:4] - before.end)
+            if not isinstance(item, str):
+                out.rows += list(after.force - before.force)
+
+    def _borders(self, strip: Strip, z: Columns) -> tuple[list[Columns], list[Columns]]:
+        """Where a beam's pieces begin and where they stop."""
+        where, touches = self.layout.places, self.structure.wraps(strip.name)
+        wraps = {wrap.contact: wrap for wrap in touches}
+        begins, stops = [np.zeros_like(z[0])], [np.full_like(z[0], strip.length)]
+        for item in self.structure.order[strip.name]:
+            wrap = wraps.get(item) if isinstance(item, str) else None
+            if wrap is not None and wrap.from_start:
+                begins[0] = z[where[wrap.contact, "end"]]
+            elif wrap is not None and wrap.to_end:
+                stops[-1] = z[where[wrap.contact, "begin"]]
+            elif wrap is not None:
+                stops.insert(-1, z[where[wrap.contact, "begin"]])
+                begins.append(z[where[wrap.contact, "end"]])
+            else:
+                at = z[where[item, strip.name]] if isinstance(item, str) else np.full_like(z[0], item)
+                stops.insert(-1, at)
+                begins.append(at)
+        return begins, stops
+
+    def begins(self, beam: str, z: Array) -> list[float]:
+        """Arc lengths at which a beam's pieces begin, of unknowns z (n,)."""
+        return [float(begin[0]) for begin in self._borders(self.model.strips[beam], z[:, None])[0]]
+
+    def _integrated(self, strip: Strip, a: Columns, b: Columns, start: Columns) -> Part:
+        """A piece, from its start's state (6, K)."""
+        q = np.concatenate([start, [a, b]])
+        real = np.ascontiguousarray(q[:, 0].real)
+        nodes = real[6] + (real[7] - real[6]) * rule(self.nodes).points
+        solved = piece(strip.law, real, self.guess(strip.name, nodes))
+        end = np.tile(solved.end[:, None], (1, q.shape[1])).astype(q.dtype)
+        if np.iscomplexobj(q):
+            end = end + 1j * (solved.slopes @ q.imag)
+        return Part(a, b, start, end, solved)
+
+    def _end(self, out: Evaluation, strip: Strip, which: str, state: Columns) -> None:
+        """What holds at a beam's end, and what the beam does there; forces are looked at where contacts are known."""
+        end, sign = (strip.start, 1.0) if which == "start" else (strip.end, -1.0)
+        out.ends[strip.name, which] = Held(state[:2], sign * state[4:6], sign * state[3])
+        if end.point is not None:
+            out.rows += list(state[:2] - out.moved(self.model.scene.body_of(end.point), self.model.rest(end.point)))
+        out.rows.append(state[2] - out.angle(strip.name, which) if end.welded else state[3])
+
+
+def unit(direction: tuple[float, float]) -> Array:
+    """A direction (2,) of length one."""
+    vector = np.array(direction)
+    return np.asarray(vector / float(np.hypot(*vector)))

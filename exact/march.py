@@ -1,0 +1,143 @@
+"""The march from rest through a scene's stations, contact by contact.
+
+From one state to the next the load or drive grows by steps that Newton's method can take.  After each the state is
+looked over: a contact that would pull opens, lines that overlap close a contact, a beam that would cut into a circle
+beside the place where it touches lies along it.  Where that happened is found as an equilibrium at which the new
+contact's force, or the old one's, is zero; from there it goes on.
+
+The state of rest is a minimum of the energy, and an equilibrium that is followed from it stays one until the
+determinant of the equations' derivative changes its sign, at a fold or a bifurcation.  There the march ends, and
+also where two beams would lie along each other or one contact be closed at two places at once.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+
+from exact.changes import open_first, reform, slide_onto_end
+from exact.closings import close_first
+from exact.gaps import overlaps
+from exact.model import modelled
+from exact.newton import LostError, checked
+from exact.probing import answered
+from exact.restructure import NotCoveredError
+from exact.settings import Settings
+from exact.state import State
+from exact.structure import Meeting, Wrap
+from exact.way import Way
+from scene import Answer, Ending, Scene, StationAnswer
+
+_OVERLAP = 1e-10  # of the unit of length
+_FIRST_STEP = 0.2  # of the way to the first station
+_CHANGES = 40  # of structure between two stations
+
+
+def answer(scene: Scene, settings: Settings | None = None) -> Answer:
+    """The exact answer to a scene in the theory of bending without stretch and shear.
+
+    Args:
+        scene: the question.
+        settings: numerical choices.
+
+    Returns:
+        The stations up to where the solution holds; its ending is NOT_COVERED where one is missing.
+    """
+    chosen = settings or Settings()
+    began = time.perf_counter()
+    way = Way(modelled(scene), chosen)
+    stations: list[StationAnswer] = []
+    ending, sentence = Ending.COMPLETED, ""
+    try:
+        for stage in scene.stages:
+            way.begin(stage)
+            step = 0.0
+            for station in stage.stations:
+                step = _advance(way, station / way.unit, step)
+                stations.append(_certified(way, station))
+    except NotCoveredError as error:
+        ending, sentence = Ending.NOT_COVERED, f"{error}."
+    return Answer(
+        solver="exact",
+        scene=scene.name,
+        settings=chosen.plain(),
+        ending=ending,
+        sentence=sentence,
+        stations=tuple(stations),
+        events=tuple(way.events),
+        seconds=time.perf_counter() - began,
+    )
+
+
+def _certified(way: Way, station: float) -> StationAnswer:
+    """A station's answer, whose equations hold with more Gauss points too.
+
+    Raises:
+        NotCoveredError: they do not.
+    """
+    try:
+        finer = checked(way.state, way.settings.further)
+    except LostError:
+        finer = math.inf
+    if not finer <= way.settings.tolerance:
+        raise NotCoveredError(f"at {station:g} more Gauss points are needed: a residual of {finer:.1e} is left")
+    return answered(way, station, finer)
+
+
+def _advance(way: Way, target: float, step: float) -> float:
+    """Go on to a value of what is stepped, no dimension; the size of step that served last.
+
+    Raises:
+        NotCoveredError: the path leads beyond what the equations cover.
+    """
+    whole, changes = target - way.lam, 0
+    largest, smallest = way.settings.largest_step * abs(whole), way.settings.smallest_step * abs(whole)
+    step = min(largest, step or _FIRST_STEP * abs(whole))
+    while way.lam != target:
+        goal = target if abs(target - way.lam) <= step else way.lam + math.copysign(step, whole)
+        try:
+            trial = way.attempt(goal)
+            if not _examined(way, trial):
+                changes += 1
+            step = min(1.5 * step, largest)
+        except LostError:
+            if slide_onto_end(way, goal):
+                changes += 1
+            else:
+                step *= 0.4
+        if step < smallest or changes > _CHANGES:
+            raise NotCoveredError(f"no equilibrium was found beyond {way.lam * way.unit:.6g} of {way.stepped}")
+    return step
+
+
+def _examined(way: Way, trial: State) -> bool:
+    """Accept a trial if nothing is wrong with it, else go to where something changes and say False.
+
+    Raises:
+        LostError: that was not found.
+        NotCoveredError: there are no equations for it.
+    """
+    if open_first(way, trial) or reform(way, trial):
+        return False
+    centres = {name: centre[:, 0] for name, centre in trial.found.centres.items()}
+    found = overlaps(way.model, trial, way.known, centres, _touched(trial), _OVERLAP)
+    if found:
+        close_first(way, trial, found)
+        return False
+    way.accept(trial)
+    return True
+
+
+def _touched(state: State) -> dict[tuple[str, str], tuple[float, float]]:
+    """By contact and beam, from where to where it touches."""
+    found = {}
+    for name, touch in state.structure.touches.items():
+        if isinstance(touch, Wrap):
+            found[name, touch.beam] = state.wrapped(touch)
+            continue
+        s = touch.at if touch.at is not None else state.places[name, touch.beam]
+        found[name, touch.beam] = (s, s)
+        if isinstance(touch, Meeting):
+            sigma = state.places[name, touch.onto]
+            found[name, touch.onto] = (sigma, sigma)
+    return found
