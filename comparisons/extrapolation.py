@@ -19,7 +19,8 @@ value comes with the answer to hold it against:
   two successive extrapolations differ by more than the last one errs.
 
 Shapes, places of contact, events and certificates are the finest answer's.  Where a contact is open at one size and
-closed at another, values are not of one law, and are kept.
+closed at another, values are not of one law, and are kept; so are the ends of a zone that would change places, which
+then is no longer than they are uncertain.
 """
 
 from __future__ import annotations
@@ -81,9 +82,10 @@ def _station(
     values, beside = {}, {}
     for probe in scene.probes:
         three = [station.values[probe.name] for station in (first, coarse, fine)]
+        found: tuple[Array, Array] | None = None
         if one_law and probe.name in probes and three[0].shape == three[1].shape == three[2].shape != (0,):
             found = _extrapolated(scene, probe, sizes, three)
-        else:
+        if found is None:
             found = _kept(scene, probe, three[1], three[2], orders[fine.stage, probe.name])
         values[probe.name], beside[probe.name] = map(frozen_array, found)
     return replace(fine, values=frozendict(values)), replace(fine, values=frozendict(beside))
@@ -116,7 +118,9 @@ def _kept(scene: Scene, probe: Probe, coarse: Array, fine: Array, q: float) -> t
     return fine, fine + (fine - coarse) / (richardson(order_of(scene, probe)) * (2.0**q - 1.0))
 
 
-def _extrapolated(scene: Scene, probe: Probe, sizes: Sizes, three: list[Array]) -> tuple[Array, Array]:
+def _extrapolated(scene: Scene, probe: Probe, sizes: Sizes, three: list[Array]) -> tuple[Array, Array] | None:
     order = order_of(scene, probe)
     earlier, last = (limit(sizes[i : i + 2], np.array(three[i : i + 2]), order).value for i in (0, 1))
+    if probe.quantity == "ends" and np.any(np.diff(last) < 0.0):
+        return None
     return last, last + (earlier - last) / richardson(order)

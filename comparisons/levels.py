@@ -65,7 +65,7 @@ class SceneLevels:
         """
         names = [probe.name for probe in self.scene.probes]
         kept, all_ = (self._settled(n, probes) for probes in ((), names))
-        if kept.trouble:
+        if kept.trouble or all_.trouble:
             return kept
         before, after = _worst_of_probes(kept), _worst_of_probes(all_)
         probes = frozenset(name for name, fraction in after.items() if fraction < before[name])

@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, field, replace
 
 import pytest
+from frozendict import frozendict
 
 from comparisons.choices import Choices
 from comparisons.cli.main import run
@@ -15,7 +16,8 @@ from comparisons.pairing import ALONE, Solvers
 from comparisons.tolerance import FIRST, Estimate, Stated, search
 from comparisons.tolerated import paired_within, solved
 from comparisons.verdict import Word, compared
-from scene import Ending, Mistake, SceneError
+from scene import Ending, Mistake, Probe, SceneError
+from scene.answer import frozen_array
 from tests.comparisons.made_up import MadeUp
 
 
@@ -168,6 +170,18 @@ def test_a_contact_that_is_open_at_one_size_leaves_the_finest_value_as_it_is(hin
     fine = answers[2].stations[-1].values["contact.force"]
     assert value.stations[-1].values["contact.force"] == fine
     assert value.stations[-2].values["contact.force"] != answers[2].stations[-2].values["contact.force"]
+
+
+def test_ends_of_a_zone_that_would_change_places_are_kept(hinge, right):
+    asked = hinge.model_copy(update={"probes": (*hinge.probes, Probe(of="contact", quantity="ends"))})
+    answers = []
+    for n, ends in ((10, [0.0, 5e-3]), (20, [1e-3, 4e-3]), (40, [2e-3, 2.1e-3])):
+        found = right.cprbm(asked, Choices(links=n))
+        values = {**found.stations[-1].values, "contact.ends": frozen_array(ends)}
+        last = replace(found.stations[-1], values=frozendict(values))
+        answers.append(replace(found, stations=(*found.stations[:-1], last)))
+    value, _ = settled(asked, (10, 20, 40), tuple(answers), ["contact.ends"])
+    assert value.stations[-1].values["contact.ends"].tolist() == [2e-3, 2.1e-3]
 
 
 @pytest.mark.parametrize(("text", "fraction"), [("0.1%", 1e-3), (" 0.1 % ", 1e-3), ("0.001", 1e-3), ("1e-3", 1e-3)])
