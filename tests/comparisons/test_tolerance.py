@@ -6,11 +6,15 @@ import json
 import math
 from dataclasses import dataclass, field, replace
 
+import click
 import pytest
 from frozendict import frozendict
 
+from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.cli.main import run
+from comparisons.cli.options import tolerance
+from comparisons.cli.solve_ import command
 from comparisons.extrapolation import settled
 from comparisons.pairing import ALONE, Solvers
 from comparisons.tolerance import FIRST, Estimate, Stated, search
@@ -185,11 +189,16 @@ def test_ends_of_a_zone_that_would_change_places_are_kept(hinge, right):
 
 
 @pytest.mark.parametrize(("text", "fraction"), [("0.1%", 1e-3), (" 0.1 % ", 1e-3), ("0.001", 1e-3), ("1e-3", 1e-3)])
-def test_a_tolerance_is_a_percentage_or_a_fraction(right, capsys, text, fraction):
-    assert run(["solve", "hinge", "--tol", text, "--json", "-"], right) == 0
+def test_a_tolerance_is_a_percentage_or_a_fraction(text, fraction):
+    context = click.Context(command)
+    assert tolerance(context, command.params[0], text) == pytest.approx(fraction)
+
+
+def test_solve_says_in_json_how_n_was_found(right, capsys):
+    assert run(["solve", "hinge", "--tol", "0.1%", "--json", "-"], right) == 0
     found = json.loads(capsys.readouterr().out)["cases"][0]["solvers"]["cprbm"]["tolerance"]
-    assert found["asked"] == pytest.approx(fraction)
-    assert found["estimate"] <= fraction
+    assert found["asked"] == pytest.approx(1e-3)
+    assert found["estimate"] <= 1e-3
     assert found["extrapolated"] == [20, 40]
     assert found["solved"] == [10, 20, 40]
     assert (found["links"], found["elements"], found["met"]) == (40, None, True)
@@ -213,11 +222,11 @@ def test_a_tolerance_and_n_are_a_wrong_question(right, capsys, command, option):
     assert f"--tol and {option[0]}" in captured.err
 
 
-def test_compare_says_which_n_were_found(right, capsys):
-    assert run(["compare", "hinge", "--tol", "0.1%"], right) == 0
+def test_compare_says_which_n_were_found(right, capsys, tmp_path):
+    file = tmp_path / "numbers.json"
+    assert run(["compare", "hinge", "--tol", "0.1%", "--json", str(file)], right) == 0
     assert "N for a tolerance of 0.100 %" in capsys.readouterr().out
-    assert run(["compare", "hinge", "--tol", "0.1%", "--json", "-"], right) == 0
-    solvers = json.loads(capsys.readouterr().out)["cases"][0]["solvers"]
+    solvers = json.loads(file.read_text("utf-8"))["cases"][0]["solvers"]
     assert solvers["cprbm"]["tolerance"]["links"] == 40
     # in bending the made-up contact is still open at 0.201 N·m with 10 elements, and 10, 20 and 40 are not of one law
     assert solvers["fea"]["tolerance"]["extrapolated"] == [40, 80]
@@ -234,8 +243,8 @@ class Scattered(MadeUp):
 
 def test_what_no_n_can_meet_is_said_with_the_probe_and_ends_with_3(right, capsys):
     scattered = Scattered("cprbm", 1e-3)
-    for command in ("solve", "compare"):
-        assert run([command, "hinge", "--tol", "0.001%"], Solvers(scattered, right.fea)) == 3
+    for name in ("solve", "compare"):
+        assert run([name, "hinge", "--tol", "0.001%"], Solvers(scattered, right.fea)) == 3
         captured = capsys.readouterr()
         assert "CPRBM: NOT within" in captured.out + captured.err
         assert " states " in captured.out + captured.err
@@ -247,6 +256,15 @@ def test_a_solver_that_never_completes_ends_with_1(right, capsys):
         found = right.cprbm(scene, choices)
         return replace(found, stations=found.stations[:4], ending=Ending.STEP_TOO_SMALL, sentence="Too small.")
 
-    for command in ("solve", "compare"):
-        assert run([command, "hinge", "--tol", "1%", "--quiet"], Solvers(ended, right.fea)) == 1
+    for name in ("solve", "compare"):
+        assert run([name, "hinge", "--tol", "1%", "--quiet"], Solvers(ended, right.fea)) == 1
     assert "Too small." in capsys.readouterr().err
+
+
+def test_a_drives_reaction_by_the_energies_comes_with_an_extrapolated_answer(right):
+    scene = cases.opened("gripper-driven")
+    stage = scene.stages[0].model_copy(update={"stations": scene.stages[0].stations[:3]})
+    scene = scene.model_copy(update={"stages": (stage,), "claims": ()})
+    runs, (cprbm, _) = paired_within(scene, Choices(), 1e-3, right, ALONE, lambda text: None)
+    assert cprbm.extrapolated
+    assert len(compared(scene, runs).reactions) == 3
