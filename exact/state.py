@@ -17,7 +17,6 @@ from exact.spectral import rule
 from exact.structure import Structure, Wrap
 from scene.answer import Array
 
-
 _AT_START = 1e-16  # of a piece
 
 
