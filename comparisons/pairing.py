@@ -231,8 +231,7 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE)
     check(choices, scene)
     even = replace(choices, formulation="auto")
     extra = [] if even == choices else [(solvers.cprbm, scene, even)]
-    uneven = scene.contacts or any(len(beam.knots) > 2 for beam in scene.beams.values())
-    beside = [(solvers.cprbm, scene, even.beside())] if uneven else []
+    beside = [(solvers.cprbm, scene, even.beside())] if may_be_uneven(scene) else []
     driven = nearby(scene)
     round_each = [] if driven is None else [(solvers.cprbm, driven, choices)]
     jobs = [(solvers.cprbm, scene, choices), (solvers.cprbm, scene, even.finer()), *extra, *beside, *round_each]
@@ -255,9 +254,19 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE)
         auto=answers[2] if extra else None,
         paper=None if extra else in_paper(scene, choices, solvers),
         beside=answers[2 + len(extra)] if beside else None,
-        ratio=_links(even) / _links(even.beside()),
+        ratio=ratio_beside(even),
         nearby=answers[first - 1] if round_each else None,
     )
+
+
+def may_be_uneven(scene: Scene) -> bool:
+    """Whether the CPRBM's error may depend on where joints fall: at a contact, or at a kink of a section."""
+    return bool(scene.contacts) or any(len(beam.knots) > 2 for beam in scene.beams.values())
+
+
+def ratio_beside(choices: Choices) -> float:
+    """N over the number of links that :meth:`comparisons.choices.Choices.beside` makes of it."""
+    return _links(choices) / _links(choices.beside())
 
 
 def _links(choices: Choices) -> int:

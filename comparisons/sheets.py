@@ -8,10 +8,12 @@ from dataclasses import dataclass
 from comparisons.benchmark import FIT_FROM, Benchmark, trend
 from comparisons.claims import as_claimed, claim_difference, standings
 from comparisons.documents import worst
+from comparisons.extrapolation import told
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.geometry import bentness
 from comparisons.measures import Row, Steps, unit_of
 from comparisons.scales import norm
+from comparisons.tolerance import Tolerance
 from comparisons.verdict import Comparison
 from comparisons.work_energy import by_drive, sentence
 from scene import Answer, Scene
@@ -30,7 +32,7 @@ class Sheet:
 def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
     """All tables of a comparison."""
     rows = last_rows(compared)
-    found = [_values(compared, rows), _verdicts(compared, rows)]
+    found = [of_tolerances(compared.tolerances), _values(compared, rows), _verdicts(compared, rows)]
     found.append(_claims(compared))
     found.extend(_reactions(compared))
     found.append(_stresses(compared.scene, rows))
@@ -39,9 +41,34 @@ def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
     return tuple(sheet for sheet in found if sheet.rows)
 
 
-def of_answer(scene: Scene, answer: Answer) -> tuple[Sheet, ...]:
-    """All tables of one solver's answer."""
-    return tuple(sheet for sheet in (_answered(scene, answer), _events(answer)) if sheet.rows)
+def of_answer(scene: Scene, answer: Answer, tolerances: tuple[Tolerance, ...] = ()) -> tuple[Sheet, ...]:
+    """All tables of one solver's answer, and how its N was found."""
+    found = (of_tolerances(tolerances), _answered(scene, answer), _events(answer))
+    return tuple(sheet for sheet in found if sheet.rows)
+
+
+def of_tolerances(tolerances: tuple[Tolerance, ...]) -> Sheet:
+    """How N was found for a tolerance."""
+    body = tuple(
+        (
+            found.solver,
+            str(found.n),
+            ", ".join(str(n) for n in found.extrapolated) or "–",
+            "–" if found.worst is None else percent(found.worst.fraction),
+            "–" if found.worst is None else f"{found.worst.probe} at {found.worst.station:g}",
+            "yes" if found.met else "no",
+            ", ".join(str(n) for n in found.solved),
+        )
+        for found in tolerances
+    )
+    asked = percent(tolerances[0].asked) if tolerances else ""
+    return Sheet(
+        f"N for a tolerance of {asked}",
+        ("solver", "N", "extrapolated from", "largest u", "of", "met", "solved"),
+        body,
+        "N: links or elements per beam; of an extrapolated answer the finest. "
+        + " ".join(told(found.extrapolated, found.probes) for found in tolerances if found.extrapolated),
+    )
 
 
 def of_benchmark(measured: Benchmark) -> tuple[Sheet, ...]:

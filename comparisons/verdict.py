@@ -26,6 +26,7 @@ from comparisons.formats import percent
 from comparisons.measures import Bounds, Row, rows_of
 from comparisons.pairing import Runs
 from comparisons.soundness import ABSENT_WHILE_OPEN, complaints
+from comparisons.tolerance import Tolerance
 from comparisons.work_energy import Reaction, reactions
 from scene import Scene
 
@@ -57,13 +58,14 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A scene, all answers to it, the rows, the verdict, and the drives' reactions by two ways."""
+    """A scene, all answers to it, the rows, the verdict, the drives' reactions by two ways, and how N was found."""
 
     scene: Scene
     runs: Runs
     rows: tuple[Row, ...]
     verdict: Verdict
     reactions: tuple[Reaction, ...] = ()
+    tolerances: tuple[Tolerance, ...] = ()
 
 
 def compared(scene: Scene, runs: Runs) -> Comparison:
