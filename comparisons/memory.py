@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from comparisons.choices import Choices
+from frozendict import frozendict
+
+from comparisons.choices import Choices, Count
 from comparisons.pairing import Crew, Job, Solver, Solvers
 from scene import Answer, Scene
 
@@ -16,7 +18,7 @@ def _silent(text: str) -> None:
 
 @dataclass(frozen=True, slots=True)
 class Remembering(Crew):
-    """A crew with a memory of what ``solvers`` have answered; numbers of links are whole, not by beam.
+    """A crew with a memory of what ``solvers`` have answered.
 
     Attributes:
         solvers: so that of a run's choices those count that its solver looks at.
@@ -52,11 +54,16 @@ class Remembering(Crew):
         solver, scene, choices = job
         nothing = Choices()
         if solver == self.solvers.cprbm:
-            return solver, scene, replace(nothing, links=choices.links, formulation=choices.formulation)
-        return solver, scene, replace(choices, links=nothing.links, formulation=nothing.formulation)
+            return solver, scene, replace(nothing, links=_frozen(choices.links), formulation=choices.formulation)
+        elements = _frozen(choices.elements)
+        return solver, scene, replace(choices, links=nothing.links, elements=elements, formulation=nothing.formulation)
 
     def _told(self, job: Job) -> str:
         solver, scene, choices = job
         if solver == self.solvers.cprbm:
             return f"{scene.name}: CPRBM {choices.formulation}, N = {choices.links}"
         return f"{scene.name}: FEA {choices.kinematics}, {choices.elements} elements"
+
+
+def _frozen(count: Count) -> Count:
+    return count if isinstance(count, int) else frozendict(count)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -84,15 +85,19 @@ def command(
 def _told(question: Question, sizes: tuple[int, ...], choices: Choices, solvers: Solvers, crew: Crew) -> Told:
     """Everything that there is to tell of one question."""
     from comparisons import budget_drawn, budget_told, convergence_drawn, convergence_told, offset_converged
-    from comparisons.accounts import account_of
+    from comparisons.accounts import accounted
     from comparisons.convergence_report import Told
+    from comparisons.convergence_told import shown_size
     from comparisons.families import converged
+    from comparisons.memory import Remembering
     from scene import OffsetQuestion
 
     if isinstance(question, OffsetQuestion):
         return offset_converged.told(question, sizes, solvers.offset)
-    found = converged(question, sizes, choices, solvers, crew)
-    account = account_of(found, choices, solvers, crew)
+    memory = Remembering(pool=crew.pool, solvers=solvers)
+    found = converged(question, sizes, choices, solvers, memory)
+    n = shown_size(found)
+    account = accounted(question, replace(choices, links=n, elements=2 * n), memory)
     return Told(
         question,
         (*convergence_told.sheets_of(found), *budget_told.sheets_of(account)),
