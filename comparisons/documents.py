@@ -35,7 +35,11 @@ def comparison(compared: Comparison) -> Plain:
         "case": compared.scene.name,
         "verdict": compared.verdict.word.value,
         "sentence": compared.verdict.sentence,
-        "solvers": {"cprbm": solver(compared.runs.cprbm[0]), "fea": solver(compared.runs.reference)},
+        "solvers": {
+            "cprbm": solver(compared.runs.cprbm[0]),
+            "fea": solver(compared.runs.reference),
+            **({} if compared.runs.exact is None else {"exact": solver(compared.runs.exact)}),
+        },
         "rows": [
             {**_row(compared.scene, row), "verdict": None if word is None else word.value}
             for row, word in zip(compared.rows, compared.verdict.words, strict=True)
@@ -172,6 +176,7 @@ def _row(scene: Scene, row: Row) -> Plain:
     claim = claim_of(scene, row)
     bounds = row.bounds
     steps = row.steps
+    true = row.true_errors
     return {
         "probe": row.probe.name,
         "stage": row.stage,
@@ -201,6 +206,11 @@ def _row(scene: Scene, row: Row) -> Plain:
         },
         "contact_model": None if row.contact_model is None else row.fraction(row.contact_model),
         "difference_largest": None if row.largest is None else row.fraction(row.largest),
+        "exact": None if row.exact is None else values(row.probe, row.exact),
+        "true_error": {
+            "cprbm": None if true is None else row.fraction(true.cprbm),
+            "fea_bending": None if true is None else row.fraction(true.bending),
+        },
         "scale": row.scale,
         "denominator": row.denominator,
         **_places(scene, row.probe),

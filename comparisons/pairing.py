@@ -9,6 +9,8 @@ can be split.
 Where ``auto`` was chosen and every contact of two beams says what ``paper`` must be told, that is run at N as well.
 It shows what the contact's formulation makes of the answer and takes no part in the verdict.
 
+Where an exact answer is known (in ``bending`` only), it stands beside both at the stations that it covers.
+
 Where a drive's reaction is asked, the CPRBM runs at N once more with two stations close round each of the scene's
 (:mod:`comparisons.nearby`): the reaction by the energies' difference, which takes no part in the verdict either.
 """
@@ -70,6 +72,13 @@ def fea_answer(scene: Scene, choices: Choices) -> Answer:
     return fea_reference.answer(scene, settings)
 
 
+def exact_answer(scene: Scene, choices: Choices) -> Answer:
+    """The exact answer in the theory ``bending``, or as much of it as is known; the choices have no part in it."""
+    import exact
+
+    return exact.answer(scene, exact.Settings())
+
+
 class Offsets(Protocol):
     """Offset points (k, n, 2), m, at k distances, their tangents' angles (n,), how far off they may be (k, n), m."""
 
@@ -94,16 +103,21 @@ def cprbm_offset_points(curve: Curve, spacing: Spacing, n: int, distances: Array
 
 @dataclass(frozen=True, slots=True)
 class Solvers:
-    """The functions that are compared; others can be planted in their place."""
+    """The functions that are compared; others can be planted in their place.
+
+    ``exact`` stands beside them where it is given: an exact answer is that of the real beams, and no measure of what
+    is planted in the place of the solvers.
+    """
 
     cprbm: Solver = cprbm_answer
     fea: Solver = fea_answer
     offset: OffsetConstruction = cprbm_offset_points
+    exact: Solver | None = None
 
 
 def solvers_of(planted: object) -> Solvers:
-    """What was ``planted`` in the place of the two solvers, or these."""
-    return planted if isinstance(planted, Solvers) else Solvers()
+    """What was ``planted`` in the place of the solvers, or these with the exact answer beside them."""
+    return planted if isinstance(planted, Solvers) else Solvers(exact=exact_answer)
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +134,7 @@ class Runs:
         beside: the CPRBM in ``auto`` at N + N/7 links, if there is contact or a section has a kink; ``ratio`` is N
             over that number.
         nearby: the CPRBM at N links, answering :func:`comparisons.nearby.nearby`; nothing rests on it.
+        exact: the exact answer in ``bending``, at the stations at which one is known; None if there is no such station.
     """
 
     kinematics: Kinematics
@@ -130,6 +145,7 @@ class Runs:
     beside: Answer | None = None
     ratio: float = 1.0
     nearby: Answer | None = None
+    exact: Answer | None = None
 
     @property
     def reference(self) -> Answer:
@@ -144,7 +160,7 @@ class Runs:
         return None if self.paper is None else (self.paper, self.cprbm[0])
 
     def everything(self) -> Iterator[tuple[str, Answer]]:
-        """Every answer that the verdict rests on, with a name that says what it is."""
+        """Every answer of a solver that the verdict rests on, with a name that says what it is."""
         families = {"cprbm": self.cprbm, **{f"fea {kinematics}": fea for kinematics, fea in self.fea.items()}}
         for name, answers in families.items():
             for level, answer in enumerate(answers):
@@ -232,9 +248,13 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE)
         for level, settings in enumerate(levels):
             places.append((kinematics, level))
             jobs.append((solvers.fea, scene, settings))
+    behind = len(jobs)
+    if solvers.exact is not None:
+        jobs.append((solvers.exact, scene, choices))
     answers = crew.answers(jobs)
+    exact = answers[behind] if solvers.exact is not None else None
     fea: dict[Kinematics, tuple[Answer, ...]] = {}
-    for (kinematics, _), answer in zip(places, answers[first:], strict=True):
+    for (kinematics, _), answer in zip(places, answers[first:behind], strict=True):
         fea[kinematics] = (*fea.get(kinematics, ()), answer)
     return Runs(
         choices.kinematics,
@@ -245,6 +265,7 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE)
         beside=answers[2 + len(extra)] if beside else None,
         ratio=_links(even) / _links(even.beside()),
         nearby=answers[first - 1] if round_each else None,
+        exact=exact if exact is not None and exact.stations else None,
     )
 
 

@@ -16,7 +16,7 @@ NOT_COMPLETED = 1
 
 @click.command("solve")
 @click.argument("case", metavar="CASE|FILE.toml")
-@click.option("--solver", type=click.Choice(["cprbm", "fea"]), default="cprbm", show_default=True)
+@click.option("--solver", type=click.Choice(["cprbm", "fea", "exact"]), default="cprbm", show_default=True)
 @numerical
 @output
 @click.pass_obj
@@ -36,14 +36,15 @@ def command(
     from comparisons import cases, documents, sheets
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
-    from comparisons.pairing import solvers_of
+    from comparisons.pairing import exact_answer, solvers_of
 
     solvers = solvers_of(planted)
     scene = cases.opened(case)
     choices = Choices(links, formulation, elements, kinematics, penetration)
     check(choices, scene)
     showing.room_for(json_file)
-    answer = (solvers.cprbm if solver == "cprbm" else solvers.fea)(scene, choices)
+    asked = {"cprbm": solvers.cprbm, "fea": solvers.fea, "exact": solvers.exact or exact_answer}[solver]
+    answer = asked(scene, choices)
     if json_file is not None:
         showing.json(json_file, {"cases": [documents.solution(scene, answer)]})
     if not quiet and str(json_file) != "-":
