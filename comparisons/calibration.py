@@ -4,8 +4,9 @@
 symbol  meaning
 ======  ==================================================================================
 e       true error, |v − x|, of the CPRBM or of the finite elements in ``bending``
-u       what that solver states of it, round-off included
+u       what that solver states of it, with its round-off and with q
 q       what the exact value may itself be off by (:mod:`comparisons.measures`)
+F       2: beyond F u a row differs (:mod:`comparisons.verdict`)
 ======  ==================================================================================
 
 The house's rule: e ≤ u in at least 95 % of the rows, so that a statement can be relied on, and the median of u/e is at
@@ -26,6 +27,8 @@ JUDGED: tuple[Judged, ...] = ("cprbm", "fea")
 
 SHARE_WITHIN = 0.95
 MOST_OVER = 10.0
+FAR = 2.0
+"""A true error of more than so many times the stated one is no chance of where a mesh stands."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +43,19 @@ class Held:
     @property
     def ratio(self) -> float:
         """e/u: above 1 the statement is not true."""
-        return self.true / self.stated if self.stated > 0.0 else float("inf")
+        return self.true / self.stated
+
+    @property
+    def pressure(self) -> float:
+        """e/(F u): above 1 the row differs."""
+        return self.ratio / FAR
+
+    @property
+    def word(self) -> str:
+        """Where the true error lies."""
+        if self.ratio <= 1.0:
+            return "within"
+        return "beyond" if self.pressure <= 1.0 else "far beyond"
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +87,7 @@ class Tally:
 
 
 def every(row: Row) -> Iterator[Held]:
-    """A row's true errors, with what is stated of each and q added to it; none where there is no exact value."""
+    """A row's true errors with what is stated of each; none where there is no exact value."""
     if row.true_errors is None or row.bounds is None:
         return
     bounds, true = row.bounds, row.true_errors

@@ -17,6 +17,7 @@ Where a drive's reaction is asked, the CPRBM runs at N once more with two statio
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping
@@ -118,6 +119,11 @@ class Solvers:
 def solvers_of(planted: object) -> Solvers:
     """What was ``planted`` in the place of the solvers, or these with the exact answer beside them."""
     return planted if isinstance(planted, Solvers) else Solvers(exact=exact_answer)
+
+
+def workers_for(planted: object) -> int:
+    """How many processes share the runs: what is planted stays in this one."""
+    return 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ With the symbols of :mod:`comparisons.measures`, a row says
   scene's) of the probe's scale: such a sum would have excused a wrong answer too;
 * AGREE otherwise.
 
-Where the exact value x is known, the row also says DIFFER if |v_c − x| > F (u_c + r) + q or |v_b − x| > F (u_b + r) + q
+Where the exact value x is known, the row also says DIFFER if |v_c − x| > F (u_c + r + q) or |v_b − x| > F (u_b + r + q)
 with F = 2: two solvers that agree on what is wrong do not agree with the truth.  A stated uncertainty is to hold in
 95 % of the rows and not in all of them; a true error between once and F times the stated one is therefore named in
 the sentence and leaves the word alone, and one beyond F is no chance of where a mesh stands.
@@ -27,16 +27,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from enum import Enum
 
-from comparisons.calibration import JUDGED, Held, every, held, tally
+from comparisons.calibration import FAR, JUDGED, every, held, tally
 from comparisons.formats import number, percent
 from comparisons.measures import Bounds, Row, rows_of
 from comparisons.pairing import Runs
 from comparisons.soundness import ABSENT_WHILE_OPEN, complaints, sound_part
 from comparisons.work_energy import Reaction, reactions
 from scene import Scene
-
-FAR = 2.0
-"""F: a true error of more than so many times the stated one is no chance."""
 
 
 class Word(Enum):
@@ -131,7 +128,7 @@ def _word(scene: Scene, row: Row) -> Word | None:
     if row.bounds is None:
         return None
     within = row.difference <= row.bounds.total and row.same_theory <= row.bounds.same_theory
-    if not within or any(_pressed(each) > 1.0 for each in every(row)):
+    if not within or any(each.pressure > 1.0 for each in every(row)):
         return Word.DIFFER
     tellable = max(row.bounds.total, row.bounds.same_theory) <= scene.limit(row.probe) * row.scale
     return Word.AGREE if tellable else Word.UNDECIDED
@@ -163,7 +160,7 @@ def _pressure(scene: Scene, row: Row, word: Word) -> float:
         return float("inf")
     if word is Word.UNDECIDED:
         return _share(max(row.bounds.total, row.bounds.same_theory), scene.limit(row.probe) * row.scale)
-    return max(*_between(row), *(_pressed(each) for each in every(row)))
+    return max(*_between(row), *(each.pressure for each in every(row)))
 
 
 def _between(row: Row) -> tuple[float, float]:
@@ -172,19 +169,13 @@ def _between(row: Row) -> tuple[float, float]:
     return _share(row.difference, row.bounds.total), _share(row.same_theory, row.bounds.same_theory)
 
 
-def _pressed(each: Held) -> float:
-    """How hard a true error presses on F times what is stated, q once."""
-    allowance = 0.0 if each.row.true_errors is None else each.row.true_errors.allowance
-    return _share(each.true, FAR * (each.stated - allowance) + allowance)
-
-
 def _sentence(scene: Scene, row: Row, word: Word, count: int, rows: int) -> str:
     place = f"{row.probe.name} at {row.stage} {row.station:g}"
     if row.bounds is None or (word is Word.UNDECIDED and _lacking(row)):
         return f"{place} has no value in one of the runs, and no force of that contact is asked."
     chosen, within = _between(row)
-    off = max(every(row), key=_pressed, default=None)
-    if word is Word.DIFFER and off is not None and _pressed(off) > max(chosen, within):
+    off = max(every(row), key=lambda each: each.pressure, default=None)
+    if word is Word.DIFFER and off is not None and off.pressure > max(chosen, within):
         return (
             f"{count} of {rows} rows differ, most of all {place}: {_NAMES[off.solver]} are off the exact answer by "
             f"{_of_scale(off.true, row)} of the scale, more than {FAR:g} times the stated {_of_scale(off.stated, row)}."

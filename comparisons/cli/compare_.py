@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -41,11 +40,10 @@ def command(
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
     from comparisons.offset_verdict import OffsetComparison, compared_offset
-    from comparisons.pairing import Solvers, crew_of, paired, solvers_of
+    from comparisons.pairing import crew_of, paired, solvers_of, workers_for
     from comparisons.verdict import compared
     from scene import OffsetQuestion
 
-    workers = 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
     solvers = solvers_of(planted)
     names = [name for text in asked for name in (cases.names() if text == "all" else (text,))]
     scenes = [cases.asked(name) for name in dict.fromkeys(names)]
@@ -60,7 +58,7 @@ def command(
     printing = str(json_file) != "-"
     finished: list[Comparison | OffsetComparison] = []
     chapters: tuple[report.Chapter, ...] = ()
-    with crew_of(workers) as crew:
+    with crew_of(workers_for(planted)) as crew:
         for scene in showing.progress(scenes, shown=not quiet):
             comparison: Comparison | OffsetComparison
             if isinstance(scene, OffsetQuestion):
