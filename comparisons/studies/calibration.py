@@ -1,4 +1,4 @@
-"""Both solvers' stated uncertainties beside their true errors, on every built-in case of which an exact answer is known.
+"""Both solvers' stated uncertainties beside their true errors, on every built-in case with an exact answer.
 
 The exact answer is one of the theory ``bending``, in which the finite elements are therefore run.
 """
