@@ -16,7 +16,6 @@ How each is planted:
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -32,21 +31,7 @@ from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer,
 from comparisons.verdict import Verdict, Word, compared
 from scene import Answer, Ending, Scene
 from scene.answer import Array, frozen_array
-from tests.together.planted import COARSE, without_contact
-
-
-def remembered(runs: Runs) -> Solvers:
-    """Solvers that hand out answers which are there already."""
-    finer = runs.cprbm[1].settings["links"]
-
-    def by_cprbm(scene: Scene, choices: Choices) -> Answer:
-        return runs.cprbm[int(choices.links == finer)]
-
-    def by_fea(scene: Scene, choices: Choices) -> Answer:
-        answers = runs.fea[choices.kinematics]
-        return next(answer for answer in answers if answer.settings["elements"] == choices.elements)
-
-    return Solvers(by_cprbm, by_fea)
+from tests.together.planted import COARSE, asked_of, remembered, stiffer, without_contact
 
 
 def with_cprbm(scene: Scene, runs: Runs, wrong: Solver) -> Verdict:
@@ -57,14 +42,6 @@ def with_cprbm(scene: Scene, runs: Runs, wrong: Solver) -> Verdict:
 def with_fea(scene: Scene, runs: Runs, wrong: Solver) -> Verdict:
     """The verdict on wrong finite elements beside the right CPRBM, in one theory and coarse."""
     return compared(scene, paired(scene, COARSE, replace(remembered(runs), fea=wrong))).verdict
-
-
-def stiffer(scene: Scene) -> Scene:
-    materials = {
-        name: material.model_copy(update={"youngs_modulus": 1.02 * material.youngs_modulus})
-        for name, material in scene.materials.items()
-    }
-    return scene.model_copy(update={"materials": frozendict(materials)})
 
 
 def thin(scene: Scene) -> Scene:
@@ -79,10 +56,6 @@ def untapered(scene: Scene) -> Scene:
         for name, beam in scene.beams.items()
     }
     return scene.model_copy(update={"beams": frozendict(beams)})
-
-
-def asked_of(solver: Solver, altered: Callable[[Scene], Scene]) -> Solver:
-    return lambda scene, choices: solver(altered(scene), choices)
 
 
 def stopping(solver: Solver, ending: Ending) -> Solver:
