@@ -47,7 +47,7 @@ class Ending(Enum):
     BEAMS_CROSSED = "the beams of a contact pass through each other where nothing holds them apart"
     TURNED_TOO_FAR = "an element turned by more than the discretisation can carry"
     NOT_CERTIFIED = "an equilibrium was found whose certificate does not hold"
-    NOT_COVERED = "no exact solution is known here"
+    NOT_COVERED = "no exact solution is known here for what happens"
 
 
 @dataclass(frozen=True, slots=True)

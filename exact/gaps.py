@@ -1,0 +1,195 @@
+"""Where beams overlap that are not held apart there.
+
+=======  ===========================================================================================
+symbol   meaning
+=======  ===========================================================================================
+r        place on one line less the foot of its perpendicular on the other, or the circle's centre
+g        gap: distance of the lines (signed by the side on which one lay before) less half thicknesses;
+         of a circle the distance from its centre less radius and half thickness
+=======  ===========================================================================================
+
+Every line is sampled, and each least gap between samples refined.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from exact.model import Model, Strip
+from exact.state import Known
+from scene import BeamContact, CircleContact
+from scene.answer import Array
+
+SAMPLES = 401
+_WORTH_REFINING = 1e-5  # a sampled gap, no dimension
+_FEET = 6  # Newton iterations of a foot
+_NEAR_END = 1e-9  # of a beam's length
+
+
+@dataclass(frozen=True, slots=True)
+class Overlap:
+    """A least gap that is negative.
+
+    Attributes:
+        contact: its name.
+        beam, s: the beam along which it is least, and where; ``at_end`` where that is one of the beam's ends.
+        onto, sigma: the other beam, and the foot there; None for a circle.
+        side: +1 where ``beam`` lies (or lay) to the left of ``onto``.
+        gap: g, no dimension, negative.
+    """
+
+    contact: str
+    beam: str
+    s: float
+    at_end: bool
+    onto: str | None
+    sigma: float
+    side: float
+    gap: float
+
+
+def overlaps(
+    model: Model,
+    now: Known,
+    before: Known,
+    centres: Mapping[str, Array],
+    touched: Mapping[tuple[str, str], tuple[float, float]],
+    tolerance: float,
+) -> list[Overlap]:
+    """All least gaps below −``tolerance``.
+
+    Args:
+        model: the mechanism.
+        now, before: the state, and one whose beams have not passed each other; it says which side is which.
+        centres: of the circles, by contact, (2,).
+        touched: by contact and beam where it touches already, from and to; a least gap there is known.
+        tolerance: no dimension.
+    """
+    found: list[Overlap] = []
+    for name, contact in model.scene.contacts.items():
+        if isinstance(contact, CircleContact):
+            found += _of_circle(model, now, name, contact, centres[name], touched)
+        else:
+            one, other = contact.between
+            found += _of_pair(model, now, before, name, contact, (one, other), touched)
+            found += _of_pair(model, now, before, name, contact, (other, one), touched)
+    return [overlap for overlap in found if overlap.gap < -tolerance]
+
+
+def _of_circle(
+    model: Model,
+    now: Known,
+    name: str,
+    contact: CircleContact,
+    centre: Array,
+    touched: Mapping[tuple[str, str], tuple[float, float]],
+) -> list[Overlap]:
+    strip = model.strips[contact.beam]
+
+    def gap(s: Array) -> Array:
+        x, y = now.along(contact.beam, s)[:2]
+        half = half_thickness(model, strip, s) if contact.thick else 0.0
+        return np.asarray(np.hypot(x - centre[0], y - centre[1]) - contact.radius / model.unit_length - half)
+
+    s = np.linspace(0.0, strip.length, SAMPLES)
+    return [
+        Overlap(name, contact.beam, place, at_end, None, 0.0, 1.0, value)
+        for place, value, at_end in _minima(gap, s, gap(s), touched.get((name, contact.beam)))
+        if not (at_end and _held_by(model, strip, place) == contact.body)
+    ]
+
+
+def _of_pair(
+    model: Model,
+    now: Known,
+    before: Known,
+    name: str,
+    contact: BeamContact,
+    beams: tuple[str, str],
+    touched: Mapping[tuple[str, str], tuple[float, float]],
+) -> list[Overlap]:
+    one, other = beams
+    a, b = model.strips[one], model.strips[other]
+    s, sigma = np.linspace(0.0, a.length, SAMPLES), np.linspace(0.0, b.length, SAMPLES)
+    A, B = now.along(one, s)[:2], now.along(other, sigma)[:2]
+    nearest = np.argmin((A[0][:, None] - B[0]) ** 2 + (A[1][:, None] - B[1]) ** 2, axis=1)
+
+    def feet(places: Array, start: Array) -> Array:
+        at = start.copy()
+        r0 = now.along(one, places)[:2]
+        for _ in range(_FEET):
+            x, y, theta, m = now.along(other, np.clip(at, 0.0, b.length))[:4]
+            t = np.stack([np.cos(theta), np.sin(theta)])
+            r = r0 - np.stack([x, y])
+            kappa = b.line.curvature(np.clip(at, 0.0, b.length)) + b.compliance(np.clip(at, 0.0, b.length)) * m
+            bent = 1.0 - kappa * (t[0] * r[1] - t[1] * r[0])
+            step = (t[0] * r[0] + t[1] * r[1]) / np.where(np.abs(bent) > 0.1, bent, 1.0)
+            at = np.clip(at + step, 0.0, b.length)
+        return at
+
+    def measured(places: Array, start: Array) -> tuple[Array, Array, Array]:
+        at = feet(places, start)
+        x, y, theta = now.along(other, at)[:3]
+        r = now.along(one, places)[:2] - np.stack([x, y])
+        x0, y0, theta0 = before.along(other, at)[:3]
+        r0 = before.along(one, places)[:2] - np.stack([x0, y0])
+        side = np.sign(-np.sin(theta0) * r0[0] + np.cos(theta0) * r0[1])
+        away = side * (-np.sin(theta) * r[0] + np.cos(theta) * r[1])
+        apart = (half_thickness(model, a, places) + half_thickness(model, b, at)) if contact.thick else 0.0
+        return away - apart, at, side
+
+    gaps, at, _ = measured(s, sigma[nearest])
+    inside = (at > _NEAR_END * b.length) & (at < (1.0 - _NEAR_END) * b.length)
+    # far from the side on which it was, a line has not passed the other but gone round its end
+    near = np.hypot(*(A - now.along(other, at)[:2])) < 0.1
+    gaps = np.where(inside & near, gaps, np.inf)
+    found = []
+
+    def gap(places: Array) -> Array:
+        return measured(places, np.interp(places, s, at))[0]
+
+    for place, _, at_end in _minima(gap, s, gaps, touched.get((name, one))):
+        value, foot, sides = measured(np.array([place]), np.interp([place], s, at))
+        if not _NEAR_END * b.length < foot[0] < (1.0 - _NEAR_END) * b.length:
+            continue
+        found.append(Overlap(name, one, place, at_end, other, float(foot[0]), float(sides[0]), float(value[0])))
+    return found
+
+
+def _minima(
+    function: Callable[[Array], Array], s: Array, values: Array, touched: tuple[float, float] | None
+) -> list[tuple[float, float, bool]]:
+    """Places, values and whether at an end, of the least values between samples; one that is known is left out."""
+    fence = np.pad(values, 1, constant_values=np.inf)
+    step = s[1] - s[0]
+    found = []
+    for index in np.flatnonzero((values < _WORTH_REFINING) & (values <= fence[:-2]) & (values < fence[2:])):
+        i = int(index)
+        if touched is not None and touched[0] - step <= s[i] <= touched[1] + step:
+            continue
+        best = minimize_scalar(
+            lambda p: float(function(np.array([p]))[0]),
+            bounds=(float(s[i - 1 if i else 0]), float(s[i + 1 if i + 1 < len(s) else i])),
+            method="bounded",
+            options={"xatol": 1e-10},
+        )
+        if i in (0, len(s) - 1) and values[i] <= best.fun:
+            found.append((float(s[i]), float(values[i]), True))
+        else:
+            found.append((float(best.x), float(best.fun), False))
+    return found
+
+
+def half_thickness(model: Model, strip: Strip, s: Array) -> Array:
+    """Half the thickness (n,) at arc lengths, no dimension."""
+    return np.asarray(0.5 * strip.beam.thickness_at(np.clip(s / strip.length, 0.0, 1.0)) / model.unit_length)
+
+
+def _held_by(model: Model, strip: Strip, s: float) -> str | None:
+    """The body that holds the end of a beam at an arc length."""
+    end = strip.start if s <= 0.5 * strip.length else strip.end
+    return None if end.point is None else model.scene.body_of(end.point)

@@ -1,0 +1,143 @@
+"""A scene without dimension: beams by arc length, bodies and what acts on them.
+
+=======  ==================================================================
+symbol   meaning
+=======  ==================================================================
+ℓ        unit of length, the longest beam's, m
+S        unit of moment and energy, the largest EI over ℓ; S/ℓ of force
+c        1/EI of a section, 12/(E w t³)
+T        half the thickness where beams touch by their edges, else 0
+=======  ==================================================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from exact.curves import NeutralLine, neutral_line
+from exact.spectral import Law
+from scene import Scene
+from scene.answer import Array
+from scene.statement import Beam, BeamEnd, FixedBody, FreeEnd, SlidingBody, WeldedEnd
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """A beam's end: the ``point`` that holds it (None for a free end), and whether it is ``welded`` there."""
+
+    point: str | None
+    welded: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Strip:
+    """A beam without dimension.
+
+    Attributes:
+        name: the beam's.
+        line: its stress-free neutral line.
+        beam: its record, whose sizes are in metres.
+        knots: arc lengths strictly inside at which thickness or width have kinks.
+        stiffness: Young's modulus over S ℓ³ (of EI) per m⁴, so that E·I is without dimension.
+    """
+
+    name: str
+    line: NeutralLine
+    beam: Beam
+    knots: tuple[float, ...]
+    stiffness: float
+    start: End
+    end: End
+
+    @property
+    def length(self) -> float:
+        """Its arc length."""
+        return self.line.length
+
+    def rigidity(self, s: Array) -> Array:
+        """EI (n,) at arc lengths ``s`` (n,)."""
+        u = np.asarray(s) / self.length
+        return np.asarray(self.stiffness * self.beam.width_at(u) * self.beam.thickness_at(u) ** 3 / 12.0)
+
+    def compliance(self, s: Array) -> Array:
+        """c."""
+        return np.asarray(1.0 / self.rigidity(s))
+
+    def compliance_slope(self, s: Array) -> Array:
+        """dc/ds in the piece, between two knots, of whose arc lengths most are."""
+        fence = np.array([0.0, *self.knots, self.length])
+        middle = float(np.mean(s))
+        k = int(np.clip(np.searchsorted(fence, middle) - 1, 0, len(fence) - 2))
+        u0, u1 = fence[k] / self.length, fence[k + 1] / self.length
+        u = np.array([u0, u1])
+        slopes = np.diff([self.beam.width_at(u), self.beam.thickness_at(u)])[:, 0] / (fence[k + 1] - fence[k])
+        at = np.asarray(s) / self.length
+        relative = -slopes[0] / self.beam.width_at(at) - 3.0 * slopes[1] / self.beam.thickness_at(at)
+        return np.asarray(self.compliance(s) * relative)
+
+    @property
+    def law(self) -> Law:
+        """What a piece of it obeys."""
+        return Law(self.line.curvature, self.line.curvature_slope, self.compliance, self.compliance_slope)
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A scene's beams and moving bodies, without dimension.
+
+    Attributes:
+        scene: the question.
+        unit_length, unit_moment: ℓ, m, and S, N·m.
+        strips: the beams by name.
+        moving: names of the bodies that move, with how many freedoms each has (3, or 1 for a slide).
+    """
+
+    scene: Scene
+    unit_length: float
+    unit_moment: float
+    strips: dict[str, Strip]
+    moving: dict[str, int]
+
+    @property
+    def unit_force(self) -> float:
+        """S/ℓ, N."""
+        return self.unit_moment / self.unit_length
+
+    def rest(self, point: str) -> Array:
+        """A body's point (2,) at rest."""
+        return np.array(self.scene.bodies[self.scene.body_of(point)].points[point]) / self.unit_length
+
+    def reference(self, body: str) -> Array:
+        """The point (2,) of a body, at rest, about which its moments are taken: the mean of those that it names."""
+        return np.asarray(np.mean(np.array(list(self.scene.bodies[body].points.values())), axis=0) / self.unit_length)
+
+
+def modelled(scene: Scene) -> Model:
+    """A scene's model."""
+    lengths = {name: neutral_line(beam.curve, 1.0).length for name, beam in scene.beams.items()}
+    unit = max(lengths.values())
+    rigidities = {
+        name: scene.materials[beam.material].youngs_modulus
+        * float(np.max(beam.width_at(beam.knots) * beam.thickness_at(beam.knots) ** 3))
+        / 12.0
+        for name, beam in scene.beams.items()
+    }
+    moment = max(rigidities.values()) / unit
+    strips = {}
+    for name, beam in scene.beams.items():
+        line = neutral_line(beam.curve, unit)
+        knots = tuple(float(u) * line.length for u in beam.knots[1:-1])
+        stiffness = scene.materials[beam.material].youngs_modulus / (moment * unit)
+        strips[name] = Strip(name, line, beam, knots, stiffness, _end(beam.start), _end(beam.end))
+    moving = {
+        name: 1 if isinstance(body, SlidingBody) else 3
+        for name, body in scene.bodies.items()
+        if not isinstance(body, FixedBody)
+    }
+    return Model(scene, unit, moment, strips, moving)
+
+
+def _end(end: BeamEnd) -> End:
+    return End(None, welded=False) if isinstance(end, FreeEnd) else End(end.point, isinstance(end, WeldedEnd))

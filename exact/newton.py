@@ -1,0 +1,131 @@
+"""Newton's method on the equations, with λ given or with one condition more and λ unknown.
+
+=======  ===================================================================
+symbol   meaning
+=======  ===================================================================
+r, J     the equations' rows at z, and their derivative
+C        one condition more, for which λ is an unknown too
+=======  ===================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from exact.equations import Columns, Equations, Evaluation
+from exact.spectral import UnsolvableError
+from exact.state import Known, State
+from scene.answer import Array
+
+_STEP = 1e-40  # of the complex step: far below round-off, no subtraction takes place
+_LARGEST = 1e3  # of a residual, without dimension, that may still be mended
+_SETTLED = 1e-11
+
+Condition = Callable[[Columns, Evaluation], Columns]
+"""Of z (n, K) and everything there: (K,), zero where it holds."""
+
+
+class LostError(ArithmeticError):
+    """No equilibrium was found near the guess."""
+
+
+def solve(
+    equations: Equations, z: Array, lam: float, iterations: int, known: Known, condition: Condition | None = None
+) -> State:
+    """The equilibrium near z (n,) at λ, or where the condition holds.
+
+    Args:
+        equations: of a structure under loads.
+        z: unknowns to begin with.
+        lam: λ, or with a condition where the search for it begins.
+        iterations: at most so many.
+        known: a state from whose tangent angles pieces are solved first.
+        condition: one more, for which λ is free.
+
+    Raises:
+        LostError: there is none, or too far away.
+    """
+    guess: Known = known
+    last, free = np.inf, int(condition is not None)
+    n = len(z)
+    for _ in range(iterations):
+        columns = np.concatenate([z, [lam]])[:, None] + 1j * _STEP * np.eye(n + 1)[:, : n + free]
+        asked = replace(equations, guess=_angles(guess))
+        try:
+            found = asked(columns[:n], columns[n])
+        except (UnsolvableError, FloatingPointError) as error:
+            raise LostError from error
+        rows = np.stack([*found.rows, *([condition(columns[:n], found)] if condition is not None else [])])
+        r, J = rows[:, 0].real, rows.imag / _STEP
+        size = float(np.max(np.abs(r)))
+        if not np.isfinite(size) or size > _LARGEST or not np.all(np.isfinite(J)):
+            raise LostError
+        here = State(asked, z, lam, _real(found), size, 0.0)
+        if size < _SETTLED and size >= 0.5 * last:
+            sign, _ = np.linalg.slogdet(J[:n, :n])
+            return replace(here, sign=float(sign))
+        last = size
+        try:
+            step = np.linalg.solve(J, -r)
+        except np.linalg.LinAlgError as error:
+            raise LostError from error
+        z = z + step[:n]
+        if free:
+            lam += float(step[n])
+        guess = _Bent(here, asked)
+    raise LostError
+
+
+class _Bent:
+    """Tangent angles of the last iterate, by the piece's own fraction: places of contact may have moved since."""
+
+    def __init__(self, state: State, equations: Equations) -> None:
+        self._state, self._equations = state, equations
+
+    def along(self, beam: str, s: Array) -> Array:
+        """As a state's."""
+        length = self._equations.model.strips[beam].length
+        return self._state.along(beam, np.clip(s, 0.0, length))
+
+
+def _angles(known: Known) -> Callable[[str, Array], Array]:
+    return lambda beam, s: known.along(beam, s)[2]
+
+
+def _real(found: Evaluation) -> Evaluation:
+    """One real column of everything."""
+
+    def real(columns: Columns) -> Columns:
+        return np.ascontiguousarray(columns[..., :1].real)
+
+    return Evaluation(
+        rows=[real(row) for row in found.rows],
+        placements={name: real(columns) for name, columns in found.placements.items()},
+        pieces={
+            beam: [(real(a), real(b), real(start), real(end), solved) for a, b, start, end, solved in pieces]
+            for beam, pieces in found.pieces.items()
+        },
+        on_body={name: real(columns) for name, columns in found.on_body.items()},
+        ends={key: (real(place), real(force), real(m)) for key, (place, force, m) in found.ends.items()},
+        resultants={name: real(columns) for name, columns in found.resultants.items()},
+        centres={name: real(columns) for name, columns in found.centres.items()},
+        wraps={name: tuple(real(part) for part in zone) for name, zone in found.wraps.items()},
+    )
+
+
+def checked(state: State, further: int) -> float:
+    """Largest row of the same z where pieces have ``further`` more Gauss points.
+
+    Raises:
+        LostError: a piece cannot be integrated so.
+    """
+    equations = state.equations
+    finer = replace(equations, nodes=equations.nodes + further, guess=_angles(_Bent(state, equations)))
+    try:
+        found = finer(state.z[:, None], np.array([state.lam]))
+    except UnsolvableError as error:
+        raise LostError from error
+    return float(np.max(np.abs(np.concatenate(found.rows))))

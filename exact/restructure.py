@@ -1,0 +1,57 @@
+"""From one structure to the next: contacts that close, open, or touch in another way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from frozendict import frozendict
+
+from exact.gaps import Overlap, half_thickness
+from exact.model import Model
+from exact.structure import Meeting, Resting, Structure, Touch, Wrap
+
+Places = Mapping[tuple[str, str], float]
+"""Of a structure's contacts, by (contact, key) as in :class:`exact.equations.Layout`."""
+
+
+class NotCoveredError(Exception):
+    """The scene does something for which this solution has no equations; the text says what."""
+
+
+def structured(model: Model, touches: Mapping[str, Touch], places: Places) -> Structure:
+    """The structure of some closed contacts at some places.
+
+    Raises:
+        NotCoveredError: a section has a kink where the beam lies on a circle.
+    """
+    order: dict[str, tuple[float | str, ...]] = {}
+    for beam, strip in model.strips.items():
+        items: list[tuple[float, float | str]] = [(knot, knot) for knot in strip.knots]
+        for name, touch in touches.items():
+            if isinstance(touch, Wrap) and touch.beam == beam:
+                begin = 0.0 if touch.from_start else places[name, "begin"]
+                end = strip.length if touch.to_end else places[name, "end"]
+                if strip.beam.tapered or any(begin <= knot <= end for knot in strip.knots):
+                    raise NotCoveredError(f"{beam} lies along the circle of {name} where its section varies")
+                items.append((begin, name))
+            elif (name, beam) in places:
+                items.append((places[name, beam], name))
+        order[beam] = tuple(item for _, item in sorted(items, key=lambda item: item[0]))
+    return Structure(frozendict(touches), frozendict(order))
+
+
+def closed(model: Model, overlap: Overlap) -> tuple[Touch, dict[tuple[str, str], float]]:
+    """The touch that ends an overlap, and its places."""
+    strip = model.strips[overlap.beam]
+    at = overlap.s if overlap.at_end else None
+    places = {} if overlap.at_end else {(overlap.contact, overlap.beam): overlap.s}
+    if overlap.onto is None:
+        return Resting(overlap.contact, overlap.beam, at), places
+    apart = 0.0
+    if model.scene.contacts[overlap.contact].thick:
+        here, there = np.array([overlap.s]), np.array([overlap.sigma])
+        apart = float(half_thickness(model, strip, here)[0])
+        apart += float(half_thickness(model, model.strips[overlap.onto], there)[0])
+    places[overlap.contact, overlap.onto] = overlap.sigma
+    return Meeting(overlap.contact, overlap.beam, at, overlap.onto, overlap.side, apart), places

@@ -1,0 +1,33 @@
+"""Numerical choices of the exact solution."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+
+
+class Settings(BaseModel):
+    """How closely the differential equations are satisfied.
+
+    Attributes:
+        nodes: Gauss points of each piece of a beam.
+        further: how many more the result is checked with.
+        tolerance: largest residual of an equilibrium, without dimension, with either number of points.
+        largest_step: largest step of the load or drive, as a fraction of the way between two stations.
+        smallest_step: smallest one.
+        iterations: most Newton iterations of one equilibrium.
+    """
+
+    model_config = ConfigDict(frozen=True, strict=True, extra="forbid", allow_inf_nan=False)
+
+    nodes: Annotated[int, Field(ge=8, le=96)] = 32
+    further: Annotated[int, Field(ge=4, le=96)] = 16
+    tolerance: Annotated[float, Field(gt=0.0, le=1e-6)] = 1e-10
+    largest_step: Annotated[float, Field(gt=0.0, le=1.0)] = 0.5
+    smallest_step: Annotated[float, Field(gt=0.0, le=1.0)] = 1e-4
+    iterations: Annotated[int, Field(ge=4)] = 15
+
+    def plain(self) -> dict[str, object]:
+        """The settings as plain values for the answer sheet."""
+        return self.model_dump(mode="json")
