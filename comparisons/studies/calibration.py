@@ -93,7 +93,7 @@ def with_piece(found: Calibration, piece: Piece, solvers: Solvers, crew: Crew = 
     asked = sum(len(stage.stations) for stage in scene.stages)
     known = len(exact.stations)
     trials = [tried(scene, links, elements, exact, solvers, crew) for links, elements in piece.sizes if known]
-    said = {} if known == asked else {scene.name: f"{whole.ending.value}: {whole.sentence}".rstrip(": ")}
+    said = {} if known == asked else {scene.name: whole.sentence or whole.ending.value}
     return Calibration(
         (*found.trials, *trials),
         frozendict({**found.covered, scene.name: (known, asked)}),

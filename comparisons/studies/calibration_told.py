@@ -86,7 +86,7 @@ def _worst(found: Calibration) -> Sheet:
     for case in found.cases:
         for mine in tallies(found.of_case(case)):
             for each in mine.worst:
-                trial = next(trial for trial in found.trials if each in trial.held)
+                trial = next(trial for trial in found.of_case(case) if any(each is one for one in trial.held))
                 body.append(
                     (
                         case,
