@@ -44,6 +44,7 @@ from tests.together.planted import remembered, stiffer, without_contact
 
 CHOICES = Choices(links=40, elements=20, kinematics="bending")
 FIRST_LOOK = Choices(links=10)
+ROUGH = Choices(links=12, elements=12, kinematics="bending")
 SOME = 0.25  # of a contact's largest force
 REAL: dict[str, Solver] = {"cprbm": cprbm_answer, "fea": fea_answer}
 SIGNED = ("displacement", "rotation", "bending_stress", "reaction", "reaction_moment", "potential_energy")
@@ -111,6 +112,12 @@ def asked(case: str, solver: str) -> Answer:
     return REAL[solver](thinned(case), CHOICES)
 
 
+def asked_in_vain(case: str, solver: str) -> Answer:
+    """The same of a fault that mostly lets a solver come to no end, and sooner with few elements."""
+    rough = REAL[solver](thinned(case), ROUGH)
+    return asked(case, solver) if rough.completed else rough
+
+
 def known(case: str, solver: str) -> Answer:
     """The right answer."""
     return right(case).cprbm[0] if solver == "cprbm" else right(case).reference
@@ -153,7 +160,7 @@ def test_a_contact_of_the_wrong_sign_in_the_cprbm(case, monkeypatch):
     monkeypatch.setattr(cprbm.nearest, "_side", _turned(cprbm.nearest._side))
     if any(isinstance(contact, CircleContact) for contact in SCENES[case].contacts.values()):
         monkeypatch.setattr(cprbm.circle.Circle, "distance", _turned(cprbm.circle.Circle.distance))
-    assert word(case, "cprbm", asked(case, "cprbm")) is not Word.AGREE
+    assert word(case, "cprbm", asked_in_vain(case, "cprbm")) is not Word.AGREE
 
 
 @pytest.mark.parametrize("case", [name for name, scene in SCENES.items() if scene.contacts])
@@ -167,7 +174,7 @@ def test_a_contact_of_the_wrong_sign_in_the_finite_elements(case, monkeypatch):
 
     if any(isinstance(contact, CircleContact) for contact in SCENES[case].contacts.values()):
         monkeypatch.setattr(fea_reference.circle, "_clearance", inside_out)
-    assert word(case, "fea", asked(case, "fea")) is not Word.AGREE
+    assert word(case, "fea", asked_in_vain(case, "fea")) is not Word.AGREE
 
 
 def _turned(function: Callable[..., object]) -> Callable[..., object]:
