@@ -4,7 +4,7 @@
 symbol   meaning
 =======  ==========================================================================
 s        arc length from the beam's start, in units of length
-θ, κ     tangent angle; curvature dθ/ds; κ' = dκ/ds
+θ, κ     tangent angle; curvature dθ/ds; κ', κ'' its derivatives
 u        variable of a graph y = f(u) or x = f(u), f its value; σ = ±1, the way it runs
 v        √(1 + f'²) = ds/|du|
 R, φ     radius of an arc and the angle at which it begins
@@ -38,6 +38,7 @@ class NeutralLine(Protocol):
     def angle(self, s: Array) -> Array: ...  # noqa: D102
     def curvature(self, s: Array) -> Array: ...  # noqa: D102
     def curvature_slope(self, s: Array) -> Array: ...  # noqa: D102
+    def curvature_second(self, s: Array) -> Array: ...  # noqa: D102
     def place(self, s: Array) -> Array: ...  # noqa: D102
 
 
@@ -74,6 +75,10 @@ class Straight:
 
     def curvature_slope(self, s: Array) -> Array:
         """κ'."""
+        return np.zeros(np.shape(s))
+
+    def curvature_second(self, s: Array) -> Array:
+        """κ''."""
         return np.zeros(np.shape(s))
 
     def place(self, s: Array) -> Array:
@@ -115,6 +120,10 @@ class Circular:
 
     def curvature_slope(self, s: Array) -> Array:
         """κ'."""
+        return np.zeros(np.shape(s))
+
+    def curvature_second(self, s: Array) -> Array:
+        """κ''."""
         return np.zeros(np.shape(s))
 
     def place(self, s: Array) -> Array:
@@ -184,6 +193,14 @@ class Graph:
         v = self._speed(u)
         slope = (self._dddf(u) / v**3 - 3.0 * self._df(u) * self._ddf(u) ** 2 / v**5) / v
         return np.asarray(slope if self._along_x else -slope)
+
+    def curvature_second(self, s: Array) -> Array:
+        """Second derivative of κ, from dκ/ds = ±w(u)."""
+        u = self._variable(s)
+        v, d, dd, ddd = self._speed(u), self._df(u), self._ddf(u), self._dddf(u)
+        w = self._f.deriv(4)(u) / v**4 - 10.0 * d * dd * ddd / v**6 - 3.0 * dd**3 / v**6 + 18.0 * d**2 * dd**3 / v**8
+        second = self._sense * w / v
+        return np.asarray(second if self._along_x else -second)
 
     def place(self, s: Array) -> Array:
         """The points."""

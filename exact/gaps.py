@@ -92,7 +92,7 @@ def _of_circle(
 
     def gap(s: Array) -> Array:
         x, y = now.along(contact.beam, s)[:2]
-        half = half_thickness(model, strip, s) if contact.thick else 0.0
+        half = strip.half_thickness(s) if contact.thick else 0.0
         return np.asarray(np.hypot(x - centre[0], y - centre[1]) - contact.radius / model.unit_length - half)
 
     s = np.linspace(0.0, strip.length, SAMPLES)
@@ -139,7 +139,7 @@ def _of_pair(
         r0 = before.along(one, places)[:2] - np.stack([x0, y0])
         side = np.sign(-np.sin(theta0) * r0[0] + np.cos(theta0) * r0[1])
         away = side * (-np.sin(theta) * r[0] + np.cos(theta) * r[1])
-        apart = (half_thickness(model, a, places) + half_thickness(model, b, at)) if contact.thick else 0.0
+        apart = a.half_thickness(places) + b.half_thickness(at) if contact.thick else 0.0
         return away - apart, at, side
 
     gaps, at, _ = measured(s, sigma[nearest])
@@ -182,11 +182,6 @@ def _minima(
         else:
             found.append((float(best.x), float(best.fun), False))
     return found
-
-
-def half_thickness(model: Model, strip: Strip, s: Array) -> Array:
-    """Half the thickness (n,) at arc lengths, no dimension."""
-    return np.asarray(0.5 * strip.beam.thickness_at(np.clip(s / strip.length, 0.0, 1.0)) / model.unit_length)
 
 
 def _held_by(model: Model, strip: Strip, s: float) -> str | None:

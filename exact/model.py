@@ -40,7 +40,8 @@ class Strip:
         line: its stress-free neutral line.
         beam: its record, whose sizes are in metres.
         knots: arc lengths strictly inside at which thickness or width have kinks.
-        stiffness: Young's modulus over S ℓ³ (of EI) per m⁴, so that E·I is without dimension.
+        stiffness: Young's modulus over Sℓ, 1/m⁴, so that E·I is without dimension.
+        unit: ℓ, m.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Strip:
     beam: Beam
     knots: tuple[float, ...]
     stiffness: float
+    unit: float
     start: End
     end: End
 
@@ -66,16 +68,27 @@ class Strip:
         return np.asarray(1.0 / self.rigidity(s))
 
     def compliance_slope(self, s: Array) -> Array:
-        """dc/ds in the piece, between two knots, of whose arc lengths most are."""
-        fence = np.array([0.0, *self.knots, self.length])
-        middle = float(np.mean(s))
-        k = int(np.clip(np.searchsorted(fence, middle) - 1, 0, len(fence) - 2))
-        u0, u1 = fence[k] / self.length, fence[k + 1] / self.length
-        u = np.array([u0, u1])
-        slopes = np.diff([self.beam.width_at(u), self.beam.thickness_at(u)])[:, 0] / (fence[k + 1] - fence[k])
-        at = np.asarray(s) / self.length
-        relative = -slopes[0] / self.beam.width_at(at) - 3.0 * slopes[1] / self.beam.thickness_at(at)
+        """dc/ds in the piece, between two knots, in which the middle of the arc lengths lies."""
+        u = np.asarray(s) / self.length
+        width, thickness = self._slopes(float(np.mean(s)))
+        relative = -width / self.beam.width_at(u) - 3.0 * thickness / self.beam.thickness_at(u)
         return np.asarray(self.compliance(s) * relative)
+
+    def half_thickness(self, s: Array) -> Array:
+        """Half the thickness (n,); beyond the ends what it is there."""
+        return np.asarray(0.5 * self.beam.thickness_at(np.clip(np.asarray(s) / self.length, 0.0, 1.0)) / self.unit)
+
+    def half_thickness_slope(self, s: float) -> float:
+        """How half the thickness grows at an arc length."""
+        return 0.5 * self._slopes(s)[1] / self.unit
+
+    def _slopes(self, s: float) -> tuple[float, float]:
+        """dw/ds and dt/ds, in m per unit of length, between the knots round an arc length."""
+        fence = np.array([0.0, *self.knots, self.length])
+        k = int(np.clip(np.searchsorted(fence, s) - 1, 0, len(fence) - 2))
+        u, step = fence[k : k + 2] / self.length, fence[k + 1] - fence[k]
+        width, thickness = (float(np.diff(size(u))[0] / step) for size in (self.beam.width_at, self.beam.thickness_at))
+        return width, thickness
 
     @property
     def law(self) -> Law:
@@ -130,7 +143,7 @@ def modelled(scene: Scene) -> Model:
         line = neutral_line(beam.curve, unit)
         knots = tuple(float(u) * line.length for u in beam.knots[1:-1])
         stiffness = scene.materials[beam.material].youngs_modulus / (moment * unit)
-        strips[name] = Strip(name, line, beam, knots, stiffness, _end(beam.start), _end(beam.end))
+        strips[name] = Strip(name, line, beam, knots, stiffness, unit, _end(beam.start), _end(beam.end))
     moving = {
         name: 1 if isinstance(body, SlidingBody) else 3
         for name, body in scene.bodies.items()

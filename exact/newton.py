@@ -15,14 +15,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from exact.equations import Columns, Equations, Evaluation
+from exact.equations import Equations
+from exact.evaluation import Columns, Evaluation
 from exact.spectral import UnsolvableError
 from exact.state import Known, State
 from scene.answer import Array
 
 _STEP = 1e-40  # of the complex step: far below round-off, no subtraction takes place
 _LARGEST = 1e3  # of a residual, without dimension, that may still be mended
-_SETTLED = 1e-11
+_SETTLED = 1e-11  # of a residual that a further step does not make less
+_ROUND_OFF = 1e-14  # of one that no step makes less
 
 Condition = Callable[[Columns, Evaluation], Columns]
 """Of z (n, K) and everything there: (K,), zero where it holds."""
@@ -63,8 +65,8 @@ def solve(
         size = float(np.max(np.abs(r)))
         if not np.isfinite(size) or size > _LARGEST or not np.all(np.isfinite(J)):
             raise LostError
-        here = State(asked, z, lam, _real(found), size, 0.0)
-        if size < _SETTLED and size >= 0.5 * last:
+        here = State(asked, z, lam, found.real(), size, 0.0)
+        if size < _ROUND_OFF or (size < _SETTLED and size >= 0.5 * last):
             sign, _ = np.linalg.slogdet(J[:n, :n])
             return replace(here, sign=float(sign))
         last = size
@@ -75,45 +77,13 @@ def solve(
         z = z + step[:n]
         if free:
             lam += float(step[n])
-        guess = _Bent(here, asked)
+        guess = here
     raise LostError
 
 
-class _Bent:
-    """Tangent angles of the last iterate, by the piece's own fraction: places of contact may have moved since."""
-
-    def __init__(self, state: State, equations: Equations) -> None:
-        self._state, self._equations = state, equations
-
-    def along(self, beam: str, s: Array) -> Array:
-        """As a state's."""
-        length = self._equations.model.strips[beam].length
-        return self._state.along(beam, np.clip(s, 0.0, length))
-
-
 def _angles(known: Known) -> Callable[[str, Array], Array]:
+    """Tangent angles of the last iterate; places of contact, where pieces begin, may have moved since."""
     return lambda beam, s: known.along(beam, s)[2]
-
-
-def _real(found: Evaluation) -> Evaluation:
-    """One real column of everything."""
-
-    def real(columns: Columns) -> Columns:
-        return np.ascontiguousarray(columns[..., :1].real)
-
-    return Evaluation(
-        rows=[real(row) for row in found.rows],
-        placements={name: real(columns) for name, columns in found.placements.items()},
-        pieces={
-            beam: [(real(a), real(b), real(start), real(end), solved) for a, b, start, end, solved in pieces]
-            for beam, pieces in found.pieces.items()
-        },
-        on_body={name: real(columns) for name, columns in found.on_body.items()},
-        ends={key: (real(place), real(force), real(m)) for key, (place, force, m) in found.ends.items()},
-        resultants={name: real(columns) for name, columns in found.resultants.items()},
-        centres={name: real(columns) for name, columns in found.centres.items()},
-        wraps={name: tuple(real(part) for part in zone) for name, zone in found.wraps.items()},
-    )
 
 
 def checked(state: State, further: int) -> float:
@@ -123,7 +93,7 @@ def checked(state: State, further: int) -> float:
         LostError: a piece cannot be integrated so.
     """
     equations = state.equations
-    finer = replace(equations, nodes=equations.nodes + further, guess=_angles(_Bent(state, equations)))
+    finer = replace(equations, nodes=equations.nodes + further, guess=_angles(state))
     try:
         found = finer(state.z[:, None], np.array([state.lam]))
     except UnsolvableError as error:

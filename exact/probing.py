@@ -2,45 +2,39 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from frozendict import frozendict
 
+from exact.equations import unit
 from exact.gaps import SAMPLES
 from exact.model import Model
 from exact.spectral import rule
 from exact.state import State
 from exact.structure import Meeting, Wrap
+from exact.way import Way
 from scene import Certificate, CircleContact, Probe, Scene, Shape, StationAnswer
 from scene.answer import Array, frozen_array
-from scene.statement import DisplacementDrive, Force
+from scene.statement import DisplacementDrive, Force, RotationDrive
 
-_HOLDS = 1e-9  # largest residual with more Gauss points, no dimension
+_FLOOR = 1e-13  # of a residual, no dimension: some hundred roundings
 
 
-def answered(
-    model: Model,
-    state: State,
-    stage: str,
-    value: float,
-    closed_at: dict[str, float],
-    iterations: int,
-    finer: float,
-) -> StationAnswer:
+def answered(way: Way, value: float, finer: float) -> StationAnswer:
     """A station's answer; ``finer`` is the largest row with more Gauss points."""
-    scene = model.scene
-    failures = () if finer <= _HOLDS else (f"the equations hold to {finer:.1e} only with more Gauss points",)
+    model, state, scene = way.model, way.state, way.model.scene
     balance = [float(np.max(np.abs(act[:, 0]))) for body, act in state.found.on_body.items() if body in model.moving]
     certificate = Certificate(
         residual=max(finer, state.residual),
-        residual_floor=1e-13,
+        residual_floor=_FLOOR,
         violation=state.residual,
         penetration=0.0,
         complementarity=0.0,
         force_balance=max(balance, default=0.0),
         moment_balance=max(balance, default=0.0),
-        smallest_curvature=float("nan"),
-        iterations=iterations,
-        failures=failures,
+        smallest_curvature=math.nan,
+        iterations=way.states,
     )
     shapes = {}
     for name, strip in model.strips.items():
@@ -48,10 +42,13 @@ def answered(
         x, y = state.along(name, s)[:2] * model.unit_length
         shapes[name] = Shape(frozen_array(s * model.unit_length), frozen_array(x), frozen_array(y))
     return StationAnswer(
-        stage=stage,
+        stage=way.stage,
         value=value,
         values=frozendict(
-            {probe.name: frozen_array(_value(scene, model, state, probe, closed_at)).ravel() for probe in scene.probes}
+            {
+                probe.name: frozen_array(_value(scene, model, state, probe, way.closed_at)).ravel()
+                for probe in scene.probes
+            }
         ),
         shapes=frozendict(shapes),
         touching=frozendict(_touching(model, state)),
@@ -65,7 +62,7 @@ def _value(
     found, touches = state.found, state.structure.touches
     match probe.quantity:
         case "displacement":
-            return _displacement(model, state, scene.body_of(probe.of), model.rest(probe.of)) * model.unit_length
+            return _displacement(model, state, probe.of) * model.unit_length
         case "rotation":
             return float(found.placements[probe.of][2, 0])
         case "force":
@@ -93,11 +90,9 @@ def _value(
             return _energy(model, state) * model.unit_moment
 
 
-def _displacement(model: Model, state: State, body: str, rest: Array) -> Array:
-    u, v, phi = state.found.placements[body][:, 0]
-    x, y = rest - model.reference(body)
-    less, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
-    return np.array([u + less * x - sin * y, v + sin * x + less * y])
+def _displacement(model: Model, state: State, point: str) -> Array:
+    rest = model.rest(point)
+    return np.asarray(state.found.moved(model.scene.body_of(point), rest)[:, 0] - rest)
 
 
 def _centre(state: State, contact: str, beam: str) -> float:
@@ -116,8 +111,7 @@ def _centre(state: State, contact: str, beam: str) -> float:
 def _ends(state: State, contact: str, beam: str) -> tuple[float, float]:
     touch = state.structure.touches[contact]
     if isinstance(touch, Wrap):
-        a, b = state.found.wraps[contact][:2]
-        return float(a[0]), float(b[0])
+        return state.wrapped(touch)
     if touch.at is not None and touch.beam == beam:
         return touch.at, touch.at
     s = float(state.z[state.equations.layout.places[contact, beam]])
@@ -147,45 +141,35 @@ def _touching(model: Model, state: State) -> dict[str, Array]:
 def _reaction(scene: Scene, state: State, name: str) -> tuple[Array, float]:
     """Force and moment of the ground at a point, or of the drives of that point or body."""
     model, force, moment = state.equations.model, np.zeros(2), 0.0
-    for (beam, which), (_, onto, turning) in state.found.ends.items():
+    for (beam, which), held in state.found.ends.items():
         strip = model.strips[beam]
         end = strip.start if which == "start" else strip.end
         if end.point == name and scene.body_of(name) not in model.moving:
-            force = force - onto[:, 0]
-            moment -= float(turning[0]) if end.welded else 0.0
+            force = force - held.force[:, 0]
+            moment -= float(held.moment[0]) if end.welded else 0.0
     for drive, index in state.equations.layout.drives.items():
         record, reaction = scene.drives[drive], float(state.z[index])
-        if isinstance(record, DisplacementDrive):
-            if record.point == name:
-                force = force + reaction * np.array(record.direction) / float(np.hypot(*record.direction))
-        elif record.body == name:
+        if isinstance(record, DisplacementDrive) and record.point == name:
+            force = force + reaction * unit(record.direction)
+        elif isinstance(record, RotationDrive) and record.body == name:
             moment += reaction
     return force, moment
 
 
 def _energy(model: Model, state: State) -> float:
     """∫ m² c/2 ds less the work of the dead loads."""
-    energy = 0.0
-    for name, pieces in state.found.pieces.items():
-        strip = model.strips[name]
-        for a, b, _, _, solved in pieces:
-            gauss, h = rule(len(solved.theta)), float(b[0] - a[0])
-            c = strip.compliance(float(a[0]) + h * gauss.points)
-            energy += 0.5 * h * float(gauss.weights @ (c * solved.moment**2))
-    for touch in state.structure.touches.values():
-        if not isinstance(touch, Wrap):
-            continue
-        begin, end = state.wrapped(touch)
-        gauss = rule(state.equations.nodes)
-        s = begin + (end - begin) * gauss.points
-        m = state.along(touch.beam, s)[3]
-        energy += 0.5 * (end - begin) * float(gauss.weights @ (model.strips[touch.beam].compliance(s) * m**2))
+    energy, gauss = 0.0, rule(state.equations.nodes)
+    for beam, parts in state.found.parts.items():
+        spans = [(float(part.a[0]), float(part.b[0])) for part in parts]
+        spans += [state.wrapped(wrap) for wrap in state.structure.wraps(beam)]
+        for a, b in spans:
+            s = a + (b - a) * gauss.points
+            m = state.along(beam, s)[3]
+            energy += 0.5 * (b - a) * float(gauss.weights @ (model.strips[beam].compliance(s) * m**2))
     for name, load in model.scene.loads.items():
         value = state.lam if name == state.equations.stepped else state.equations.others.get(name, 0.0)
         if isinstance(load, Force):
-            moved = _displacement(model, state, model.scene.body_of(load.point), model.rest(load.point))
-            direction = np.array(load.direction) / float(np.hypot(*load.direction))
-            energy -= value * float(moved @ direction)
+            energy -= value * float(_displacement(model, state, load.point) @ unit(load.direction))
         else:
             energy -= value * float(state.found.placements[load.body][2, 0])
     return energy

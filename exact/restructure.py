@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from frozendict import frozendict
 
-from exact.gaps import Overlap, half_thickness
+from exact.gaps import Overlap
 from exact.model import Model
 from exact.structure import Meeting, Resting, Structure, Touch, Wrap
 
@@ -50,8 +50,8 @@ def closed(model: Model, overlap: Overlap) -> tuple[Touch, dict[tuple[str, str],
         return Resting(overlap.contact, overlap.beam, at), places
     apart = 0.0
     if model.scene.contacts[overlap.contact].thick:
-        here, there = np.array([overlap.s]), np.array([overlap.sigma])
-        apart = float(half_thickness(model, strip, here)[0])
-        apart += float(half_thickness(model, model.strips[overlap.onto], there)[0])
+        other = model.strips[overlap.onto]
+        halves = strip.half_thickness(np.array([overlap.s])) + other.half_thickness(np.array([overlap.sigma]))
+        apart = float(halves[0])
     places[overlap.contact, overlap.onto] = overlap.sigma
     return Meeting(overlap.contact, overlap.beam, at, overlap.onto, overlap.side, apart), places

@@ -97,6 +97,8 @@ def piece(law: Law, q: Array, guess: Array) -> Piece:
     Raises:
         UnsolvableError: Newton's method does not converge from the guess.
     """
+    if not (np.all(np.isfinite(q)) and np.all(np.isfinite(guess))):
+        raise UnsolvableError
     gauss = rule(len(guess))
     x, y, angle, moment, Fx, Fy, a, b = q
     h, B, w = b - a, gauss.integrals, gauss.weights

@@ -10,17 +10,21 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.interpolate import BarycentricInterpolator
 
-from exact.equations import Equations, Evaluation
-from exact.model import Model, Strip
-from exact.spectral import Piece, rule
+from exact.equations import Equations
+from exact.evaluation import Evaluation, Part
+from exact.model import Model
+from exact.spectral import rule
 from exact.structure import Structure, Wrap
 from scene.answer import Array
 
+_AT_START = 1e-16  # of a piece
+
 
 class Known(Protocol):
-    """Something that knows (x, y, θ, m, Fx, Fy) (6, n) along every beam, and the values of z of the same name."""
+    """Something that knows (x, y, θ, m, Fx, Fy) (6, n) along every beam, and unknowns that have names of their own."""
 
     def along(self, beam: str, s: Array) -> Array: ...  # noqa: D102
+    def unknowns(self) -> Mapping[str, float | Array]: ...  # noqa: D102
 
 
 @dataclass(frozen=True)
@@ -33,6 +37,10 @@ class Rest:
         """(x, y, θ, m, Fx, Fy) (6, n) at arc lengths ``s`` (n,)."""
         line = self.model.strips[beam].line
         return np.concatenate([line.place(s), line.angle(s)[None], np.zeros((3, len(s)))])
+
+    def unknowns(self) -> Mapping[str, float | Array]:
+        """None: all are zero."""
+        return {}
 
 
 @dataclass(frozen=True)
@@ -59,76 +67,77 @@ class State:
         """Which contacts are closed."""
         return self.equations.structure
 
+    @property
+    def forces(self) -> dict[str, float]:
+        """P by contact; wraps have none."""
+        return {name: float(self.z[index]) for name, index in self.equations.layout.forces.items()}
+
+    @property
+    def places(self) -> dict[tuple[str, str], float]:
+        """Places of contact by (contact, key) as in :class:`exact.layout.Layout`."""
+        return {key: float(self.z[index]) for key, index in self.equations.layout.places.items()}
+
+    def unknowns(self) -> Mapping[str, float | Array]:
+        """The bodies' and drives' unknowns and the contacts' forces, by name."""
+        where = self.equations.layout
+        bodies: dict[str, float | Array] = {name: self.z[index] for name, index in where.bodies.items()}
+        return {**bodies, **{name: float(self.z[index]) for name, index in where.drives.items()}, **self.forces}
+
     def along(self, beam: str, s: Array) -> Array:
         """(x, y, θ, m, Fx, Fy) (6, n) at arc lengths ``s`` (n,); at a contact what is beyond it."""
         s = np.asarray(s, dtype=float)
         values = np.empty((6, len(s)))
-        pieces = self.found.pieces[beam]
-        begins = np.array([float(np.real(p[0][0])) for p in pieces])
-        number = np.clip(np.searchsorted(begins, s, side="right") - 1, 0, len(pieces) - 1)
+        parts = self.found.parts[beam]
+        number = np.clip(np.searchsorted([float(part.a[0]) for part in parts], s, side="right") - 1, 0, None)
         for k in np.unique(number):
             here = number == k
-            a, b, start, end, solved = pieces[k]
-            values[:, here] = _within(float(a[0]), float(b[0]), start[:, 0], end[:, 0], solved, s[here])
-        strip = self.equations.model.strips[beam]
-        for name, zone in self.found.wraps.items():
-            touch = self.structure.touches[name]
-            if touch.beam != beam:
-                continue
-            assert isinstance(touch, Wrap)
-            a, b = float(zone[0][0]), float(zone[1][0])
-            here = (s >= a) & (s < b if not touch.to_end else s <= b)
+            values[:, here] = _within(parts[k], s[here])
+        for wrap in self.structure.wraps(beam):
+            a, b = self.wrapped(wrap)
+            here = (s >= a) & ((s < b) | (wrap.to_end & (s >= b)))
             if here.any():
-                values[:, here] = self._wrapped(strip, touch, s[here])
+                values[:, here] = self._wrapped(wrap, s[here])
         return values
-
-    def _wrapped(self, strip: Strip, wrap: Wrap, s: Array) -> Array:
-        a, _, place, angle, _, _, first, _ = self.found.wraps[wrap.contact]
-        centre = self.found.centres[wrap.contact][:, 0]
-        arm = place[:, 0] - centre
-        rho, g = float(np.hypot(*arm)), wrap.sense
-        by = g * (s - float(a[0])) / rho
-        cos, sin = np.cos(by), np.sin(by)
-        theta = float(angle[0]) + by
-        EI = strip.rigidity(s)
-        m = EI * (g / rho - strip.line.curvature(s))
-        across = EI * strip.line.curvature_slope(s)  # F·n = −m'
-        tau = np.stack([np.cos(theta), np.sin(theta)])
-        n = np.stack([-tau[1], tau[0]])
-        at_a = np.array([float(a[0])])
-        m_a = float((strip.rigidity(at_a) * (g / rho - strip.line.curvature(at_a)))[0])
-        tau_a = np.array([np.cos(angle[0]), np.sin(angle[0])])
-        N = float(first[:, 0] @ tau_a) - g / rho * (m - m_a)
-        F = N * tau + across * n
-        x, y = centre[0] + cos * arm[0] - sin * arm[1], centre[1] + sin * arm[0] + cos * arm[1]
-        return np.stack([x, y, theta, m, F[0], F[1]])
 
     def wrapped(self, wrap: Wrap) -> tuple[float, float]:
         """Arc lengths at which a wrap begins and ends."""
-        a, b = self.found.wraps[wrap.contact][:2]
-        return float(a[0]), float(b[0])
+        zone = self.found.zones[wrap.contact]
+        return float(zone.a[0]), float(zone.b[0])
+
+    def _wrapped(self, wrap: Wrap, s: Array) -> Array:
+        """As :meth:`along`, in a wrap; the formulas are those of :mod:`exact.wrapping`."""
+        zone, g = self.found.zones[wrap.contact], wrap.sense
+        line, strip = self.equations.model.strips[wrap.beam].line, self.equations.model.strips[wrap.beam]
+        centre = self.found.centres[wrap.contact][:, 0]
+        arm = zone.place[:, 0] - centre
+        rho = float(np.hypot(*arm))
+        at = np.concatenate([zone.a, s])
+        by = g * (at - at[0]) / rho
+        theta = float(zone.angle[0]) + by
+        m = strip.rigidity(at) * (g / rho - line.curvature(at))
+        tau = np.stack([np.cos(theta), np.sin(theta)])
+        n = np.stack([-tau[1], tau[0]])
+        N = float(zone.first[:, 0] @ tau[:, 0]) - g / rho * (m - m[0])
+        F = N * tau + strip.rigidity(at) * line.curvature_slope(at) * n  # F·n = −m'
+        cos, sin = np.cos(by), np.sin(by)
+        x, y = centre[0] + cos * arm[0] - sin * arm[1], centre[1] + sin * arm[0] + cos * arm[1]
+        return np.stack([x, y, theta, m, F[0], F[1]])[:, 1:]
 
     def pressures(self, wrap: Wrap, s: Array) -> tuple[Array, float, float]:
         """Line pressure (n,) at places ``s`` (n,) in a wrap, and the forces at its two ends; positive where they press.
 
         An end that is held has no force of its own: what is there is the support's.
         """
+        zone, g = self.found.zones[wrap.contact], wrap.sense
         strip = self.equations.model.strips[wrap.beam]
-        _, _, _, _, before, after, first, last = self.found.wraps[wrap.contact]
-        state = self._wrapped(strip, wrap, s)
+        state = self._wrapped(wrap, np.concatenate([zone.a, s, zone.b]))
         tau = np.stack([np.cos(state[2]), np.sin(state[2])])
+        e = g * np.stack([tau[1], -tau[0]])
         rho = float(np.hypot(*(state[:2, 0] - self.found.centres[wrap.contact][:, 0])))
-        N = np.sum(tau * state[4:], axis=0)
-        # p = N/ρ − (F·e)' with F·e = g m' and m'' = −EI κ0''
-        step = 1e-5 * strip.length
-        bend = (strip.line.curvature_slope(s + step) - strip.line.curvature_slope(s - step)) / (2.0 * step)
-        pressure = N / rho + wrap.sense * strip.rigidity(s) * bend
-        ends = []
-        for inner, outer, sign in ((first, before, 1.0), (last, after, -1.0)):
-            angle = float(state[2, 0 if sign > 0.0 else -1])
-            e = wrap.sense * np.array([np.sin(angle), -np.cos(angle)])
-            ends.append(float(sign * (outer - inner)[:, 0] @ e))
-        return np.asarray(pressure), ends[0], ends[1]
+        N = np.sum(tau * state[4:], axis=0)[1:-1]
+        pressure = N / rho + g * strip.rigidity(s) * strip.line.curvature_second(s)
+        begin, end = (zone.before - zone.first)[:, 0] @ e[:, 0], (zone.last - zone.after)[:, 0] @ e[:, -1]
+        return np.asarray(pressure), float(begin), float(end)
 
 
 @lru_cache(maxsize=8)
@@ -138,28 +147,31 @@ def _through(p: int) -> tuple[Array, Array]:
     return points, BarycentricInterpolator(points).wi
 
 
-def _within(a: float, b: float, start: Array, end: Array, solved: Piece, s: Array) -> Array:
+def _within(part: Part, s: Array) -> Array:
     """(x, y, θ, m, Fx, Fy) (6, n) inside a piece."""
-    gauss, h = rule(len(solved.theta)), b - a
+    solved, start, end = part.solved, part.start[:, 0], part.end[:, 0]
+    a, h = float(part.a[0]), float(part.b[0] - part.a[0])
+    gauss = rule(len(solved.theta))
     x = start[0] + h * (gauss.integrals @ np.cos(solved.theta))
     y = start[1] + h * (gauss.integrals @ np.sin(solved.theta))
     inner = np.stack([x, y, solved.theta, solved.moment])
-    values = np.concatenate([start[:4, None], inner, end[:4, None]], axis=1)
+    values = np.concatenate([start[:4, None], inner, end[:, None]], axis=1)
     points, weights = _through(len(solved.theta))
     through = BarycentricInterpolator(points, values.T, wi=weights)
     xi = (s - a) / h if h != 0.0 else np.zeros_like(s)
+    xi = np.where(np.abs(xi) < _AT_START, 0.0, xi)  # the interpolation divides by its distance from its points
     return np.concatenate([through(xi).T, np.tile(start[4:, None], (1, len(s)))])
 
 
-def start_of(equations: Equations, known: Known, values: Mapping[str, Any], guesses: Mapping[Any, float]) -> Array:
+def start_of(equations: Equations, known: Known, guesses: Mapping[Any, float]) -> Array:
     """Unknowns (n,) of a structure, read off a state with perhaps another.
 
     Args:
         equations: of the structure.
         known: the state along the beams.
-        values: the bodies' and drives' unknowns by name.
         guesses: P by contact and places by (contact, key).
     """
+    values = known.unknowns()
     where = equations.layout
     z = np.zeros(where.size)
     for name, freedoms in where.bodies.items():
@@ -169,26 +181,7 @@ def start_of(equations: Equations, known: Known, values: Mapping[str, Any], gues
     for key, index in where.places.items():
         z[index] = guesses[key]
     for beam, pieces in where.pieces.items():
-        begins = _begins(equations, beam, z)
+        begins = equations.begins(beam, z)
         for state, begin in zip(pieces, begins, strict=True):
             z[state] = known.along(beam, np.array([begin]))[:, 0]
     return z
-
-
-def _begins(equations: Equations, beam: str, z: Array) -> list[float]:
-    """Arc lengths at which a beam's pieces begin."""
-    where, touches = equations.layout, equations.structure.touches
-    begins: list[float] = [0.0]
-    for item in equations.structure.order.get(beam, ()):
-        if not isinstance(item, str):
-            begins.append(item)
-            continue
-        touch = touches[item]
-        if isinstance(touch, Wrap):
-            if touch.from_start:
-                begins = []
-            if not touch.to_end:
-                begins.append(float(z[where.places[item, "end"]]))
-        else:
-            begins.append(float(z[where.places[item, beam]]))
-    return begins

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from frozendict import frozendict
 
@@ -49,8 +49,14 @@ class Wrap:
     from_start: bool = False
     to_end: bool = False
 
+    @property
+    def held(self) -> bool:
+        """Whether it begins or ends at a clamp."""
+        return self.from_start or self.to_end
+
 
 Touch = Meeting | Resting | Wrap
+Item = float | str
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,5 +66,15 @@ class Structure:
     ``order`` holds for every beam the arc lengths of knots (numbers) and the names of contacts between its ends.
     """
 
-    touches: frozendict[str, Touch] = field(default_factory=frozendict)
-    order: frozendict[str, tuple[float | str, ...]] = field(default_factory=frozendict)
+    touches: frozendict[str, Touch]
+    order: frozendict[str, tuple[Item, ...]]
+
+    def wraps(self, beam: str) -> tuple[Wrap, ...]:
+        """A beam's wraps."""
+        return tuple(touch for touch in self.touches.values() if isinstance(touch, Wrap) and touch.beam == beam)
+
+    def piece_beyond(self, beam: str, contact: str) -> int:
+        """Number of a beam's piece that begins where a contact touches."""
+        held = {wrap.contact for wrap in self.wraps(beam) if wrap.held}
+        passed = self.order[beam][: self.order[beam].index(contact) + 1]
+        return sum(item not in held for item in passed)
