@@ -151,6 +151,14 @@ def test_a_tally_counts_and_orders(hinge):
     assert tally((), "fea").holds
 
 
+def test_a_closing_load_counts_once_however_many_stations_repeat_it(hinge):
+    rows = comparison(hinge).rows
+    repeated = [row for row in rows if row.probe.quantity == "closing_load" and row.true_errors is not None]
+    assert len(repeated) > 5
+    counted = [each.row for each in held(rows) if each.row.probe.quantity == "closing_load"]
+    assert [row.station for row in counted] == [repeated[0].station] * 2  # of either solver
+
+
 @pytest.mark.parametrize("error", [2e-3, 0.0])
 def test_no_error_is_worth_no_name(hinge, error):
     mine = tally(held(comparison(hinge, EXACT, MadeUp("cprbm", error)).rows), "cprbm")
