@@ -91,8 +91,9 @@ def every(row: Row) -> Iterator[Held]:
     if row.true_errors is None or row.bounds is None:
         return
     bounds, true = row.bounds, row.true_errors
-    yield Held("cprbm", row, true.cprbm, bounds.cprbm + bounds.round_off + true.allowance)
-    yield Held("fea", row, true.bending, bounds.bending + bounds.round_off + true.allowance)
+    beside = bounds.round_off + true.allowance
+    yield Held("cprbm", row, float(true.cprbm), float(bounds.cprbm + beside))
+    yield Held("fea", row, float(true.bending), float(bounds.bending + beside))
 
 
 def held(rows: Iterable[Row]) -> tuple[Held, ...]:

@@ -65,8 +65,8 @@ def _tallies(found: Calibration) -> Sheet:
         "Calibration",
         ("case", "solver", "N", "rows", "within", "share", "stated over true", "largest true over stated", "rule"),
         tuple(body),
-        "Rows with a true error of more than 1e-9 of the probe's scale, all stations, a closing load once; N is the number of links or "
-        "elements per beam. Stated over true: the median.",
+        "Rows with a true error of more than 1e-9 of the probe's scale, all stations, a closing load once; N is the "
+        "number of links or elements per beam. Stated over true: the median.",
     )
 
 

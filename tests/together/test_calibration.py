@@ -8,17 +8,20 @@ so the finite elements are run in that theory.
 
 from __future__ import annotations
 
+import json
 import math
 import tomllib
 from functools import cache
 
 import pytest
 
+from comparisons import documents
 from comparisons.calibration import Tally
 from comparisons.choices import Choices
 from comparisons.measures import rows_of
 from comparisons.pairing import Solvers, paired
-from comparisons.studies.calibration import Trial, tallies, tried
+from comparisons.studies.calibration import Calibration, Trial, tallies, tried
+from comparisons.studies.calibration_told import told
 from comparisons.verdict import Word
 from scene.reading import scene_from
 from tests.cprbm.scenes import HINGE
@@ -64,6 +67,12 @@ def test_the_stated_error_is_no_excuse(case, solver):
 @pytest.mark.parametrize("case", TRUTHS)
 def test_no_truth_is_taken_for_a_difference(case):
     assert Word.DIFFER not in [trial.verdict.word for trial in trials(case)]
+
+
+def test_what_the_study_finds_can_be_told():
+    data = json.loads(documents.text(told(Calibration(trials("wrapped"), {"wrapped": (6, 6)})).data))
+    counts = [trial["solvers"]["cprbm"]["rows"] for trial in data["cases"][0]["trials"]]
+    assert sum(counts) == of("wrapped", "cprbm").rows
 
 
 def test_a_contact_that_closes_at_once():
