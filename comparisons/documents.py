@@ -39,6 +39,7 @@ def comparison(compared: Comparison) -> Plain:
         "solvers": {
             "cprbm": {**solver(compared.runs.cprbm[0]), **_tolerance(compared.tolerances, "cprbm")},
             "fea": {**solver(compared.runs.reference), **_tolerance(compared.tolerances, "fea")},
+            **({} if compared.runs.exact is None else {"exact": solver(compared.runs.exact)}),
         },
         "rows": [
             {**_row(compared.scene, row), "verdict": None if word is None else word.value}
@@ -201,6 +202,7 @@ def _row(scene: Scene, row: Row) -> Plain:
     claim = claim_of(scene, row)
     bounds = row.bounds
     steps = row.steps
+    true = row.true_errors
     return {
         "probe": row.probe.name,
         "stage": row.stage,
@@ -230,6 +232,11 @@ def _row(scene: Scene, row: Row) -> Plain:
         },
         "contact_model": None if row.contact_model is None else row.fraction(row.contact_model),
         "difference_largest": None if row.largest is None else row.fraction(row.largest),
+        "exact": None if row.exact is None else values(row.probe, row.exact),
+        "true_error": {
+            "cprbm": None if true is None else row.fraction(true.cprbm),
+            "fea_bending": None if true is None else row.fraction(true.bending),
+        },
         "scale": row.scale,
         "denominator": row.denominator,
         **_places(scene, row.probe),

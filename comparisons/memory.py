@@ -60,6 +60,8 @@ class Remembering(Crew):
 
     def _told(self, job: Job) -> str:
         solver, scene, choices = job
+        if solver == self.solvers.exact:
+            return f"{scene.name}: exact"
         if solver == self.solvers.cprbm:
             return f"{scene.name}: CPRBM {choices.formulation}, N = {choices.links}"
         return f"{scene.name}: FEA {choices.kinematics}, {choices.elements} elements"

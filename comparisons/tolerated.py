@@ -16,7 +16,7 @@ from comparisons.choices import KINEMATICS, Choices, Kinematics
 from comparisons.levels import SceneLevels
 from comparisons.memory import Remembering
 from comparisons.nearby import nearby
-from comparisons.pairing import Crew, Runs, Solvers, paired
+from comparisons.pairing import Crew, Runs, Solvers, known_exactly, paired
 from comparisons.tolerance import Found, Tolerance, search
 from scene import Answer, Scene
 
@@ -87,6 +87,7 @@ def paired_within(
             cprbm.pair("bending"),
             _families(fea, choices.kinematics),
             nearby=None if driven is None else _nearby(cprbm, driven),
+            exact=known_exactly(scene, choices, solvers, memory),
         ), told
     elements = fea.levels.choices(choices.kinematics, fea.found.n)
     runs = paired(scene, replace(elements, links=cprbm.found.n, formulation=choices.formulation), solvers, memory)

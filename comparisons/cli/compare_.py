@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -45,13 +44,12 @@ def command(
     from comparisons.cli import showing
     from comparisons.cli.asking import questions
     from comparisons.offset_verdict import OffsetComparison, compared_offset
-    from comparisons.pairing import Solvers, crew_of, paired, solvers_of
+    from comparisons.pairing import crew_of, paired, solvers_of, workers_for
     from comparisons.tolerated import paired_within
     from comparisons.verdict import compared
     from scene import OffsetQuestion
 
     one_of_both(tol)
-    workers = 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
     solvers = solvers_of(planted)
     scenes = questions(asked)
     choices = Choices(links, formulation, elements, kinematics, penetration)
@@ -64,7 +62,7 @@ def command(
     printing = str(json_file) != "-"
     finished: list[Comparison | OffsetComparison] = []
     chapters: tuple[report.Chapter, ...] = ()
-    with crew_of(workers) as crew:
+    with crew_of(workers_for(planted)) as crew:
         # a line that says which N is being solved stands in the bar's place
         for scene in showing.progress(scenes, shown=not quiet and tol is None):
             comparison: Comparison | OffsetComparison

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -50,9 +49,9 @@ def command(
     from comparisons.choices import Choices
     from comparisons.cli import showing
     from comparisons.cli.asking import questions
-    from comparisons.pairing import Solvers, crew_of, solvers_of
+    from comparisons.pairing import crew_of, solvers_of, workers_for
 
-    workers = 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
+    workers = workers_for(planted)
     solvers = solvers_of(planted)
     wanted = questions(asked)
     if out is None and "all" in asked:

@@ -20,14 +20,14 @@ NOT_WITHIN = 3
 
 @click.command("solve")
 @click.argument("case", metavar="CASE|FILE.toml")
-@click.option("--solver", type=click.Choice(["cprbm", "fea"]), default="cprbm", show_default=True)
+@click.option("--solver", type=click.Choice(["cprbm", "fea", "exact"]), default="cprbm", show_default=True)
 @numerical
 @output
 @click.pass_obj
 def command(
     planted: object,
     case: str,
-    solver: Literal["cprbm", "fea"],
+    solver: Literal["cprbm", "fea", "exact"],
     links: int | Mapping[str, int],
     elements: int | Mapping[str, int],
     formulation: Literal["auto", "paper"],
@@ -41,7 +41,7 @@ def command(
     from comparisons import cases, documents, sheets, tolerated
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
-    from comparisons.pairing import solvers_of
+    from comparisons.pairing import exact_answer, solvers_of
 
     one_of_both(tol)
     solvers = solvers_of(planted)
@@ -50,12 +50,13 @@ def command(
     check(choices, scene)
     showing.room_for(json_file)
     found: tuple[Tolerance, ...] = ()
-    if tol is None:
-        answer = (solvers.cprbm if solver == "cprbm" else solvers.fea)(scene, choices)
-    else:
+    if tol is not None and solver != "exact":
         with showing.current(shown=not quiet) as say:
             answer, reached = tolerated.solved(scene, solver, choices, tol, solvers, say)
         found = (reached,)
+    else:
+        asked = {"cprbm": solvers.cprbm, "fea": solvers.fea, "exact": solvers.exact or exact_answer}[solver]
+        answer = asked(scene, choices)
     if json_file is not None:
         showing.json(json_file, {"cases": [documents.solution(scene, answer, found)]})
     if not quiet and str(json_file) != "-":
