@@ -12,7 +12,7 @@ import numpy as np
 from comparisons.benchmark import Benchmark, trend
 from comparisons.claims import claim_difference, claim_met, claim_of
 from comparisons.measures import Row, arc_lengths, unit_of
-from comparisons.tolerance import Tolerance
+from comparisons.tolerances.search import Tolerance
 from comparisons.verdict import Comparison
 from comparisons.work_energy import Reaction
 from scene import Answer, Certificate, Probe, Scene

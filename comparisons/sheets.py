@@ -9,12 +9,12 @@ from comparisons.benchmark import FIT_FROM, Benchmark, trend
 from comparisons.calibration import FAR, JUDGED, Held, every, held, tally
 from comparisons.claims import as_claimed, claim_difference, standings
 from comparisons.documents import worst
-from comparisons.extrapolation import told
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.geometry import bentness
 from comparisons.measures import Row, Steps, unit_of
 from comparisons.scales import norm
-from comparisons.tolerance import Tolerance
+from comparisons.tolerances.extrapolation import told
+from comparisons.tolerances.search import Tolerance
 from comparisons.verdict import Comparison
 from comparisons.work_energy import by_drive, sentence
 from scene import Answer, Scene

@@ -32,7 +32,7 @@ from comparisons.formats import number, percent
 from comparisons.measures import Bounds, Row, rows_of
 from comparisons.pairing import Runs
 from comparisons.soundness import ABSENT_WHILE_OPEN, complaints, sound_part
-from comparisons.tolerance import Tolerance
+from comparisons.tolerances.search import Tolerance
 from comparisons.work_energy import Reaction, reactions
 from scene import Scene
 

@@ -15,7 +15,7 @@ from comparisons.cli.options import folder, numerical, one_of_both, output
 if TYPE_CHECKING:
     from comparisons.documents import Plain
     from comparisons.offset_verdict import OffsetComparison
-    from comparisons.tolerance import Tolerance
+    from comparisons.tolerances.search import Tolerance
     from comparisons.verdict import Comparison
 
 
@@ -45,7 +45,7 @@ def command(
     from comparisons.cli.asking import questions
     from comparisons.offset_verdict import OffsetComparison, compared_offset
     from comparisons.pairing import crew_of, paired, solvers_of, workers_for
-    from comparisons.tolerated import paired_within
+    from comparisons.tolerances.tolerated import paired_within
     from comparisons.verdict import compared
     from scene import OffsetQuestion
 

@@ -13,7 +13,7 @@ from comparisons.cli.options import family_sizes, folder, output, variants
 
 if TYPE_CHECKING:
     from comparisons.choices import Choices
-    from comparisons.convergence_report import Told
+    from comparisons.converging.report import Told
     from comparisons.pairing import Crew, Solvers
     from scene import Question
 
@@ -45,10 +45,10 @@ def command(
     out: Path | None,
 ) -> int:
     """See how the error falls with N, with which order and to which limit, and what a difference is made of."""
-    from comparisons import convergence_report
     from comparisons.choices import Choices
     from comparisons.cli import showing
     from comparisons.cli.asking import questions
+    from comparisons.converging import report
     from comparisons.pairing import crew_of, solvers_of, workers_for
 
     workers = workers_for(planted)
@@ -60,13 +60,13 @@ def command(
     choices = Choices(formulation=formulation, kinematics=kinematics)
     printing = str(json_file) != "-"
     finished: list[Told] = []
-    chapters: tuple[convergence_report.Chapter, ...] = ()
+    chapters: tuple[report.Chapter, ...] = ()
     with crew_of(workers) as crew:
         for question in showing.progress(wanted, shown=not quiet):
             told = _told(question, sizes, choices, solvers, crew)
             finished.append(told)
             if out is not None:
-                chapters = convergence_report.add(out, chapters, told)
+                chapters = report.add(out, chapters, told)
             if json_file is not None and printing:
                 showing.json(json_file, {"cases": [one.data for one in finished]})
             if printing and not quiet:
@@ -83,25 +83,27 @@ def command(
 
 def _told(question: Question, sizes: tuple[int, ...], choices: Choices, solvers: Solvers, crew: Crew) -> Told:
     """Everything that there is to tell of one question."""
-    from comparisons import budget_drawn, budget_told, convergence_drawn, convergence_told, offset_converged
-    from comparisons.accounts import accounted
-    from comparisons.convergence_report import Told
-    from comparisons.convergence_told import shown_size
-    from comparisons.families import converged
+    from comparisons.budgets import drawn as budget_drawn
+    from comparisons.budgets import told as budget_told
+    from comparisons.budgets.accounts import accounted
+    from comparisons.converging import drawn, offset
+    from comparisons.converging import told as numbers
+    from comparisons.converging.families import converged
+    from comparisons.converging.report import Told
     from comparisons.memory import Remembering
     from scene import OffsetQuestion
 
     if isinstance(question, OffsetQuestion):
-        return offset_converged.told(question, sizes, solvers.offset)
+        return offset.told(question, sizes, solvers.offset)
     memory = Remembering(pool=crew.pool, solvers=solvers)
     found = converged(question, sizes, choices, solvers, memory)
-    n = shown_size(found)
+    n = numbers.shown_size(found)
     account = accounted(question, replace(choices, links=n, elements=2 * n), memory)
     return Told(
         question,
-        (*convergence_told.sheets_of(found), *budget_told.sheets_of(account)),
-        (*convergence_told.sentences_of(found), *budget_told.sentences_of(account)),
-        (*convergence_drawn.of_convergence(found), *budget_drawn.of_account(account)),
-        {**convergence_told.document(found), **budget_told.data_of(account)},
+        (*numbers.sheets_of(found), *budget_told.sheets_of(account)),
+        (*numbers.sentences_of(found), *budget_told.sentences_of(account)),
+        (*drawn.of_convergence(found), *budget_drawn.of_account(account)),
+        {**numbers.document(found), **budget_told.data_of(account)},
         found.completed and not account.missing,
     )

@@ -12,7 +12,7 @@ from comparisons.choices import Kinematics
 from comparisons.cli.options import numerical, one_of_both, output
 
 if TYPE_CHECKING:
-    from comparisons.tolerance import Tolerance
+    from comparisons.tolerances.search import Tolerance
 
 NOT_COMPLETED = 1
 NOT_WITHIN = 3
@@ -38,10 +38,11 @@ def command(
     quiet: bool,  # noqa: FBT001 - click hands it over by name
 ) -> int:
     """Answer one scene with one solver."""
-    from comparisons import cases, documents, sheets, tolerated
+    from comparisons import cases, documents, sheets
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
     from comparisons.pairing import exact_answer, solvers_of
+    from comparisons.tolerances import tolerated
 
     one_of_both(tol)
     solvers = solvers_of(planted)

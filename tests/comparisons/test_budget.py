@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from frozendict import frozendict
 
-from comparisons import budget_drawn, budget_told
-from comparisons.accounts import accounted
-from comparisons.budget import Budget, budgets_of
-from comparisons.budget_runs import budgeted
+from comparisons.budgets import drawn, told
+from comparisons.budgets.accounts import accounted
+from comparisons.budgets.parts import Budget, budgets_of
+from comparisons.budgets.runs import budgeted
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.documents import text
@@ -158,9 +158,9 @@ def test_an_answer_that_is_not_whole_leaves_no_budget_and_says_so(hinge, right):
     account = accounted(hinge, Choices(), Remembering(solvers=Solvers(right.cprbm, MadeUp("fea", 0.0, until=3))))
     assert account.budgets == account.claims == ()
     assert any("fea bending" in why for why in account.missing)
-    assert budget_told.sheets_of(account) == ()
-    assert "no error budget" in budget_told.sentences_of(account)[0]
-    assert budget_drawn.of_account(account) == ()
+    assert told.sheets_of(account) == ()
+    assert "no error budget" in told.sentences_of(account)[0]
+    assert drawn.of_account(account) == ()
 
 
 def without_contact(scene, choices):
@@ -187,14 +187,14 @@ def test_the_ratio_at_which_a_claim_would_be_ours(hinge):
         assert found.reruns == pytest.approx((0.0025,), rel=1e-6)
         assert found.without_shear == pytest.approx(0.002 / 1.002, rel=1e-6)
         assert found.incompressible == pytest.approx(1.0 - 1.0 / (1.002 + 0.003 * 1.5 / 1.35), rel=1e-6)
-    assert f"ν = {ratio:.3f}" in budget_told.sentences_of(account)[0]
+    assert f"ν = {ratio:.3f}" in told.sentences_of(account)[0]
 
 
 def test_a_claim_beyond_every_ratio_has_none(hinge, right):
     account = accounted(hinge, Choices(), Remembering(solvers=right))
     # 0.35 % at ν = 0.35, of which 0.3 % is shear; claims of 0.62 and 0.81 %
     assert [found.ratios for found in account.claims] == [(), ()]
-    assert "at no Poisson's ratio" in budget_told.sentences_of(account)[0]
+    assert "at no Poisson's ratio" in told.sentences_of(account)[0]
 
 
 def test_materials_of_two_ratios_or_a_theory_without_shear_have_no_such_ratio(hinge, right):
@@ -208,7 +208,7 @@ def test_materials_of_two_ratios_or_a_theory_without_shear_have_no_such_ratio(hi
 
 def test_the_table_has_every_probe_with_a_value_at_the_last_station(hinge, right):
     account = accounted(hinge, Choices(), Remembering(solvers=right))
-    budgets, claims = budget_told.sheets_of(account)
+    budgets, claims = told.sheets_of(account)
     assert [row[0] for row in budgets.rows] == [probe.name for probe in hinge.probes]
     for sheet in (budgets, claims):
         assert {len(row) for row in sheet.rows} == {len(sheet.headers)}
@@ -219,7 +219,7 @@ def test_the_table_has_every_probe_with_a_value_at_the_last_station(hinge, right
 
 def test_json_has_every_station_and_sums(hinge, right):
     account = accounted(hinge, Choices(), Remembering(solvers=right))
-    data = json.loads(text(budget_told.data_of(account)))
+    data = json.loads(text(told.data_of(account)))
     assert len({row["station"] for row in data["budget"]}) == 10
     for row in data["budget"]:
         assert sum(row["parts"].values()) == pytest.approx(row["difference"], rel=1e-9, abs=1e-15)
@@ -231,11 +231,11 @@ def test_json_has_every_station_and_sums(hinge, right):
 
 def test_the_picture_shows_every_part_that_there_is(hinge, right):
     account = accounted(hinge, Choices(), Remembering(solvers=right))
-    (picture,) = budget_drawn.of_account(account)
+    (picture,) = drawn.of_account(account)
     assert picture.name == "budget"
-    (again,) = budget_drawn.of_account(account)
+    (again,) = drawn.of_account(account)
     assert again.svg == picture.svg
-    for name, (colour, _) in budget_drawn.LOOKS.items():
+    for name, (colour, _) in drawn.LOOKS.items():
         shown = any(getattr(each.parts, name) != 0.0 for each in account.budgets)
         assert (colour.encode() in picture.svg) == shown or name == "contact", name
     assert not any(each.parts.contact for each in account.budgets)
@@ -243,7 +243,7 @@ def test_the_picture_shows_every_part_that_there_is(hinge, right):
 
 def test_a_case_without_differences_has_no_picture(hinge):
     same = Solvers(MadeUp("cprbm", 0.0), MadeUp("fea", 0.0))
-    assert budget_drawn.of_account(accounted(hinge, Choices(kinematics="bending"), Remembering(solvers=same))) == ()
+    assert drawn.of_account(accounted(hinge, Choices(kinematics="bending"), Remembering(solvers=same))) == ()
 
 
 def test_converge_tells_the_budget_and_spares_its_own_runs(hinge, right, capsys):

@@ -9,10 +9,10 @@ import pytest
 from frozendict import frozendict
 
 from comparisons import cases, documents
+from comparisons.budgets.poisson import with_ratio
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers, cprbm_answer, fea_answer
-from comparisons.poisson import with_ratio
 from comparisons.studies import materials, table1
 from comparisons.studies.materials import MATERIALS, SPECIMENS
 from comparisons.studies.materials_told import told as told_of_materials

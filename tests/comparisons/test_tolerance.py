@@ -15,10 +15,10 @@ from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.cli.options import tolerance
 from comparisons.cli.solve_ import command
-from comparisons.extrapolation import settled
 from comparisons.pairing import ALONE, Solvers
-from comparisons.tolerance import FIRST, Estimate, Stated, search
-from comparisons.tolerated import paired_within, solved
+from comparisons.tolerances.extrapolation import settled
+from comparisons.tolerances.search import FIRST, Estimate, Stated, search
+from comparisons.tolerances.tolerated import paired_within, solved
 from comparisons.verdict import Word, compared
 from scene import Ending, Mistake, Probe, SceneError
 from scene.answer import frozen_array

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from comparisons import cases
-from comparisons.accounts import Account, accounted
-from comparisons.budget import Budget, budgets_of
-from comparisons.budget_runs import budgeted
+from comparisons.budgets.accounts import Account, accounted
+from comparisons.budgets.parts import Budget, budgets_of
+from comparisons.budgets.runs import budgeted
 from comparisons.choices import Choices
 from comparisons.memory import Remembering
 from comparisons.studies.last_loads import at_last_loads

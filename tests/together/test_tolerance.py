@@ -14,13 +14,13 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.levels import SceneLevels
 from comparisons.measures import arc_lengths, station_of
 from comparisons.memory import Remembering
 from comparisons.pairing import Solvers
 from comparisons.scales import denominator, norm, probe_scale
 from comparisons.spots import clear_of_spots
-from comparisons.tolerated import solved
+from comparisons.tolerances.levels import SceneLevels
+from comparisons.tolerances.tolerated import solved
 from scene import Answer, Scene
 from tests.references import hinge as exact
 from tests.together.test_calibration import truth_of, wrapped_truth

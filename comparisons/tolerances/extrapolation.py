@@ -31,7 +31,7 @@ from dataclasses import replace
 import numpy as np
 from frozendict import frozendict
 
-from comparisons.convergence import limit
+from comparisons.converging.limits import limit
 from comparisons.measures import station_of
 from comparisons.order import order_of, richardson
 from comparisons.scales import norm

@@ -11,13 +11,13 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 from comparisons.choices import Choices, Kinematics
-from comparisons.extrapolation import Sizes, settled
 from comparisons.measures import Row, rows_of
 from comparisons.memory import Remembering
 from comparisons.order import order_of
 from comparisons.pairing import Runs, Solver, may_be_uneven, ratio_beside
 from comparisons.soundness import complaints
-from comparisons.tolerance import FIRST, Estimate, Stated
+from comparisons.tolerances.extrapolation import Sizes, settled
+from comparisons.tolerances.search import FIRST, Estimate, Stated
 from scene import Answer, Scene
 
 

@@ -13,11 +13,11 @@ from frozendict import frozendict
 
 from comparisons.benchmark import LARGEST, Method
 from comparisons.choices import KINEMATICS, Choices, Kinematics
-from comparisons.levels import SceneLevels
 from comparisons.memory import Remembering
 from comparisons.nearby import nearby
 from comparisons.pairing import Crew, Runs, Solvers, known_exactly, paired
-from comparisons.tolerance import Found, Tolerance, search
+from comparisons.tolerances.levels import SceneLevels
+from comparisons.tolerances.search import Found, Tolerance, search
 from scene import Answer, Scene
 
 LARGEST_PAPER = 640

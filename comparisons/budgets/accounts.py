@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from comparisons.budget import Budget, budgets_of
-from comparisons.budget_runs import BudgetRuns, budgeted
+from comparisons.budgets.parts import Budget, budgets_of
+from comparisons.budgets.poisson import ClaimedRatio, claimed_ratios, rerun, with_ratio
+from comparisons.budgets.runs import BudgetRuns, budgeted
 from comparisons.choices import Choices
 from comparisons.memory import Remembering
-from comparisons.poisson import ClaimedRatio, claimed_ratios, rerun, with_ratio
 from comparisons.soundness import complaints
 from scene import Scene
 
