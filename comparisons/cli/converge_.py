@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -14,6 +15,7 @@ from comparisons.cli.options import family_sizes, folder, output, variants
 if TYPE_CHECKING:
     from comparisons.choices import Choices
     from comparisons.converging.report import Told
+    from comparisons.documents import Plain
     from comparisons.pairing import Crew, Solvers
     from scene import Question
 
@@ -68,17 +70,22 @@ def command(
             if out is not None:
                 chapters = report.add(out, chapters, told)
             if json_file is not None and printing:
-                showing.json(json_file, {"cases": [one.data for one in finished]})
+                showing.json(json_file, _document(finished, wanted))
             if printing and not quiet:
                 showing.tables(told.sheets)
             if printing:
                 for sentence in told.sentences:
                     click.echo(f"{question.name}: {sentence}")
     if json_file is not None and not printing:
-        showing.json(json_file, {"cases": [one.data for one in finished]})
+        showing.json(json_file, _document(finished, wanted))
     if out is not None and printing and not quiet:
         click.echo(f"report: {out / 'index.html'}")
     return 0 if all(told.completed for told in finished) else NOT_COMPLETED
+
+
+def _document(finished: Sequence[Told], wanted: Sequence[Question]) -> Plain:
+    """Of one question its own document, of several theirs as ``cases``."""
+    return finished[0].data if len(wanted) == 1 else {"cases": [told.data for told in finished]}
 
 
 def _told(question: Question, sizes: tuple[int, ...], choices: Choices, solvers: Solvers, crew: Crew) -> Told:

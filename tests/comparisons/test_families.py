@@ -192,9 +192,9 @@ def test_the_command_writes_prints_and_ends_with_0(right, capsys, tmp_path):
     assert 'id="hinge"' in (tmp_path / "c" / "index.html").read_text("utf-8")
     for name in ("convergence.json", "convergence.svg", "convergence.png"):
         assert (tmp_path / "c" / "hinge" / name).is_file()
-    assert json.loads((tmp_path / "c.json").read_text("utf-8"))["cases"][0]["case"] == "hinge"
+    assert json.loads((tmp_path / "c.json").read_text("utf-8"))["case"] == "hinge"
     assert run([*arguments, "--json", "-"], right) == 0
-    assert json.loads(capsys.readouterr().out)["cases"][0]["families"]
+    assert json.loads(capsys.readouterr().out)["families"]
 
 
 def test_the_command_ends_with_1_where_a_run_is_not_whole(right, capsys):
@@ -225,7 +225,7 @@ def test_an_interruption_keeps_what_was_finished(right, capsys, tmp_path):
 def test_an_offset_question_shows_its_error_against_the_exact_curve(capsys, tmp_path):
     assert run(["converge", "offset", "--sizes", "3,10,20,40,400", "--json", str(tmp_path / "c.json")], Solvers()) == 0
     assert "offset: An offset question takes 4 to 200 springs; left out: 3, 400." in capsys.readouterr().out
-    families = json.loads((tmp_path / "c.json").read_text("utf-8"))["cases"][0]["families"]
+    families = json.loads((tmp_path / "c.json").read_text("utf-8"))["families"]
     question = cases.asked("offset")
     assert len(families) == len(question.spacings) * len(question.offsets)
     # second order of the midpoints of even elements, fourth of the rest: see the table of the errors in the page
