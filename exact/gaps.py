@@ -25,7 +25,6 @@ from scene import BeamContact, CircleContact
 from scene.answer import Array
 
 SAMPLES = 401
-_WORTH_REFINING = 1e-5  # a sampled gap, no dimension
 _FEET = 6  # Newton iterations of a foot
 _NEAR_END = 1e-9  # of a beam's length
 
@@ -56,7 +55,6 @@ def overlaps(
     model: Model,
     now: Known,
     before: Known,
-    centres: Mapping[str, Array],
     touched: Mapping[tuple[str, str], tuple[float, float]],
     tolerance: float,
 ) -> list[Overlap]:
@@ -65,14 +63,13 @@ def overlaps(
     Args:
         model: the mechanism.
         now, before: the state, and one whose beams have not passed each other; it says which side is which.
-        centres: of the circles, by contact, (2,).
         touched: by contact and beam where it touches already, from and to; a least gap there is known.
         tolerance: no dimension.
     """
     found: list[Overlap] = []
     for name, contact in model.scene.contacts.items():
         if isinstance(contact, CircleContact):
-            found += _of_circle(model, now, name, contact, centres[name], touched)
+            found += _of_circle(model, now, name, contact, now.centre(name), touched)
         else:
             one, other = contact.between
             found += _of_pair(model, now, before, name, contact, (one, other), touched)
@@ -167,7 +164,8 @@ def _minima(
     fence = np.pad(values, 1, constant_values=np.inf)
     step = s[1] - s[0]
     found = []
-    for index in np.flatnonzero((values < _WORTH_REFINING) & (values <= fence[:-2]) & (values < fence[2:])):
+    # a gap changes by no more than the arc length does
+    for index in np.flatnonzero((values < step) & (values <= fence[:-2]) & (values < fence[2:])):
         i = int(index)
         if touched is not None and touched[0] - step <= s[i] <= touched[1] + step:
             continue

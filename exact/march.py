@@ -20,6 +20,7 @@ from exact.closings import close_first
 from exact.gaps import overlaps
 from exact.model import modelled
 from exact.newton import LostError, checked
+from exact.passing import passes
 from exact.probing import answered
 from exact.restructure import NotCoveredError
 from exact.settings import Settings
@@ -119,24 +120,26 @@ def _examined(way: Way, trial: State) -> bool:
     """
     if open_first(way, trial) or reform(way, trial):
         return False
-    centres = {name: centre[:, 0] for name, centre in trial.found.centres.items()}
-    found = overlaps(way.model, trial, way.known, centres, _touched(trial), _OVERLAP)
+    found = overlaps(way.model, trial, way.known, _touched(trial), _OVERLAP)
     if found:
         close_first(way, trial, found)
         return False
+    if passes(way.model, way.known, trial):
+        raise LostError
     way.accept(trial)
     return True
 
 
 def _touched(state: State) -> dict[tuple[str, str], tuple[float, float]]:
-    """By contact and beam, from where to where it touches."""
+    """By contact and beam, from where to where it touches; ends that touch are looked at like any place."""
     found = {}
     for name, touch in state.structure.touches.items():
         if isinstance(touch, Wrap):
             found[name, touch.beam] = state.wrapped(touch)
             continue
-        s = touch.at if touch.at is not None else state.places[name, touch.beam]
-        found[name, touch.beam] = (s, s)
+        if touch.at is None:
+            s = state.places[name, touch.beam]
+            found[name, touch.beam] = (s, s)
         if isinstance(touch, Meeting):
             sigma = state.places[name, touch.onto]
             found[name, touch.onto] = (sigma, sigma)

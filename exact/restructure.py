@@ -23,7 +23,7 @@ def structured(model: Model, touches: Mapping[str, Touch], places: Places) -> St
     """The structure of some closed contacts at some places.
 
     Raises:
-        NotCoveredError: a section has a kink where the beam lies on a circle.
+        NotCoveredError: a section has a kink where the beam lies on a circle, or a thickness that varies.
     """
     order: dict[str, tuple[float | str, ...]] = {}
     for beam, strip in model.strips.items():
@@ -32,8 +32,10 @@ def structured(model: Model, touches: Mapping[str, Touch], places: Places) -> St
             if isinstance(touch, Wrap) and touch.beam == beam:
                 begin = 0.0 if touch.from_start else places[name, "begin"]
                 end = strip.length if touch.to_end else places[name, "end"]
-                if strip.beam.tapered or any(begin <= knot <= end for knot in strip.knots):
-                    raise NotCoveredError(f"{beam} lies along the circle of {name} where its section varies")
+                if strip.beam.tapered and model.scene.contacts[name].thick:
+                    raise NotCoveredError(f"{beam} lies along the circle of {name} with an edge that is not round")
+                if any(begin <= knot <= end for knot in strip.knots):
+                    raise NotCoveredError(f"{beam} lies along the circle of {name} where its section has a kink")
                 items.append((begin, name))
             elif (name, beam) in places:
                 items.append((places[name, beam], name))

@@ -15,6 +15,8 @@ from exact.evaluation import Evaluation, Part
 from exact.model import Model
 from exact.spectral import rule
 from exact.structure import Structure, Wrap
+from exact.wrapping import bending
+from scene import CircleContact
 from scene.answer import Array
 
 
@@ -22,9 +24,10 @@ _AT_START = 1e-16  # of a piece
 
 
 class Known(Protocol):
-    """Something that knows (x, y, θ, m, Fx, Fy) (6, n) along every beam, and unknowns that have names of their own."""
+    """Something that knows (x, y, θ, m, Fx, Fy) (6, n) along beams, circles' centres (2,), and unknowns with names."""
 
     def along(self, beam: str, s: Array) -> Array: ...  # noqa: D102
+    def centre(self, contact: str) -> Array: ...  # noqa: D102
     def unknowns(self) -> Mapping[str, float | Array]: ...  # noqa: D102
 
 
@@ -38,6 +41,12 @@ class Rest:
         """(x, y, θ, m, Fx, Fy) (6, n) at arc lengths ``s`` (n,)."""
         line = self.model.strips[beam].line
         return np.concatenate([line.place(s), line.angle(s)[None], np.zeros((3, len(s)))])
+
+    def centre(self, contact: str) -> Array:
+        """A circle's centre (2,)."""
+        record = self.model.scene.contacts[contact]
+        assert isinstance(record, CircleContact)
+        return np.array(record.center) / self.model.unit_length
 
     def unknowns(self) -> Mapping[str, float | Array]:
         """None: all are zero."""
@@ -78,6 +87,10 @@ class State:
         """Places of contact by (contact, key) as in :class:`exact.layout.Layout`."""
         return {key: float(self.z[index]) for key, index in self.equations.layout.places.items()}
 
+    def centre(self, contact: str) -> Array:
+        """A circle's centre (2,)."""
+        return self.found.centres[contact][:, 0]
+
     def unknowns(self) -> Mapping[str, float | Array]:
         """The bodies' and drives' unknowns and the contacts' forces, by name."""
         where = self.equations.layout
@@ -108,18 +121,18 @@ class State:
     def _wrapped(self, wrap: Wrap, s: Array) -> Array:
         """As :meth:`along`, in a wrap; the formulas are those of :mod:`exact.wrapping`."""
         zone, g = self.found.zones[wrap.contact], wrap.sense
-        line, strip = self.equations.model.strips[wrap.beam].line, self.equations.model.strips[wrap.beam]
+        strip = self.equations.model.strips[wrap.beam]
         centre = self.found.centres[wrap.contact][:, 0]
         arm = zone.place[:, 0] - centre
         rho = float(np.hypot(*arm))
         at = np.concatenate([zone.a, s])
         by = g * (at - at[0]) / rho
         theta = float(zone.angle[0]) + by
-        m = strip.rigidity(at) * (g / rho - line.curvature(at))
+        m, dm, _ = bending(strip, g / rho, at)
         tau = np.stack([np.cos(theta), np.sin(theta)])
         n = np.stack([-tau[1], tau[0]])
         N = float(zone.first[:, 0] @ tau[:, 0]) - g / rho * (m - m[0])
-        F = N * tau + strip.rigidity(at) * line.curvature_slope(at) * n  # F·n = −m'
+        F = N * tau - dm * n  # F·n = −m'
         cos, sin = np.cos(by), np.sin(by)
         x, y = centre[0] + cos * arm[0] - sin * arm[1], centre[1] + sin * arm[0] + cos * arm[1]
         return np.stack([x, y, theta, m, F[0], F[1]])[:, 1:]
@@ -136,7 +149,7 @@ class State:
         e = g * np.stack([tau[1], -tau[0]])
         rho = float(np.hypot(*(state[:2, 0] - self.found.centres[wrap.contact][:, 0])))
         N = np.sum(tau * state[4:], axis=0)[1:-1]
-        pressure = N / rho + g * strip.rigidity(s) * strip.line.curvature_second(s)
+        pressure = N / rho - g * bending(strip, g / rho, s)[2]
         begin, end = (zone.before - zone.first)[:, 0] @ e[:, 0], (zone.last - zone.after)[:, 0] @ e[:, -1]
         return np.asarray(pressure), float(begin), float(end)
 
