@@ -121,7 +121,7 @@ def _leave_clamp(way: Way, trial: State, overlap: Overlap, which: str) -> None:
 def _wrapped(way: Way, trial: State, overlap: Overlap, which: str, sense: float) -> State | None:
     """A wrap from the clamp, if it presses."""
     at, name, strip = way.state, overlap.contact, way.model.strips[overlap.beam]
-    if strip.beam.tapered:
+    if strip.beam.tapered and way.model.scene.contacts[name].thick:
         return None
     s, key = (0.0, "end") if which == "start" else (strip.length, "begin")
     wrap = Wrap(name, strip.name, sense, from_start=which == "start", to_end=which == "end")

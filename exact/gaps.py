@@ -17,7 +17,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from exact.model import Model, Strip
 from exact.state import Known
@@ -25,6 +24,7 @@ from scene import BeamContact, CircleContact
 from scene.answer import Array
 
 SAMPLES = 401
+_ZOOMS, _ZOOMED = 6, 21  # times that a least gap is looked at more closely, at so many places
 _FEET = 6  # Newton iterations of a foot
 _NEAR_END = 1e-9  # of a beam's length
 
@@ -169,17 +169,24 @@ def _minima(
         i = int(index)
         if touched is not None and touched[0] - step <= s[i] <= touched[1] + step:
             continue
-        best = minimize_scalar(
-            lambda p: float(function(np.array([p]))[0]),
-            bounds=(float(s[i - 1 if i else 0]), float(s[i + 1 if i + 1 < len(s) else i])),
-            method="bounded",
-            options={"xatol": 1e-10},
-        )
-        if i in (0, len(s) - 1) and values[i] <= best.fun:
+        place, value = _least(function, float(s[max(i - 1, 0)]), float(s[min(i + 1, len(s) - 1)]))
+        if i in (0, len(s) - 1) and values[i] <= value:
             found.append((float(s[i]), float(values[i]), True))
         else:
-            found.append((float(best.x), float(best.fun), False))
+            found.append((place, value, False))
     return found
+
+
+def _least(function: Callable[[Array], Array], low: float, high: float) -> tuple[float, float]:
+    """Where a function is least between two places, and its value; roughly so where it is not negative there."""
+    for _ in range(_ZOOMS):
+        s = np.linspace(low, high, _ZOOMED)
+        values = function(s)
+        i = int(np.argmin(values))
+        low, high = float(s[max(i - 1, 0)]), float(s[min(i + 1, len(s) - 1)])
+        if values[i] > high - low:
+            break
+    return float(s[i]), float(values[i])
 
 
 def _held_by(model: Model, strip: Strip, s: float) -> str | None:

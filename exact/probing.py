@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from frozendict import frozendict
 
@@ -33,7 +31,7 @@ def answered(way: Way, value: float, finer: float) -> StationAnswer:
         complementarity=0.0,
         force_balance=max(balance, default=0.0),
         moment_balance=max(balance, default=0.0),
-        smallest_curvature=math.nan,
+        smallest_curvature=way.curvature,
         iterations=way.states,
     )
     shapes = {}

@@ -62,7 +62,6 @@ class State:
         z: unknowns (n,); lam: λ.
         found: everything at z, one column each.
         residual: largest row.
-        sign: of the determinant of the equations' derivative.
     """
 
     equations: Equations
@@ -70,7 +69,6 @@ class State:
     lam: float
     found: Evaluation
     residual: float
-    sign: float
 
     @property
     def structure(self) -> Structure:

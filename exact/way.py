@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,6 +14,7 @@ from exact.model import Model
 from exact.newton import Condition, LostError, solve
 from exact.restructure import NotCoveredError, structured
 from exact.settings import Settings
+from exact.stability import least_curvature
 from exact.state import Known, Rest, State, start_of
 from exact.structure import Structure, Touch
 from scene import Event, Stage
@@ -34,6 +36,7 @@ class Way:
         lam: λ there.
         events: contacts that have closed; ``closed_at`` by contact where it did so first, SI.
         states: number of equilibria.
+        curvature: least one of the energy at the last of them.
     """
 
     model: Model
@@ -48,6 +51,7 @@ class Way:
     events: list[Event] = field(default_factory=list)
     closed_at: dict[str, float] = field(default_factory=dict)
     states: int = 0
+    curvature: float = math.nan
 
     @property
     def state(self) -> State:
@@ -164,12 +168,14 @@ class Way:
         """Go to a state.
 
         Raises:
-            NotCoveredError: the determinant has changed its sign on the way there.
+            LostError: the equations are singular there.
+            NotCoveredError: it is no minimum of the energy.
         """
         same = self.now is not None and self.now.structure == state.structure
-        if self.now is not None and same and state.sign * self.now.sign < 0.0:
+        self.curvature = least_curvature(state)
+        if self.curvature < 0.0:
             raise NotCoveredError(
-                f"the path comes to a fold or a bifurcation between {self.now.lam * self.unit:.6g} "
+                f"the path comes to a fold or a bifurcation between {self.lam * self.unit:.6g} "
                 f"and {state.lam * self.unit:.6g} of {self.stepped}"
             )
         self.before = self.now if same and self.now is not None and self.now.lam != state.lam else None
