@@ -37,10 +37,9 @@ def passes(model: Model, before: Known, after: Known) -> bool:
             continue
         for one, other in (contact.between, contact.between[::-1]):
             sigma = np.linspace(0.0, model.strips[other].length, SAMPLES)
-            for s in (0.0, model.strips[one].length):
-                p, q = (
-                    known.along(other, sigma)[:2] - known.along(one, np.array([s]))[:2] for known in (before, after)
-                )
+            for end in (0.0, model.strips[one].length):
+                place = np.array([end])
+                p, q = (known.along(other, sigma)[:2] - known.along(one, place)[:2] for known in (before, after))
                 if _through_line(p, q):
                     return True
     return False
@@ -53,12 +52,12 @@ def _through_circle(p: Array, q: Array, distance: float) -> bool:
     if np.min(np.hypot(*(p + t * d))) < _DEEP * distance:
         return True
     corners = [p[:, :-1], p[:, 1:], q[:, 1:], q[:, :-1]]
-    turned = sum(_angle(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True))
+    turned = np.sum([_angle(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)], axis=0)
     return bool(np.any(np.abs(turned) > np.pi))
 
 
 def _angle(a: Array, b: Array) -> Array:
-    return np.arctan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1])
+    return np.asarray(np.arctan2(_cross(a, b), a[0] * b[0] + a[1] * b[1]))
 
 
 def _through_line(p: Array, q: Array) -> bool:

@@ -32,7 +32,6 @@ from frozendict import frozendict
 from exact.newton import LostError, angles_of, linearised
 from exact.state import State, start_of
 from exact.structure import Structure
-from scene.answer import Array
 
 _KNOTS = 8  # of a beam, at least
 _SHARE = 0.4  # of the length at which a piece held from turning at its ends would buckle

@@ -19,7 +19,6 @@ from exact.wrapping import bending
 from scene import CircleContact
 from scene.answer import Array
 
-
 _AT_START = 1e-16  # of a piece
 
 
