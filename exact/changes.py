@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from exact.newton import LostError
-from exact.restructure import NotCoveredError
+from exact.restructure import NotCoveredError, at_ends
 from exact.state import State
-from exact.structure import Meeting, Resting, Touch, Wrap
+from exact.structure import Resting, Touch, Wrap
 from exact.way import Way, places_of, touches_of
 
 PULLS = -1e-10  # of a contact's force, no dimension
@@ -56,16 +56,9 @@ def reform(way: Way, trial: State) -> bool:
                 del places[name, "begin"], places[name, "end"]
                 touches[name], places[name, touch.beam] = Resting(name, touch.beam, None), 0.5 * (a + b)
             continue
-        if isinstance(touch, Meeting) and not 0.0 <= places[name, touch.onto] <= way.model.strips[touch.onto].length:
-            raise NotCoveredError(f"the place of {name} slides off the end of {touch.onto}")
-        if touch.at is not None:
-            continue
-        s = places[name, touch.beam]
-        if not 0.0 <= s <= strip.length:
-            del places[name, touch.beam]
-            touches[name] = replace(touch, at=0.0 if s < 0.0 else strip.length)
-        elif isinstance(touch, Resting) and _cuts(trial, touch):
-            del places[name, touch.beam]
+        touches[name], places = at_ends(trial, way.model, touch, places)
+        if touches[name] == touch and isinstance(touch, Resting) and touch.at is None and _cuts(trial, touch):
+            s = places.pop((name, touch.beam))
             touches[name] = Wrap(name, touch.beam, sense_of(trial, touch, s))
             half = _FIRST_LENGTH * strip.length
             places[name, "begin"], places[name, "end"] = s - half, s + half

@@ -11,7 +11,7 @@ from exact.changes import presses, sense_of
 from exact.evaluation import Columns, Evaluation
 from exact.gaps import Overlap
 from exact.newton import LostError
-from exact.restructure import NotCoveredError, closed
+from exact.restructure import NotCoveredError, at_ends, closed
 from exact.state import State
 from exact.structure import Meeting, Resting, Touch, Wrap
 from exact.way import Way
@@ -32,7 +32,11 @@ def close_first(way: Way, trial: State, found: list[Overlap]) -> None:
         NotCoveredError: there are no equations for it.
     """
     reached: list[tuple[State, Overlap]] = []
-    for overlap in found:
+    # where an end that touches goes in, both beams overlap: the end's own comes first
+    ends = {
+        touch.beam for touch in trial.structure.touches.values() if not isinstance(touch, Wrap) and touch.at is not None
+    }
+    for overlap in sorted(found, key=lambda overlap: overlap.beam not in ends):
         present = trial.structure.touches.get(overlap.contact)
         if present is not None:
             _move_in(way, trial, present, overlap)
@@ -44,6 +48,12 @@ def close_first(way: Way, trial: State, found: list[Overlap]) -> None:
         touch, own = closed(way.model, overlap)
         touches: dict[str, Touch] = {**trial.structure.touches, overlap.contact: touch}
         state = way.restructured(touches, {**trial.places, **own}, trial, trial.lam, pinned=overlap.contact)
+        ended, places = at_ends(state, way.model, touch, state.places)
+        if ended != touch:
+            touches[overlap.contact] = ended
+            state = way.restructured(touches, places, state, state.lam, pinned=overlap.contact)
+            if at_ends(state, way.model, ended, state.places)[0] != ended:
+                raise LostError
         reached.append((way.between(state, trial.lam), overlap))
     state, overlap = min(reached, key=lambda item: abs(item[0].lam - way.lam))
     way.note_closed(overlap.contact, state.lam, trial.lam)

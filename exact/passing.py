@@ -21,6 +21,7 @@ from exact.state import Known
 from scene import CircleContact
 from scene.answer import Array
 
+_ON = 1e-5  # of the unit of length: more than a line is away from its chords
 _DEEP = 0.5  # of the distance at which a beam touches a circle
 
 
@@ -63,10 +64,14 @@ def _angle(a: Array, b: Array) -> Array:
 def _through_line(p: Array, q: Array) -> bool:
     """Whether the origin goes through the line whose places go from p (2, n) to q.
 
-    It lies on a chord from P to P + D where P × D = 0, quadratic in t, and between the chord's ends.
+    It lies on a chord from P to P + D where P × D = 0, quadratic in t, and between the chord's ends.  What is on the
+    line before or after, as an end that touches, does not go through it.
     """
     P, P_t = p[:, :-1], (q - p)[:, :-1]
     D, D_t = np.diff(p), np.diff(q - p)
+    apart = (np.abs(_cross(P, D)) > _ON * np.hypot(*D)) & (
+        np.abs(_cross(P + P_t, D + D_t)) > _ON * np.hypot(*(D + D_t))
+    )
     c0, c1, c2 = _cross(P, D), _cross(P, D_t) + _cross(P_t, D), _cross(P_t, D_t)
     with np.errstate(divide="ignore", invalid="ignore"):
         # the two roots without cancellation; what is no root is not finite
@@ -76,7 +81,7 @@ def _through_line(p: Array, q: Array) -> bool:
     place, chord = P[:, None] + t * P_t[:, None], D[:, None] + t * D_t[:, None]
     with np.errstate(invalid="ignore"):
         share = -np.sum(place * chord, axis=0) / np.maximum(np.sum(chord * chord, axis=0), np.finfo(float).tiny)
-        return bool(np.any((share >= 0.0) & (share <= 1.0)))
+        return bool(np.any(apart & (share >= 0.0) & (share <= 1.0)))
 
 
 def _cross(a: Array, b: Array) -> Array:

@@ -159,7 +159,7 @@ def _through(p: int) -> tuple[Array, Array]:
 
 
 def _within(part: Part, s: Array) -> Array:
-    """(x, y, θ, m, Fx, Fy) (6, n) inside a piece."""
+    """(x, y, θ, m, Fx, Fy) (6, n) inside a piece; beyond its ends what is there, from which a piece that grows is solved."""
     solved, start, end = part.solved, part.start[:, 0], part.end[:, 0]
     a, h = float(part.a[0]), float(part.b[0] - part.a[0])
     gauss = rule(len(solved.theta))
@@ -169,7 +169,7 @@ def _within(part: Part, s: Array) -> Array:
     values = np.concatenate([start[:4, None], inner, end[:, None]], axis=1)
     points, weights = _through(len(solved.theta))
     through = BarycentricInterpolator(points, values.T, wi=weights)
-    xi = (s - a) / h if h != 0.0 else np.zeros_like(s)
+    xi = np.clip((s - a) / h, 0.0, 1.0) if h != 0.0 else np.zeros_like(s)
     xi = np.where(np.abs(xi) < _AT_START, 0.0, xi)  # the interpolation divides by its distance from its points
     return np.concatenate([through(xi).T, np.tile(start[4:, None], (1, len(s)))])
 

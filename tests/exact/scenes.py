@@ -9,14 +9,13 @@ from math import cos, pi, sin
 from pathlib import Path
 from typing import Any
 
+import exact
 from scene import Answer, Ending
 from scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, WIDTH, cantilever_data, hinge_data
 from tests.references.hinge import Hinge
 from tests.references.two_cantilevers import TwoCantilevers
 from tests.references.wrapped import Wrapped
-
-import exact
 
 CASES = Path(__file__).parents[2] / "comparisons" / "cases"
 FREE = {"joint": "free"}
@@ -88,7 +87,12 @@ def tip_on_beam(of: TwoCantilevers, forces: list[float]) -> dict[str, Any]:
     }
     data["beams"] = {
         "upper": {**STRIP, "curve": line([0.0, h], [LENGTH, h]), "start": weld("R"), "end": weld("T")},
-        "lower": {**STRIP, "curve": line([a, 0.0], [a - of.lower_length * LENGTH, 0.0]), "start": weld("Q"), "end": FREE},
+        "lower": {
+            **STRIP,
+            "curve": line([a, 0.0], [a - of.lower_length * LENGTH, 0.0]),
+            "start": weld("Q"),
+            "end": FREE,
+        },
     }
     data["contacts"] = {"touch": {"kind": "beam-beam", "between": ["upper", "lower"], "thick": False}}
     data["stages"][0]["stations"] = [force * RIGIDITY / LENGTH**2 for force in forces]
@@ -194,3 +198,19 @@ def rotation(angle: float) -> Callable[[Any], Any]:
 
 TURN = rotation(0.7 * pi)
 """A turn by no special angle."""
+
+
+def punched() -> dict[str, Any]:
+    """A cantilever that a circle on a driven slide presses down."""
+    data = cantilever_data({}, [])
+    radius = 0.02
+    middle = [0.6 * LENGTH, radius + 0.5 * THICKNESS + 0.002]
+    data["loads"], data["drives"] = {}, {"down": {"kind": "displacement", "point": "K", "direction": [0.0, -1.0]}}
+    data["bodies"]["punch"] = {"motion": "slides", "along": [0.0, 1.0], "points": {"K": middle}}
+    data["contacts"] = {
+        "circle": {"kind": "beam-circle", "beam": "beam", "body": "punch", "center": middle, "radius": radius}
+    }
+    data["stages"] = [{"name": "down", "steps": "down", "stations": [0.001, 0.003, 0.012]}]
+    contact = [{"of": "circle", "quantity": quantity} for quantity in ("force", "centre", "ends", "closing_load")]
+    data["probes"] = [{"of": "tip", "quantity": "rotation"}, {"of": "beam", "quantity": "bending_stress"}, *contact]
+    return data

@@ -14,7 +14,7 @@ EULER = euler_load_clamped(1.0, 1.0)
 
 
 def integrated(load):
-    """Half of the column by shooting: from the clamp's moment to a level tangent in the middle, with no force across."""
+    """Half of the column by shooting from the clamp's moment to a level tangent in the middle, no force across."""
 
     def half(moment):
         def slope(_, z):
@@ -37,9 +37,11 @@ def test_elliptic_integrals_agree_with_direct_integration(factor):
 
 
 def test_small_deflections_begin_at_eulers_load():
-    # reference: Euler's load of the clamped column, 4 π² EI/L², and the first terms of K; the next one is of the order of factor − 1
+    # reference: Euler's load of the clamped column, 4 π² EI/L², and the first terms of K; the next is as factor − 1
     for factor in (1.0 + 1e-4, 1.0 + 1e-6):
-        assert post_buckled(factor * EULER).deflection == pytest.approx(small_deflection(factor * EULER), rel=2.0 * (factor - 1.0))
+        assert post_buckled(factor * EULER).deflection == pytest.approx(
+            small_deflection(factor * EULER), rel=2.0 * (factor - 1.0)
+        )
 
 
 def test_the_load_does_the_work_that_is_stored():
