@@ -9,7 +9,7 @@ import numpy as np
 from exact.newton import LostError
 from exact.restructure import NotCoveredError, at_ends
 from exact.state import State
-from exact.structure import Resting, Touch, Wrap
+from exact.structure import Meeting, Resting, Touch, Wrap
 from exact.way import Way, places_of, touches_of
 
 PULLS = -1e-10  # of a contact's force, no dimension
@@ -34,8 +34,12 @@ def open_first(way: Way, trial: State) -> bool:
     if not shares:
         return False
     name = min(shares, key=lambda key: shares[key])
-    at = way.at(name, 0.0, way.lam + shares[name] * (trial.lam - way.lam)) if shares[name] > 0.0 else way.state
+    near = way.lam + shares[name] * (trial.lam - way.lam)
+    at = way.at(name, 0.0, near, trial.lam) if shares[name] > 0.0 else way.state
     way.accept(way.restructured(touches_of(at.structure, name), places_of(at, name), at, at.lam))
+    touch = at.structure.touches[name]
+    if isinstance(touch, Meeting):
+        way.sides = {(name, touch.beam, touch.onto): touch.side}
     return True
 
 
@@ -82,7 +86,7 @@ def slide_onto_end(way: Way, goal: float) -> bool:
         if abs(s - end) > _ABOUT_TO_SLIDE * length:
             continue
         try:
-            at = way.at((name, touch.beam), end, goal)
+            at = way.at((name, touch.beam), end, goal, goal)
             touches: dict[str, Touch] = {**now.structure.touches, name: replace(touch, at=end)}
             places = {key: value for key, value in at.places.items() if key != (name, touch.beam)}
             way.accept(way.restructured(touches, places, at, at.lam))

@@ -26,6 +26,7 @@ from scene.answer import Array
 SAMPLES = 401
 _ZOOMS, _ZOOMED = 6, 21  # times that a least gap is looked at more closely, at so many places
 _FEET = 6  # Newton iterations of a foot
+_TOUCHING = 1e-9  # distance of lines that says nothing of their sides
 _NEAR_END = 1e-9  # of a beam's length
 
 
@@ -56,6 +57,7 @@ def overlaps(
     now: Known,
     before: Known,
     touched: Mapping[tuple[str, str], tuple[float, float]],
+    sides: Mapping[tuple[str, str, str], float],
     tolerance: float,
 ) -> list[Overlap]:
     """All least gaps below −``tolerance``.
@@ -64,6 +66,7 @@ def overlaps(
         model: the mechanism.
         now, before: the state, and one whose beams have not passed each other; it says which side is which.
         touched: by contact and beam where it touches already, from and to; a least gap there is known.
+        sides: by contact, beam and other beam, on which side of the other the beam lies where ``before`` still touches.
         tolerance: no dimension.
     """
     found: list[Overlap] = []
@@ -72,8 +75,8 @@ def overlaps(
             found += _of_circle(model, now, name, contact, now.centre(name), touched)
         else:
             one, other = contact.between
-            found += _of_pair(model, now, before, name, contact, (one, other), touched)
-            found += _of_pair(model, now, before, name, contact, (other, one), touched)
+            found += _of_pair(model, now, before, name, contact, (one, other), touched, sides)
+            found += _of_pair(model, now, before, name, contact, (other, one), touched, sides)
     return [overlap for overlap in found if overlap.gap < -tolerance]
 
 
@@ -108,6 +111,7 @@ def _of_pair(
     contact: BeamContact,
     beams: tuple[str, str],
     touched: Mapping[tuple[str, str], tuple[float, float]],
+    sides: Mapping[tuple[str, str, str], float],
 ) -> list[Overlap]:
     one, other = beams
     a, b = model.strips[one], model.strips[other]
@@ -134,7 +138,8 @@ def _of_pair(
         r = now.along(one, places)[:2] - np.stack([x, y])
         x0, y0, theta0 = before.along(other, at)[:3]
         r0 = before.along(one, places)[:2] - np.stack([x0, y0])
-        side = np.sign(-np.sin(theta0) * r0[0] + np.cos(theta0) * r0[1])
+        away0 = -np.sin(theta0) * r0[0] + np.cos(theta0) * r0[1]
+        side = np.where(np.abs(away0) > _TOUCHING, np.sign(away0), sides.get((name, one, other), 0.0))
         away = side * (-np.sin(theta) * r[0] + np.cos(theta) * r[1])
         apart = a.half_thickness(places) + b.half_thickness(at) if contact.thick else 0.0
         return away - apart, at, side

@@ -120,7 +120,7 @@ def _examined(way: Way, trial: State) -> bool:
     """
     if open_first(way, trial) or reform(way, trial):
         return False
-    found = overlaps(way.model, trial, way.known, _touched(trial), _OVERLAP)
+    found = overlaps(way.model, trial, way.known, _touched(trial), way.sides, _OVERLAP)
     if found:
         close_first(way, trial, found)
         return False

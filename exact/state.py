@@ -159,7 +159,7 @@ def _through(p: int) -> tuple[Array, Array]:
 
 
 def _within(part: Part, s: Array) -> Array:
-    """(x, y, θ, m, Fx, Fy) (6, n) inside a piece; beyond its ends what is there, from which a piece that grows is solved."""
+    """(x, y, θ, m, Fx, Fy) (6, n) inside a piece; beyond its ends what is there, for a piece that grows."""
     solved, start, end = part.solved, part.start[:, 0], part.end[:, 0]
     a, h = float(part.a[0]), float(part.b[0] - part.a[0])
     gauss = rule(len(solved.theta))

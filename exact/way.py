@@ -37,6 +37,7 @@ class Way:
         events: contacts that have closed; ``closed_at`` by contact where it did so first, SI.
         states: number of equilibria.
         curvature: least one of the energy at the last of them.
+        sides: as :func:`exact.gaps.overlaps` asks, of a contact that has opened at the last of them.
     """
 
     model: Model
@@ -52,6 +53,7 @@ class Way:
     closed_at: dict[str, float] = field(default_factory=dict)
     states: int = 0
     curvature: float = math.nan
+    sides: dict[tuple[str, str, str], float] = field(default_factory=dict)
 
     @property
     def state(self) -> State:
@@ -140,15 +142,15 @@ class Way:
             raise LostError
         return trial
 
-    def at(self, which: tuple[str, str] | str, value: float, goal: float) -> State:
-        """The equilibrium between here and λ = ``goal`` at which a force or a place has a value.
+    def at(self, which: tuple[str, str] | str, value: float, near: float, goal: float) -> State:
+        """The equilibrium between here and λ = ``goal``, about at λ = ``near``, where a force or a place has a value.
 
         Raises:
             LostError: there is none.
         """
         where = self.state.equations.layout
         index = where.forces[which] if isinstance(which, str) else where.places[which]
-        found = solve(self.state.equations, self.state.z, goal, self.settings.iterations, self.state,
+        found = solve(self.state.equations, self.state.z, near, self.settings.iterations, self.state,
                       _held_at(index, value))  # fmt: skip
         return self.between(found, goal)
 
@@ -179,7 +181,7 @@ class Way:
                 f"and {state.lam * self.unit:.6g} of {self.stepped}"
             )
         self.before = self.now if same and self.now is not None and self.now.lam != state.lam else None
-        self.now, self.lam = state, state.lam
+        self.now, self.lam, self.sides = state, state.lam, {}
         self.states += 1
 
     def note_closed(self, contact: str, lam: float, goal: float) -> None:

@@ -87,7 +87,7 @@ def test_a_mirror_image(name):
 @pytest.mark.parametrize("name", SCENES)
 def test_a_beam_that_begins_where_it_ended(name):
     data = SCENES[name]()
-    for beam, record in data["beams"].items():
+    for beam in data["beams"]:
         other = scenes.reversed_beam(data, beam)
         first = {
             contact

@@ -72,13 +72,13 @@ def test_the_slopes_of_a_piece_are_those_of_its_end(shape, state, begin, end):
 def test_a_piece_is_right_to_twice_its_points():
     # reference: superconvergence of Gauss's collocation (Hairer, Nørsett and Wanner, II.7), order 2p
     law, q = law_of(0.3, 0.8, 0.4), np.array([0.1, -0.2, 0.4, 0.7, 1.2, -2.0, 0.1, 0.0])
-    for p, lengths in ((2, (0.2, 0.1, 0.05)), (3, (0.4, 0.2, 0.1))):
+    for p, lengths in ((2, (0.1, 0.05)), (3, (0.2, 0.1))):
         errors = []
         for length in lengths:
             q[7] = q[6] + length
             errors.append(np.max(np.abs(solved(law, q, p).end - solved(law, q, 24).end)))
         # the local error, one order more
-        assert np.log2(np.array(errors[:-1]) / errors[1:]) == pytest.approx([2 * p + 1] * 2, abs=0.35)
+        assert np.log2(errors[-2] / errors[-1]) == pytest.approx(2 * p + 1, abs=0.2)
 
 
 def test_what_cannot_be_integrated_says_so():
