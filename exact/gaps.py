@@ -17,6 +17,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from exact.model import Model, Strip
 from exact.state import Known
@@ -25,7 +26,8 @@ from scene.answer import Array
 
 SAMPLES = 401
 _ZOOMS, _ZOOMED = 6, 21  # times that a least gap is looked at more closely, at so many places
-_FEET = 6  # Newton iterations of a foot
+_FEET = 6  # Newton iterations of a foot, at most
+_FOUND = 1e-12  # of the unit of length, a foot
 _TOUCHING = 1e-9  # distance of lines that says nothing of their sides
 _NEAR_END = 1e-9  # of a beam's length
 
@@ -116,49 +118,52 @@ def _of_pair(
     one, other = beams
     a, b = model.strips[one], model.strips[other]
     s, sigma = np.linspace(0.0, a.length, SAMPLES), np.linspace(0.0, b.length, SAMPLES)
-    A, B = now.along(one, s)[:2], now.along(other, sigma)[:2]
-    nearest = np.argmin((A[0][:, None] - B[0]) ** 2 + (A[1][:, None] - B[1]) ** 2, axis=1)
 
-    def feet(places: Array, start: Array) -> Array:
-        at = start.copy()
-        r0 = now.along(one, places)[:2]
+    def nearest(known: Known) -> Array:
+        A, B = known.along(one, s)[:2], known.along(other, sigma)[:2]
+        return np.asarray(sigma[np.argmin((A[0][:, None] - B[0]) ** 2 + (A[1][:, None] - B[1]) ** 2, axis=1)])
+
+    def away(known: Known, places: Array, start: Array) -> tuple[Array, Array, Array]:
+        """To the left of the other line, how far places of the first one are; their feet, and how far those."""
+        at, r0 = start.copy(), known.along(one, places)[:2]
         for _ in range(_FEET):
-            x, y, theta, m = now.along(other, np.clip(at, 0.0, b.length))[:4]
-            t = np.stack([np.cos(theta), np.sin(theta)])
-            r = r0 - np.stack([x, y])
-            kappa = b.line.curvature(np.clip(at, 0.0, b.length)) + b.compliance(np.clip(at, 0.0, b.length)) * m
-            bent = 1.0 - kappa * (t[0] * r[1] - t[1] * r[0])
+            x, y, theta, m = known.along(other, at)[:4]
+            t, r = np.stack([np.cos(theta), np.sin(theta)]), r0 - np.stack([x, y])
+            bent = 1.0 - (b.line.curvature(at) + b.compliance(at) * m) * (t[0] * r[1] - t[1] * r[0])
             step = (t[0] * r[0] + t[1] * r[1]) / np.where(np.abs(bent) > 0.1, bent, 1.0)
-            at = np.clip(at + step, 0.0, b.length)
-        return at
+            at, last = np.clip(at + step, 0.0, b.length), at
+            if np.max(np.abs(at - last)) < _FOUND:
+                break
+        x, y, theta = known.along(other, at)[:3]
+        r = r0 - np.stack([x, y])
+        return np.cos(theta) * r[1] - np.sin(theta) * r[0], at, np.hypot(*r)
 
-    def measured(places: Array, start: Array) -> tuple[Array, Array, Array]:
-        at = feet(places, start)
-        x, y, theta = now.along(other, at)[:3]
-        r = now.along(one, places)[:2] - np.stack([x, y])
-        x0, y0, theta0 = before.along(other, at)[:3]
-        r0 = before.along(one, places)[:2] - np.stack([x0, y0])
-        away0 = -np.sin(theta0) * r0[0] + np.cos(theta0) * r0[1]
-        side = np.where(np.abs(away0) > _TOUCHING, np.sign(away0), sides.get((name, one, other), 0.0))
-        away = side * (-np.sin(theta) * r[0] + np.cos(theta) * r[1])
+    def between(at: Array) -> NDArray[np.bool_]:
+        """Which feet (n,) lie between the other line's ends."""
+        return np.asarray((at > _NEAR_END * b.length) & (at < (1.0 - _NEAR_END) * b.length))
+
+    feet, feet_before = (away(known, s, nearest(known))[1] for known in (now, before))
+
+    def measured(places: Array) -> tuple[Array, Array, Array, Array]:
+        """Gaps, feet, sides and distances (n,) of places (n,).
+
+        What lay beyond an end of the other line, or on it, had no side: it has come there past the end.
+        """
+        lateral, at, distance = away(now, places, np.interp(places, s, feet))
+        was, foot, _ = away(before, places, np.interp(places, s, feet_before))
+        side = np.where(np.abs(was) > _TOUCHING, np.sign(was), sides.get((name, one, other), 0.0))
+        side = np.where(between(foot), side, 0.0)
         apart = a.half_thickness(places) + b.half_thickness(at) if contact.thick else 0.0
-        return away - apart, at, side
+        return np.where(side != 0.0, side * lateral - apart, np.inf), at, side, distance
 
-    gaps, at, _ = measured(s, sigma[nearest])
-    inside = (at > _NEAR_END * b.length) & (at < (1.0 - _NEAR_END) * b.length)
+    gaps, at, _, distance = measured(s)
     # far from the side on which it was, a line has not passed the other but gone round its end
-    near = np.hypot(*(A - now.along(other, at)[:2])) < 0.1
-    gaps = np.where(inside & near, gaps, np.inf)
+    gaps = np.where(between(at) & (distance < 0.1), gaps, np.inf)
     found = []
-
-    def gap(places: Array) -> Array:
-        return measured(places, np.interp(places, s, at))[0]
-
-    for place, _, at_end in _minima(gap, s, gaps, touched.get((name, one))):
-        value, foot, sides = measured(np.array([place]), np.interp([place], s, at))
-        if not _NEAR_END * b.length < foot[0] < (1.0 - _NEAR_END) * b.length:
-            continue
-        found.append(Overlap(name, one, place, at_end, other, float(foot[0]), float(sides[0]), float(value[0])))
+    for place, _, at_end in _minima(lambda places: measured(places)[0], s, gaps, touched.get((name, one))):
+        value, foot, side, _ = (float(array[0]) for array in measured(np.array([place])))
+        if between(np.array([foot]))[0]:
+            found.append(Overlap(name, one, place, at_end, other, foot, side, value))
     return found
 
 
@@ -169,8 +174,10 @@ def _minima(
     fence = np.pad(values, 1, constant_values=np.inf)
     step = s[1] - s[0]
     found = []
-    # a gap changes by no more than the arc length does
-    for index in np.flatnonzero((values < step) & (values <= fence[:-2]) & (values < fence[2:])):
+    # a gap changes by no more than the arc length does; it is not least where what it is measured from ends
+    beside = np.pad(np.isfinite(values), 1, constant_values=True)
+    least = (values < step) & (values <= fence[:-2]) & (values < fence[2:]) & beside[:-2] & beside[2:]
+    for index in np.flatnonzero(least):
         i = int(index)
         if touched is not None and touched[0] - step <= s[i] <= touched[1] + step:
             continue
