@@ -9,7 +9,7 @@ import numpy as np
 from exact.newton import LostError
 from exact.restructure import NotCoveredError, at_ends
 from exact.state import State
-from exact.structure import Meeting, Resting, Touch, Wrap
+from exact.structure import Resting, Touch, Wrap
 from exact.way import Way, places_of, touches_of
 
 PULLS = -1e-10  # of a contact's force, no dimension
@@ -37,9 +37,7 @@ def open_first(way: Way, trial: State) -> bool:
     near = way.lam + shares[name] * (trial.lam - way.lam)
     at = way.at(name, 0.0, near, trial.lam) if shares[name] > 0.0 else way.state
     way.accept(way.restructured(touches_of(at.structure, name), places_of(at, name), at, at.lam))
-    touch = at.structure.touches[name]
-    if isinstance(touch, Meeting):
-        way.sides = {(name, touch.beam, touch.onto): touch.side}
+    way.note_side(at.structure.touches[name])
     return True
 
 

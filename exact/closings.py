@@ -18,6 +18,7 @@ from exact.way import Way
 from scene import CircleContact
 
 _NEAR_END = 0.2  # of a beam: a contact at its end that moves in appears within this
+_SHALLOW = 1e-4  # of the unit of length: a second place is met so
 _ON_CIRCLE = 1e-9  # of the unit of length and of a tangent, where an end is clamped on a circle
 _FIRST_PLACES = (0.02, 0.01, 0.005)  # of a beam, where a contact that leaves a clamp is first looked for
 _FIRST_WRAPS = (0.25, 0.1, 0.03)  # of the way to where a beam overlaps a circle on which it is clamped
@@ -66,15 +67,17 @@ def _move_in(way: Way, trial: State, present: Touch, overlap: Overlap) -> None:
     second = NotCoveredError(f"{overlap.contact} touches at a second place or along a length")
     if isinstance(present, Wrap) or present.at is None or overlap.beam != present.beam:
         raise second
+    # what goes in from the end begins there, so a smaller step tells it from a second place
+    otherwise = second if overlap.gap > -_SHALLOW else LostError()
     if abs(overlap.s - present.at) > _NEAR_END * length:
-        raise second
+        raise otherwise
     places = {**trial.places, (overlap.contact, overlap.beam): overlap.s}
     if isinstance(present, Meeting):
         places[overlap.contact, present.onto] = overlap.sigma
     touches: dict[str, Touch] = {**trial.structure.touches, overlap.contact: replace(present, at=None)}
     fresh = way.restructured(touches, places, trial, trial.lam)
     if not presses(fresh) or not 0.0 <= fresh.places[overlap.contact, overlap.beam] <= length:
-        raise LostError
+        raise otherwise
     way.accept(fresh)
 
 

@@ -94,6 +94,7 @@ def _advance(way: Way, target: float, step: float) -> float:
     whole, changes = target - way.lam, 0
     largest, smallest = way.settings.largest_step * abs(whole), way.settings.smallest_step * abs(whole)
     step = min(largest, step or _FIRST_STEP * abs(whole))
+    reason = ""
     while way.lam != target:
         goal = target if abs(target - way.lam) <= step else way.lam + math.copysign(step, whole)
         try:
@@ -101,13 +102,14 @@ def _advance(way: Way, target: float, step: float) -> float:
             if not _examined(way, trial):
                 changes += 1
             step = min(1.5 * step, largest)
-        except LostError:
+        except LostError as error:
+            reason = f", where {error}" if str(error) else ""
             if slide_onto_end(way, goal):
                 changes += 1
             else:
                 step *= 0.4
         if step < smallest or changes > _CHANGES:
-            raise NotCoveredError(f"no equilibrium was found beyond {way.lam * way.unit:.6g} of {way.stepped}")
+            raise NotCoveredError(f"no equilibrium was found beyond {way.lam * way.unit:.6g} of {way.stepped}{reason}")
     return step
 
 
@@ -122,7 +124,10 @@ def _examined(way: Way, trial: State) -> bool:
         return False
     found = overlaps(way.model, trial, way.known, _touched(trial), way.sides, _OVERLAP)
     if found:
-        close_first(way, trial, found)
+        try:
+            close_first(way, trial, found)
+        except LostError as error:
+            raise LostError(f"{found[0].contact} touches") from error
         return False
     if passes(way.model, way.known, trial):
         raise LostError

@@ -16,7 +16,7 @@ from exact.restructure import NotCoveredError, structured
 from exact.settings import Settings
 from exact.stability import least_curvature
 from exact.state import Known, Rest, State, start_of
-from exact.structure import Structure, Touch
+from exact.structure import Meeting, Structure, Touch
 from scene import Event, Stage
 from scene.answer import Array
 
@@ -37,7 +37,7 @@ class Way:
         events: contacts that have closed; ``closed_at`` by contact where it did so first, SI.
         states: number of equilibria.
         curvature: least one of the energy at the last of them.
-        sides: as :func:`exact.gaps.overlaps` asks, of a contact that has opened at the last of them.
+        sides: as :func:`exact.gaps.overlaps` asks, of contacts that touch at the last of them, or open there.
     """
 
     model: Model
@@ -182,7 +182,14 @@ class Way:
             )
         self.before = self.now if same and self.now is not None and self.now.lam != state.lam else None
         self.now, self.lam, self.sides = state, state.lam, {}
+        for touch in state.structure.touches.values():
+            self.note_side(touch)
         self.states += 1
+
+    def note_side(self, touch: Touch) -> None:
+        """Note on which side a beam lies that touches another, or has just ceased to."""
+        if isinstance(touch, Meeting):
+            self.sides[touch.contact, touch.beam, touch.onto] = touch.side
 
     def note_closed(self, contact: str, lam: float, goal: float) -> None:
         """Note that a contact closes at λ, on the way to ``goal``; what touches from the first closes there."""
