@@ -5,9 +5,9 @@ looked over: a contact that would pull opens, lines that overlap close a contact
 beside the place where it touches lies along it.  Where that happened is found as an equilibrium at which the new
 contact's force, or the old one's, is zero; from there it goes on.
 
-The state of rest is a minimum of the energy, and an equilibrium that is followed from it stays one until the
-determinant of the equations' derivative changes its sign, at a fold or a bifurcation.  There the march ends, and
-also where two beams would lie along each other or one contact be closed at two places at once.
+Every state on the way must be a minimum of the energy (:mod:`exact.stability`), and nothing may have been passed since
+the one before (:mod:`exact.passing`).  The march ends at a fold or a bifurcation, and also where two beams would lie
+along each other or one contact be closed at two places at once.
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
 from exact.curves import neutral_line
+from exact.march import _advance  # the march itself, stopped at a station
 from exact.model import modelled
 from exact.newton import angles_of, linearised
 from exact.settings import Settings
@@ -133,8 +134,6 @@ def states():
     for data, station in ((scenes.case("gripper"), -1), (scenes.hinge(PAPER, [0.5]), 0), (scenes.case("wrapped"), 2)):
         scene = scene_from(data)
         way = Way(modelled(scene), Settings(nodes=16))
-        from exact.march import _advance  # the march itself, stopped at a station
-
         stage = scene.stages[0]
         way.begin(stage)
         for value in stage.stations[: station + 1 or None]:
