@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from frozendict import frozendict
 
@@ -35,7 +33,7 @@ def answered(way: Way, value: float, finer: float) -> StationAnswer:
         complementarity=0.0,
         force_balance=left,
         moment_balance=left,
-        smallest_curvature=math.nan,
+        smallest_curvature=way.curvature,
         iterations=way.states,
     )
     shapes = {}
