@@ -39,6 +39,7 @@ FEWEST = 8  # links of a beam in a coarser mesh
 BESIDE = 0.6  # elements beyond a zone's end up to which a joint presses
 LEAST = 1e-3  # of the largest pressure, on a joint within a zone
 SHARE = 4  # a span between marks has one of so many of the beam's elements at least
+BEYOND = 16  # one of so many of the beam's elements follow on a place in the size of the finer ones beside it
 FIXED = 0.75  # of a beam's elements, the most that such shares may take
 SHORTEST = 0.1  # elements: marks closer than this leave the elements even
 BENT = 0.05  # of the largest slope of a curvature beside a place: slopes that differ by less are the same
@@ -111,7 +112,10 @@ def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
         as_they_are = not names and np.allclose(numbers[1:-1], n * marks, rtol=0.0, atol=MOVED)
         if as_they_are or not np.all(np.diff(numbers) >= 1.0):
             continue
-        borders[chain.name] = np.interp(np.arange(n + 1), numbers, np.concatenate(([0.0], marks, [1.0])))
+        places = np.concatenate(([0.0], marks, [1.0]))
+        if not names:
+            numbers, places = _surrounded(numbers, places, n / BEYOND)
+        borders[chain.name] = np.interp(np.arange(n + 1), numbers, places)
         kept |= {name: ends[name] for name in names}
     return Fit(borders, kept, _kinks(mechanism, point, zones))
 
@@ -134,7 +138,10 @@ def _kinks(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
                 kinks_at(chain, point.state, arc[inner]) for chain, arc in zip(pair.chains, places, strict=True)
             )
             made = mechanism.fit.kinks.get(name)
-            if made is None and all(slight(chain, kinks) for chain, kinks in zip(pair.chains, now, strict=True)):
+            # two joints that share the force of a place are told that it is one
+            shared = any(zone.begin < zone.end for zone in mine)
+            little = all(slight(chain, kinks) for chain, kinks in zip(pair.chains, now, strict=True))
+            if made is None and little and not shared:
                 continue
             found[name] = now if made is None else tuple(map(Kinks.eased, now, made))
     return found
@@ -169,6 +176,23 @@ def _shared_out(marks: Array, n: int, needy: Flags) -> Array:
     spare = wanted - least
     before = np.cumsum(wanted - (wanted.sum() - n) * spare / spare.sum())
     return np.concatenate(([0.0], before[:-1], [float(n)]))
+
+
+def _surrounded(numbers: Array, places: Array, beyond: float) -> tuple[Array, Array]:
+    """Numbers and places between which elements are even, the finer at a place going on ``beyond`` it.
+
+    Of the coarser span no more than a third.
+    """
+    size = np.diff(places) / np.diff(numbers)
+    more, where = [numbers], [places]
+    for k in range(1, len(places) - 1):
+        fine = min(size[k - 1], size[k])
+        coarser, sign = (k, 1.0) if size[k] > fine else (k - 1, -1.0)
+        step = sign * min(beyond, (numbers[coarser + 1] - numbers[coarser]) / 3.0)
+        more.append(numbers[k : k + 1] + step)
+        where.append(places[k : k + 1] + step * fine)
+    order = np.argsort(np.concatenate(more))
+    return np.concatenate(more)[order], np.concatenate(where)[order]
 
 
 def fits(mechanism: Mechanism, fit: Fit) -> bool:

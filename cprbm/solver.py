@@ -139,8 +139,8 @@ class _March:
                 break
             target = mechanism_of(self.scene, settings, fit)
             start = carried_over(mechanism, point, target, self.values)
-            # the first mesh may settle which places there are; the next ones know them, and begin close by
-            first = mechanism is self.mechanism
+            # the first mesh, or one for other zones, may settle which places there are; the next ones know them
+            first = mechanism is self.mechanism or mechanism.fit.ends.keys() != fit.ends.keys()
             most = settings.iterations if first else min(settings.iterations, AGAIN)
             for settle in (False, True) if first and now is asked else (now is not asked,):
                 solved = equilibrium(target.problem, self.values, start, settings.tolerance, most, settle=settle)
