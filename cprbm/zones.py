@@ -65,7 +65,7 @@ def _zone(pair: Touching, point: Point, chain: Chain, run: Array) -> Zone:
     first, last = float(run[0]), float(run[-1])
     h = chain.size_at(run[[0, -1]])
     springs = chain.s[1:-1]
-    before, after = springs[springs < first - 0.75 * h[0]][::-1], springs[springs > last + 0.25 * h[1]]
+    before, after = springs[springs < first - 0.25 * h[0]][::-1], springs[springs > last + 0.25 * h[1]]
     whole = run.size > 1 and (not before.size or not after.size)
     if not whole and last - first < SHORTEST * h.max():
         return Zone(first, last, long=False)

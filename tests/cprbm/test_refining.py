@@ -78,7 +78,7 @@ def test_a_place_close_to_a_held_end_has_its_share_of_the_elements(links):
     # the mesh goes evenly with the place
     near = {"circle": (Zone(0.03 + 1e-6, 0.03 + 1e-6, long=False),)}
     moved = fitted(march.mechanism, march.point, near, march.settings).borders["beam"]
-    assert np.all(np.abs(moved - borders["beam"]) <= 1.001e-6)
+    assert np.all(np.abs(moved - borders["beam"]) <= 1.001e-6 * (share + beyond) / share)
 
 
 def test_a_place_far_from_everything_leaves_the_elements_even():
