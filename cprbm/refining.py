@@ -200,7 +200,7 @@ def fits(mechanism: Mechanism, fit: Fit) -> bool:
     made = mechanism.fit
     return (
         made.ends.keys() == fit.ends.keys()
-        and _same(made.kinks, fit.kinks)
+        and _same(mechanism, fit.kinks)
         and made.borders.keys() == fit.borders.keys()
         and all(
             len(made.borders[beam]) == len(borders)
@@ -210,14 +210,23 @@ def fits(mechanism: Mechanism, fit: Fit) -> bool:
     )
 
 
-def _same(made: Mapping[str, tuple[Kinks, ...]], now: Mapping[str, tuple[Kinks, ...]]) -> bool:
-    """Whether the same contacts press in points, with nearly the same slopes beside them."""
+def _same(mechanism: Mechanism, now: Mapping[str, tuple[Kinks, ...]]) -> bool:
+    """Whether the same contacts press in points as the mesh was made for, with nearly the same slopes beside them."""
+    made = mechanism.fit.kinks
     return made.keys() == now.keys() and all(
-        len(one.places) == len(other.places)
-        and np.allclose((one.before, one.behind), (other.before, other.behind), rtol=0.0, atol=BENT * other.largest)
+        _as_bent(chain, one, other)
         for name in now
-        for one, other in zip(made[name], now[name], strict=True)
+        for chain, one, other in zip(mechanism.pairs[name].chains, made[name], now[name], strict=True)
     )
+
+
+def _as_bent(chain: Chain, made: Kinks, now: Kinks) -> bool:
+    """Whether slopes differ by little; what they make of the tangent falls with the square of the element there."""
+    if len(made.places) != len(now.places):
+        return False
+    little = BENT * now.largest * (chain.h / chain.size_at(now.places)) ** 2
+    change = np.abs((made.before - now.before, made.behind - now.behind))
+    return bool(np.all(change <= little))
 
 
 def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict[str, float]) -> Point:
