@@ -48,6 +48,7 @@ LEAST_CURVATURE = 1e-6  # of D, 1/ℓ, below which its minimum has no place of i
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 ON_IT = 1e-9  # gap of a clamped end, and how far its normal passes from the centre, where it is clamped on the circle
 BESIDE_ROW = 1e-3  # a corner of the edge closer than this many h to a row has none of its own
+ARCHING = 0.2  # of what the largest force bends one element by: where a zone ends within one it arches by less
 JOINT_REACH = 2.0  # joints farther than this many h²·(1/R + 1/ℓ) are none
 
 
@@ -92,6 +93,11 @@ class Circle:
     def placed(self, at: Positions) -> Circle:
         """The same circle where it is in a state."""
         return self if self.body < 0 else replace(self, x=float(at.x[self.mark]), y=float(at.y[self.mark]))
+
+    @property
+    def arching(self) -> float:
+        """By how much a zone arches at most, of what the largest force can bend one element by."""
+        return ARCHING
 
     def line(self, state: State, at: Positions) -> smooth.SmoothLine:
         """The beam's smooth line in a state."""

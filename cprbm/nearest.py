@@ -56,6 +56,7 @@ FOOT_TOLERANCE = 1e-13  # of σ, and of t·r, units of length
 CLOSEST_ITERATIONS = 50
 LEAST_CURVATURE = 1e-3  # of D, 1/ℓ: elements that end elsewhere on either beam leave as much in a zone
 REACH = 0.1  # minima and ends with gaps wider than this part of the longest beam are no constraints yet
+ARCHING = 1.0  # of what the largest force bends one element by: unlike elements of two beams arch by as much
 JOINT_REACH = 2.0  # joints with gaps wider than this many h²·(|ψ_A'| + |ψ_B'| + 1/ℓ) are none
 PARALLEL = 1e-3  # a foot whose perpendicular misses by more (sine) is an end, not a foot
 SAME = 1e-3  # lengths that differ by less than this part are one
@@ -163,6 +164,11 @@ class Pair:
             for line, places in zip(lines, (s, sigma), strict=True)
         )
         return np.asarray(self.side * (facing * bend_A - bend_B / (1.0 - self.side * D * bend_B)))
+
+    @property
+    def arching(self) -> float:
+        """By how much a zone arches at most, of what the largest force can bend one element by."""
+        return ARCHING
 
     @property
     def thickness(self) -> float:

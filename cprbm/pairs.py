@@ -33,6 +33,10 @@ class Touching(Protocol):
     def thickness(self) -> float:
         """What an overlap is measured by."""
 
+    @property
+    def arching(self) -> float:
+        """By how much a zone arches at most, of what the largest force can bend one element by."""
+
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
 

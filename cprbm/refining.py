@@ -39,6 +39,7 @@ FEWEST = 8  # links of a beam in a coarser mesh
 BESIDE = 0.6  # elements beyond a zone's end up to which a joint presses
 LEAST = 1e-3  # of the largest pressure, on a joint within a zone
 SHARE = 4  # a span between marks has one of so many of the beam's elements at least
+BEYOND = 16  # one of so many of the beam's elements follow on a place in the size of the finer ones beside it
 FIXED = 0.75  # of a beam's elements, the most that such shares may take
 SHORTEST = 0.1  # elements: marks closer than this leave the elements even
 BENT = 0.05  # of the largest slope of a curvature beside a place: slopes that differ by less are the same
@@ -111,7 +112,10 @@ def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
         as_they_are = not names and np.allclose(numbers[1:-1], n * marks, rtol=0.0, atol=MOVED)
         if as_they_are or not np.all(np.diff(numbers) >= 1.0):
             continue
-        borders[chain.name] = np.interp(np.arange(n + 1), numbers, np.concatenate(([0.0], marks, [1.0])))
+        places = np.concatenate(([0.0], marks, [1.0]))
+        if not names:
+            numbers, places = _surrounded(numbers, places, n / BEYOND)
+        borders[chain.name] = np.interp(np.arange(n + 1), numbers, places)
         kept |= {name: ends[name] for name in names}
     return Fit(borders, kept, _kinks(mechanism, point, zones))
 
@@ -134,7 +138,10 @@ def _kinks(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
                 kinks_at(chain, point.state, arc[inner]) for chain, arc in zip(pair.chains, places, strict=True)
             )
             made = mechanism.fit.kinks.get(name)
-            if made is None and all(slight(chain, kinks) for chain, kinks in zip(pair.chains, now, strict=True)):
+            # two joints that share the force of a place are told that it is one
+            shared = any(zone.begin < zone.end for zone in mine)
+            little = all(slight(chain, kinks) for chain, kinks in zip(pair.chains, now, strict=True))
+            if made is None and little and not shared:
                 continue
             found[name] = now if made is None else tuple(map(Kinks.eased, now, made))
     return found
@@ -171,12 +178,29 @@ def _shared_out(marks: Array, n: int, needy: Flags) -> Array:
     return np.concatenate(([0.0], before[:-1], [float(n)]))
 
 
+def _surrounded(numbers: Array, places: Array, beyond: float) -> tuple[Array, Array]:
+    """Numbers and places between which elements are even, the finer at a place going on ``beyond`` it.
+
+    Of the coarser span no more than a third.
+    """
+    size = np.diff(places) / np.diff(numbers)
+    more, where = [numbers], [places]
+    for k in range(1, len(places) - 1):
+        fine = min(size[k - 1], size[k])
+        coarser, sign = (k, 1.0) if size[k] > fine else (k - 1, -1.0)
+        step = sign * min(beyond, (numbers[coarser + 1] - numbers[coarser]) / 3.0)
+        more.append(numbers[k : k + 1] + step)
+        where.append(places[k : k + 1] + step * fine)
+    order = np.argsort(np.concatenate(more))
+    return np.concatenate(more)[order], np.concatenate(where)[order]
+
+
 def fits(mechanism: Mechanism, fit: Fit) -> bool:
     """Whether the mechanism's mesh was made for (nearly) the same ends and places."""
     made = mechanism.fit
     return (
         made.ends.keys() == fit.ends.keys()
-        and _same(made.kinks, fit.kinks)
+        and _same(mechanism, fit.kinks)
         and made.borders.keys() == fit.borders.keys()
         and all(
             len(made.borders[beam]) == len(borders)
@@ -186,14 +210,23 @@ def fits(mechanism: Mechanism, fit: Fit) -> bool:
     )
 
 
-def _same(made: Mapping[str, tuple[Kinks, ...]], now: Mapping[str, tuple[Kinks, ...]]) -> bool:
-    """Whether the same contacts press in points, with nearly the same slopes beside them."""
+def _same(mechanism: Mechanism, now: Mapping[str, tuple[Kinks, ...]]) -> bool:
+    """Whether the same contacts press in points as the mesh was made for, with nearly the same slopes beside them."""
+    made = mechanism.fit.kinks
     return made.keys() == now.keys() and all(
-        len(one.places) == len(other.places)
-        and np.allclose((one.before, one.behind), (other.before, other.behind), rtol=0.0, atol=BENT * other.largest)
+        _as_bent(chain, one, other)
         for name in now
-        for one, other in zip(made[name], now[name], strict=True)
+        for chain, one, other in zip(mechanism.pairs[name].chains, made[name], now[name], strict=True)
     )
+
+
+def _as_bent(chain: Chain, made: Kinks, now: Kinks) -> bool:
+    """Whether slopes differ by little; what they make of the tangent falls with the square of the element there."""
+    if len(made.places) != len(now.places):
+        return False
+    little = BENT * now.largest * (chain.h / chain.size_at(now.places)) ** 2
+    change = np.abs((made.before - now.before, made.behind - now.behind))
+    return bool(np.all(change <= little))
 
 
 def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict[str, float]) -> Point:

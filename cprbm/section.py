@@ -5,18 +5,16 @@ s          arc length from the beam's start
 t, w       thickness and width, straight lines between places
 E·I        bending stiffness, I = w t³/12
 f_i        ∫ ds/(E·I) over element i: how much it turns per unit of an even moment
-s̄_i        ∫ s ds/(E·I) / f_i: where a moment that goes straight has its mean, seen by the spring
 =========  ==============================================================================
 
-Integrals are sums over the lengths between elements' borders, the section's places and where else the integrand has a
-kink, by Gauss's rule.  1/(w t³) has its poles where the straight lines of t and w are zero: between places at which
+Integrals are sums over the lengths between elements' borders and the section's places,
+by Gauss's rule.  1/(w t³) has its poles where the straight lines of t and w are zero: between places at which
 neither more than doubles they lie beyond three halves of such a length from its middle, and the rule's error is
 below (3 + √8)^(−2·12), less than round-off.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -63,25 +61,14 @@ class Section:
         width = np.interp(s, self.places, self.width)
         return np.asarray(self.modulus * width * self.thickness_at(s) ** 3 / 12.0)
 
-    def yielding(self, borders: Array, times: Callable[[Array], Array], kinks: Array) -> Array:
-        """∫ y ds/(E·I) over the elements between ``borders`` (N+1,): (N,).
-
-        Args:
-            borders: of the elements, ascending.
-            times: y at arc lengths (n,), smooth but for ``kinks`` (m,).
-            kinks: arc lengths, in any order.
-        """
-        ends = np.unique(np.concatenate((borders, self.places, kinks)))
+    def flexibility(self, borders: Array) -> Array:
+        """f_i of the elements between ``borders`` (N+1,), ascending: (N,)."""
+        ends = np.unique(np.concatenate((borders, self.places)))
         ends = ends[(ends >= borders[0]) & (ends <= borders[-1])]
         half = 0.5 * np.diff(ends)
         s = 0.5 * (ends[1:] + ends[:-1])[:, None] + half[:, None] * NODES
-        integrand = times(s.ravel()) / self.rigidity_at(s.ravel())
-        parts = half * (integrand.reshape(s.shape) @ WEIGHTS)
+        parts = half * ((1.0 / self.rigidity_at(s.ravel())).reshape(s.shape) @ WEIGHTS)
         return np.asarray(np.add.reduceat(parts, np.searchsorted(ends, borders[:-1])))
-
-    def flexibility(self, borders: Array) -> Array:
-        """f_i of the elements between ``borders`` (N+1,): (N,)."""
-        return self.yielding(borders, np.ones_like, np.zeros(0))
 
 
 def section_of(beam: Beam, youngs_modulus: float, length: float, unit_length: float, unit_moment: float) -> Section:

@@ -31,8 +31,7 @@ CLOSER = 8
 SETTLE = 0.1  # of the way between stations: in shorter steps steady rows may settle which places there are
 NEARLY = 0.05  # of a closing load: it lies no farther from that on even elements
 AGAIN = 12  # iterations on a mesh that fits a little better
-FITS = 4  # of the mesh to where contact is, at most
-FITS_TO_ZONES = 3  # where there is one over a length
+FITS = 6  # of the mesh to where contact is, at most
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
 
 
@@ -128,10 +127,8 @@ class _March:
         """The present state on the mesh that was asked, its borders where zones of contact end."""
         mechanism, point, iterations = self.mechanism, self.point, certificate.iterations
         asked, now = self.family[-1], self.settings
-        for times, settings in enumerate((*self.family[1:-1], *[asked] * FITS), start=2 - len(self.family)):
+        for settings in (*self.family[1:-1], *[asked] * FITS):
             zones = all_zones(mechanism, point)
-            if times >= FITS_TO_ZONES and long_ones(zones):
-                break
             if settings is not asked and not long_ones(zones):
                 continue  # a few places need no mesh between the coarsest and the finest
             fit = fitted(mechanism, point, zones, settings)
@@ -139,8 +136,8 @@ class _March:
                 break
             target = mechanism_of(self.scene, settings, fit)
             start = carried_over(mechanism, point, target, self.values)
-            # the first mesh may settle which places there are; the next ones know them, and begin close by
-            first = mechanism is self.mechanism
+            # the first mesh, or one for other zones, may settle which places there are; the next ones know them
+            first = mechanism is self.mechanism or mechanism.fit.ends.keys() != fit.ends.keys()
             most = settings.iterations if first else min(settings.iterations, AGAIN)
             for settle in (False, True) if first and now is asked else (now is not asked,):
                 solved = equilibrium(target.problem, self.values, start, settings.tolerance, most, settle=settle)

@@ -1,16 +1,25 @@
-"""Bending moment and stress along a beam, eq. (7), with the kinks that contact forces make.
+"""Bending moment and stress along a beam, eq. (7), from its springs' moments and the contact forces between them.
 
 ==========  ==============================================================================
-m_i         moment of spring i: the mean of M over element i by weights 1/(E·I), for the beam turns by M/(E·I)
-s̄_i         the mean of s by the same weights, the element's middle where E·I is even
+m_i         moment of spring i, that of all forces beyond it about joint i
+s_i, h_i    arc length of that joint; length of the element, over which the beam turns evenly
 s_c, V      place of a contact force on the beam and its part along the left normal
 K(s)        ½ Σ V |s − s_c|, the kinks of M: dM/ds jumps by V at s_c
-K̄_i         the mean of K, likewise
 σ           E·t/2 · M/(E·I), with t and E·I of the place
 ==========  ==============================================================================
 
-M − K is smooth, whatever the section does: its means m_i − K̄_i stand for its values at s̄_i and are joined by straight
-lines; K is added back where the stress is wanted.
+Equilibrium, not the curvature, says what m_i is: M at s_i, however the section varies.  A force within element i does
+its work on spring i by the mean of its lever there, so that K has its mean over that element,
+
+    K̄_i = K(s_i) + ½ Σ V ((u² + v²)/(2h_i) − |s_i − s_c|),      u + v = h_i on either side of s_c.
+
+Between contacts the beam's own differential equation makes M as smooth as its shape, whatever the section does; across
+a contact in a point M − K is.  So m_i − K̄_i are joined by polynomials through the nearest springs, and K is added back
+where the stress is wanted.  What they miss is less than second order in h, and so the error of M, as that of the forces
+and of the shape, goes evenly with N.
+
+Where a beam lies on something, the pressure is shared by joints and what they carry next to the zone's end is no
+force of the place.  Elements end where such zones do: there M is continued from the springs on the same side alone.
 """
 
 from __future__ import annotations
@@ -22,25 +31,51 @@ from cprbm.equilibrium import Point
 from cprbm.forces import contact_forces
 from cprbm.mechanism import Mechanism
 from cprbm.model import Chain
-from scene.answer import Array
+from cprbm.zones import zones_of
+from scene.answer import Array, Flags
+
+NEAREST = 4  # springs that a polynomial goes through
 
 
 def bending_stress(mechanism: Mechanism, point: Point, chain: Chain, points: int) -> Array:
-    """σ (points,), Pa, at equal arc-length steps; beyond the outer springs the nearest two are continued."""
+    """σ (points,), Pa, at equal arc-length steps; beyond the outer springs the nearest are continued."""
     moments = spring_moments(mechanism.problem.model, point.state)[chain.first_link : chain.first_link + chain.n]
     at, jumps = _kinks(mechanism, point, chain)
-    section, borders = chain.section, chain.borders
-    weight = section.flexibility(borders)
-    inner = section.yielding(borders, np.asarray, np.zeros(0)) / weight
-    smooth = moments - section.yielding(borders, lambda s: _kinked(at, jumps, s), at) / weight
-    # beyond the outer springs the nearest two are continued
-    slopes = np.diff(smooth) / np.diff(inner)
-    first = smooth[0] - slopes[0] * inner[0]
-    last = smooth[-1] + slopes[-1] * (chain.s[-1] - inner[-1])
+    springs = _kinked(at, jumps, chain.s[1:-1])
+    if not mechanism.boundaries:  # forces of a fitted boundary act on joints
+        springs += _evened(chain, at, jumps)
     s = np.linspace(0.0, chain.s[-1], points)
-    known = np.concatenate(([0.0], inner, chain.s[-1:]))
-    moment = np.interp(s, known, np.concatenate(([first], smooth, [last]))) + _kinked(at, jumps, s)
-    return np.asarray(0.5 * chain.youngs_modulus * section.thickness_at(s) * moment / section.rigidity_at(s))
+    moment = _joined(chain, moments - springs, _parted(mechanism, chain), s) + _kinked(at, jumps, s)
+    curvature = moment / chain.section.rigidity_at(s)
+    return np.asarray(0.5 * chain.youngs_modulus * chain.section.thickness_at(s) * curvature)
+
+
+def _parted(mechanism: Mechanism, chain: Chain) -> Array:
+    """Where M is continued from either side: ends of zones that are ends of elements, arc lengths (k,), ascending."""
+    ends = [shares for name, shares in mechanism.fit.ends.items() if mechanism.pairs[name].a is chain]
+    return np.sort(chain.s[-1] * np.concatenate([np.zeros(0), *ends]))
+
+
+def _joined(chain: Chain, values: Array, ends: Array, s: Array) -> Array:
+    """At arc lengths ``s`` (n,) what has ``values`` at the springs (N,), from the nearest on the same side of ``ends``.
+
+    Newton's polynomials through up to NEAREST of them, fewer where there are no more between two ends.
+    """
+    springs = chain.s[1:-1]
+    element = np.clip(np.searchsorted(chain.borders, s, side="right") - 1, 0, chain.n - 1)
+    side = np.searchsorted(ends, springs)
+    first, behind = np.searchsorted(side, side[element]), np.searchsorted(side, side[element], side="right")
+    begin = np.clip(np.searchsorted(springs, s) - NEAREST // 2, first, np.maximum(behind - NEAREST, first))
+    taken = begin[:, None] + np.arange(NEAREST)
+    known = taken < behind[:, None]
+    places, slopes = springs[np.minimum(taken, chain.n - 1)], values[np.minimum(taken, chain.n - 1)]
+    found, product = np.zeros(len(s)), np.ones(len(s))
+    for order in range(NEAREST):
+        found += np.where(known[:, order], slopes[:, 0] * product, 0.0)
+        product *= s - places[:, order]
+        apart = places[:, order + 1 :] - places[:, : NEAREST - order - 1]
+        slopes = np.diff(slopes, axis=1) / np.where(apart > 0.0, apart, 1.0)
+    return found
 
 
 def _kinked(at: Array, jumps: Array, s: Array) -> Array:
@@ -53,11 +88,29 @@ def _kinked(at: Array, jumps: Array, s: Array) -> Array:
     return np.asarray(0.5 * (s * zeroth - first))
 
 
+def _evened(chain: Chain, at: Array, jumps: Array) -> Array:
+    """K̄ − K at the springs (N,)."""
+    element = np.clip(np.searchsorted(chain.borders, at, side="right") - 1, 0, chain.n - 1)
+    u, h = at - chain.borders[element], chain.sizes[element]
+    more = (u**2 + (h - u) ** 2) / (2.0 * h) - np.abs(u - 0.5 * h)
+    return np.asarray(np.bincount(element, weights=0.5 * jumps * more, minlength=chain.n), dtype=float)
+
+
+def _lies(mechanism: Mechanism, point: Point, contact: str, chain: Chain, arc: Array) -> Flags:
+    """Which of a contact's forces at ``arc`` (k,) are those of zones that end where the elements of ``chain`` do."""
+    pair, lies = mechanism.pairs[contact], np.zeros(len(arc), dtype=bool)
+    if contact in mechanism.fit.ends and pair.a is chain:
+        size = chain.size_at(arc)
+        for zone in zones_of(pair, point):
+            lies |= zone.long & (arc > zone.begin - size) & (arc < zone.end + size)
+    return lies
+
+
 def _kinks(mechanism: Mechanism, point: Point, chain: Chain) -> tuple[Array, Array]:
-    """s_c and V of all contact forces on a beam, (k,) each."""
+    """s_c and V of all contact forces on a beam but those of zones at whose ends M is parted, (k,) each."""
     places: list[float] = []
     jumps: list[float] = []
-    if mechanism.boundaries:  # forces of a fitted boundary act on joints
+    if mechanism.boundaries:
         forces = contact_forces(mechanism.problem, point)
         theta = point.state.theta[chain.links]
         tangent = np.concatenate((theta[:1], 0.5 * (theta[1:] + theta[:-1]), theta[-1:]))
@@ -67,6 +120,7 @@ def _kinks(mechanism: Mechanism, point: Point, chain: Chain) -> tuple[Array, Arr
     for group, lam in point.rows.shares(point.lam):
         pair = mechanism.pairs[group.contact]
         pressing = np.flatnonzero(lam)
+        pressing = pressing[~_lies(mechanism, point, group.contact, chain, group.arc[pressing])]
         found = pair.pressed(point.state, point.at, chain, group.arc[pressing]) if pressing.size else None
         if found is None:
             continue

@@ -52,8 +52,8 @@ def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     arcs, forces, overlaps, reach = arcs[order], forces[order], overlaps[order], reach[order]
     pressed = np.flatnonzero(forces > 0.0)
     h = chain.size_at(arcs)
-    # one zone goes on where each joint has a row, and the beam arches by no more than one force can bend an element
-    arched = -overlaps > largest * h**3 / chain.section.rigidity_at(arcs)
+    # one zone goes on where each joint has a row, and the beam arches by no more than unevenness
+    arched = -overlaps > pair.arching * largest * h**3 / chain.section.rigidity_at(arcs)
     apart = np.diff(arcs) > CLOSE * np.maximum(h[1:], h[:-1]) + reach[1:] + reach[:-1]
     breaks = np.concatenate(([0], np.cumsum(apart | arched[1:] | arched[:-1])))
     runs = np.split(arcs[pressed], np.flatnonzero(np.diff(breaks[pressed])) + 1)
@@ -65,7 +65,7 @@ def _zone(pair: Touching, point: Point, chain: Chain, run: Array) -> Zone:
     first, last = float(run[0]), float(run[-1])
     h = chain.size_at(run[[0, -1]])
     springs = chain.s[1:-1]
-    before, after = springs[springs < first - 0.75 * h[0]][::-1], springs[springs > last + 0.25 * h[1]]
+    before, after = springs[springs < first - 0.25 * h[0]][::-1], springs[springs > last + 0.25 * h[1]]
     whole = run.size > 1 and (not before.size or not after.size)
     if not whole and last - first < SHORTEST * h.max():
         return Zone(first, last, long=False)

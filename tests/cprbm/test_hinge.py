@@ -66,9 +66,9 @@ def test_auto_stress_everywhere_up_to_the_clamps_and_through_the_kink_at_the_con
         exact_stress = truth.bending_stress(beam, np.linspace(0.0, exact.PAPER.length, len(values)))
         return np.max(np.abs(values - exact_stress)) / np.max(np.abs(exact_stress))
 
-    errors = np.array([error(n) for n in (20, 41, 80, 160)])
-    assert errors[2] < 1.2e-3
-    assert np.all(errors[:-1] / errors[1:] > 3.5)
+    errors = np.array([n**2 * error(n) for n in (20, 40, 41, 80, 160)])
+    assert errors[-1] < 3.0
+    assert errors == pytest.approx(errors[-1], rel=0.16)
 
 
 def test_auto_meets_the_contact_at_its_place(truth):

@@ -11,7 +11,7 @@ from cprbm.equilibrium import point_at
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.model import Fit, build
-from cprbm.refining import SHARE, all_zones, carried_over, coarser, ends_of, fits, fitted, long_ones
+from cprbm.refining import BEYOND, SHARE, all_zones, carried_over, coarser, ends_of, fits, fitted, long_ones
 from cprbm.settings import Settings
 from cprbm.solver import _March
 from cprbm.zones import Zone
@@ -69,14 +69,16 @@ def test_ends_much_closer_than_an_element_leave_the_elements_even():
 def test_a_place_close_to_a_held_end_has_its_share_of_the_elements(links):
     march = marched(links)
     borders = fitted(march.mechanism, march.point, {"circle": (Zone(0.03, 0.03, long=False),)}, march.settings).borders
-    sizes, share = np.diff(borders["beam"]), links / SHARE
-    before = int(share)
-    assert sizes[:before] == pytest.approx(0.03 / share)
-    assert sizes[before + 1 :] == pytest.approx(0.97 / (links - share))
+    sizes, share, beyond = np.diff(borders["beam"]), links / SHARE, links / BEYOND
+    # the place has elements of one size on either side
+    fine = 0.03 / share
+    before = int(share + beyond)
+    assert sizes[:before] == pytest.approx(fine)
+    assert sizes[before + 1 :] == pytest.approx((0.97 - beyond * fine) / (links - share - beyond))
     # the mesh goes evenly with the place
     near = {"circle": (Zone(0.03 + 1e-6, 0.03 + 1e-6, long=False),)}
     moved = fitted(march.mechanism, march.point, near, march.settings).borders["beam"]
-    assert np.all(np.abs(moved - borders["beam"]) <= 1.001e-6)
+    assert np.all(np.abs(moved - borders["beam"]) <= 1.001e-6 * (share + beyond) / share)
 
 
 def test_a_place_far_from_everything_leaves_the_elements_even():
