@@ -184,7 +184,7 @@ def negative(
 def _with_bends(
     at: Callable[[Array, Array], Gap], zeta: Array, there: Gap, neighbours: NDArray[np.bool_]
 ) -> tuple[Array, Gap, NDArray[np.bool_]]:
-    """The same with further places, where between two of the old ones the gap may have both a largest and a least value.
+    """The same with further places, where between two of the old ones the gap may have a largest and a least value.
 
     Its slope has one sign at both, and by the cubic through both places' g and g' it turns towards the other sign
     and back: the new place is where it turns back.  A zone that was not looked for there would come into being at its
