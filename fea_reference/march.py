@@ -35,6 +35,7 @@ _SAME = 1e-9  # by which the one of a circle may
 _POLISHINGS = 8  # tries after which a penetration below the one asked will do
 _IN_A_POINT = 1.5  # the power of one over the penetration with which the penalty of a contact in a point goes
 _FALLS = (1.0, 2.0)  # in an area, and at a tip
+_FAR = 4.0  # elements: a zone that goes farther from station to station is sought with loose penalties, if it had to
 _POINT = 1.0  # elements: a zone no wider is a point
 
 
@@ -52,8 +53,8 @@ class March:
 
     ``values`` are the loads' and then the drives' without units; ``penalties`` the contacts that have closed so
     far, with their stiffness; ``closing`` the value of the stepped load or drive at which each did; ``iterations``
-    are counted since the last station; ``far`` is whether zones have been too far from one station to the next for
-    tight penalties, and the way to the next one begins with loose ones on circles.
+    are counted since the last station; ``far`` is whether zones have been too far from one station to the last for
+    tight penalties and have not come nearer since, so that the way to the next one begins with loose ones on circles.
     """
 
     model: Model
@@ -74,6 +75,7 @@ class March:
         """
         self.iterations = 0
         self._watch_what_touches(load)
+        before = self._zones()
         if self.far and self.values[load] != target:
             self._loosen(Circle)
         stride, cuts, searching = np.inf, 0, False
@@ -104,6 +106,8 @@ class March:
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
         self._tighten()
+        after = self._zones()
+        self.far = self.far and any(np.abs(after[one] - before[one]).max() > _FAR for one in before if one in after)
 
     @property
     def _moving(self) -> Array:
@@ -273,6 +277,14 @@ class March:
             self.system, self.penalties = solved.system, looser
             return True
         return False
+
+    def _zones(self) -> dict[Contact, Array]:
+        """Where the zones on circles begin and end, (2,) each."""
+        return {
+            one.pair: np.array([one.zones.intervals.min(), one.zones.intervals.max()])
+            for one in self.system.touches
+            if isinstance(one.pair, Circle) and one.closed
+        }
 
     def _tighten(self) -> None:
         """Change penalties, each time from the last equilibrium, until each leaves the penetration that it aims at.
