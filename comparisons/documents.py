@@ -12,6 +12,7 @@ import numpy as np
 from comparisons.benchmark import Benchmark, trend
 from comparisons.claims import claim_difference, claim_met, claim_of
 from comparisons.measures import Row, arc_lengths, unit_of
+from comparisons.tolerances.search import Tolerance
 from comparisons.verdict import Comparison
 from comparisons.work_energy import Reaction
 from scene import Answer, Certificate, Probe, Scene
@@ -35,7 +36,11 @@ def comparison(compared: Comparison) -> Plain:
         "case": compared.scene.name,
         "verdict": compared.verdict.word.value,
         "sentence": compared.verdict.sentence,
-        "solvers": {"cprbm": solver(compared.runs.cprbm[0]), "fea": solver(compared.runs.reference)},
+        "solvers": {
+            "cprbm": {**solver(compared.runs.cprbm[0]), **_tolerance(compared.tolerances, "cprbm")},
+            "fea": {**solver(compared.runs.reference), **_tolerance(compared.tolerances, "fea")},
+            **({} if compared.runs.exact is None else {"exact": solver(compared.runs.exact)}),
+        },
         "rows": [
             {**_row(compared.scene, row), "verdict": None if word is None else word.value}
             for row, word in zip(compared.rows, compared.verdict.words, strict=True)
@@ -44,12 +49,12 @@ def comparison(compared: Comparison) -> Plain:
     }
 
 
-def solution(scene: Scene, answer: Answer) -> Plain:
+def solution(scene: Scene, answer: Answer, tolerances: tuple[Tolerance, ...] = ()) -> Plain:
     """One case of ``solve``: the same shape with one solver's column and no verdict."""
     stages = {stage.name: stage for stage in scene.stages}
     return {
         "case": scene.name,
-        "solvers": {answer.solver: solver(answer)},
+        "solvers": {answer.solver: {**solver(answer), **_tolerance(tolerances, answer.solver)}},
         "rows": [
             {
                 "probe": probe.name,
@@ -79,6 +84,31 @@ def solver(answer: Answer) -> Plain:
             for event in answer.events
         ],
         "notes": list(answer.notes),
+    }
+
+
+def _tolerance(tolerances: tuple[Tolerance, ...], name: str) -> Plain:
+    """How a solver's N was found, where it was."""
+    for found in tolerances:
+        if found.solver == name:
+            return {"tolerance": _found(found)}
+    return {}
+
+
+def _found(found: Tolerance) -> Plain:
+    row = found.worst
+    return {
+        "asked": found.asked,
+        "met": found.met,
+        "links": found.n if found.solver == "cprbm" else None,
+        "elements": found.n if found.solver == "fea" else None,
+        "estimate": None if row is None else plain(row.fraction),
+        "probe": None if row is None else row.probe,
+        "stage": None if row is None else row.stage,
+        "station": None if row is None else row.station,
+        "extrapolated": list(found.extrapolated) or None,
+        "extrapolated_probes": list(found.probes),
+        "solved": list(found.solved),
     }
 
 
@@ -172,6 +202,7 @@ def _row(scene: Scene, row: Row) -> Plain:
     claim = claim_of(scene, row)
     bounds = row.bounds
     steps = row.steps
+    true = row.true_errors
     return {
         "probe": row.probe.name,
         "stage": row.stage,
@@ -201,6 +232,11 @@ def _row(scene: Scene, row: Row) -> Plain:
         },
         "contact_model": None if row.contact_model is None else row.fraction(row.contact_model),
         "difference_largest": None if row.largest is None else row.fraction(row.largest),
+        "exact": None if row.exact is None else values(row.probe, row.exact),
+        "true_error": {
+            "cprbm": None if true is None else row.fraction(true.cprbm),
+            "fea_bending": None if true is None else row.fraction(true.bending),
+        },
         "scale": row.scale,
         "denominator": row.denominator,
         **_places(scene, row.probe),

@@ -17,6 +17,8 @@ u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (
             probe's largest in the stage
 F           share of the largest uncertainty that none in the stage falls below, S − 1
 r           round-off allowance
+x           the exact value in ``bending``, where one is known
+q           what an exact value may itself be off by
 ==========  ===========================================================================================
 
 The error of v is C/N^p and that of V a quarter of it (p = 2), so v − V is three quarters of v's error: hence
@@ -43,6 +45,10 @@ The difference is the sum of its steps,
 
 and the share of each in it is its component along d.  In ``auto`` v_a is v_c.  What the contact's formulation
 makes of the answer is |v_p − v_a| with v_p the value in ``paper``, whichever of the two was chosen.
+
+Where x is known, |v_c − x| and |v_b − x| are true errors, each to be held against u_c + r or u_b + r.  An exact
+answer is itself found by integration and a search for a root: q is what its certificate leaves open, and at least
+1e-9 of the probe's scale, ten times what such an answer is good to.
 
 Round-off: a certificate states the relative residual that is left and the floor below which none can be
 asked.
@@ -73,6 +79,8 @@ from scene.statement import Quantity
 SAFETY = 1.25
 SHARE_OF_LARGEST = SAFETY - 1.0
 ROUND_OFF = 1e-12
+EXACT_TO = 1e-9
+"""Share of a probe's scale below which a distance from the exact value says nothing."""
 
 UNITS: Mapping[Quantity, str] = {
     "displacement": "m",
@@ -119,6 +127,21 @@ class Bounds:
 
 
 @dataclass(frozen=True, slots=True)
+class TrueErrors:
+    """How far two values of a row are from the exact one, in the probe's unit, none negative.
+
+    Attributes:
+        cprbm: |v_c − x|.
+        bending: |v_b − x|, of the finite elements in the theory ``bending``.
+        allowance: q.
+    """
+
+    cprbm: float
+    bending: float
+    allowance: float
+
+
+@dataclass(frozen=True, slots=True)
 class Steps:
     """The difference as a sum of steps, each its component along the difference, in the probe's unit.
 
@@ -141,7 +164,9 @@ class Row:
     ``denominator`` what the shown fractions are divided by.  ``contact_model`` is the distance of the CPRBM's
     values in the formulations ``paper`` and ``auto``, absent where one of them is.  For a stress, ``arc_length`` (k,)
     says where, m; ``largest`` is the difference of the largest magnitudes, and the places next to the beam's held
-    ends and to where contacts end take no part in ``difference``.
+    ends and to where contacts end take no part in ``difference``, nor in ``true_errors``.  ``exact`` (k,) is x,
+    absent where none is known and empty where the contact is then open; ``true_errors`` is absent where ``bounds`` or
+    ``exact`` is, and where x is not of the two values' shape.
     """
 
     probe: Probe
@@ -159,6 +184,8 @@ class Row:
     arc_length: Array | None = None
     largest: float | None = None
     contact_model: float | None = None
+    exact: Array | None = None
+    true_errors: TrueErrors | None = None
 
     def fraction(self, value: float) -> float | None:
         """``value`` as a fraction of the denominator; None where that says nothing."""
@@ -220,10 +247,15 @@ def round_off(scene: Scene, probe: Probe, everyone: tuple[Answer, ...], compared
         for value in stage.stations:
             stations = [station_of(answer, stage.name, value) for answer in everyone]
             floor = max(max(s.certificate.residual, s.certificate.residual_floor) for s in stations)
-            here = stage.model_copy(update={"stations": (value,)})
-            alone = tuple(replace(answer, stations=(station_of(answer, stage.name, value),)) for answer in compared)
-            largest = max(largest, floor * family_size(scene, probe.quantity, here, alone, contact=probe.of))
+            largest = max(largest, floor * _family_size(scene, probe, stage, value, compared))
     return largest
+
+
+def _family_size(scene: Scene, probe: Probe, stage: Stage, value: float, answers: tuple[Answer, ...]) -> float:
+    """The largest value in a probe's family at one station of some answers."""
+    here = stage.model_copy(update={"stations": (value,)})
+    alone = tuple(replace(answer, stations=(station_of(answer, stage.name, value),)) for answer in answers)
+    return family_size(scene, probe.quantity, here, alone, contact=probe.of)
 
 
 def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, unsettled: float) -> Row:
@@ -234,6 +266,7 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
     chosen = f"fea {runs.kinematics}"
     v_c, v_f, v_b = values["cprbm"], values[chosen], values["fea bending"]
     is_stress = probe.quantity == "bending_stress"
+    exact = _exact_station(runs, stage.name, value)
     row = Row(
         probe=probe,
         stage=stage.name,
@@ -245,6 +278,7 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
         denominator=denominator(probe, v_f, scale),
         arc_length=arc_lengths(scene, probe) if is_stress else None,
         largest=abs(norm(probe.quantity, v_c) - norm(probe.quantity, v_f)) if is_stress else None,
+        exact=None if exact is None else exact.values[probe.name],
     )
     if v_f.size == 0 or any(other.shape != v_f.shape for other in values.values()):
         return row
@@ -274,6 +308,14 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
     )
     ladder = [v_c, even, *(values[f"fea {kinematics}"] for kinematics in runs.fea)]
     formulations = _formulations(runs, probe, stage.name, value)
+    true_errors = None
+    if exact is not None and row.exact is not None and row.exact.shape == v_f.shape:
+        open_end = max(exact.certificate.residual, exact.certificate.residual_floor)
+        true_errors = TrueErrors(
+            cprbm=size(v_c - row.exact),
+            bending=size(v_b - row.exact),
+            allowance=max(open_end * _family_size(scene, probe, stage, value, compared), EXACT_TO * scale),
+        )
     return replace(
         row,
         difference=size(v_c - v_f),
@@ -281,7 +323,18 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
         bounds=bounds,
         steps=_steps(probe.quantity, [step[counts] for step in ladder]),
         contact_model=None if formulations is None else size(formulations[0] - formulations[1]),
+        true_errors=true_errors,
     )
+
+
+def _exact_station(runs: Runs, stage: str, value: float) -> StationAnswer | None:
+    """The exact answer's station; None where it has none."""
+    if runs.exact is None:
+        return None
+    try:
+        return station_of(runs.exact, stage, value)
+    except KeyError:
+        return None
 
 
 def _unforeseen(v: Array, V: Array, beside: Array, ratio: float, order: int) -> Array:

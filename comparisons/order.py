@@ -6,7 +6,7 @@ method takes care of it.  Their sum converges with the second order, each alone 
 of the contact's resultant and the ends of the zone.  Of a method that does better the first order only makes the
 stated uncertainty larger.
 
-Where three and more discretisations show by themselves how the values go (:mod:`comparisons.convergence`), each
+Where three and more discretisations show by themselves how the values go (:mod:`comparisons.converging.limits`), each
 method's own order is what theory gives: of the chain the square of a link's length, of cubic Hermite elements the
 fourth power of an element's (Strang and Fix, *An Analysis of the Finite Element Method*, section 1.6: 2(k + 1 − m) for
 polynomials of degree k = 3 and energies of second derivatives, m = 2).

@@ -9,12 +9,15 @@ can be split.
 Where ``auto`` was chosen and every contact of two beams says what ``paper`` must be told, that is run at N as well.
 It shows what the contact's formulation makes of the answer and takes no part in the verdict.
 
+Where an exact answer is known (in ``bending`` only), it stands beside both at the stations that it covers.
+
 Where a drive's reaction is asked, the CPRBM runs at N once more with two stations close round each of the scene's
 (:mod:`comparisons.nearby`): the reaction by the energies' difference, which takes no part in the verdict either.
 """
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping
@@ -118,6 +121,11 @@ def solvers_of(planted: object) -> Solvers:
     return planted if isinstance(planted, Solvers) else Solvers(exact=exact_answer)
 
 
+def workers_for(planted: object) -> int:
+    """How many processes share the runs: what is planted stays in this one."""
+    return 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
+
+
 @dataclass(frozen=True, slots=True)
 class Runs:
     """All answers to one scene that a comparison rests on.
@@ -132,6 +140,7 @@ class Runs:
         beside: the CPRBM in ``auto`` at N + N/7 links, if there is contact or a section has a kink; ``ratio`` is N
             over that number.
         nearby: the CPRBM at N links, answering :func:`comparisons.nearby.nearby`; nothing rests on it.
+        exact: the exact answer in ``bending``, at the stations at which one is known; None if there is no such station.
     """
 
     kinematics: Kinematics
@@ -142,6 +151,7 @@ class Runs:
     beside: Answer | None = None
     ratio: float = 1.0
     nearby: Answer | None = None
+    exact: Answer | None = None
 
     @property
     def reference(self) -> Answer:
@@ -156,7 +166,7 @@ class Runs:
         return None if self.paper is None else (self.paper, self.cprbm[0])
 
     def everything(self) -> Iterator[tuple[str, Answer]]:
-        """Every answer that the verdict rests on, with a name that says what it is."""
+        """Every answer of a solver that the verdict rests on, with a name that says what it is."""
         families = {"cprbm": self.cprbm, **{f"fea {kinematics}": fea for kinematics, fea in self.fea.items()}}
         for name, answers in families.items():
             for level, answer in enumerate(answers):
@@ -231,8 +241,7 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE)
     check(choices, scene)
     even = replace(choices, formulation="auto")
     extra = [] if even == choices else [(solvers.cprbm, scene, even)]
-    uneven = scene.contacts or any(len(beam.knots) > 2 for beam in scene.beams.values())
-    beside = [(solvers.cprbm, scene, even.beside())] if uneven else []
+    beside = [(solvers.cprbm, scene, even.beside())] if may_be_uneven(scene) else []
     driven = nearby(scene)
     round_each = [] if driven is None else [(solvers.cprbm, driven, choices)]
     jobs = [(solvers.cprbm, scene, choices), (solvers.cprbm, scene, even.finer()), *extra, *beside, *round_each]
@@ -244,9 +253,13 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE)
         for level, settings in enumerate(levels):
             places.append((kinematics, level))
             jobs.append((solvers.fea, scene, settings))
+    behind = len(jobs)
+    if solvers.exact is not None:
+        jobs.append((solvers.exact, scene, choices))
     answers = crew.answers(jobs)
+    exact = answers[behind] if solvers.exact is not None else None
     fea: dict[Kinematics, tuple[Answer, ...]] = {}
-    for (kinematics, _), answer in zip(places, answers[first:], strict=True):
+    for (kinematics, _), answer in zip(places, answers[first:behind], strict=True):
         fea[kinematics] = (*fea.get(kinematics, ()), answer)
     return Runs(
         choices.kinematics,
@@ -255,9 +268,32 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE)
         auto=answers[2] if extra else None,
         paper=None if extra else in_paper(scene, choices, solvers),
         beside=answers[2 + len(extra)] if beside else None,
-        ratio=_links(even) / _links(even.beside()),
+        ratio=ratio_beside(even),
         nearby=answers[first - 1] if round_each else None,
+        exact=exact if exact is not None and exact.stations else None,
     )
+
+
+def known_exactly(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew) -> Answer | None:
+    """The exact answer, as in :class:`Runs`.
+
+    Raises:
+        SceneError: the question is refused.
+    """
+    if solvers.exact is None:
+        return None
+    (answer,) = crew.answers([(solvers.exact, scene, choices)])
+    return answer if answer.stations else None
+
+
+def may_be_uneven(scene: Scene) -> bool:
+    """Whether the CPRBM's error may depend on where joints fall: at a contact, or at a kink of a section."""
+    return bool(scene.contacts) or any(len(beam.knots) > 2 for beam in scene.beams.values())
+
+
+def ratio_beside(choices: Choices) -> float:
+    """N over the number of links that :meth:`comparisons.choices.Choices.beside` makes of it."""
+    return _links(choices) / _links(choices.beside())
 
 
 def _links(choices: Choices) -> int:

@@ -9,7 +9,7 @@ from importlib.resources import files
 
 from comparisons.figures import Picture
 
-_MARKED = ("AGREE", "DIFFER", "UNDECIDED", "met", "not met")
+_MARKED = ("AGREE", "DIFFER", "UNDECIDED", "met", "not met", "within", "beyond", "far beyond")
 """Cells of a table that have a style of their own."""
 
 

@@ -64,7 +64,8 @@ def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison | Offse
 
 def _archive(own: Path, compared: Comparison) -> None:
     answers = {name: archive.packed(answer) for name, answer in compared.runs.everything()}
-    for name, answer in (("cprbm paper", compared.runs.paper), ("cprbm nearby", compared.runs.nearby)):
+    runs = compared.runs
+    for name, answer in (("cprbm paper", runs.paper), ("cprbm nearby", runs.nearby), ("exact", runs.exact)):
         if answer is not None:
             answers[name] = archive.packed(answer)
     write(own / "answers.json", documents.text(answers))

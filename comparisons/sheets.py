@@ -6,12 +6,15 @@ import math
 from dataclasses import dataclass
 
 from comparisons.benchmark import FIT_FROM, Benchmark, trend
+from comparisons.calibration import FAR, JUDGED, Held, every, held, tally
 from comparisons.claims import as_claimed, claim_difference, standings
 from comparisons.documents import worst
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.geometry import bentness
 from comparisons.measures import Row, Steps, unit_of
 from comparisons.scales import norm
+from comparisons.tolerances.extrapolation import told
+from comparisons.tolerances.search import Tolerance
 from comparisons.verdict import Comparison
 from comparisons.work_energy import by_drive, sentence
 from scene import Answer, Scene
@@ -30,7 +33,8 @@ class Sheet:
 def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
     """All tables of a comparison."""
     rows = last_rows(compared)
-    found = [_values(compared, rows), _verdicts(compared, rows)]
+    found = [of_tolerances(compared.tolerances), _values(compared, rows), _verdicts(compared, rows)]
+    found.append(_true_errors(compared, rows))
     found.append(_claims(compared))
     found.extend(_reactions(compared))
     found.append(_stresses(compared.scene, rows))
@@ -39,9 +43,34 @@ def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
     return tuple(sheet for sheet in found if sheet.rows)
 
 
-def of_answer(scene: Scene, answer: Answer) -> tuple[Sheet, ...]:
-    """All tables of one solver's answer."""
-    return tuple(sheet for sheet in (_answered(scene, answer), _events(answer)) if sheet.rows)
+def of_answer(scene: Scene, answer: Answer, tolerances: tuple[Tolerance, ...] = ()) -> tuple[Sheet, ...]:
+    """All tables of one solver's answer, and how its N was found."""
+    found = (of_tolerances(tolerances), _answered(scene, answer), _events(answer))
+    return tuple(sheet for sheet in found if sheet.rows)
+
+
+def of_tolerances(tolerances: tuple[Tolerance, ...]) -> Sheet:
+    """How N was found for a tolerance."""
+    body = tuple(
+        (
+            found.solver,
+            str(found.n),
+            ", ".join(str(n) for n in found.extrapolated) or "–",
+            "–" if found.worst is None else percent(found.worst.fraction),
+            "–" if found.worst is None else f"{found.worst.probe} at {found.worst.station:g}",
+            "yes" if found.met else "no",
+            ", ".join(str(n) for n in found.solved),
+        )
+        for found in tolerances
+    )
+    asked = percent(tolerances[0].asked) if tolerances else ""
+    return Sheet(
+        f"N for a tolerance of {asked}",
+        ("solver", "N", "extrapolated from", "largest u", "of", "met", "solved"),
+        body,
+        "N: links or elements per beam; of an extrapolated answer the finest. "
+        + " ".join(told(found.extrapolated, found.probes) for found in tolerances if found.extrapolated),
+    )
 
 
 def of_benchmark(measured: Benchmark) -> tuple[Sheet, ...]:
@@ -136,6 +165,7 @@ def _within_one_theory(compared: Comparison, row: Row, steps: Steps) -> str:
 
 def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
     runs = compared.runs
+    known = any(row.exact is not None for row in rows)
     body = []
     for row in rows:
         size = max(norm(row.probe.quantity, row.cprbm), norm(row.probe.quantity, row.fea))
@@ -146,6 +176,7 @@ def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
                 unit,
                 vector(row.cprbm, factor),
                 vector(row.fea, factor),
+                *(("–" if row.exact is None else vector(row.exact, factor),) if known else ()),
                 _of(row, row.difference),
                 *(
                     (_of(row, row.bounds.cprbm), _of(row, row.bounds.fea), _of(row, row.bounds.theory))
@@ -157,7 +188,17 @@ def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
     where = f"{rows[0].stage} {rows[0].station:g}" if rows else "no station"
     return Sheet(
         f"{compared.scene.title or compared.scene.name}: {where}",
-        ("probe", "unit", "CPRBM", "FEA", "difference", "u CPRBM", "u FEA", "theory"),
+        (
+            "probe",
+            "unit",
+            "CPRBM",
+            "FEA",
+            *(("exact (bending)",) if known else ()),
+            "difference",
+            "u CPRBM",
+            "u FEA",
+            "theory",
+        ),
         tuple(body),
         f"FEA: theory {runs.kinematics}. Fractions of the FEA's value, or of the probe's largest value where "
         "that may vanish; uncertainties from further discretisations of each solver.",
@@ -186,6 +227,33 @@ def _verdicts(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
         tuple(body),
         "Both differences must stay within what may be; within bending the FEA shares the CPRBM's theory.",
     )
+
+
+def _true_errors(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
+    """True errors of both in ``bending``, each beside what is stated of it."""
+    body = []
+    for row in rows:
+        found = tuple(every(row))
+        if found:
+            cells = ((_of(row, each.true), _of(row, each.stated), number(each.ratio), each.word) for each in found)
+            body.append((row.probe.name, *(cell for four in cells for cell in four)))
+    return Sheet(
+        "True errors in bending, beside the exact answer",
+        ("probe", *(f"{head} {name}" for name in ("CPRBM", "FEA") for head in ("error", "stated", "ratio", "says"))),
+        tuple(body),
+        f"{_over_all(held(compared.rows))} A ratio is the true error over the stated one with round-off: above 1 it is "
+        f"beyond, above {FAR:g} far beyond, and then the row differs.",
+    )
+
+
+def _over_all(found: tuple[Held, ...]) -> str:
+    """How many of the rows of all stations have true errors within the stated ones, in a sentence."""
+    said = []
+    for solver, name in zip(JUDGED, ("CPRBM", "FEA"), strict=True):
+        mine = tally(found, solver)
+        over = "" if mine.over is None else f", stated over true {number(mine.over)} in the median"
+        said.append(f"{name} within the stated error in {mine.within} of {mine.rows} rows{over}")
+    return f"Over all stations: {'; '.join(said)}."
 
 
 def _claims(compared: Comparison) -> Sheet:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from comparisons.measures import station_of
@@ -32,6 +34,12 @@ def complaints(scene: Scene, answer: Answer) -> tuple[str, ...]:
     if len(answer.stations) > len(asked):
         found.append(f"it has {len(answer.stations)} stations where {len(asked)} were asked")
     return tuple(found)
+
+
+def sound_part(scene: Scene, answer: Answer) -> Answer:
+    """An answer without the stations that are not whole, however it ended."""
+    sound = tuple(station for station in answer.stations if not _station_complaints(scene, station))
+    return replace(answer, stations=sound)
 
 
 def _station_complaints(scene: Scene, station: StationAnswer) -> list[str]:

@@ -17,6 +17,9 @@ _COLOURS = {
     "DIFFER": "bold red",
     "not met": "yellow",
     "UNDECIDED": "yellow",
+    "within": "green",
+    "beyond": "yellow",
+    "far beyond": "bold red",
 }
 
 

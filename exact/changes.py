@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from exact.newton import LostError
-from exact.restructure import NotCoveredError
+from exact.restructure import NotCoveredError, at_ends
 from exact.state import State
-from exact.structure import Meeting, Resting, Touch, Wrap
+from exact.structure import Resting, Touch, Wrap
 from exact.way import Way, places_of, touches_of
 
 PULLS = -1e-10  # of a contact's force, no dimension
@@ -34,8 +34,10 @@ def open_first(way: Way, trial: State) -> bool:
     if not shares:
         return False
     name = min(shares, key=lambda key: shares[key])
-    at = way.at(name, 0.0, way.lam + shares[name] * (trial.lam - way.lam)) if shares[name] > 0.0 else way.state
+    near = way.lam + shares[name] * (trial.lam - way.lam)
+    at = way.at(name, 0.0, near, trial.lam) if shares[name] > 0.0 else way.state
     way.accept(way.restructured(touches_of(at.structure, name), places_of(at, name), at, at.lam))
+    way.note_side(at.structure.touches[name])
     return True
 
 
@@ -56,16 +58,9 @@ def reform(way: Way, trial: State) -> bool:
                 del places[name, "begin"], places[name, "end"]
                 touches[name], places[name, touch.beam] = Resting(name, touch.beam, None), 0.5 * (a + b)
             continue
-        if isinstance(touch, Meeting) and not 0.0 <= places[name, touch.onto] <= way.model.strips[touch.onto].length:
-            raise NotCoveredError(f"the place of {name} slides off the end of {touch.onto}")
-        if touch.at is not None:
-            continue
-        s = places[name, touch.beam]
-        if not 0.0 <= s <= strip.length:
-            del places[name, touch.beam]
-            touches[name] = replace(touch, at=0.0 if s < 0.0 else strip.length)
-        elif isinstance(touch, Resting) and _cuts(trial, touch):
-            del places[name, touch.beam]
+        touches[name], places = at_ends(trial, way.model, touch, places)
+        if touches[name] == touch and isinstance(touch, Resting) and touch.at is None and _cuts(trial, touch):
+            s = places.pop((name, touch.beam))
             touches[name] = Wrap(name, touch.beam, sense_of(trial, touch, s))
             half = _FIRST_LENGTH * strip.length
             places[name, "begin"], places[name, "end"] = s - half, s + half
@@ -89,7 +84,7 @@ def slide_onto_end(way: Way, goal: float) -> bool:
         if abs(s - end) > _ABOUT_TO_SLIDE * length:
             continue
         try:
-            at = way.at((name, touch.beam), end, goal)
+            at = way.at((name, touch.beam), end, goal, goal)
             touches: dict[str, Touch] = {**now.structure.touches, name: replace(touch, at=end)}
             places = {key: value for key, value in at.places.items() if key != (name, touch.beam)}
             way.accept(way.restructured(touches, places, at, at.lam))

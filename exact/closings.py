@@ -11,13 +11,14 @@ from exact.changes import presses, sense_of
 from exact.evaluation import Columns, Evaluation
 from exact.gaps import Overlap
 from exact.newton import LostError
-from exact.restructure import NotCoveredError, closed
+from exact.restructure import NotCoveredError, at_ends, closed
 from exact.state import State
 from exact.structure import Meeting, Resting, Touch, Wrap
 from exact.way import Way
 from scene import CircleContact
 
 _NEAR_END = 0.2  # of a beam: a contact at its end that moves in appears within this
+_SHALLOW = 1e-4  # of the unit of length: a second place is met so
 _ON_CIRCLE = 1e-9  # of the unit of length and of a tangent, where an end is clamped on a circle
 _FIRST_PLACES = (0.02, 0.01, 0.005)  # of a beam, where a contact that leaves a clamp is first looked for
 _FIRST_WRAPS = (0.25, 0.1, 0.03)  # of the way to where a beam overlaps a circle on which it is clamped
@@ -32,7 +33,11 @@ def close_first(way: Way, trial: State, found: list[Overlap]) -> None:
         NotCoveredError: there are no equations for it.
     """
     reached: list[tuple[State, Overlap]] = []
-    for overlap in found:
+    # where an end that touches goes in, both beams overlap: the end's own comes first
+    ends = {
+        touch.beam for touch in trial.structure.touches.values() if not isinstance(touch, Wrap) and touch.at is not None
+    }
+    for overlap in sorted(found, key=lambda overlap: overlap.beam not in ends):
         present = trial.structure.touches.get(overlap.contact)
         if present is not None:
             _move_in(way, trial, present, overlap)
@@ -44,6 +49,12 @@ def close_first(way: Way, trial: State, found: list[Overlap]) -> None:
         touch, own = closed(way.model, overlap)
         touches: dict[str, Touch] = {**trial.structure.touches, overlap.contact: touch}
         state = way.restructured(touches, {**trial.places, **own}, trial, trial.lam, pinned=overlap.contact)
+        ended, places = at_ends(state, way.model, touch, state.places)
+        if ended != touch:
+            touches[overlap.contact] = ended
+            state = way.restructured(touches, places, state, state.lam, pinned=overlap.contact)
+            if at_ends(state, way.model, ended, state.places)[0] != ended:
+                raise LostError
         reached.append((way.between(state, trial.lam), overlap))
     state, overlap = min(reached, key=lambda item: abs(item[0].lam - way.lam))
     way.note_closed(overlap.contact, state.lam, trial.lam)
@@ -56,15 +67,17 @@ def _move_in(way: Way, trial: State, present: Touch, overlap: Overlap) -> None:
     second = NotCoveredError(f"{overlap.contact} touches at a second place or along a length")
     if isinstance(present, Wrap) or present.at is None or overlap.beam != present.beam:
         raise second
+    # what goes in from the end begins there, so a smaller step tells it from a second place
+    otherwise = second if overlap.gap > -_SHALLOW else LostError()
     if abs(overlap.s - present.at) > _NEAR_END * length:
-        raise second
+        raise otherwise
     places = {**trial.places, (overlap.contact, overlap.beam): overlap.s}
     if isinstance(present, Meeting):
         places[overlap.contact, present.onto] = overlap.sigma
     touches: dict[str, Touch] = {**trial.structure.touches, overlap.contact: replace(present, at=None)}
     fresh = way.restructured(touches, places, trial, trial.lam)
     if not presses(fresh) or not 0.0 <= fresh.places[overlap.contact, overlap.beam] <= length:
-        raise LostError
+        raise otherwise
     way.accept(fresh)
 
 
@@ -121,7 +134,7 @@ def _leave_clamp(way: Way, trial: State, overlap: Overlap, which: str) -> None:
 def _wrapped(way: Way, trial: State, overlap: Overlap, which: str, sense: float) -> State | None:
     """A wrap from the clamp, if it presses."""
     at, name, strip = way.state, overlap.contact, way.model.strips[overlap.beam]
-    if strip.beam.tapered:
+    if strip.beam.tapered and way.model.scene.contacts[name].thick:
         return None
     s, key = (0.0, "end") if which == "start" else (strip.length, "begin")
     wrap = Wrap(name, strip.name, sense, from_start=which == "start", to_end=which == "end")

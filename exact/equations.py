@@ -149,6 +149,8 @@ class Equations:
             if wrap is not None:
                 lie_between(out, self.layout, wrap, before, after, z)
                 continue
+            if not isinstance(item, str):
+                out.turnings[name, item] = (self.layout.pieces[name][k].start + 2, len(out.rows) + 3)
             out.rows += list(after.start[:4] - before.end)
             if not isinstance(item, str):
                 out.rows += list(after.force - before.force)
@@ -172,6 +174,19 @@ class Equations:
                 stops.insert(-1, at)
                 begins.append(at)
         return begins, stops
+
+    def places_of(self, beam: str, z: Array) -> list[float]:
+        """Arc lengths at which what interrupts a beam begins, in the structure's order, of unknowns z (n,)."""
+        where, wraps = self.layout.places, {wrap.contact: wrap for wrap in self.structure.wraps(beam)}
+        places = []
+        for item in self.structure.order[beam]:
+            if not isinstance(item, str):
+                places.append(item)
+            elif item in wraps:
+                places.append(0.0 if wraps[item].from_start else float(z[where[item, "begin"]]))
+            else:
+                places.append(float(z[where[item, beam]]))
+        return places
 
     def begins(self, beam: str, z: Array) -> list[float]:
         """Arc lengths at which a beam's pieces begin, of unknowns z (n,)."""

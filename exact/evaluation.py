@@ -76,6 +76,8 @@ class Evaluation:
         resultants: by contact the force (2, K) on its beam; of two beams on ``Meeting.beam``.
         centres: of circles (2, K), by contact.
         zones: by contact.
+        turnings: by beam and knot the place of its turning among the unknowns, and the row in which a couple on it
+            would stand.
     """
 
     model: Model
@@ -87,6 +89,7 @@ class Evaluation:
     resultants: dict[str, Columns] = field(default_factory=dict)
     centres: dict[str, Columns] = field(default_factory=dict)
     zones: dict[str, Zone] = field(default_factory=dict)
+    turnings: dict[tuple[str, float], tuple[int, int]] = field(default_factory=dict)
 
     def moved(self, body: str, rest: Array) -> Columns:
         """Where a body's point that is at ``rest`` (2,) is now, (2, K)."""
@@ -142,4 +145,5 @@ class Evaluation:
                 )
                 for name, zone in self.zones.items()
             },
+            turnings=self.turnings,
         )

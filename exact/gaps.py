@@ -17,7 +17,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+from numpy.typing import NDArray
 
 from exact.model import Model, Strip
 from exact.state import Known
@@ -25,8 +25,10 @@ from scene import BeamContact, CircleContact
 from scene.answer import Array
 
 SAMPLES = 401
-_WORTH_REFINING = 1e-5  # a sampled gap, no dimension
-_FEET = 6  # Newton iterations of a foot
+_ZOOMS, _ZOOMED = 6, 21  # times that a least gap is looked at more closely, at so many places
+_FEET = 6  # Newton iterations of a foot, at most
+_FOUND = 1e-12  # of the unit of length, a foot
+_TOUCHING = 1e-9  # distance of lines that says nothing of their sides
 _NEAR_END = 1e-9  # of a beam's length
 
 
@@ -56,8 +58,8 @@ def overlaps(
     model: Model,
     now: Known,
     before: Known,
-    centres: Mapping[str, Array],
     touched: Mapping[tuple[str, str], tuple[float, float]],
+    sides: Mapping[tuple[str, str, str], float],
     tolerance: float,
 ) -> list[Overlap]:
     """All least gaps below −``tolerance``.
@@ -65,18 +67,18 @@ def overlaps(
     Args:
         model: the mechanism.
         now, before: the state, and one whose beams have not passed each other; it says which side is which.
-        centres: of the circles, by contact, (2,).
         touched: by contact and beam where it touches already, from and to; a least gap there is known.
+        sides: by contact, beam and other beam, on which side of the other the beam lies where ``before`` still touches.
         tolerance: no dimension.
     """
     found: list[Overlap] = []
     for name, contact in model.scene.contacts.items():
         if isinstance(contact, CircleContact):
-            found += _of_circle(model, now, name, contact, centres[name], touched)
+            found += _of_circle(model, now, name, contact, now.centre(name), touched)
         else:
             one, other = contact.between
-            found += _of_pair(model, now, before, name, contact, (one, other), touched)
-            found += _of_pair(model, now, before, name, contact, (other, one), touched)
+            found += _of_pair(model, now, before, name, contact, (one, other), touched, sides)
+            found += _of_pair(model, now, before, name, contact, (other, one), touched, sides)
     return [overlap for overlap in found if overlap.gap < -tolerance]
 
 
@@ -111,52 +113,57 @@ def _of_pair(
     contact: BeamContact,
     beams: tuple[str, str],
     touched: Mapping[tuple[str, str], tuple[float, float]],
+    sides: Mapping[tuple[str, str, str], float],
 ) -> list[Overlap]:
     one, other = beams
     a, b = model.strips[one], model.strips[other]
     s, sigma = np.linspace(0.0, a.length, SAMPLES), np.linspace(0.0, b.length, SAMPLES)
-    A, B = now.along(one, s)[:2], now.along(other, sigma)[:2]
-    nearest = np.argmin((A[0][:, None] - B[0]) ** 2 + (A[1][:, None] - B[1]) ** 2, axis=1)
 
-    def feet(places: Array, start: Array) -> Array:
-        at = start.copy()
-        r0 = now.along(one, places)[:2]
+    def nearest(known: Known) -> Array:
+        A, B = known.along(one, s)[:2], known.along(other, sigma)[:2]
+        return np.asarray(sigma[np.argmin((A[0][:, None] - B[0]) ** 2 + (A[1][:, None] - B[1]) ** 2, axis=1)])
+
+    def away(known: Known, places: Array, start: Array) -> tuple[Array, Array, Array]:
+        """To the left of the other line, how far places of the first one are; their feet, and how far those."""
+        at, r0 = start.copy(), known.along(one, places)[:2]
         for _ in range(_FEET):
-            x, y, theta, m = now.along(other, np.clip(at, 0.0, b.length))[:4]
-            t = np.stack([np.cos(theta), np.sin(theta)])
-            r = r0 - np.stack([x, y])
-            kappa = b.line.curvature(np.clip(at, 0.0, b.length)) + b.compliance(np.clip(at, 0.0, b.length)) * m
-            bent = 1.0 - kappa * (t[0] * r[1] - t[1] * r[0])
+            x, y, theta, m = known.along(other, at)[:4]
+            t, r = np.stack([np.cos(theta), np.sin(theta)]), r0 - np.stack([x, y])
+            bent = 1.0 - (b.line.curvature(at) + b.compliance(at) * m) * (t[0] * r[1] - t[1] * r[0])
             step = (t[0] * r[0] + t[1] * r[1]) / np.where(np.abs(bent) > 0.1, bent, 1.0)
-            at = np.clip(at + step, 0.0, b.length)
-        return at
+            at, last = np.clip(at + step, 0.0, b.length), at
+            if np.max(np.abs(at - last)) < _FOUND:
+                break
+        x, y, theta = known.along(other, at)[:3]
+        r = r0 - np.stack([x, y])
+        return np.cos(theta) * r[1] - np.sin(theta) * r[0], at, np.hypot(*r)
 
-    def measured(places: Array, start: Array) -> tuple[Array, Array, Array]:
-        at = feet(places, start)
-        x, y, theta = now.along(other, at)[:3]
-        r = now.along(one, places)[:2] - np.stack([x, y])
-        x0, y0, theta0 = before.along(other, at)[:3]
-        r0 = before.along(one, places)[:2] - np.stack([x0, y0])
-        side = np.sign(-np.sin(theta0) * r0[0] + np.cos(theta0) * r0[1])
-        away = side * (-np.sin(theta) * r[0] + np.cos(theta) * r[1])
+    def between(at: Array) -> NDArray[np.bool_]:
+        """Which feet (n,) lie between the other line's ends."""
+        return np.asarray((at > _NEAR_END * b.length) & (at < (1.0 - _NEAR_END) * b.length))
+
+    feet, feet_before = (away(known, s, nearest(known))[1] for known in (now, before))
+
+    def measured(places: Array) -> tuple[Array, Array, Array, Array]:
+        """Gaps, feet, sides and distances (n,) of places (n,).
+
+        What lay beyond an end of the other line, or on it, had no side: it has come there past the end.
+        """
+        lateral, at, distance = away(now, places, np.interp(places, s, feet))
+        was, foot, _ = away(before, places, np.interp(places, s, feet_before))
+        side = np.where(np.abs(was) > _TOUCHING, np.sign(was), sides.get((name, one, other), 0.0))
+        side = np.where(between(foot), side, 0.0)
         apart = a.half_thickness(places) + b.half_thickness(at) if contact.thick else 0.0
-        return away - apart, at, side
+        return np.where(side != 0.0, side * lateral - apart, np.inf), at, side, distance
 
-    gaps, at, _ = measured(s, sigma[nearest])
-    inside = (at > _NEAR_END * b.length) & (at < (1.0 - _NEAR_END) * b.length)
+    gaps, at, _, distance = measured(s)
     # far from the side on which it was, a line has not passed the other but gone round its end
-    near = np.hypot(*(A - now.along(other, at)[:2])) < 0.1
-    gaps = np.where(inside & near, gaps, np.inf)
+    gaps = np.where(between(at) & (distance < 0.1), gaps, np.inf)
     found = []
-
-    def gap(places: Array) -> Array:
-        return measured(places, np.interp(places, s, at))[0]
-
-    for place, _, at_end in _minima(gap, s, gaps, touched.get((name, one))):
-        value, foot, sides = measured(np.array([place]), np.interp([place], s, at))
-        if not _NEAR_END * b.length < foot[0] < (1.0 - _NEAR_END) * b.length:
-            continue
-        found.append(Overlap(name, one, place, at_end, other, float(foot[0]), float(sides[0]), float(value[0])))
+    for place, _, at_end in _minima(lambda places: measured(places)[0], s, gaps, touched.get((name, one))):
+        value, foot, side, _ = (float(array[0]) for array in measured(np.array([place])))
+        if between(np.array([foot]))[0]:
+            found.append(Overlap(name, one, place, at_end, other, foot, side, value))
     return found
 
 
@@ -167,21 +174,31 @@ def _minima(
     fence = np.pad(values, 1, constant_values=np.inf)
     step = s[1] - s[0]
     found = []
-    for index in np.flatnonzero((values < _WORTH_REFINING) & (values <= fence[:-2]) & (values < fence[2:])):
+    # a gap changes by no more than the arc length does; it is not least where what it is measured from ends
+    beside = np.pad(np.isfinite(values), 1, constant_values=True)
+    least = (values < step) & (values <= fence[:-2]) & (values < fence[2:]) & beside[:-2] & beside[2:]
+    for index in np.flatnonzero(least):
         i = int(index)
         if touched is not None and touched[0] - step <= s[i] <= touched[1] + step:
             continue
-        best = minimize_scalar(
-            lambda p: float(function(np.array([p]))[0]),
-            bounds=(float(s[i - 1 if i else 0]), float(s[i + 1 if i + 1 < len(s) else i])),
-            method="bounded",
-            options={"xatol": 1e-10},
-        )
-        if i in (0, len(s) - 1) and values[i] <= best.fun:
+        place, value = _least(function, float(s[max(i - 1, 0)]), float(s[min(i + 1, len(s) - 1)]))
+        if i in (0, len(s) - 1) and values[i] <= value:
             found.append((float(s[i]), float(values[i]), True))
         else:
-            found.append((float(best.x), float(best.fun), False))
+            found.append((place, value, False))
     return found
+
+
+def _least(function: Callable[[Array], Array], low: float, high: float) -> tuple[float, float]:
+    """Where a function is least between two places, and its value; roughly so where it is not negative there."""
+    for _ in range(_ZOOMS):
+        s = np.linspace(low, high, _ZOOMED)
+        values = function(s)
+        i = int(np.argmin(values))
+        low, high = float(s[max(i - 1, 0)]), float(s[min(i + 1, len(s) - 1)])
+        if values[i] > high - low:
+            break
+    return float(s[i]), float(values[i])
 
 
 def _held_by(model: Model, strip: Strip, s: float) -> str | None:

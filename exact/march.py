@@ -5,9 +5,9 @@ looked over: a contact that would pull opens, lines that overlap close a contact
 beside the place where it touches lies along it.  Where that happened is found as an equilibrium at which the new
 contact's force, or the old one's, is zero; from there it goes on.
 
-The state of rest is a minimum of the energy, and an equilibrium that is followed from it stays one until the
-determinant of the equations' derivative changes its sign, at a fold or a bifurcation.  There the march ends, and
-also where two beams would lie along each other or one contact be closed at two places at once.
+Every state on the way must be a minimum of the energy (:mod:`exact.stability`), and nothing may have been passed since
+the one before (:mod:`exact.passing`).  The march ends at a fold or a bifurcation, and also where two beams would lie
+along each other or one contact be closed at two places at once.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from exact.closings import close_first
 from exact.gaps import overlaps
 from exact.model import modelled
 from exact.newton import LostError, checked
+from exact.passing import passes
 from exact.probing import answered
 from exact.restructure import NotCoveredError
 from exact.settings import Settings
@@ -93,6 +94,7 @@ def _advance(way: Way, target: float, step: float) -> float:
     whole, changes = target - way.lam, 0
     largest, smallest = way.settings.largest_step * abs(whole), way.settings.smallest_step * abs(whole)
     step = min(largest, step or _FIRST_STEP * abs(whole))
+    reason = ""
     while way.lam != target:
         goal = target if abs(target - way.lam) <= step else way.lam + math.copysign(step, whole)
         try:
@@ -100,13 +102,14 @@ def _advance(way: Way, target: float, step: float) -> float:
             if not _examined(way, trial):
                 changes += 1
             step = min(1.5 * step, largest)
-        except LostError:
+        except LostError as error:
+            reason = f", where {error}" if str(error) else ""
             if slide_onto_end(way, goal):
                 changes += 1
             else:
                 step *= 0.4
         if step < smallest or changes > _CHANGES:
-            raise NotCoveredError(f"no equilibrium was found beyond {way.lam * way.unit:.6g} of {way.stepped}")
+            raise NotCoveredError(f"no equilibrium was found beyond {way.lam * way.unit:.6g} of {way.stepped}{reason}")
     return step
 
 
@@ -119,24 +122,29 @@ def _examined(way: Way, trial: State) -> bool:
     """
     if open_first(way, trial) or reform(way, trial):
         return False
-    centres = {name: centre[:, 0] for name, centre in trial.found.centres.items()}
-    found = overlaps(way.model, trial, way.known, centres, _touched(trial), _OVERLAP)
+    found = overlaps(way.model, trial, way.known, _touched(trial), way.sides, _OVERLAP)
     if found:
-        close_first(way, trial, found)
+        try:
+            close_first(way, trial, found)
+        except LostError as error:
+            raise LostError(f"{found[0].contact} touches") from error
         return False
+    if passes(way.model, way.known, trial):
+        raise LostError
     way.accept(trial)
     return True
 
 
 def _touched(state: State) -> dict[tuple[str, str], tuple[float, float]]:
-    """By contact and beam, from where to where it touches."""
+    """By contact and beam, from where to where it touches; ends that touch are looked at like any place."""
     found = {}
     for name, touch in state.structure.touches.items():
         if isinstance(touch, Wrap):
             found[name, touch.beam] = state.wrapped(touch)
             continue
-        s = touch.at if touch.at is not None else state.places[name, touch.beam]
-        found[name, touch.beam] = (s, s)
+        if touch.at is None:
+            s = state.places[name, touch.beam]
+            found[name, touch.beam] = (s, s)
         if isinstance(touch, Meeting):
             sigma = state.places[name, touch.onto]
             found[name, touch.onto] = (sigma, sigma)

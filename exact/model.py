@@ -63,16 +63,24 @@ class Strip:
         u = np.asarray(s) / self.length
         return np.asarray(self.stiffness * self.beam.width_at(u) * self.beam.thickness_at(u) ** 3 / 12.0)
 
+    def rigidity_slope(self, s: Array) -> Array:
+        """d(EI)/ds, in the piece that :meth:`compliance_slope` speaks of."""
+        width, thickness = self._relative_slopes(s)
+        return np.asarray(self.rigidity(s) * (width + 3.0 * thickness))
+
+    def rigidity_second(self, s: Array) -> Array:
+        """d²(EI)/ds² there: of w t³ with w and t straight."""
+        width, thickness = self._relative_slopes(s)
+        return np.asarray(self.rigidity(s) * 6.0 * thickness * (width + thickness))
+
     def compliance(self, s: Array) -> Array:
         """c."""
         return np.asarray(1.0 / self.rigidity(s))
 
     def compliance_slope(self, s: Array) -> Array:
         """dc/ds in the piece, between two knots, in which the middle of the arc lengths lies."""
-        u = np.asarray(s) / self.length
-        width, thickness = self._slopes(float(np.mean(s)))
-        relative = -width / self.beam.width_at(u) - 3.0 * thickness / self.beam.thickness_at(u)
-        return np.asarray(self.compliance(s) * relative)
+        width, thickness = self._relative_slopes(s)
+        return np.asarray(-self.compliance(s) * (width + 3.0 * thickness))
 
     def half_thickness(self, s: Array) -> Array:
         """Half the thickness (n,); beyond the ends what it is there."""
@@ -81,6 +89,12 @@ class Strip:
     def half_thickness_slope(self, s: float) -> float:
         """How half the thickness grows at an arc length."""
         return 0.5 * self._slopes(s)[1] / self.unit
+
+    def _relative_slopes(self, s: Array) -> tuple[Array, Array]:
+        """w'/w and t'/t (n,), in the piece between two knots in which the middle of the arc lengths lies."""
+        u = np.asarray(s) / self.length
+        width, thickness = self._slopes(float(np.mean(s)))
+        return np.asarray(width / self.beam.width_at(u)), np.asarray(thickness / self.beam.thickness_at(u))
 
     def _slopes(self, s: float) -> tuple[float, float]:
         """dw/ds and dt/ds, in m per unit of length, between the knots round an arc length."""

@@ -54,21 +54,14 @@ def solve(
     last, free = np.inf, int(condition is not None)
     n = len(z)
     for _ in range(iterations):
-        columns = np.concatenate([z, [lam]])[:, None] + 1j * _STEP * np.eye(n + 1)[:, : n + free]
-        asked = replace(equations, guess=_angles(guess))
-        try:
-            found = asked(columns[:n], columns[n])
-        except (UnsolvableError, FloatingPointError) as error:
-            raise LostError from error
-        rows = np.stack([*found.rows, *([condition(columns[:n], found)] if condition is not None else [])])
-        r, J = rows[:, 0].real, rows.imag / _STEP
+        asked = replace(equations, guess=angles_of(guess))
+        found, r, J = linearised(asked, z, lam, condition)
         size = float(np.max(np.abs(r)))
-        if not np.isfinite(size) or size > _LARGEST or not np.all(np.isfinite(J)):
+        if not size <= _LARGEST:
             raise LostError
-        here = State(asked, z, lam, found.real(), size, 0.0)
+        here = State(asked, z, lam, found, size)
         if size < _ROUND_OFF or (size < _SETTLED and size >= 0.5 * last):
-            sign, _ = np.linalg.slogdet(J[:n, :n])
-            return replace(here, sign=float(sign))
+            return here
         last = size
         try:
             step = np.linalg.solve(J, -r)
@@ -81,7 +74,27 @@ def solve(
     raise LostError
 
 
-def _angles(known: Known) -> Callable[[str, Array], Array]:
+def linearised(
+    equations: Equations, z: Array, lam: float, condition: Condition | None = None
+) -> tuple[Evaluation, Array, Array]:
+    """Everything at z (n,) and λ; the rows r (n,) and their derivative J (n, n), with a condition (n + 1,) and so on.
+
+    Raises:
+        LostError: a piece cannot be integrated, or something is not finite.
+    """
+    n, free = len(z), int(condition is not None)
+    columns = np.concatenate([z, [lam]])[:, None] + 1j * _STEP * np.eye(n + 1)[:, : n + free]
+    try:
+        found = equations(columns[:n], columns[n])
+    except (UnsolvableError, FloatingPointError) as error:
+        raise LostError from error
+    rows = np.stack([*found.rows, *([condition(columns[:n], found)] if condition is not None else [])])
+    if not np.all(np.isfinite(rows)):
+        raise LostError
+    return found.real(), np.ascontiguousarray(rows[:, 0].real), rows.imag / _STEP
+
+
+def angles_of(known: Known) -> Callable[[str, Array], Array]:
     """Tangent angles of the last iterate; places of contact, where pieces begin, may have moved since."""
     return lambda beam, s: known.along(beam, s)[2]
 
@@ -93,7 +106,7 @@ def checked(state: State, further: int) -> float:
         LostError: a piece cannot be integrated so.
     """
     equations = state.equations
-    finer = replace(equations, nodes=equations.nodes + further, guess=_angles(state))
+    finer = replace(equations, nodes=equations.nodes + further, guess=angles_of(state))
     try:
         found = finer(state.z[:, None], np.array([state.lam]))
     except UnsolvableError as error:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from frozendict import frozendict
 
@@ -24,16 +22,18 @@ _FLOOR = 1e-13  # of a residual, no dimension: some hundred roundings
 def answered(way: Way, value: float, finer: float) -> StationAnswer:
     """A station's answer; ``finer`` is the largest row with more Gauss points."""
     model, state, scene = way.model, way.state, way.model.scene
-    balance = [float(np.max(np.abs(act[:, 0]))) for body, act in state.found.on_body.items() if body in model.moving]
+    # a guide holds a slide in all but one way; what is left of that is a row of the equations
+    free = [body for body, freedoms in model.moving.items() if freedoms == 3]
+    left = max((float(np.max(np.abs(state.found.on_body[body]))) for body in free), default=0.0)
     certificate = Certificate(
         residual=max(finer, state.residual),
         residual_floor=_FLOOR,
         violation=state.residual,
         penetration=0.0,
         complementarity=0.0,
-        force_balance=max(balance, default=0.0),
-        moment_balance=max(balance, default=0.0),
-        smallest_curvature=math.nan,
+        force_balance=left,
+        moment_balance=left,
+        smallest_curvature=way.curvature,
         iterations=way.states,
     )
     shapes = {}

@@ -116,7 +116,10 @@ def piece(law: Law, q: Array, guess: Array) -> Piece:
         if size <= _SETTLED * (1.0 + float(np.max(np.abs(theta)))) or (size < 1e-11 and size >= 0.5 * last):
             break
         last = size
-        theta = theta - np.linalg.solve(A, r)
+        try:
+            theta = theta - np.linalg.solve(A, r)
+        except np.linalg.LinAlgError as error:
+            raise UnsolvableError from error
         if not np.all(np.isfinite(theta)):
             raise UnsolvableError
     else:

@@ -15,15 +15,18 @@ from exact.evaluation import Evaluation, Part
 from exact.model import Model
 from exact.spectral import rule
 from exact.structure import Structure, Wrap
+from exact.wrapping import bending
+from scene import CircleContact
 from scene.answer import Array
 
 _AT_START = 1e-16  # of a piece
 
 
 class Known(Protocol):
-    """Something that knows (x, y, θ, m, Fx, Fy) (6, n) along every beam, and unknowns that have names of their own."""
+    """Something that knows (x, y, θ, m, Fx, Fy) (6, n) along beams, circles' centres (2,), and unknowns with names."""
 
     def along(self, beam: str, s: Array) -> Array: ...  # noqa: D102
+    def centre(self, contact: str) -> Array: ...  # noqa: D102
     def unknowns(self) -> Mapping[str, float | Array]: ...  # noqa: D102
 
 
@@ -37,6 +40,12 @@ class Rest:
         """(x, y, θ, m, Fx, Fy) (6, n) at arc lengths ``s`` (n,)."""
         line = self.model.strips[beam].line
         return np.concatenate([line.place(s), line.angle(s)[None], np.zeros((3, len(s)))])
+
+    def centre(self, contact: str) -> Array:
+        """A circle's centre (2,)."""
+        record = self.model.scene.contacts[contact]
+        assert isinstance(record, CircleContact)
+        return np.array(record.center) / self.model.unit_length
 
     def unknowns(self) -> Mapping[str, float | Array]:
         """None: all are zero."""
@@ -52,7 +61,6 @@ class State:
         z: unknowns (n,); lam: λ.
         found: everything at z, one column each.
         residual: largest row.
-        sign: of the determinant of the equations' derivative.
     """
 
     equations: Equations
@@ -60,7 +68,6 @@ class State:
     lam: float
     found: Evaluation
     residual: float
-    sign: float
 
     @property
     def structure(self) -> Structure:
@@ -76,6 +83,10 @@ class State:
     def places(self) -> dict[tuple[str, str], float]:
         """Places of contact by (contact, key) as in :class:`exact.layout.Layout`."""
         return {key: float(self.z[index]) for key, index in self.equations.layout.places.items()}
+
+    def centre(self, contact: str) -> Array:
+        """A circle's centre (2,)."""
+        return self.found.centres[contact][:, 0]
 
     def unknowns(self) -> Mapping[str, float | Array]:
         """The bodies' and drives' unknowns and the contacts' forces, by name."""
@@ -107,18 +118,18 @@ class State:
     def _wrapped(self, wrap: Wrap, s: Array) -> Array:
         """As :meth:`along`, in a wrap; the formulas are those of :mod:`exact.wrapping`."""
         zone, g = self.found.zones[wrap.contact], wrap.sense
-        line, strip = self.equations.model.strips[wrap.beam].line, self.equations.model.strips[wrap.beam]
+        strip = self.equations.model.strips[wrap.beam]
         centre = self.found.centres[wrap.contact][:, 0]
         arm = zone.place[:, 0] - centre
         rho = float(np.hypot(*arm))
         at = np.concatenate([zone.a, s])
         by = g * (at - at[0]) / rho
         theta = float(zone.angle[0]) + by
-        m = strip.rigidity(at) * (g / rho - line.curvature(at))
+        m, dm, _ = bending(strip, g / rho, at)
         tau = np.stack([np.cos(theta), np.sin(theta)])
         n = np.stack([-tau[1], tau[0]])
         N = float(zone.first[:, 0] @ tau[:, 0]) - g / rho * (m - m[0])
-        F = N * tau + strip.rigidity(at) * line.curvature_slope(at) * n  # F·n = −m'
+        F = N * tau - dm * n  # F·n = −m'
         cos, sin = np.cos(by), np.sin(by)
         x, y = centre[0] + cos * arm[0] - sin * arm[1], centre[1] + sin * arm[0] + cos * arm[1]
         return np.stack([x, y, theta, m, F[0], F[1]])[:, 1:]
@@ -135,7 +146,7 @@ class State:
         e = g * np.stack([tau[1], -tau[0]])
         rho = float(np.hypot(*(state[:2, 0] - self.found.centres[wrap.contact][:, 0])))
         N = np.sum(tau * state[4:], axis=0)[1:-1]
-        pressure = N / rho + g * strip.rigidity(s) * strip.line.curvature_second(s)
+        pressure = N / rho - g * bending(strip, g / rho, s)[2]
         begin, end = (zone.before - zone.first)[:, 0] @ e[:, 0], (zone.last - zone.after)[:, 0] @ e[:, -1]
         return np.asarray(pressure), float(begin), float(end)
 
@@ -148,7 +159,7 @@ def _through(p: int) -> tuple[Array, Array]:
 
 
 def _within(part: Part, s: Array) -> Array:
-    """(x, y, θ, m, Fx, Fy) (6, n) inside a piece."""
+    """(x, y, θ, m, Fx, Fy) (6, n) inside a piece; beyond its ends what is there, for a piece that grows."""
     solved, start, end = part.solved, part.start[:, 0], part.end[:, 0]
     a, h = float(part.a[0]), float(part.b[0] - part.a[0])
     gauss = rule(len(solved.theta))
@@ -158,7 +169,7 @@ def _within(part: Part, s: Array) -> Array:
     values = np.concatenate([start[:4, None], inner, end[:, None]], axis=1)
     points, weights = _through(len(solved.theta))
     through = BarycentricInterpolator(points, values.T, wi=weights)
-    xi = (s - a) / h if h != 0.0 else np.zeros_like(s)
+    xi = np.clip((s - a) / h, 0.0, 1.0) if h != 0.0 else np.zeros_like(s)
     xi = np.where(np.abs(xi) < _AT_START, 0.0, xi)  # the interpolation divides by its distance from its points
     return np.concatenate([through(xi).T, np.tile(start[4:, None], (1, len(s)))])
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -13,8 +14,9 @@ from exact.model import Model
 from exact.newton import Condition, LostError, solve
 from exact.restructure import NotCoveredError, structured
 from exact.settings import Settings
+from exact.stability import least_curvature
 from exact.state import Known, Rest, State, start_of
-from exact.structure import Structure, Touch
+from exact.structure import Meeting, Structure, Touch
 from scene import Event, Stage
 from scene.answer import Array
 
@@ -34,6 +36,8 @@ class Way:
         lam: λ there.
         events: contacts that have closed; ``closed_at`` by contact where it did so first, SI.
         states: number of equilibria.
+        curvature: least one of the energy at the last of them.
+        sides: as :func:`exact.gaps.overlaps` asks, of contacts that touch at the last of them, or open there.
     """
 
     model: Model
@@ -48,6 +52,8 @@ class Way:
     events: list[Event] = field(default_factory=list)
     closed_at: dict[str, float] = field(default_factory=dict)
     states: int = 0
+    curvature: float = math.nan
+    sides: dict[tuple[str, str, str], float] = field(default_factory=dict)
 
     @property
     def state(self) -> State:
@@ -136,15 +142,15 @@ class Way:
             raise LostError
         return trial
 
-    def at(self, which: tuple[str, str] | str, value: float, goal: float) -> State:
-        """The equilibrium between here and λ = ``goal`` at which a force or a place has a value.
+    def at(self, which: tuple[str, str] | str, value: float, near: float, goal: float) -> State:
+        """The equilibrium between here and λ = ``goal``, about at λ = ``near``, where a force or a place has a value.
 
         Raises:
             LostError: there is none.
         """
         where = self.state.equations.layout
         index = where.forces[which] if isinstance(which, str) else where.places[which]
-        found = solve(self.state.equations, self.state.z, goal, self.settings.iterations, self.state,
+        found = solve(self.state.equations, self.state.z, near, self.settings.iterations, self.state,
                       _held_at(index, value))  # fmt: skip
         return self.between(found, goal)
 
@@ -164,17 +170,26 @@ class Way:
         """Go to a state.
 
         Raises:
-            NotCoveredError: the determinant has changed its sign on the way there.
+            LostError: the equations are singular there.
+            NotCoveredError: it is no minimum of the energy.
         """
         same = self.now is not None and self.now.structure == state.structure
-        if self.now is not None and same and state.sign * self.now.sign < 0.0:
+        self.curvature = least_curvature(state)
+        if self.curvature < 0.0:
             raise NotCoveredError(
-                f"the path comes to a fold or a bifurcation between {self.now.lam * self.unit:.6g} "
+                f"the path comes to a fold or a bifurcation between {self.lam * self.unit:.6g} "
                 f"and {state.lam * self.unit:.6g} of {self.stepped}"
             )
         self.before = self.now if same and self.now is not None and self.now.lam != state.lam else None
-        self.now, self.lam = state, state.lam
+        self.now, self.lam, self.sides = state, state.lam, {}
+        for touch in state.structure.touches.values():
+            self.note_side(touch)
         self.states += 1
+
+    def note_side(self, touch: Touch) -> None:
+        """Note on which side a beam lies that touches another, or has just ceased to."""
+        if isinstance(touch, Meeting):
+            self.sides[touch.contact, touch.beam, touch.onto] = touch.side
 
     def note_closed(self, contact: str, lam: float, goal: float) -> None:
         """Note that a contact closes at λ, on the way to ``goal``; what touches from the first closes there."""

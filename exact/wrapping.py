@@ -1,9 +1,9 @@
-"""Contact along a circle: a beam of one section that lies on it from a to b.
+"""Contact along a circle: a beam that lies on it from a to b, between two knots of its section.
 
 =======  ==================================================================================================
 symbol   meaning
 =======  ==================================================================================================
-o, ρ     the circle's centre; its radius and half the beam's thickness
+o, ρ     the circle's centre; its radius and, of a thick beam, which has one thickness, half of that
 g        +1 where the beam runs round it counter-clockwise, else −1; κ_c = g/ρ
 τ, n, e  unit tangent, left-hand normal, outward normal e = −g n
 m, F     internal moment and force; N = F·τ; ' is d/ds
@@ -27,6 +27,7 @@ from exact.layout import Layout
 from exact.model import Strip
 from exact.structure import Wrap
 from scene import CircleContact
+from scene.answer import Array
 
 
 def lie_between(out: Evaluation, where: Layout, wrap: Wrap, before: Part, after: Part, z: Columns) -> None:
@@ -94,10 +95,17 @@ def _note(out: Evaluation, wrap: Wrap, zone: Zone) -> None:
 def _moment(strip: Strip, wrap: Wrap, rho: float, s: Columns) -> tuple[Columns, Columns]:
     """m and m' (K,) at an arc length (K,)."""
     at = np.array([float(s[0].real)])
-    EI, kappa0, slope = (float(f(at)[0]) for f in (strip.rigidity, strip.line.curvature, strip.line.curvature_slope))
-    bend = float(strip.line.curvature_second(at)[0])
+    m, dm, ddm = (float(value[0]) for value in bending(strip, wrap.sense / rho, at))
     away = s - at[0]  # zero but for the complex step
-    return EI * (wrap.sense / rho - kappa0 - slope * away), -EI * (slope + bend * away)
+    return m + dm * away, dm + ddm * away
+
+
+def bending(strip: Strip, kappa: float, s: Array) -> tuple[Array, Array, Array]:
+    """m, m' and m'' (n,) of a beam that is bent to one curvature, at arc lengths (n,)."""
+    EI, dEI, ddEI = strip.rigidity(s), strip.rigidity_slope(s), strip.rigidity_second(s)
+    change = kappa - strip.line.curvature(s)
+    slope, second = strip.line.curvature_slope(s), strip.line.curvature_second(s)
+    return EI * change, dEI * change - EI * slope, ddEI * change - 2.0 * dEI * slope - EI * second
 
 
 def _round(place: Columns, centre: Columns, angle: Columns, by: Columns) -> tuple[Columns, Columns]:

@@ -28,6 +28,7 @@ _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _TIGHTENINGS = 25
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
 _NEARBY = (1e-3, 1e-2, 1e-1)  # of a step: where to look for a closing under tighter penalties
+_DEEPER = 1e-3  # of the shortest element: by how much a contact sinks that is about to be passed
 _CLOSED = 1e-9  # of the thickness, a gap that is none
 _AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
 _EVEN = 0.03  # by which a penalty may differ from the one wanted
@@ -154,9 +155,10 @@ class March:
                     f"no closing of a contact found beyond {self._shown(load, start)}",
                 )
             value, system = found
-        for pair in self.open:
+        pressing = {one.pair for one in system.touches if one.closed}
+        for pair in (*self.open, *self.penalties):
             closing = zones_of(self.model, pair, system.z).least <= _CLOSED * pair.scale
-            if not closing and self._overlapped_between(pair, before, system.z):
+            if not closing and pair not in pressing and self._overlapped_between(pair, before, system.z):
                 return (
                     Ending.BEAMS_CROSSED,
                     f"beyond {self._shown(load, start)} what may touch in {pair.name} passes through each other",
@@ -180,18 +182,20 @@ class March:
         return None
 
     def _overlapped_between(self, pair: Contact, before: State, after: State) -> bool:
-        """Whether a contact that is open in two states overlaps between them, on the straight way.
+        """Whether a contact that is open after a step overlaps on the straight way there, deeper than before.
 
         An overlap deeper than some elements is taken for the far side of a bent beam, so that a beam that has gone
         past the end of another in one step may lie open behind it.
         """
         way = after.values - before.values
         moved = float(np.abs(way[self._moving]).max())
-        if zones_of(self.model, pair, before).least > 2.0 * moved:
+        least = zones_of(self.model, pair, before).least
+        if least > 2.0 * moved:
             return False
+        deepest = least - _DEEPER * self._finest if least < 0.0 else 0.0
         parts = max(2, int(np.ceil(moved / self._finest)))
         between = (State.of(before.values + part * way) for part in np.arange(1, parts) / parts)
-        return any(zones_of(self.model, pair, state).least < 0.0 for state in between)
+        return any(zones_of(self.model, pair, state).least < deepest for state in between)
 
     @property
     def _finest(self) -> float:

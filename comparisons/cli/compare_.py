@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import click
 
 from comparisons.choices import Kinematics
-from comparisons.cli.options import folder, numerical, output
+from comparisons.cli.options import folder, numerical, one_of_both, output
 
 if TYPE_CHECKING:
     from comparisons.documents import Plain
     from comparisons.offset_verdict import OffsetComparison
+    from comparisons.tolerances.search import Tolerance
     from comparisons.verdict import Comparison
 
 
@@ -32,6 +33,7 @@ def command(
     formulation: Literal["auto", "paper"],
     kinematics: Kinematics,
     penetration: float,
+    tol: float | None,
     json_file: Path | None,
     quiet: bool,  # noqa: FBT001 - click hands it over by name
     out: Path | None,
@@ -42,11 +44,12 @@ def command(
     from comparisons.cli import showing
     from comparisons.cli.asking import questions
     from comparisons.offset_verdict import OffsetComparison, compared_offset
-    from comparisons.pairing import Solvers, crew_of, paired, solvers_of
+    from comparisons.pairing import crew_of, paired, solvers_of, workers_for
+    from comparisons.tolerances.tolerated import paired_within
     from comparisons.verdict import compared
     from scene import OffsetQuestion
 
-    workers = 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
+    one_of_both(tol)
     solvers = solvers_of(planted)
     scenes = questions(asked)
     choices = Choices(links, formulation, elements, kinematics, penetration)
@@ -59,13 +62,20 @@ def command(
     printing = str(json_file) != "-"
     finished: list[Comparison | OffsetComparison] = []
     chapters: tuple[report.Chapter, ...] = ()
-    with crew_of(workers) as crew:
-        for scene in showing.progress(scenes, shown=not quiet):
+    with crew_of(workers_for(planted)) as crew:
+        # a line that says which N is being solved stands in the bar's place
+        for scene in showing.progress(scenes, shown=not quiet and tol is None):
             comparison: Comparison | OffsetComparison
             if isinstance(scene, OffsetQuestion):
                 comparison = compared_offset(scene, solvers.offset)
             else:
-                comparison = compared(scene, paired(scene, choices, solvers, crew))
+                found: tuple[Tolerance, ...] = ()
+                if tol is None:
+                    runs = paired(scene, choices, solvers, crew)
+                else:
+                    with showing.current(shown=not quiet) as say:
+                        runs, found = paired_within(scene, choices, tol, solvers, crew, say)
+                comparison = replace(compared(scene, runs), tolerances=found)
             finished.append(comparison)
             if out is not None:
                 chapters = report.add(out, chapters, comparison)
@@ -81,6 +91,8 @@ def command(
                             click.echo(sentence + "\n")
                 verdict = comparison.verdict
                 click.echo(f"{scene.name}: {verdict.word.value}. {verdict.sentence}")
+                for tolerance in _beyond(comparison):
+                    click.echo(f"{scene.name}: {tolerance.sentence}")
     if json_file is not None and str(json_file) == "-":
         showing.json(json_file, {"cases": [_document(one) for one in finished]})
     if out is not None and printing and not quiet:
@@ -89,13 +101,24 @@ def command(
 
 
 def exit_code(finished: Sequence[Comparison | OffsetComparison]) -> int:
-    """0 if all agree; 1 if any differs or a solve did not complete; 3 if nothing is worse than undecided."""
+    """0 if all agree; 1 if any differs or a solve did not complete; 3 if nothing is worse than undecided.
+
+    An uncertainty that is not within the tolerance asked is as undecided as a verdict can be.
+    """
     from comparisons.verdict import Word
 
     verdicts = [comparison.verdict for comparison in finished]
     if any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts):
         return 1
-    return 3 if any(verdict.word is Word.UNDECIDED for verdict in verdicts) else 0
+    undecided = any(verdict.word is Word.UNDECIDED for verdict in verdicts)
+    return 3 if undecided or any(_beyond(comparison) for comparison in finished) else 0
+
+
+def _beyond(one: Comparison | OffsetComparison) -> tuple[Tolerance, ...]:
+    """The searches for N that have not met their tolerance."""
+    from comparisons.offset_verdict import OffsetComparison
+
+    return () if isinstance(one, OffsetComparison) else tuple(found for found in one.tolerances if not found.met)
 
 
 def _document(one: Comparison | OffsetComparison) -> Plain:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-import os
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -13,7 +14,8 @@ from comparisons.cli.options import family_sizes, folder, output, variants
 
 if TYPE_CHECKING:
     from comparisons.choices import Choices
-    from comparisons.convergence_report import Told
+    from comparisons.converging.report import Told
+    from comparisons.documents import Plain
     from comparisons.pairing import Crew, Solvers
     from scene import Question
 
@@ -45,13 +47,13 @@ def command(
     out: Path | None,
 ) -> int:
     """See how the error falls with N, with which order and to which limit, and what a difference is made of."""
-    from comparisons import convergence_report
     from comparisons.choices import Choices
     from comparisons.cli import showing
     from comparisons.cli.asking import questions
-    from comparisons.pairing import Solvers, crew_of, solvers_of
+    from comparisons.converging import report
+    from comparisons.pairing import crew_of, solvers_of, workers_for
 
-    workers = 1 if isinstance(planted, Solvers) else min(2, os.cpu_count() or 1)
+    workers = workers_for(planted)
     solvers = solvers_of(planted)
     wanted = questions(asked)
     if out is None and "all" in asked:
@@ -60,44 +62,55 @@ def command(
     choices = Choices(formulation=formulation, kinematics=kinematics)
     printing = str(json_file) != "-"
     finished: list[Told] = []
-    chapters: tuple[convergence_report.Chapter, ...] = ()
+    chapters: tuple[report.Chapter, ...] = ()
     with crew_of(workers) as crew:
         for question in showing.progress(wanted, shown=not quiet):
             told = _told(question, sizes, choices, solvers, crew)
             finished.append(told)
             if out is not None:
-                chapters = convergence_report.add(out, chapters, told)
+                chapters = report.add(out, chapters, told)
             if json_file is not None and printing:
-                showing.json(json_file, {"cases": [one.data for one in finished]})
+                showing.json(json_file, _document(finished, wanted))
             if printing and not quiet:
                 showing.tables(told.sheets)
             if printing:
                 for sentence in told.sentences:
                     click.echo(f"{question.name}: {sentence}")
     if json_file is not None and not printing:
-        showing.json(json_file, {"cases": [one.data for one in finished]})
+        showing.json(json_file, _document(finished, wanted))
     if out is not None and printing and not quiet:
         click.echo(f"report: {out / 'index.html'}")
     return 0 if all(told.completed for told in finished) else NOT_COMPLETED
 
 
+def _document(finished: Sequence[Told], wanted: Sequence[Question]) -> Plain:
+    """Of one question its own document, of several theirs as ``cases``."""
+    return finished[0].data if len(wanted) == 1 else {"cases": [told.data for told in finished]}
+
+
 def _told(question: Question, sizes: tuple[int, ...], choices: Choices, solvers: Solvers, crew: Crew) -> Told:
     """Everything that there is to tell of one question."""
-    from comparisons import budget_drawn, budget_told, convergence_drawn, convergence_told, offset_converged
-    from comparisons.accounts import account_of
-    from comparisons.convergence_report import Told
-    from comparisons.families import converged
+    from comparisons.budgets import drawn as budget_drawn
+    from comparisons.budgets import told as budget_told
+    from comparisons.budgets.accounts import accounted
+    from comparisons.converging import drawn, offset
+    from comparisons.converging import told as numbers
+    from comparisons.converging.families import converged
+    from comparisons.converging.report import Told
+    from comparisons.memory import Remembering
     from scene import OffsetQuestion
 
     if isinstance(question, OffsetQuestion):
-        return offset_converged.told(question, sizes, solvers.offset)
-    found = converged(question, sizes, choices, solvers, crew)
-    account = account_of(found, choices, solvers, crew)
+        return offset.told(question, sizes, solvers.offset)
+    memory = Remembering(pool=crew.pool, solvers=solvers)
+    found = converged(question, sizes, choices, solvers, memory)
+    n = numbers.shown_size(found)
+    account = accounted(question, replace(choices, links=n, elements=2 * n), memory)
     return Told(
         question,
-        (*convergence_told.sheets_of(found), *budget_told.sheets_of(account)),
-        (*convergence_told.sentences_of(found), *budget_told.sentences_of(account)),
-        (*convergence_drawn.of_convergence(found), *budget_drawn.of_account(account)),
-        {**convergence_told.document(found), **budget_told.data_of(account)},
+        (*numbers.sheets_of(found), *budget_told.sheets_of(account)),
+        (*numbers.sentences_of(found), *budget_told.sentences_of(account)),
+        (*drawn.of_convergence(found), *budget_drawn.of_account(account)),
+        {**numbers.document(found), **budget_told.data_of(account)},
         found.completed and not account.missing,
     )

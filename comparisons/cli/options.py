@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+from click.core import ParameterSource
 
 from comparisons.choices import KINEMATICS, Choices
 
@@ -92,6 +93,33 @@ def fraction(ctx: click.Context, param: click.Parameter, value: str) -> float:
     return number
 
 
+def tolerance(ctx: click.Context, param: click.Parameter, value: str | None) -> float | None:
+    """``0.1%`` or ``0.001`` as a fraction; None where nothing is given.
+
+    Raises:
+        click.BadParameter: the text is neither, or does not lie between 0 and 100 %.
+    """
+    if value is None:
+        return None
+    text = value.strip()
+    number = _number(text[:-1]) / 100.0 if text.endswith("%") else _number(text)
+    if not 0.0 < number < 1.0:
+        raise click.BadParameter(f"found {value!r}; allowed: as 0.1% or as 0.001, greater than 0 and less than 1")
+    return number
+
+
+def one_of_both(found: float | None) -> None:
+    """See that N was not given beside a tolerance, by which it is found.
+
+    Raises:
+        click.UsageError: it was.
+    """
+    source = click.get_current_context().get_parameter_source
+    for name, option in (("links", "-n"), ("elements", "--elements")):
+        if found is not None and source(name) is not ParameterSource.DEFAULT:
+            raise click.UsageError(f"found --tol and {option}; allowed: one of them, for --tol finds N by itself.")
+
+
 def _number(text: str) -> float:
     try:
         return float(text)
@@ -109,8 +137,11 @@ def variants(command: Decorated) -> Decorated:
 
 
 def numerical(command: Decorated) -> Decorated:
-    """The options that make up :class:`comparisons.choices.Choices`."""
+    """The options that make up :class:`comparisons.choices.Choices`, and the tolerance in the place of N."""
     standard = Choices()
+    command = click.option("--tol", callback=tolerance, metavar="TOL",
+                           help="Find the cheapest N whose own error estimate is within this, as 0.1% or 0.001, at "
+                           "every probe and station; in the place of -n and --elements.")(command)  # fmt: skip
     command = click.option("--penetration", callback=fraction, default=str(standard.penetration), show_default=True,
                            help="Overlap that the finite elements may leave, over the thickness.")(command)  # fmt: skip
     command = variants(command)

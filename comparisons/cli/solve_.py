@@ -4,31 +4,36 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import click
 
 from comparisons.choices import Kinematics
-from comparisons.cli.options import numerical, output
+from comparisons.cli.options import numerical, one_of_both, output
+
+if TYPE_CHECKING:
+    from comparisons.tolerances.search import Tolerance
 
 NOT_COMPLETED = 1
+NOT_WITHIN = 3
 
 
 @click.command("solve")
 @click.argument("case", metavar="CASE|FILE.toml")
-@click.option("--solver", type=click.Choice(["cprbm", "fea"]), default="cprbm", show_default=True)
+@click.option("--solver", type=click.Choice(["cprbm", "fea", "exact"]), default="cprbm", show_default=True)
 @numerical
 @output
 @click.pass_obj
 def command(
     planted: object,
     case: str,
-    solver: str,
+    solver: Literal["cprbm", "fea", "exact"],
     links: int | Mapping[str, int],
     elements: int | Mapping[str, int],
     formulation: Literal["auto", "paper"],
     kinematics: Kinematics,
     penetration: float,
+    tol: float | None,
     json_file: Path | None,
     quiet: bool,  # noqa: FBT001 - click hands it over by name
 ) -> int:
@@ -36,19 +41,32 @@ def command(
     from comparisons import cases, documents, sheets
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
-    from comparisons.pairing import solvers_of
+    from comparisons.pairing import exact_answer, solvers_of
+    from comparisons.tolerances import tolerated
 
+    one_of_both(tol)
     solvers = solvers_of(planted)
     scene = cases.opened(case)
     choices = Choices(links, formulation, elements, kinematics, penetration)
     check(choices, scene)
     showing.room_for(json_file)
-    answer = (solvers.cprbm if solver == "cprbm" else solvers.fea)(scene, choices)
+    found: tuple[Tolerance, ...] = ()
+    if tol is not None and solver != "exact":
+        with showing.current(shown=not quiet) as say:
+            answer, reached = tolerated.solved(scene, solver, choices, tol, solvers, say)
+        found = (reached,)
+    else:
+        asked = {"cprbm": solvers.cprbm, "fea": solvers.fea, "exact": solvers.exact or exact_answer}[solver]
+        answer = asked(scene, choices)
     if json_file is not None:
-        showing.json(json_file, {"cases": [documents.solution(scene, answer)]})
+        showing.json(json_file, {"cases": [documents.solution(scene, answer, found)]})
     if not quiet and str(json_file) != "-":
-        showing.tables(sheets.of_answer(scene, answer))
+        showing.tables(sheets.of_answer(scene, answer, found))
     if not answer.completed:
         click.echo(f"cprbm: {scene.name}: {answer.ending.value}. {answer.sentence}".rstrip(), err=True)
         return NOT_COMPLETED
+    for reached in found:
+        if not reached.met:
+            click.echo(f"cprbm: {scene.name}: {reached.sentence}", err=True)
+            return NOT_WITHIN
     return 0

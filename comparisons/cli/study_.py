@@ -52,6 +52,38 @@ def materials(
     return 0 if all(tested.comparison.verdict.completed for tested in found.tested) else 1
 
 
+@command.command("calibration")
+@output
+@folder("Folder for the page, the numbers and the figure.")
+@click.pass_obj
+def calibration(
+    planted: object,
+    json_file: Path | None,
+    quiet: bool,  # noqa: FBT001 - click hands it over by name
+    out: Path | None,
+) -> int:
+    """Stated uncertainties beside true errors, on every case of which an exact answer is known."""
+    from comparisons.cli import showing
+    from comparisons.pairing import crew_of, solvers_of, workers_for
+    from comparisons.studies import calibration as study
+    from comparisons.studies.calibration_told import told
+    from comparisons.verdict import Word
+
+    showing.room_for(json_file, out)
+    solvers = solvers_of(planted)
+    show = partial(_show, json_file=json_file, out=out, quiet=quiet)
+    pieces = showing.progress(study.pieces(), shown=not quiet)
+    with crew_of(workers_for(planted)) as crew:
+        found = _answered(
+            study.Calibration(),
+            pieces,
+            lambda found, piece: study.with_piece(found, piece, solvers, crew),
+            told,
+            show,
+        )
+    return 1 if any(trial.verdict.word is Word.DIFFER or not trial.verdict.completed for trial in found.trials) else 0
+
+
 @command.command("table1")
 @timed("How often each cell is solved.", "is not repeated.")
 @output

@@ -24,10 +24,10 @@ from dataclasses import dataclass
 from frozendict import frozendict
 
 from comparisons import cases
+from comparisons.budgets.poisson import with_ratio
 from comparisons.choices import Choices, Count, Kinematics
 from comparisons.measures import station_of
 from comparisons.pairing import Solvers, paired
-from comparisons.poisson import with_ratio
 from comparisons.scales import norm
 from comparisons.soundness import complaints
 from comparisons.studies.last_loads import at_last_loads

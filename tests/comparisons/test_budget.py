@@ -1,18 +1,20 @@
 """Error budgets of made-up answers whose parts are known, and what is told of them."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from frozendict import frozendict
 
-from comparisons import budget_drawn, budget_told
-from comparisons.accounts import accounted
-from comparisons.budget import Budget, budgets_of
-from comparisons.budget_runs import asked, budgeted
+from comparisons.budgets import drawn, told
+from comparisons.budgets.accounts import accounted
+from comparisons.budgets.parts import Budget, budgets_of
+from comparisons.budgets.runs import budgeted
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.documents import text
+from comparisons.memory import Remembering
 from comparisons.pairing import Solvers
 from scene import Material, Stage
 from tests.comparisons.made_up import THEORY, MadeUp
@@ -24,7 +26,7 @@ LOAD = 0.067
 def budget_at(scene, solvers, choices=None, probe="BD.rotation") -> Budget:
     """The budget at the load before contact, as ``paper`` may be run there."""
     before = scene.model_copy(update={"stages": (Stage(name="load", steps="M", stations=(LOAD,)),), "claims": ()})
-    runs = budgeted(before, choices or Choices(), solvers)
+    runs = budgeted(before, choices or Choices(), Remembering(solvers=solvers))
     (found,) = [each for each in budgets_of(before, runs) if each.row.probe.name == probe]
     return found
 
@@ -62,7 +64,7 @@ def test_where_paper_was_chosen_the_contact_is_a_part(hinge):
 @pytest.mark.parametrize("formulation", ["auto", "paper"])
 def test_the_parts_sum_to_the_difference(hinge, formulation):
     solvers = Solvers(MadeUp("cprbm", 2e-3, paper=1e-3), MadeUp("fea", -5e-4, penalty=2e-4))
-    budgets = budgets_of(hinge, budgeted(hinge, Choices(formulation=formulation), solvers))
+    budgets = budgets_of(hinge, budgeted(hinge, Choices(formulation=formulation), Remembering(solvers=solvers)))
     assert len(budgets) > 100
     for each in budgets:
         assert sum(each.parts.by_name().values()) == pytest.approx(each.row.difference, rel=1e-9, abs=1e-18)
@@ -93,7 +95,7 @@ def test_parts_that_cancel_are_told_along_the_value(hinge):
 
 
 def test_an_open_contact_has_no_budget(hinge, right):
-    budgets = budgets_of(hinge, budgeted(hinge, Choices(), right))
+    budgets = budgets_of(hinge, budgeted(hinge, Choices(), Remembering(solvers=right)))
     of_contact = {(each.row.probe.name, each.row.station) for each in budgets if each.row.probe.of == "contact"}
     names = {name for name, station in of_contact if station == 0.67}
     assert names == {"contact.force", "contact.centre", "contact.closing_load"}
@@ -114,38 +116,51 @@ def test_what_is_known_is_not_run_again(hinge, right):
 
     def counting(solver, name):
         def answer(scene, choices):
-            calls.append(asked(name, choices))
+            calls.append((name, choices))
             return solver(scene, choices)
 
         return answer
 
-    solvers = Solvers(counting(right.cprbm, "cprbm"), counting(right.fea, "fea"))
-    choices = Choices(links=frozendict({"beam1": 30, "beam2": 40}))
-    first = budgeted(hinge, choices, solvers)
+    memory = Remembering(solvers=Solvers(counting(right.cprbm, "cprbm"), counting(right.fea, "fea")))
+    choices = Choices(links=30)
+    first = budgeted(hinge, choices, memory)
     every = [each for each in calls if each[1].formulation == "auto"]
     assert len(every) == len(set(every)) == 3 + 3 + 2 + 2 + 1  # links, penetrations, n and 2n; n in shear is known
-    known = {each: {"cprbm": right.cprbm, "fea": right.fea}[each[0]](hinge, each[1]) for each in every}
     calls.clear()
-    again = budgeted(hinge, choices, solvers, known=known)
-    assert {each[1].formulation for each in calls} == {"paper"}
+    again = budgeted(hinge, choices, memory)
+    assert {own.formulation for _, own in calls} == {"paper"}
     for one, other in zip(budgets_of(hinge, first), budgets_of(hinge, again), strict=True):
         assert one.parts == other.parts
 
 
-def test_a_solver_does_not_heed_the_others_choices():
-    assert asked("cprbm", Choices(elements=20, penetration=1e-5)) == asked("cprbm", Choices())
-    assert asked("fea", Choices(links=20, formulation="paper")) == asked("fea", Choices())
-    assert asked("fea", Choices(kinematics="bending")) != asked("fea", Choices())
-    assert asked("cprbm", Choices(links={"a": 1})) == asked("cprbm", Choices(links=frozendict({"a": 1})))
+@pytest.mark.parametrize(
+    ("solver", "own", "calls"),
+    [
+        ("cprbm", Choices(elements=20, penetration=1e-5), 1),
+        ("cprbm", Choices(links={"beam1": 40, "beam2": 40}), 2),
+        ("fea", Choices(links=20, formulation="paper"), 1),
+        ("fea", Choices(kinematics="bending"), 2),
+    ],
+)
+def test_a_solver_does_not_heed_the_others_choices(hinge, right, solver, own, calls):
+    found = []
+
+    def counting(scene, choices):
+        found.append(choices)
+        return getattr(right, solver)(scene, choices)
+
+    solvers = replace(right, **{solver: counting})
+    Remembering(solvers=solvers).answers([(counting, hinge, Choices()), (counting, hinge, own)])
+    assert len(found) == calls
 
 
 def test_an_answer_that_is_not_whole_leaves_no_budget_and_says_so(hinge, right):
-    account = accounted(hinge, Choices(), Solvers(right.cprbm, MadeUp("fea", 0.0, until=3)))
+    account = accounted(hinge, Choices(), Remembering(solvers=Solvers(right.cprbm, MadeUp("fea", 0.0, until=3))))
     assert account.budgets == account.claims == ()
     assert any("fea bending" in why for why in account.missing)
-    assert budget_told.sheets_of(account) == ()
-    assert "no error budget" in budget_told.sentences_of(account)[0]
-    assert budget_drawn.of_account(account) == ()
+    assert told.sheets_of(account) == ()
+    assert "no error budget" in told.sentences_of(account)[0]
+    assert drawn.of_account(account) == ()
 
 
 def without_contact(scene, choices):
@@ -162,7 +177,9 @@ def test_the_ratio_at_which_a_claim_would_be_ours(hinge):
     claims = tuple(claim.model_copy(update={"bound": 0.0025}) for claim in hinge.claims)
     probes = tuple(probe for probe in hinge.probes if probe.quantity == "displacement")
     asked_for = hinge.model_copy(update={"claims": claims, "probes": probes})
-    account = accounted(asked_for, Choices(), Solvers(MadeUp("cprbm", 0.0, contact=False), without_contact))
+    account = accounted(
+        asked_for, Choices(), Remembering(solvers=Solvers(MadeUp("cprbm", 0.0, contact=False), without_contact))
+    )
     assert [found.claim.probe for found in account.claims] == ["B.displacement", "D.displacement"]
     ratio = (1.0 / (1.0 - 0.0025) - 1.002) * 1.35 / 0.003 - 1.0
     for found in account.claims:
@@ -170,26 +187,28 @@ def test_the_ratio_at_which_a_claim_would_be_ours(hinge):
         assert found.reruns == pytest.approx((0.0025,), rel=1e-6)
         assert found.without_shear == pytest.approx(0.002 / 1.002, rel=1e-6)
         assert found.incompressible == pytest.approx(1.0 - 1.0 / (1.002 + 0.003 * 1.5 / 1.35), rel=1e-6)
-    assert f"ν = {ratio:.3f}" in budget_told.sentences_of(account)[0]
+    assert f"ν = {ratio:.3f}" in told.sentences_of(account)[0]
 
 
 def test_a_claim_beyond_every_ratio_has_none(hinge, right):
-    account = accounted(
-        hinge, Choices(), right
-    )  # 0.35 % at ν = 0.35, of which 0.3 % is shear; claims of 0.62 and 0.81 %
+    account = accounted(hinge, Choices(), Remembering(solvers=right))
+    # 0.35 % at ν = 0.35, of which 0.3 % is shear; claims of 0.62 and 0.81 %
     assert [found.ratios for found in account.claims] == [(), ()]
-    assert "at no Poisson's ratio" in budget_told.sentences_of(account)[0]
+    assert "at no Poisson's ratio" in told.sentences_of(account)[0]
 
 
 def test_materials_of_two_ratios_or_a_theory_without_shear_have_no_such_ratio(hinge, right):
-    assert accounted(hinge, Choices(kinematics="stretch"), right).claims == ()
+    assert accounted(hinge, Choices(kinematics="stretch"), Remembering(solvers=right)).claims == ()
     two = {**hinge.materials, "steel": Material(youngs_modulus=2e11, poisson_ratio=0.3)}
-    assert accounted(hinge.model_copy(update={"materials": frozendict(two)}), Choices(), right).claims == ()
+    assert (
+        accounted(hinge.model_copy(update={"materials": frozendict(two)}), Choices(), Remembering(solvers=right)).claims
+        == ()
+    )
 
 
 def test_the_table_has_every_probe_with_a_value_at_the_last_station(hinge, right):
-    account = accounted(hinge, Choices(), right)
-    budgets, claims = budget_told.sheets_of(account)
+    account = accounted(hinge, Choices(), Remembering(solvers=right))
+    budgets, claims = told.sheets_of(account)
     assert [row[0] for row in budgets.rows] == [probe.name for probe in hinge.probes]
     for sheet in (budgets, claims):
         assert {len(row) for row in sheet.rows} == {len(sheet.headers)}
@@ -199,8 +218,8 @@ def test_the_table_has_every_probe_with_a_value_at_the_last_station(hinge, right
 
 
 def test_json_has_every_station_and_sums(hinge, right):
-    account = accounted(hinge, Choices(), right)
-    data = json.loads(text(budget_told.data_of(account)))
+    account = accounted(hinge, Choices(), Remembering(solvers=right))
+    data = json.loads(text(told.data_of(account)))
     assert len({row["station"] for row in data["budget"]}) == 10
     for row in data["budget"]:
         assert sum(row["parts"].values()) == pytest.approx(row["difference"], rel=1e-9, abs=1e-15)
@@ -211,12 +230,12 @@ def test_json_has_every_station_and_sums(hinge, right):
 
 
 def test_the_picture_shows_every_part_that_there_is(hinge, right):
-    account = accounted(hinge, Choices(), right)
-    (picture,) = budget_drawn.of_account(account)
+    account = accounted(hinge, Choices(), Remembering(solvers=right))
+    (picture,) = drawn.of_account(account)
     assert picture.name == "budget"
-    (again,) = budget_drawn.of_account(account)
+    (again,) = drawn.of_account(account)
     assert again.svg == picture.svg
-    for name, (colour, _) in budget_drawn.LOOKS.items():
+    for name, (colour, _) in drawn.LOOKS.items():
         shown = any(getattr(each.parts, name) != 0.0 for each in account.budgets)
         assert (colour.encode() in picture.svg) == shown or name == "contact", name
     assert not any(each.parts.contact for each in account.budgets)
@@ -224,7 +243,7 @@ def test_the_picture_shows_every_part_that_there_is(hinge, right):
 
 def test_a_case_without_differences_has_no_picture(hinge):
     same = Solvers(MadeUp("cprbm", 0.0), MadeUp("fea", 0.0))
-    assert budget_drawn.of_account(accounted(hinge, Choices(kinematics="bending"), same)) == ()
+    assert drawn.of_account(accounted(hinge, Choices(kinematics="bending"), Remembering(solvers=same))) == ()
 
 
 def test_converge_tells_the_budget_and_spares_its_own_runs(hinge, right, capsys):
@@ -232,14 +251,14 @@ def test_converge_tells_the_budget_and_spares_its_own_runs(hinge, right, capsys)
 
     def counting(name):
         def answer(scene, choices):
-            calls.append(asked(name, choices))
+            calls.append((name, choices))
             return getattr(right, name)(scene, choices)
 
         return answer
 
     command = ["converge", "hinge", "--sizes", "20,40,80,160", "--json", "-"]
     assert run(command, Solvers(counting("cprbm"), counting("fea"))) == 0
-    (case,) = json.loads(capsys.readouterr().out)["cases"]
+    case = json.loads(capsys.readouterr().out)
     assert {row["probe"] for row in case["budget"]} == {probe.name for probe in hinge.probes}
     assert [claim["probe"] for claim in case["budget_claims"]] == ["B.displacement", "D.displacement"]
     assert len(calls) == len(set(calls))

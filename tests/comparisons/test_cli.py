@@ -361,6 +361,7 @@ class Waiting:
 class Planted:
     cprbm: Waiting = Waiting()
     fea: Waiting = Waiting()
+    exact: Waiting = Waiting()
 
 
 if __name__ == "__main__":

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from frozendict import frozendict
 
-from comparisons import cases, convergence_drawn, convergence_told, documents
+from comparisons import cases, documents
 from comparisons.choices import Choices
 from comparisons.cli.main import run
-from comparisons.families import at, converged
+from comparisons.converging import drawn, told
+from comparisons.converging.families import at, converged
 from comparisons.pairing import ALONE, Solvers
 from scene import Ending
 from scene.answer import frozen_array
@@ -74,9 +75,9 @@ def test_both_limits_meet_in_bending_and_another_theory_stands_by_itself(hinge, 
         ("fea", "bending"),
         ("fea", "shear"),
     ]
-    for cprbm, fea in convergence_told.beside(found):
-        told = convergence_told.between(cprbm, fea)
-        assert told is None or told[0] <= 1e-5 * cprbm.scale
+    for cprbm, fea in told.beside(found):
+        apart = told.between(cprbm, fea)
+        assert apart is None or apart[0] <= 1e-5 * cprbm.scale
     rotations = [
         one.found.value[0] for one in found.families if one.probe.name == "BD.rotation" and one.station == LAST
     ]
@@ -123,9 +124,9 @@ def test_a_run_that_is_not_whole_is_left_out_and_told(hinge, right):
     assert not found.completed
     family = _family(found, "BD.rotation")
     assert family.used == (20, 40, 80)
-    (sentence,) = convergence_told.sentences_of(found)
+    (sentence,) = told.sentences_of(found)
     assert sentence.startswith("CPRBM (auto) at N = 10 gave no whole answer: it ended early")
-    entry = next(one for one in convergence_told.document(found)["families"] if one["probe"] == "BD.rotation")
+    entry = next(one for one in told.document(found)["families"] if one["probe"] == "BD.rotation")
     assert entry["values"][0] is None
     assert entry["errors"][0] is None
 
@@ -134,8 +135,8 @@ def test_nothing_is_told_of_values_where_no_run_is_whole(hinge, right):
     broken = _changed(right.cprbm, lambda answer: replace(answer, stations=answer.stations[:2]), at_most=9999)
     found = _found(hinge, Solvers(broken, _changed(right.fea, lambda a: replace(a, stations=()), at_most=9999)))
     assert found.families == ()
-    assert convergence_told.sheets_of(found) == ()
-    assert convergence_drawn.of_convergence(found) == ()
+    assert told.sheets_of(found) == ()
+    assert drawn.of_convergence(found) == ()
 
 
 def test_a_stress_is_followed_at_one_place_that_is_compared(hinge, right):
@@ -154,11 +155,11 @@ def test_the_exact_values_stand_beside_where_they_are_known(hinge, right):
     assert family.true_error(20) == pytest.approx(family.apart(20), rel=1e-6)
     assert _family(found, "BD.rotation", hinge.stages[0].stations[0]).exact is None
     assert all(one.exact is None for one in found.families if one.series.kinematics == "shear")
-    assert convergence_told.sheets_of(found)[0].headers[-1] == "CPRBM limit from exact"
+    assert told.sheets_of(found)[0].headers[-1] == "CPRBM limit from exact"
 
 
 def test_the_document_has_the_keys_that_are_promised(hinge, right):
-    data = json.loads(documents.text(convergence_told.document(_found(hinge, right))))
+    data = json.loads(documents.text(told.document(_found(hinge, right))))
     assert data["case"] == "hinge"
     entry = next(one for one in data["families"] if one["probe"] == "B.displacement" and one["component"] == "y")
     assert entry["n"] == list(SIZES)
@@ -170,13 +171,13 @@ def test_the_document_has_the_keys_that_are_promised(hinge, right):
 
 
 def test_the_same_answers_give_the_same_figure(hinge, right):
-    one, two = (convergence_drawn.of_convergence(_found(hinge, right)) for _ in range(2))
+    one, two = (drawn.of_convergence(_found(hinge, right)) for _ in range(2))
     assert one == two
     assert len(one) == 1
 
 
 def test_every_table_has_as_many_cells_as_headers(hinge, right):
-    for sheet in convergence_told.sheets_of(_found(hinge, right)):
+    for sheet in told.sheets_of(_found(hinge, right)):
         assert sheet.rows
         assert {len(row) for row in sheet.rows} == {len(sheet.headers)}
 
@@ -191,9 +192,9 @@ def test_the_command_writes_prints_and_ends_with_0(right, capsys, tmp_path):
     assert 'id="hinge"' in (tmp_path / "c" / "index.html").read_text("utf-8")
     for name in ("convergence.json", "convergence.svg", "convergence.png"):
         assert (tmp_path / "c" / "hinge" / name).is_file()
-    assert json.loads((tmp_path / "c.json").read_text("utf-8"))["cases"][0]["case"] == "hinge"
+    assert json.loads((tmp_path / "c.json").read_text("utf-8"))["case"] == "hinge"
     assert run([*arguments, "--json", "-"], right) == 0
-    assert json.loads(capsys.readouterr().out)["cases"][0]["families"]
+    assert json.loads(capsys.readouterr().out)["families"]
 
 
 def test_the_command_ends_with_1_where_a_run_is_not_whole(right, capsys):
@@ -224,7 +225,7 @@ def test_an_interruption_keeps_what_was_finished(right, capsys, tmp_path):
 def test_an_offset_question_shows_its_error_against_the_exact_curve(capsys, tmp_path):
     assert run(["converge", "offset", "--sizes", "3,10,20,40,400", "--json", str(tmp_path / "c.json")], Solvers()) == 0
     assert "offset: An offset question takes 4 to 200 springs; left out: 3, 400." in capsys.readouterr().out
-    families = json.loads((tmp_path / "c.json").read_text("utf-8"))["cases"][0]["families"]
+    families = json.loads((tmp_path / "c.json").read_text("utf-8"))["families"]
     question = cases.asked("offset")
     assert len(families) == len(question.spacings) * len(question.offsets)
     # second order of the midpoints of even elements, fourth of the rest: see the table of the errors in the page

@@ -9,10 +9,10 @@ import pytest
 from frozendict import frozendict
 
 from comparisons import cases, documents
+from comparisons.budgets.poisson import with_ratio
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers, cprbm_answer, fea_answer
-from comparisons.poisson import with_ratio
 from comparisons.studies import materials, table1
 from comparisons.studies.materials import MATERIALS, SPECIMENS
 from comparisons.studies.materials_told import told as told_of_materials
@@ -274,7 +274,7 @@ def test_a_slow_cell_is_not_repeated():
 
 def test_study_without_a_name_lists_the_studies(capsys):
     assert run(["study"]) == 0
-    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == ["materials", "table1"]
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == ["calibration", "materials", "table1"]
 
 
 def test_an_unknown_study_is_refused_with_those_that_there_are(capsys):

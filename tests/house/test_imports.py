@@ -17,8 +17,9 @@ def _house(tmp_path, **files):
         "cprbm____init__": "from scene import Scene\nfrom .chain import link\n",
         "cprbm__chain": "import numpy\nfrom scene.statement import Scene\ndef link(): ...\n",
         "fea_reference____init__": "from scene import Scene\nimport skfem\n",
+        "exact____init__": "from scene import Scene\nimport scipy\n",
         "comparisons____init__": "",
-        "comparisons__pairing": "import cprbm\nfrom fea_reference import answer\n",
+        "comparisons__pairing": "import cprbm\nimport exact\nfrom fea_reference import answer\n",
         "comparisons__verdict": "from comparisons import pairing\nfrom scene import Scene\n",
         "comparisons__figures": "def draw():\n    import matplotlib.pyplot as plt\n    return plt\n",
     }
@@ -50,6 +51,10 @@ PLANTED = {
         "may not import comparisons",
     ),
     "a solver imports the other": ("cprbm__bad", "import fea_reference", "may not import fea_reference"),
+    "the exact one imports a solver": ("exact__bad", "from cprbm import circle", "exact may not import cprbm"),
+    "the exact one imports comparisons": ("exact__bad", "import comparisons.geometry", "exact may not import"),
+    "a solver imports the exact one": ("fea_reference__bad", "import exact", "fea_reference may not import exact"),
+    "the exact one beside pairing": ("comparisons__verdict", "import exact", "comparisons may not import exact"),
     "in a function": (
         "cprbm__bad",
         "def f():\n    from fea_reference import x",

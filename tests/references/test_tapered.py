@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from tests.references.elastica import cantilever_under_tip_force, roll_up
+from tests.references.guided import guided_beam
 from tests.references.small import rectangle_second_moment
-from tests.references.tapered import bent, small_deflection
+from tests.references.tapered import bent, guided, small_deflection
 
 L, E, T, W = 0.173, 3.1e9, 0.0023, 0.0091
 EI = E * rectangle_second_moment(T, W)
@@ -56,3 +57,12 @@ def test_the_width_counts_once():
     one, other = bent(L, E, thickness, width, force, moment, at), bent(L, 0.5 * E, thickness, wide, force, moment, at)
     assert (one.x, one.y, one.angle) == pytest.approx((other.x, other.y, other.angle), rel=1e-12)
     assert one.stress == pytest.approx(2.0 * other.stress, rel=1e-10)
+
+
+@pytest.mark.parametrize("alpha", [0.3, 3.0, 12.0])
+def test_an_even_beam_kept_from_turning_is_two_cantilevers(alpha):
+    # reference: tests.references.guided
+    exact, P = guided_beam(alpha), alpha * EI / L**2
+    got, moment = guided(L, E, ((0.0, 0.3, 1.0), (T, T, T)), EVEN, (0.0, P), np.array([0.0, 1.0]))
+    assert [1.0 - got.x / L, got.y / L] == pytest.approx([exact.shortening, exact.offset], abs=2e-11)
+    assert [got.moment[0], -got.moment[1], -moment] == pytest.approx([exact.moment * EI / L] * 3, rel=1e-10)

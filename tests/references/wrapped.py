@@ -224,7 +224,9 @@ class Wrapped:
         p, _ = self._shape
         q = sqrt(self.force / self.stiffness)
         cn = ellipj(ellipkm1(p) - q * (self.length - s), 1.0 - p)[1]
-        return -np.where(s <= self.wrap_length, 1.0 / self.neutral_radius, 2.0 * q * sqrt(1.0 - p) * cn)
+        return -np.where(
+            self.wrapped & (s <= self.wrap_length), 1.0 / self.neutral_radius, 2.0 * q * sqrt(1.0 - p) * cn
+        )
 
     def bending_stress(self, points: int) -> Array:
         """E t/2 times the change of curvature (points,), Pa, at equal steps of arc length."""

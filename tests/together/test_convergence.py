@@ -14,9 +14,9 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.convergence import limit
-from comparisons.convergence_told import beside, between
-from comparisons.families import Convergence, Family, converged
+from comparisons.converging.families import Convergence, Family, converged
+from comparisons.converging.limits import limit
+from comparisons.converging.told import beside, between
 from comparisons.pairing import ALONE, Solvers
 from scene import Scene
 from tests.references import hinge as exact

@@ -102,3 +102,9 @@ def test_the_finite_elements_are_the_exact_stack(exact):
     """The penetration of lines is a fraction of the beam's length: 1e-6 of it, as asked, is all that is left."""
     settings = fea_reference.Settings(elements=20, kinematics="bending", penetration=1e-6)
     assert max(_errors(fea_reference.answer(stacked(), settings), exact).values()) < 5e-4
+
+
+def test_many_short_elements_do_not_let_a_tip_through(exact):
+    """The first contact closes early, and a step after it is long beside an element of a 160th of the beam."""
+    settings = fea_reference.Settings(elements=160, kinematics="bending", penetration=1e-6)
+    assert max(_errors(fea_reference.answer(stacked(), settings), exact).values()) < 5e-4

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from comparisons.convergence import limit, observed, orders
+from comparisons.converging.limits import limit, observed, orders
 
 NS = (10, 20, 40, 80, 160, 320)
 

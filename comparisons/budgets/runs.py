@@ -1,4 +1,4 @@
-"""The runs of an error budget, and which of them another question has had answered already.
+"""The runs of an error budget.
 
 ==========  ================================================================================================
 symbol      meaning
@@ -15,12 +15,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
+from itertools import islice
 
 from frozendict import frozendict
 
-from comparisons.choices import KINEMATICS, Choices, Count, Kinematics, check
-from comparisons.pairing import ALONE, Crew, Solvers, in_paper
+from comparisons.choices import KINEMATICS, Choices, Kinematics, check
+from comparisons.memory import Remembering
+from comparisons.pairing import in_paper
 from scene import Answer, Scene
 
 LEVELS = (1, 2, 4)
@@ -74,34 +75,13 @@ class BudgetRuns:
                 yield f"fea {kinematics} at {times} n", answer
 
 
-Asked = tuple[Literal["cprbm", "fea"], Choices]
-"""A solver, and choices that differ from the standard ones only in what it heeds."""
-
-
-def asked(solver: Literal["cprbm", "fea"], choices: Choices) -> Asked:
-    """What a solver is asked by some choices: equal where it cannot tell them apart."""
-    if solver == "cprbm":
-        return solver, Choices(links=_frozen(choices.links), formulation=choices.formulation)
-    return solver, Choices(
-        elements=_frozen(choices.elements), kinematics=choices.kinematics, penetration=choices.penetration
-    )
-
-
-def budgeted(
-    scene: Scene,
-    choices: Choices,
-    solvers: Solvers,
-    crew: Crew = ALONE,
-    known: Mapping[Asked, Answer] | None = None,
-) -> BudgetRuns:
+def budgeted(scene: Scene, choices: Choices, memory: Remembering) -> BudgetRuns:
     """Run both solvers on a scene as often as its error budget needs.
 
     Args:
         scene: the question.
         choices: how finely, and by which variants.
-        solvers: who answers.
-        crew: processes to share the runs.
-        known: answers to this scene by :func:`asked`; what is there is not run again.
+        memory: who answers; what it knows already is not run again.
 
     Raises:
         SceneError: a solver refuses the question.
@@ -110,30 +90,28 @@ def budgeted(
     even = replace(choices, formulation="auto")
     tight = [replace(choices, penetration=choices.penetration / tightness) for tightness in TIGHTNESS]
     theories = KINEMATICS[: KINEMATICS.index(choices.kinematics) + 1]
-    cprbm = [asked("cprbm", choices)]
-    auto = [asked("cprbm", each) for each in (even, even.finer(), even.finer().finer())]
-    penalty = [asked("fea", each) for each in tight]
-    fea = [asked("fea", each.within(theory)) for theory in theories for each in (tight[-1], tight[-1].finer())]
-    answers = dict(known or {})
-    missing = [each for each in dict.fromkeys((*cprbm, *auto, *penalty, *fea)) if each not in answers]
-    functions = {"cprbm": solvers.cprbm, "fea": solvers.fea}
-    found = crew.answers([(functions[solver], scene, own) for solver, own in missing])
-    answers.update(zip(missing, found, strict=True))
-    per_theory = len(ELEMENTS)
+    finest = even.finer().finer()
+    cprbm, fea = memory.solvers.cprbm, memory.solvers.fea
+    found = iter(
+        memory.answers(
+            [
+                *((cprbm, scene, own) for own in (choices, even, even.finer(), finest)),
+                *((fea, scene, own) for own in tight),
+                *((fea, scene, own) for theory in theories for own in _both(tight[-1].within(theory))),
+            ]
+        )
+    )
+    chosen = next(found)
     return BudgetRuns(
         choices.kinematics,
-        answers[cprbm[0]],
-        tuple(answers[each] for each in auto),
-        answers[cprbm[0]] if choices.formulation == "paper" else in_paper(scene, choices, solvers),
-        tuple(answers[each] for each in penalty),
-        frozendict(
-            {
-                theory: tuple(answers[each] for each in fea[place * per_theory : (place + 1) * per_theory])
-                for place, theory in enumerate(theories)
-            }
-        ),
+        chosen,
+        tuple(islice(found, len(LEVELS))),
+        chosen if choices.formulation == "paper" else in_paper(scene, choices, memory.solvers),
+        tuple(islice(found, len(TIGHTNESS))),
+        frozendict({theory: tuple(islice(found, len(ELEMENTS))) for theory in theories}),
     )
 
 
-def _frozen(count: Count) -> Count:
-    return count if isinstance(count, int) else frozendict(count)
+def _both(choices: Choices) -> tuple[Choices, Choices]:
+    """At each of :data:`ELEMENTS`."""
+    return choices, choices.finer()

@@ -10,7 +10,7 @@ from itertools import pairwise
 from math import log
 from statistics import median
 
-from comparisons.convergence_report import Told
+from comparisons.converging.report import Told
 from comparisons.documents import Plain, plain
 from comparisons.figures import LOOKS, Picture, canvas, picture
 from comparisons.formats import number, percent

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from statistics import median
 
 from comparisons import documents
+from comparisons.converging.families import STANDARD_AT, Convergence, Family
 from comparisons.documents import Plain, plain
-from comparisons.families import STANDARD_AT, Convergence, Family
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.sheets import Sheet
 

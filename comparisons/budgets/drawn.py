@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from comparisons.accounts import Account
-from comparisons.budget import PARTS, Budget
+from comparisons.budgets.accounts import Account
+from comparisons.budgets.parts import PARTS, Budget
+from comparisons.budgets.poisson import last_budgets
 from comparisons.figures import GREY, Picture, canvas, picture
 from comparisons.formats import percent
-from comparisons.poisson import last_budgets
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

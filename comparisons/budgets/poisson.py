@@ -26,8 +26,8 @@ import numpy as np
 from frozendict import frozendict
 from scipy.optimize import brentq
 
-from comparisons.budget import Budget
-from comparisons.budget_runs import BudgetRuns
+from comparisons.budgets.parts import Budget
+from comparisons.budgets.runs import BudgetRuns
 from comparisons.claims import claim_difference, claim_of
 from comparisons.measures import Row, station_of
 from comparisons.scales import denominator, norm

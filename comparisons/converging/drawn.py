@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from comparisons.families import Convergence, Family
+from comparisons.converging.families import Convergence, Family
 from comparisons.figures import GREY, LOOKS, Picture, canvas, picture
 from comparisons.order import OWN
 

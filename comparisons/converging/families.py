@@ -8,8 +8,8 @@ elements' own, the penetration is P (40/N)⁴, P the standard one: at twice the 
 run to its finer one.  That error is then a part of the same law and does not bend it, however large it is beside the
 elements'.  It leaves a fortieth of the thickness at N = 10 (a twentieth is the most that is left to any N) and at
 N = 160 a few ten-millionths.  Below that round-off in the positions becomes a share of the penetration, and the
-penetration falls with the square of N only: enough for the order that :mod:`comparisons.convergence` tries beside the
-fourth, so that what is left shows in the limit's uncertainty.
+penetration falls with the square of N only: enough for the order that :mod:`comparisons.converging.limits` tries
+beside the fourth, so that what is left shows in the limit's uncertainty.
 
 Of a probe at a station a size counts if its run gave a whole answer and the contact that the probe speaks of is as
 closed there as at the finest size; of the sizes that do not, the coarser ones do not count either, since a contact
@@ -26,7 +26,7 @@ from typing import Literal
 import numpy as np
 
 from comparisons.choices import Choices, Kinematics
-from comparisons.convergence import COMMON, Limit, limit, observed, orders
+from comparisons.converging.limits import COMMON, Limit, limit, observed, orders
 from comparisons.measures import arc_lengths, round_off, station_of, unit_of
 from comparisons.order import OWN, order_of
 from comparisons.pairing import Crew, Job, Solvers

@@ -26,7 +26,7 @@ penalty does to them, δ at n elements and p/16 and δ/16 at 2n and p/256.  On a
 deep a beam presses, whatever p: there the penalty is a part of ``elements``.
 
 Where ``auto`` was chosen, the distance of ``paper`` at N is told beside the parts and belongs to no sum.  Nor does what
-both solvers leave out of a stress alike, :mod:`comparisons.curved_beam`.
+both solvers leave out of a stress alike, :mod:`comparisons.budgets.curved_beam`.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from comparisons.budget_runs import DEEPER, ELEMENTS, LEVELS, TIGHTNESS, BudgetRuns
-from comparisons.convergence import limit
-from comparisons.curved_beam import inner_edge_factor
+from comparisons.budgets.curved_beam import inner_edge_factor
+from comparisons.budgets.runs import DEEPER, ELEMENTS, LEVELS, TIGHTNESS, BudgetRuns
+from comparisons.converging.limits import limit
 from comparisons.geometry import bentness_on, length
 from comparisons.measures import Row, arc_lengths, components, direction, station_of, unit_of
 from comparisons.order import order_of

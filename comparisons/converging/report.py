@@ -46,7 +46,7 @@ def add(folder: Path, earlier: tuple[Chapter, ...], told: Told) -> tuple[Chapter
     """
     asked = told.asked
     own = folder / asked.name
-    write(own / "convergence.json", documents.text({"cases": [told.data]}))
+    write(own / "convergence.json", documents.text(told.data))
     for picture in told.pictures:
         write(own / f"{picture.name}.svg", picture.svg)
         write(own / f"{picture.name}.png", picture.png)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from comparisons.accounts import Account
-from comparisons.budget import Budget
+from comparisons.budgets.accounts import Account
+from comparisons.budgets.parts import Budget
+from comparisons.budgets.poisson import ClaimedRatio, last_budgets
 from comparisons.choices import Count
 from comparisons.claims import claim_difference
 from comparisons.documents import Plain, plain
 from comparisons.formats import number, percent
-from comparisons.poisson import ClaimedRatio, last_budgets
 from comparisons.sheets import Sheet
 
 _HEADERS = {

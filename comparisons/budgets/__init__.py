@@ -1,0 +1,1 @@
+"""What a difference between the solvers is made of."""

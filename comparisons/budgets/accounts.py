@@ -1,0 +1,63 @@
+"""The account of a case's differences: its budgets, and what its claims would need.  Two rounds of runs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from comparisons.budgets.parts import Budget, budgets_of
+from comparisons.budgets.poisson import ClaimedRatio, claimed_ratios, rerun, with_ratio
+from comparisons.budgets.runs import BudgetRuns, budgeted
+from comparisons.choices import Choices
+from comparisons.memory import Remembering
+from comparisons.soundness import complaints
+from scene import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Account:
+    """What the differences of a case are made of.
+
+    Attributes:
+        scene: the question.
+        choices: how finely, and by which variants.
+        runs: all answers that it rests on.
+        budgets: at every station; none where an answer is not whole.
+        claims: those of the last station.
+        missing: why there are no budgets, in sentences; empty where there are.
+    """
+
+    scene: Scene
+    choices: Choices
+    runs: BudgetRuns
+    budgets: tuple[Budget, ...]
+    claims: tuple[ClaimedRatio, ...]
+    missing: tuple[str, ...]
+
+
+def accounted(scene: Scene, choices: Choices, memory: Remembering) -> Account:
+    """Run what an error budget needs, and draw it up.
+
+    Args:
+        scene: the question.
+        choices: how finely, and by which variants.
+        memory: who answers; what it knows already is not run again.
+
+    Raises:
+        SceneError: a solver refuses the question.
+    """
+    runs = budgeted(scene, choices, memory)
+    missing = tuple(f"{name}: {what}" for name, answer in runs.everything() for what in complaints(scene, answer))
+    if missing:
+        return Account(scene, choices, runs, (), (), missing)
+    budgets = budgets_of(scene, runs)
+    claims = claimed_ratios(scene, runs, budgets)
+    ratios = [ratio for claim in claims for ratio in claim.ratios]
+    answers = iter(memory.answers([(memory.solvers.fea, with_ratio(scene, ratio), choices) for ratio in ratios]))
+    return Account(
+        scene,
+        choices,
+        runs,
+        budgets,
+        tuple(rerun(claim, [next(answers) for _ in claim.ratios]) for claim in claims),
+        (),
+    )

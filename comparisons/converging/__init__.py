@@ -1,0 +1,1 @@
+"""How numbers go with N: limits, orders and families of runs."""

@@ -1,0 +1,154 @@
+"""What is told of the calibration: a table by case and size, the worst rows, a picture, and the documented JSON."""
+
+from __future__ import annotations
+
+from comparisons.calibration import JUDGED, MOST_OVER, SHARE_WITHIN, Held, Tally
+from comparisons.documents import Plain
+from comparisons.formats import number, percent
+from comparisons.sheets import Sheet
+from comparisons.studies.calibration import Calibration, Trial, tallies
+from comparisons.studies.calibration_drawn import stated_against_true
+from comparisons.studies.told import Told
+from comparisons.verdict import Word
+
+_NAMES = {"cprbm": "CPRBM", "fea": "FEA in bending"}
+
+
+def told(found: Calibration) -> Told:
+    """Everything that is told of what was measured so far."""
+    return Told(
+        name="calibration",
+        title="Stated uncertainties beside true errors",
+        words=_words(found),
+        sheets=tuple(sheet for sheet in (_tallies(found), _worst(found)) if sheet.rows),
+        pictures=(stated_against_true(found),) if any(trial.held for trial in found.trials) else (),
+        data=_data(found),
+    )
+
+
+def _words(found: Calibration) -> tuple[str, ...]:
+    sentences = []
+    broken = [
+        f"{_NAMES[mine.solver]} on {case}"
+        for case in found.cases
+        for mine in tallies(found.of_case(case))
+        if not mine.holds
+    ]
+    if found.trials:
+        sentences.append(
+            f"The house's rule: the true error lies within the stated one in at least {percent(SHARE_WITHIN)} of the "
+            f"rows, and stated over true is at most {MOST_OVER:g} in the median. "
+            + (f"It is broken by the {', by the '.join(broken)}." if broken else "It is kept by both on every case.")
+        )
+    sentences += [
+        f"{trial.case} at {trial.size('cprbm')} links and {trial.size('fea')} elements: {trial.verdict.word.value}. "
+        f"{trial.verdict.sentence}"
+        for trial in found.trials
+        if trial.verdict.word is not Word.AGREE
+    ]
+    for case, (known, asked) in found.covered.items():
+        if known < asked:
+            where = f"{known} of {asked} stations" if known else "no station"
+            sentences.append(f"{case}: an exact answer is known for {where}. {found.why[case]}")
+    return tuple(sentences)
+
+
+def _tallies(found: Calibration) -> Sheet:
+    body = []
+    for case in found.cases:
+        trials = found.of_case(case)
+        for place, solver in enumerate(JUDGED):
+            for trial in trials:
+                body.append((case, _NAMES[solver], str(trial.size(solver)), *_figures(tallies((trial,))[place])))
+            body.append((case, _NAMES[solver], "all", *_figures(tallies(trials)[place])))
+    return Sheet(
+        "Calibration",
+        ("case", "solver", "N", "rows", "within", "share", "stated over true", "largest true over stated", "rule"),
+        tuple(body),
+        "Rows with a true error of more than 1e-9 of the probe's scale, all stations, a closing load once; N is the "
+        "number of links or elements per beam. Stated over true: the median.",
+    )
+
+
+def _figures(mine: Tally) -> tuple[str, ...]:
+    return (
+        str(mine.rows),
+        str(mine.within),
+        percent(mine.share),
+        number(mine.over),
+        number(mine.worst[0].ratio) if mine.worst else "–",
+        "met" if mine.holds else "not met",
+    )
+
+
+def _worst(found: Calibration) -> Sheet:
+    body = []
+    for case in found.cases:
+        for mine in tallies(found.of_case(case)):
+            for each in mine.worst:
+                trial = next(trial for trial in found.of_case(case) if any(each is one for one in trial.held))
+                body.append(
+                    (
+                        case,
+                        _NAMES[each.solver],
+                        str(trial.size(each.solver)),
+                        each.row.probe.name,
+                        f"{each.row.stage} {each.row.station:g}",
+                        percent(each.true / each.row.scale),
+                        percent(each.stated / each.row.scale),
+                        number(each.ratio),
+                        each.word,
+                    )
+                )
+    return Sheet(
+        "The least well stated",
+        ("case", "solver", "N", "probe", "at", "true", "stated", "true over stated", ""),
+        tuple(body),
+        "True and stated as fractions of the probe's scale.",
+    )
+
+
+def _data(found: Calibration) -> Plain:
+    return {
+        "study": "calibration",
+        "cases": [
+            {
+                "case": case,
+                "stations_covered": known,
+                "stations": asked,
+                "why": found.why.get(case),
+                "trials": [_trial(trial) for trial in found.of_case(case)],
+            }
+            for case, (known, asked) in found.covered.items()
+        ],
+    }
+
+
+def _trial(trial: Trial) -> Plain:
+    return {
+        "links": trial.size("cprbm"),
+        "elements": trial.size("fea"),
+        "verdict": trial.verdict.word.value,
+        "solvers": {
+            mine.solver: {
+                "rows": mine.rows,
+                "within": mine.within,
+                "share": mine.share,
+                "stated_over_true": mine.over,
+                "holds": mine.holds,
+                "worst": [_held(each) for each in mine.worst],
+            }
+            for mine in tallies((trial,))
+        },
+    }
+
+
+def _held(each: Held) -> Plain:
+    return {
+        "probe": each.row.probe.name,
+        "stage": each.row.stage,
+        "station": each.row.station,
+        "true": each.true / each.row.scale,
+        "stated": each.stated / each.row.scale,
+        "true_over_stated": each.ratio,
+    }

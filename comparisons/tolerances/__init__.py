@@ -1,0 +1,1 @@
+"""N for a tolerance."""

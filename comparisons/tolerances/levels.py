@@ -1,0 +1,181 @@
+"""The answers of one solver to one scene at the sizes that a search asks for, and what they state.
+
+A row's f is u, as :mod:`comparisons.measures` states it, over what the tables divide that row by.  There the
+finite elements' value takes part; where they have not answered (``solve``) the answer stands in its own place.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from dataclasses import dataclass, replace
+
+from comparisons.choices import Choices, Kinematics
+from comparisons.measures import Row, rows_of
+from comparisons.memory import Remembering
+from comparisons.order import order_of
+from comparisons.pairing import Runs, Solver, may_be_uneven, ratio_beside
+from comparisons.soundness import complaints
+from comparisons.tolerances.extrapolation import Sizes, settled
+from comparisons.tolerances.search import FIRST, Estimate, Stated
+from scene import Answer, Scene
+
+
+@dataclass(frozen=True, slots=True)
+class SceneLevels:
+    """One solver on one scene.
+
+    Attributes:
+        scene: the question.
+        solver: who answers.
+        base: what is chosen; numbers of links and elements, and from ``FIRST`` on the penetration, follow N.
+        theories: in which all is solved and must pass; of the CPRBM its only one.
+        memory: solves, nothing twice.
+        beside: whether a value at N is held against N + N/7 as well.
+        reference: the finite elements' answer, if they have one already.
+    """
+
+    scene: Scene
+    solver: Solver
+    base: Choices
+    theories: tuple[Kinematics, ...]
+    memory: Remembering
+    beside: bool
+    reference: Answer | None = None
+
+    def choices(self, theory: Kinematics, n: int) -> Choices:
+        """What is solved at ``n``: so that twice N is what :meth:`comparisons.choices.Choices.finer` makes of it."""
+        share = FIRST / n
+        # a product, not a power, so that halving the share divides it by 16 to the last digit
+        penetration = self.base.penetration * (share * share * share * share)
+        return replace(self.base.within(theory), links=n, elements=n, penetration=penetration)
+
+    def plain(self, n: int) -> Estimate:
+        """Of the values at ``n``, from n and 2n."""
+        return self._plain(n, beside=False)
+
+    def checked(self, n: int) -> Estimate:
+        """The same, with n + n/7 where the error may be uneven."""
+        return self._plain(n, beside=self.beside and may_be_uneven(self.scene))
+
+    def settled(self, n: int) -> Estimate:
+        """Of the values at 2n or what n and 2n extrapolate to, from n/2, n and 2n.
+
+        A probe is extrapolated, in all theories, if its worst row states less so.
+        """
+        names = [probe.name for probe in self.scene.probes]
+        kept, all_ = (self._settled(n, probes) for probes in ((), names))
+        if kept.trouble or all_.trouble:
+            return kept
+        before, after = _worst_of_probes(kept), _worst_of_probes(all_)
+        probes = frozenset(name for name, fraction in after.items() if fraction < before[name])
+        rows = zip(kept.rows, all_.rows, strict=True)
+        return Estimate(tuple(b if a.probe in probes else a for a, b in rows), extrapolated=probes)
+
+    def answer(self, theory: Kinematics, n: int) -> Answer:
+        """The answer at ``n``."""
+        return self._answers([self.choices(theory, n)])[0]
+
+    def pair(self, theory: Kinematics, n: int, probes: Collection[str]) -> tuple[Answer, Answer]:
+        """What n/2, n and 2n settle with these probes extrapolated, and the answer to hold it against."""
+        return settled(self.scene, self._sizes(n), self._three(theory, n), probes)
+
+    def solved(self) -> tuple[int, ...]:
+        """Every N at which the solver has answered the scene, ascending."""
+        return self.memory.sizes(self.solver, self.scene)
+
+    def _plain(self, n: int, *, beside: bool) -> Estimate:
+        jobs = []
+        for theory in self.theories:
+            chosen = self.choices(theory, n)
+            even = replace(chosen, formulation="auto")
+            jobs.append([chosen, even, even.finer(), *([even.beside()] if beside else [])])
+        answers = iter(self._answers([choices for each in jobs for choices in each]))
+        found = []
+        for theory, each in zip(self.theories, jobs, strict=True):
+            mine = [next(answers) for _ in each]
+            runs = self._runs(mine[0], mine[2])
+            runs = replace(
+                runs,
+                auto=None if each[0] == each[1] else mine[1],
+                beside=mine[3] if beside else None,
+                ratio=ratio_beside(each[1]),
+            )
+            found.append(stated(self.scene, runs, theory))
+        return _joined(found)
+
+    def _settled(self, n: int, probes: Collection[str]) -> Estimate:
+        self._answers([self.choices(theory, size) for size in self._sizes(n) for theory in self.theories])
+        troubles = [
+            trouble
+            for theory in self.theories
+            for answer in self._three(theory, n)
+            for trouble in complaints(self.scene, answer)
+        ]
+        if troubles:
+            return Estimate((), troubles[0])
+        return _joined(
+            [stated(self.scene, self._runs(*self.pair(theory, n, probes)), theory) for theory in self.theories]
+        )
+
+    def _runs(self, value: Answer, other: Answer) -> Runs:
+        """A solver's answer, what it is held against, and by what the differences are measured."""
+        reference = value if self.reference is None else self.reference
+        return Runs("bending", (value, other), {"bending": (reference, reference)})
+
+    def _three(self, theory: Kinematics, n: int) -> tuple[Answer, Answer, Answer]:
+        first, coarse, fine = (self.answer(theory, size) for size in self._sizes(n))
+        return first, coarse, fine
+
+    def _sizes(self, n: int) -> Sizes:
+        return n // 2, n, 2 * n
+
+    def _answers(self, wanted: list[Choices]) -> list[Answer]:
+        return self.memory.answers([(self.solver, self.scene, choices) for choices in wanted])
+
+
+def stated(scene: Scene, runs: Runs, variant: str) -> Estimate:
+    """What is stated of every row that has a value, of the first solver in ``runs``."""
+    for _, answer in runs.everything():
+        found = complaints(scene, answer)
+        if found:
+            return Estimate((), found[0])
+    rows = []
+    for row in rows_of(scene, runs):
+        fraction = _fraction(row, runs)
+        if fraction is not None:
+            order = order_of(scene, row.probe)
+            rows.append(Stated(variant, row.probe.name, row.stage, row.station, fraction, order))
+    return Estimate(tuple(rows))
+
+
+def _fraction(row: Row, runs: Runs) -> float | None:
+    """f; None where there is no value; infinite where there is one at one size and not at another."""
+    if row.bounds is not None:
+        return row.fraction(row.bounds.cprbm)
+    values = [
+        station.values[row.probe.name]
+        for name, answer in runs.everything()
+        if name.startswith("cprbm")
+        for station in answer.stations
+        if (station.stage, station.value) == (row.stage, row.station)
+    ]
+    return None if len({value.shape for value in values}) == 1 else math.inf
+
+
+def _joined(estimates: list[Estimate]) -> Estimate:
+    troubles = [estimate.trouble for estimate in estimates if estimate.trouble]
+    rows = tuple(row for estimate in estimates for row in estimate.rows)
+    return Estimate((), troubles[0]) if troubles else Estimate(rows)
+
+
+def _worst_of_probes(estimate: Estimate) -> dict[str, float]:
+    """The largest f of every probe; nothing in trouble.
+
+    Rows of which nothing can be stated are the same however a value is settled, and do not count.
+    """
+    worst: dict[str, float] = {}
+    for row in estimate.rows:
+        if math.isfinite(row.fraction):
+            worst[row.probe] = max(row.fraction, worst.get(row.probe, 0.0))
+    return worst

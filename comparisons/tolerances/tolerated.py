@@ -1,0 +1,147 @@
+"""A scene answered within a tolerance: by one solver, or by both for a comparison.
+
+The finite elements are asked first, in every theory whose uncertainty a row states (the chosen one and ``bending``);
+what their values are is what the CPRBM's uncertainties are fractions of, as in the rows of the comparison.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from frozendict import frozendict
+
+from comparisons.benchmark import LARGEST, Method
+from comparisons.choices import KINEMATICS, Choices, Kinematics
+from comparisons.memory import Remembering
+from comparisons.nearby import nearby
+from comparisons.pairing import Crew, Runs, Solvers, known_exactly, paired
+from comparisons.tolerances.levels import SceneLevels
+from comparisons.tolerances.search import Found, Tolerance, search
+from scene import Answer, Scene
+
+LARGEST_PAPER = 640
+"""Most links in the formulation ``paper``, whose time grows with the cube of N; ``auto`` beside it has twice that."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Reached:
+    """Where a search has ended, with the levels that it went through."""
+
+    levels: SceneLevels
+    found: Found
+
+    def pair(self, theory: Kinematics) -> tuple[Answer, Answer]:
+        """The answer and the one that it is held against."""
+        n = self.found.n
+        if self.found.settled:
+            return self.levels.pair(theory, n, self.found.estimate.extrapolated)
+        return self.levels.answer(theory, n), self.levels.answer(theory, 2 * n)
+
+    def value(self, theory: Kinematics) -> Answer:
+        """The answer."""
+        return self.pair(theory)[0] if self.found.settled else self.levels.answer(theory, self.found.n)
+
+
+def solved(
+    scene: Scene, solver: Method, choices: Choices, tolerance: float, solvers: Solvers, say: Callable[[str], None]
+) -> tuple[Answer, Tolerance]:
+    """One solver's answer within a tolerance, or the best that was solved.
+
+    Args:
+        scene: the question.
+        solver: who is asked.
+        choices: formulation, theory and the penetration at the fewest elements; its numbers do not count.
+        tolerance: of every row's stated uncertainty, a fraction.
+        solvers: who answers.
+        say: told what is about to be solved.
+
+    Raises:
+        SceneError: the solver refuses the question.
+    """
+    memory = Remembering(solvers=solvers, say=say)
+    theory: Kinematics = choices.kinematics if solver == "fea" else "bending"
+    reached = _reached(scene, solver, choices, (theory,), tolerance, memory, None)
+    return reached.value(theory), _told(reached, solver, tolerance)
+
+
+def paired_within(
+    scene: Scene, choices: Choices, tolerance: float, solvers: Solvers, crew: Crew, say: Callable[[str], None]
+) -> tuple[Runs, tuple[Tolerance, Tolerance]]:
+    """What a comparison rests on, with both solvers within a tolerance, and what their searches came to.
+
+    The arguments are those of :func:`solved`, and processes to share the runs.
+
+    Raises:
+        SceneError: a solver refuses the question.
+    """
+    memory = Remembering(pool=crew.pool, solvers=solvers, say=say)
+    theories: tuple[Kinematics, ...] = tuple(dict.fromkeys(("bending", choices.kinematics)))
+    fea = _reached(scene, "fea", choices, theories, tolerance, memory, None)
+    cprbm = _reached(scene, "cprbm", choices, ("bending",), tolerance, memory, fea.value(choices.kinematics))
+    told = _told(cprbm, "cprbm", tolerance), _told(fea, "fea", tolerance)
+    if cprbm.found.settled:
+        driven = nearby(scene)
+        return Runs(
+            choices.kinematics,
+            cprbm.pair("bending"),
+            _families(fea, choices.kinematics),
+            nearby=None if driven is None else _nearby(cprbm, driven),
+            exact=known_exactly(scene, choices, solvers, memory),
+        ), told
+    elements = fea.levels.choices(choices.kinematics, fea.found.n)
+    runs = paired(scene, replace(elements, links=cprbm.found.n, formulation=choices.formulation), solvers, memory)
+    return (replace(runs, fea=_families(fea, choices.kinematics)) if fea.found.settled else runs), told
+
+
+def _reached(
+    scene: Scene,
+    solver: Method,
+    choices: Choices,
+    theories: tuple[Kinematics, ...],
+    tolerance: float,
+    memory: Remembering,
+    reference: Answer | None,
+) -> _Reached:
+    is_cprbm = solver == "cprbm"
+    paper = is_cprbm and choices.formulation == "paper"
+    answers = memory.solvers.cprbm if is_cprbm else memory.solvers.fea
+    levels = SceneLevels(scene, answers, choices, theories, memory, beside=is_cprbm, reference=reference)
+    largest = 2 * LARGEST_PAPER if paper else LARGEST[solver]
+    found = search(levels, tolerance, largest, extrapolates=not paper)
+    return _Reached(levels, found)
+
+
+def _families(fea: _Reached, chosen: Kinematics) -> frozendict[Kinematics, tuple[Answer, ...]]:
+    """The finite elements' answers by theory: with what they are held against, or in a theory between alone."""
+    return frozendict(
+        {
+            kinematics: fea.pair(kinematics) if kinematics in fea.levels.theories else (_between(fea, kinematics),)
+            for kinematics in KINEMATICS[: KINEMATICS.index(chosen) + 1]
+        }
+    )
+
+
+def _between(fea: _Reached, kinematics: Kinematics) -> Answer:
+    return replace(fea, levels=replace(fea.levels, theories=(kinematics,))).value(kinematics)
+
+
+def _nearby(cprbm: _Reached, driven: Scene) -> Answer:
+    """The settled answer at the stations close round a drive's, its energies settled as the scene's are."""
+    return replace(cprbm, levels=replace(cprbm.levels, scene=driven, reference=None)).value("bending")
+
+
+def _told(reached: _Reached, solver: Method, tolerance: float) -> Tolerance:
+    found, levels = reached.found, reached.levels
+    estimate = found.estimate
+    return Tolerance(
+        asked=tolerance,
+        met=found.met,
+        solver=solver,
+        n=2 * found.n if found.settled else found.n,
+        worst=None if estimate.trouble else estimate.worst,
+        trouble=estimate.trouble,
+        extrapolated=(found.n, 2 * found.n) if estimate.extrapolated else (),
+        probes=tuple(sorted(estimate.extrapolated)),
+        solved=levels.solved(),
+    )

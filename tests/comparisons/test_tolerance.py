@@ -1,0 +1,270 @@
+"""The search for N: on laws that are known, and on the command line with made-up solvers."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass, field, replace
+
+import click
+import pytest
+from frozendict import frozendict
+
+from comparisons import cases
+from comparisons.choices import Choices
+from comparisons.cli.main import run
+from comparisons.cli.options import tolerance
+from comparisons.cli.solve_ import command
+from comparisons.pairing import ALONE, Solvers
+from comparisons.tolerances.extrapolation import settled
+from comparisons.tolerances.search import FIRST, Estimate, Stated, search
+from comparisons.tolerances.tolerated import paired_within, solved
+from comparisons.verdict import Word, compared
+from scene import Ending, Mistake, Probe, SceneError
+from scene.answer import frozen_array
+from tests.comparisons.made_up import MadeUp
+
+
+@dataclass
+class Law:
+    """An estimate C/N^p, assumed of second order; what is settled states a share of it, by which N it is known."""
+
+    C: float
+    p: float = 2.0
+    better: float = 0.25
+    least: float = 0.0
+    wants: int = 0
+    solved: set[int] = field(default_factory=set)
+
+    def stated(self, n: int) -> float:
+        return max(self.C / n**self.p, self.least)
+
+    def plain(self, n: int) -> Estimate:
+        if n < self.wants:
+            raise SceneError([Mistake("links", str(n), "more")])
+        self.solved |= {n, 2 * n}
+        return Estimate((Stated("", "B.displacement", "load", 1.0, self.stated(n), 2),))
+
+    def checked(self, n: int) -> Estimate:
+        return self.plain(n)
+
+    def settled(self, n: int) -> Estimate:
+        assert n // 2 in self.solved
+        self.solved |= {n, 2 * n}
+        return Estimate((Stated("", "B.displacement", "load", 1.0, self.better * self.stated(n), 2),))
+
+    def smallest(self, tolerance: float) -> float:
+        return max(FIRST, (self.C / tolerance) ** (1.0 / self.p))
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("p", [2.0, 3.0, 4.0])
+@pytest.mark.parametrize("C", [0.7, 5.0, 17.0, 130.0])
+def test_without_extrapolation_n_is_hardly_more_than_the_smallest_that_will_do(C, p, tolerance):
+    law = Law(C, p)
+    found = search(law, tolerance, 10_000, extrapolates=False)
+    assert found.met
+    assert not found.settled
+    assert found.n <= 1.5 * law.smallest(tolerance)
+    assert sum(law.solved) <= 4.0 * max(law.solved)
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("p", [2.0, 3.0, 4.0])
+@pytest.mark.parametrize("C", [0.7, 5.0, 17.0, 130.0])
+def test_what_is_settled_needs_no_finer_n_than_a_value_and_its_double(C, p, tolerance):
+    law = Law(C, p)
+    found = search(law, tolerance, 10_000, extrapolates=True)
+    assert found.met
+    assert max(law.solved) <= 1.6 * 2.0 * law.smallest(tolerance) + 4
+    assert found.n <= 1.6 * law.smallest(tolerance)
+
+
+def test_extrapolation_ends_the_search_as_soon_as_it_will_do():
+    law = Law(100.0, better=1e-3)
+    found = search(law, 1e-3, 5120, extrapolates=True)
+    assert (found.n, found.settled, law.solved) == (20, True, {10, 20, 40})
+
+
+def test_a_tolerance_beyond_reach_is_not_looked_for_at_the_largest_n():
+    law = Law(100.0)
+    found = search(law, 1e-9, 5120, extrapolates=True)
+    assert not found.met
+    assert found.estimate.fraction == pytest.approx(0.25 * law.stated(found.n))
+    assert max(law.solved) <= 160
+
+
+def test_an_estimate_that_does_not_fall_ends_at_the_largest_n():
+    law = Law(1e-3, least=2e-3)
+    found = search(law, 1e-3, 320, extrapolates=False)
+    assert not found.met
+    assert max(law.solved) <= 320
+
+
+def test_few_links_that_a_formulation_refuses_are_passed_over_and_a_wrong_question_is_not():
+    assert search(Law(1.0, wants=15), 1e-2, 5120, extrapolates=False).n == 20
+    with pytest.raises(SceneError):
+        search(Law(1.0, wants=10_000), 1e-2, 5120, extrapolates=False)
+
+
+def test_growth_follows_the_order_that_is_seen_within_bounds():
+    def estimate(fraction):
+        return Estimate((Stated("", "p", "s", 1.0, fraction, 2),))
+
+    assert estimate(1e-2).growth(1e-4, None, 2.0) == pytest.approx(10.0)
+    assert estimate(1e-2).growth(1e-4, estimate(8e-2), 2.0) == pytest.approx(100.0 ** (1 / 3))
+    assert estimate(1e-2).growth(1e-4, estimate(9.0), 2.0) == pytest.approx(100.0**0.25)
+    assert estimate(1e-2).growth(1e-4, estimate(1e-2), 2.0) == pytest.approx(10.0)
+    assert estimate(1e-5).growth(1e-4, None, 2.0) == 1.0
+    assert Estimate((), "it ended early").growth(1e-4, None, 2.0) == math.inf
+
+
+@dataclass
+class Noting:
+    """Notes what a solver is asked."""
+
+    solver: MadeUp
+    asked: list
+
+    def __hash__(self):
+        return id(self)
+
+    def __call__(self, scene, choices):
+        one = self.solver.solver == "cprbm"
+        mine = (choices.links, choices.formulation) if one else (choices.elements, choices.kinematics)
+        self.asked.append((scene.name, *mine, None if one else choices.penetration))
+        return self.solver(scene, choices)
+
+
+@pytest.mark.parametrize("tolerance", [3e-2, 1e-3])
+def test_a_comparison_solves_nothing_twice_and_states_no_more_than_was_asked(hinge, tolerance):
+    solvers = Solvers(Noting(MadeUp("cprbm", 2e-3), []), Noting(MadeUp("fea", -5e-4), []))
+    runs, found = paired_within(hinge, Choices(), tolerance, solvers, ALONE, lambda text: None)
+    comparison = compared(hinge, runs)
+    assert comparison.verdict.word is Word.AGREE, comparison.verdict.sentence
+    assert all(each.met for each in found)
+    for asked in (solvers.cprbm.asked, solvers.fea.asked):
+        assert len(asked) == len(set(asked))
+    for row in comparison.rows:
+        if row.bounds is not None:
+            assert row.fraction(row.bounds.cprbm) <= tolerance
+            assert row.fraction(row.bounds.fea) <= tolerance
+
+
+def test_what_falls_with_the_square_of_n_is_extrapolated_to_its_limit(hinge, right):
+    # reference: the made-up solver's own law, 2e-3 (40/N)²: without an error the displacement is 0.01 of the load
+    answer, found = solved(hinge, "cprbm", Choices(), 1e-3, right, lambda text: None)
+    assert found.extrapolated == (20, 40)
+    assert found.solved == (10, 20, 40)
+    assert found.n == answer.settings["n"] == 40
+    assert answer.settings["extrapolated_from"] == [20, 40]
+    assert "B.displacement" in found.probes
+    assert "N = 20, 40" in answer.notes[-1]
+    station = answer.stations[0]
+    assert station.values["B.displacement"][0] == pytest.approx(0.01 * station.value, rel=1e-12)
+
+
+def test_a_contact_that_is_open_at_one_size_leaves_the_finest_value_as_it_is(hinge, right):
+    answers = [right.cprbm(hinge, Choices(links=n)) for n in (10, 20, 40)]
+    touched = answers[0].stations[-1]
+    apart = replace(touched, touching={})
+    answers[0] = replace(answers[0], stations=(*answers[0].stations[:-1], apart))
+    everything = [probe.name for probe in hinge.probes]
+    value, _ = settled(hinge, (10, 20, 40), tuple(answers), everything)
+    fine = answers[2].stations[-1].values["contact.force"]
+    assert value.stations[-1].values["contact.force"] == fine
+    assert value.stations[-2].values["contact.force"] != answers[2].stations[-2].values["contact.force"]
+
+
+def test_ends_of_a_zone_that_would_change_places_are_kept(hinge, right):
+    asked = hinge.model_copy(update={"probes": (*hinge.probes, Probe(of="contact", quantity="ends"))})
+    answers = []
+    for n, ends in ((10, [0.0, 5e-3]), (20, [1e-3, 4e-3]), (40, [2e-3, 2.1e-3])):
+        found = right.cprbm(asked, Choices(links=n))
+        values = {**found.stations[-1].values, "contact.ends": frozen_array(ends)}
+        last = replace(found.stations[-1], values=frozendict(values))
+        answers.append(replace(found, stations=(*found.stations[:-1], last)))
+    value, _ = settled(asked, (10, 20, 40), tuple(answers), ["contact.ends"])
+    assert value.stations[-1].values["contact.ends"].tolist() == [2e-3, 2.1e-3]
+
+
+@pytest.mark.parametrize(("text", "fraction"), [("0.1%", 1e-3), (" 0.1 % ", 1e-3), ("0.001", 1e-3), ("1e-3", 1e-3)])
+def test_a_tolerance_is_a_percentage_or_a_fraction(text, fraction):
+    context = click.Context(command)
+    assert tolerance(context, command.params[0], text) == pytest.approx(fraction)
+
+
+def test_solve_says_in_json_how_n_was_found(right, capsys):
+    assert run(["solve", "hinge", "--tol", "0.1%", "--json", "-"], right) == 0
+    found = json.loads(capsys.readouterr().out)["cases"][0]["solvers"]["cprbm"]["tolerance"]
+    assert found["asked"] == pytest.approx(1e-3)
+    assert found["estimate"] <= 1e-3
+    assert found["extrapolated"] == [20, 40]
+    assert found["solved"] == [10, 20, 40]
+    assert (found["links"], found["elements"], found["met"]) == (40, None, True)
+
+
+@pytest.mark.parametrize("text", ["0", "-1%", "100%", "1", "nan", "%", "tight", "1e-3%%", "inf"])
+@pytest.mark.parametrize("command", ["solve", "compare"])
+def test_another_tolerance_is_refused(right, capsys, command, text):
+    assert run([command, "hinge", f"--tol={text}"], right) == 2
+    said = capsys.readouterr().err
+    assert f"found {text!r}" in said
+    assert "allowed" in said
+
+
+@pytest.mark.parametrize("option", [["-n", "40"], ["--elements", "beam1=30,beam2=40"]])
+@pytest.mark.parametrize("command", ["solve", "compare"])
+def test_a_tolerance_and_n_are_a_wrong_question(right, capsys, command, option):
+    assert run([command, "hinge", "--tol", "1%", *option], right) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert f"--tol and {option[0]}" in captured.err
+
+
+def test_compare_says_which_n_were_found(right, capsys, tmp_path):
+    file = tmp_path / "numbers.json"
+    assert run(["compare", "hinge", "--tol", "0.1%", "--json", str(file)], right) == 0
+    assert "N for a tolerance of 0.100 %" in capsys.readouterr().out
+    solvers = json.loads(file.read_text("utf-8"))["cases"][0]["solvers"]
+    assert solvers["cprbm"]["tolerance"]["links"] == 40
+    # in bending the made-up contact is still open at 0.201 N·m with 10 elements, and 10, 20 and 40 are not of one law
+    assert solvers["fea"]["tolerance"]["extrapolated"] == [40, 80]
+
+
+class Scattered(MadeUp):
+    """An error that does not fall with N: what it is at one N says nothing of another."""
+
+    def __call__(self, scene, choices):
+        count = choices.links if self.solver == "cprbm" else choices.elements
+        spread = replace(self, error=1e-3 * (1 + count // 10 % 3) * (count / 40.0) ** 2)
+        return MadeUp.__call__(spread, scene, choices)
+
+
+def test_what_no_n_can_meet_is_said_with_the_probe_and_ends_with_3(right, capsys):
+    scattered = Scattered("cprbm", 1e-3)
+    for name in ("solve", "compare"):
+        assert run([name, "hinge", "--tol", "0.001%"], Solvers(scattered, right.fea)) == 3
+        captured = capsys.readouterr()
+        assert "CPRBM: NOT within" in captured.out + captured.err
+        assert " states " in captured.out + captured.err
+        assert "B.displacement" in captured.out
+
+
+def test_a_solver_that_never_completes_ends_with_1(right, capsys):
+    def ended(scene, choices):
+        found = right.cprbm(scene, choices)
+        return replace(found, stations=found.stations[:4], ending=Ending.STEP_TOO_SMALL, sentence="Too small.")
+
+    for name in ("solve", "compare"):
+        assert run([name, "hinge", "--tol", "1%", "--quiet"], Solvers(ended, right.fea)) == 1
+    assert "Too small." in capsys.readouterr().err
+
+
+def test_a_drives_reaction_by_the_energies_comes_with_an_extrapolated_answer(right):
+    scene = cases.opened("gripper-driven")
+    stage = scene.stages[0].model_copy(update={"stations": scene.stages[0].stations[:3]})
+    scene = scene.model_copy(update={"stages": (stage,), "claims": ()})
+    runs, (cprbm, _) = paired_within(scene, Choices(), 1e-3, right, ALONE, lambda text: None)
+    assert cprbm.extrapolated
+    assert len(compared(scene, runs).reactions) == 3

@@ -1,0 +1,1 @@
+"""The exact solution against references that share nothing with it, and against itself."""

@@ -1,0 +1,260 @@
+"""Every fault, in each solver, on every built-in case that contains what the fault is about: none passes as AGREE.
+
+How each is planted, with cases picked by what their scenes hold and never by name:
+
+* *modulus*: the scene's Young's moduli are 2 % larger before one solver sees it, wherever loads or a probe tell;
+* *contact ignored*: each contact alone is missing when one solver sees the scene, and its probes are answered as a
+  solver would that found it open;
+* *contact sign*: inside a solver the side on which the other beam lies, or that of a circle, is turned round;
+* *curvature*: inside a solver a tenth of the stress-free curvature is forgotten; or the stress is made of the whole
+  curvature, and not of its change;
+* *sign of a value*: all probes of one quantity that has a sign have the wrong one;
+* *stops early*: the last station is left out, with and without saying so.
+
+Each case is asked at its first station and at the first one at which every contact presses with some force (the last
+one if there is no contact), in one theory and coarsely: there the right solvers agree, so that what is not AGREE is the
+fault's doing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from frozendict import frozendict
+
+import cprbm.circle
+import cprbm.mechanism
+import cprbm.nearest
+import fea_reference.circle
+import fea_reference.contact
+import fea_reference.model
+from comparisons import cases
+from comparisons.choices import Choices
+from comparisons.geometry import length, points
+from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer, paired
+from comparisons.verdict import Word, compared
+from scene import Answer, Ending, Probe, Scene, StationAnswer
+from scene.answer import Array, frozen_array
+from scene.statement import Arc, CircleContact, Polynomial
+from tests.together.planted import remembered, stiffer, without_contact
+
+CHOICES = Choices(links=40, elements=20, kinematics="bending")
+FIRST_LOOK = Choices(links=10)
+ROUGH = Choices(links=12, elements=12, kinematics="bending")
+SOME = 0.25  # of a contact's largest force
+REAL: dict[str, Solver] = {"cprbm": cprbm_answer, "fea": fea_answer}
+SIGNED = ("displacement", "rotation", "bending_stress", "reaction", "reaction_moment", "potential_energy")
+TOLD_BY_MODULUS = {"force", "bending_stress", "reaction", "reaction_moment", "potential_energy"}
+
+SCENES: dict[str, Scene] = {
+    name: scene for name in cases.names() if isinstance(scene := cases.asked(name), Scene)
+}  # fmt: skip
+EACH = pytest.mark.parametrize("solver", ["cprbm", "fea"])
+
+
+@cache
+def thinned(case: str) -> Scene:
+    """The case at its first station and at the first at which every contact presses with some force."""
+    scene = SCENES[case]
+    last = scene.stages[-1]
+    station = last.stations[-1]
+    if scene.contacts:
+        forces = tuple(Probe(of=contact, quantity="force") for contact in scene.contacts)
+        looked = last.model_copy(update={"stations": last.stations[:: max(1, len(last.stations) // 10)]})
+        asked = {"probes": forces, "stages": (*scene.stages[:-1], looked)}
+        found = cprbm_answer(scene.model_copy(update=asked), FIRST_LOOK).stations
+        pressing = np.array([[each.values[force.name][0] for force in forces] for each in found])
+        station = found[int(np.argmax((pressing >= SOME * pressing.max(axis=0)).all(axis=1)))].value
+    stage = last.model_copy(update={"stations": tuple(dict.fromkeys((last.stations[0], station)))})
+    return scene.model_copy(update={"stages": (*scene.stages[:-1], stage)})
+
+
+@cache
+def right(case: str) -> Runs:
+    return paired(thinned(case), CHOICES, Solvers())
+
+
+def word(case: str, solver: str, wrong: Answer) -> Word:
+    """The verdict with one wrong solver beside the right one.
+
+    What is wrong at one discretisation is as wrong at all others: each value there is the right one's and the fault's.
+    """
+    runs = right(case)
+    true = remembered(runs)
+    base = getattr(true, solver)(thinned(case), CHOICES)
+
+    def answer(scene: Scene, choices: Choices) -> Answer:
+        own = getattr(true, solver)(scene, choices)
+        if choices == CHOICES or [each.value for each in own.stations] != [each.value for each in wrong.stations]:
+            return wrong
+        stations = zip(own.stations, base.stations, wrong.stations, strict=True)
+        return replace(wrong, stations=tuple(_as_wrong(*three) for three in stations))
+
+    return compared(thinned(case), paired(thinned(case), CHOICES, replace(true, **{solver: answer}))).verdict.word
+
+
+def _as_wrong(own: StationAnswer, base: StationAnswer, wrong: StationAnswer) -> StationAnswer:
+    values = {
+        name: found
+        if not own.values[name].shape == base.values[name].shape == found.shape
+        else frozen_array(own.values[name] + found - base.values[name])
+        for name, found in wrong.values.items()
+    }
+    return replace(wrong, values=frozendict(values))
+
+
+def asked(case: str, solver: str) -> Answer:
+    """What a solver says now, with all that is planted in it."""
+    return REAL[solver](thinned(case), CHOICES)
+
+
+def asked_in_vain(case: str, solver: str) -> Answer:
+    """The same of a fault that mostly lets a solver come to no end, and sooner with few elements."""
+    rough = REAL[solver](thinned(case), ROUGH)
+    return asked(case, solver) if rough.completed else rough
+
+
+def known(case: str, solver: str) -> Answer:
+    """The right answer."""
+    return right(case).cprbm[0] if solver == "cprbm" else right(case).reference
+
+
+def altered(answer: Answer, change: Callable[[StationAnswer], StationAnswer]) -> Answer:
+    """An answer whose every station is changed afterwards."""
+    return replace(answer, stations=tuple(change(station) for station in answer.stations))
+
+
+@pytest.mark.parametrize("case", SCENES)
+def test_the_right_ones_agree(case):
+    scene = thinned(case)
+    verdict = compared(scene, right(case)).verdict
+    assert verdict.word is Word.AGREE, verdict.sentence
+
+
+def tells_the_modulus(scene: Scene) -> bool:
+    load = any(stage.steps in scene.loads for stage in scene.stages)
+    return load or any(probe.quantity in TOLD_BY_MODULUS for probe in scene.probes)
+
+
+@EACH
+@pytest.mark.parametrize("case", [name for name, scene in SCENES.items() if tells_the_modulus(scene)])
+def test_a_modulus_two_per_cent_too_large(case, solver):
+    assert word(case, solver, REAL[solver](stiffer(thinned(case)), CHOICES)) is Word.DIFFER
+
+
+CONTACTS = [(case, contact) for case, scene in SCENES.items() for contact in scene.contacts]
+
+
+@EACH
+@pytest.mark.parametrize(("case", "contact"), CONTACTS)
+def test_a_contact_ignored(case, contact, solver):
+    assert word(case, solver, without_contact(REAL[solver], contact)(thinned(case), CHOICES)) is not Word.AGREE
+
+
+@pytest.mark.parametrize("case", [name for name, scene in SCENES.items() if scene.contacts])
+def test_a_contact_of_the_wrong_sign_in_the_cprbm(case, monkeypatch):
+    monkeypatch.setattr(cprbm.nearest, "_side", _turned(cprbm.nearest._side))
+    if any(isinstance(contact, CircleContact) for contact in SCENES[case].contacts.values()):
+        monkeypatch.setattr(cprbm.circle.Circle, "distance", _turned(cprbm.circle.Circle.distance))
+    assert word(case, "cprbm", asked_in_vain(case, "cprbm")) is not Word.AGREE
+
+
+@pytest.mark.parametrize("case", [name for name, scene in SCENES.items() if scene.contacts])
+def test_a_contact_of_the_wrong_sign_in_the_finite_elements(case, monkeypatch):
+    monkeypatch.setattr(fea_reference.contact, "side_of", _turned(fea_reference.contact.side_of))
+    clearance = fea_reference.circle._clearance
+
+    def inside_out(*given: object) -> tuple[Array, Array, Array]:
+        r, n, g = clearance(*given)
+        return r, n, -g
+
+    if any(isinstance(contact, CircleContact) for contact in SCENES[case].contacts.values()):
+        monkeypatch.setattr(fea_reference.circle, "_clearance", inside_out)
+    assert word(case, "fea", asked_in_vain(case, "fea")) is not Word.AGREE
+
+
+def _turned(function: Callable[..., object]) -> Callable[..., object]:
+    return lambda *given: -function(*given)
+
+
+BENT = [
+    name
+    for name, scene in SCENES.items()
+    if any(isinstance(beam.curve, Arc | Polynomial) for beam in scene.beams.values())
+]
+
+
+@pytest.mark.parametrize("case", BENT)
+def test_a_tenth_of_the_curvature_is_missing_in_the_cprbm(case, monkeypatch):
+    whole = cprbm.mechanism.build
+
+    def flatter(*given: object) -> object:
+        model = whole(*given)
+        return replace(model, rest_turns=0.9 * model.rest_turns)
+
+    monkeypatch.setattr(cprbm.mechanism, "build", flatter)
+    assert word(case, "cprbm", asked(case, "cprbm")) is not Word.AGREE
+
+
+@pytest.mark.parametrize("case", BENT)
+def test_a_tenth_of_the_curvature_is_missing_in_the_finite_elements(case, monkeypatch):
+    whole = fea_reference.model.reference
+
+    def flatter(*given: object) -> object:
+        elements = whole(*given)
+        return replace(elements, rotation=0.9 * elements.rotation)
+
+    monkeypatch.setattr(fea_reference.model, "reference", flatter)
+    assert word(case, "fea", asked(case, "fea")) is not Word.AGREE
+
+
+@EACH
+@pytest.mark.parametrize("case", BENT)
+def test_a_stress_of_the_whole_curvature(case, solver):
+    scene = thinned(case)
+
+    def change(station: StationAnswer) -> StationAnswer:
+        values = dict(station.values)
+        for probe in scene.probes:
+            if probe.quantity == "bending_stress":
+                beam = scene.beams[probe.of]
+                s = np.linspace(0.0, length(beam.curve), probe.points)
+                E = scene.materials[beam.material].youngs_modulus
+                x, y = points(beam.curve, s).T
+                angle = np.unwrap(np.arctan2(np.gradient(y, s), np.gradient(x, s)))
+                initial = 0.5 * E * beam.thickness_at(s / s[-1]) * np.gradient(angle, s)
+                values[probe.name] = frozen_array(values[probe.name] + initial)
+        return replace(station, values=frozendict(values))
+
+    assert word(case, solver, altered(known(case, solver), change)) is Word.DIFFER
+
+
+QUANTITIES = [
+    (case, quantity)
+    for case, scene in SCENES.items()
+    for quantity in SIGNED
+    if any(probe.quantity == quantity for probe in scene.probes)
+]
+
+
+@EACH
+@pytest.mark.parametrize(("case", "quantity"), QUANTITIES)
+def test_a_quantity_of_the_wrong_sign(case, quantity, solver):
+    def change(station: StationAnswer) -> StationAnswer:
+        turned = {probe.name for probe in SCENES[case].probes if probe.quantity == quantity}
+        values = {name: frozen_array(-found if name in turned else found) for name, found in station.values.items()}
+        return replace(station, values=frozendict(values))
+
+    assert word(case, solver, altered(known(case, solver), change)) is Word.DIFFER
+
+
+@EACH
+@pytest.mark.parametrize("ending", [Ending.COMPLETED, Ending.STEP_TOO_SMALL])
+@pytest.mark.parametrize("case", SCENES)
+def test_an_early_stop(case, ending, solver):
+    found = known(case, solver)
+    assert word(case, solver, replace(found, stations=found.stations[:-1], ending=ending)) is Word.UNDECIDED
