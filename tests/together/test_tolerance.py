@@ -143,7 +143,8 @@ def test_nothing_finer_is_solved_than_the_cheapest_n_needs_for_its_own_estimate(
     levels = SceneLevels(scene, answers, BENDING, ("bending",), Remembering(solvers=SOLVERS), beside=solver == "cprbm")
     n = smallest(levels, tolerance, 100)
     assert levels.checked(n).fraction <= tolerance
-    assert found.n <= 1.5 * n
+    if found.n < max(found.solved):  # else it is settled there, and nothing finer was needed
+        assert found.n <= 1.5 * n
     assert max(found.solved) <= 1.5 * 2 * n
 
 
