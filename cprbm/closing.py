@@ -124,13 +124,13 @@ class Gap:
         return self.solved[min(self.solved, key=lambda other: abs(other - value))]
 
     def followed(self, value: float) -> Point | None:
-        """The equilibrium at v, from the nearest that is known; None where there is none so near that all is seen."""
+        """The equilibrium at v, from the nearest that is known; None where there is none near that."""
         start = self.nearest(value)
         found = equilibrium(
             self.mechanism.problem, self.at(value), start, self.settings.tolerance, self.settings.iterations
         )
         turned = float(np.max(np.abs(found.point.state.theta - start.state.theta)))
-        if not found.converged or turned > SEEN or self.mechanism.passed(start, found.point):
+        if not found.converged or turned > SEEN:
             return None
         self.solved[value] = found.point
         return found.point
@@ -140,25 +140,32 @@ class Gap:
         point = self.followed(value)
         if point is None:
             return 1.0
+        return self._constraint(point)
+
+    def _constraint(self, point: Point) -> float:
+        # far away there are no rows
         return max(self.mechanism.overlap(self.contact, point.state, point.at), -1.0)
 
     def bracket(self, begin: float, target: float) -> tuple[float, float] | None:
         """Two values close to each other, v_c between them or at both; None where there is none up to ``target``."""
-        if self.followed(begin) is None:
+        start = self.followed(begin)
+        if start is None:
             return None
         low, done, step = begin, 0.0, 1.0
-        if self.overlap(begin) >= -TOUCHING:
+        if self._constraint(start) >= -TOUCHING:
             low, done = begin + BEGUN * (target - begin), BEGUN
             if self.overlap(low) > 0.0:
                 return begin, begin
         while step > SHORTEST:
             part = min(1.0, done + step)
             high = target if part == 1.0 else begin + part * (target - begin)
-            if self.followed(high) is None:
+            before, after = self.nearest(high), self.followed(high)
+            if after is not None and self._constraint(after) > 0.0:
+                return low, high
+            if after is None or self.mechanism.passed(before, after):
+                self.solved.pop(high, None)
                 step *= 0.5
                 continue
-            if self.overlap(high) > 0.0:
-                return low, high
             if part == 1.0:
                 return None
             low, done, step = high, part, 2.0 * step
