@@ -28,6 +28,7 @@ from scene import Scene
 
 Stood = tuple[float, Point]  # a value of what is stepped, and the march's state there
 
+SOON = 12  # iterations to a state near another
 SEEN = 0.3  # rad: the most that a link turns by in a step in which nothing is missed
 TOUCHING = 1e-12  # of the longest beam: a gap that is none
 SHORTEST = 1e-6  # of the way: a step behind which there is no equilibrium without the contact
@@ -126,9 +127,8 @@ class Gap:
     def followed(self, value: float) -> Point | None:
         """The equilibrium at v, from the nearest that is known; None where there is none near that."""
         start = self.nearest(value)
-        found = equilibrium(
-            self.mechanism.problem, self.at(value), start, self.settings.tolerance, self.settings.iterations
-        )
+        most = min(self.settings.iterations, SOON)
+        found = equilibrium(self.mechanism.problem, self.at(value), start, self.settings.tolerance, most)
         turned = float(np.max(np.abs(found.point.state.theta - start.state.theta)))
         if not found.converged or turned > SEEN:
             return None
