@@ -44,6 +44,7 @@ from scipy.spatial import cKDTree
 
 from cprbm import smooth, wells
 from cprbm.contact import Group
+from cprbm.crossing import cross
 from cprbm.gathering import Touches, gathered
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed
@@ -181,6 +182,7 @@ class Pair:
         s = np.concatenate((smooth.halves(self.a), _minima(self, lines, *_sampled(self, lines))[0]))
         D, _, foot = distance_along(self, lines, s)
         E, _, facing = distance_along(self.exchanged(), lines[::-1], self.b.s[[0, -1]])
+        D, E = _not_gone_round(self, lines, D), _not_gone_round(self.exchanged(), lines[::-1], E)
         return float(np.min(np.append(D, E)[np.append(foot, facing)], initial=np.inf)) - self.offset
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
@@ -392,6 +394,7 @@ def _facing_ends(pair: Pair, lines: Lines) -> Places:
     if not near.size:
         return Places(np.zeros(0), np.zeros(0), near)
     E, foot, facing = distance_along(pair.exchanged(), lines[::-1], ends.s[near])
+    E = _not_gone_round(pair.exchanged(), lines[::-1], E)
     facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
     for i, end in enumerate(near):
         facing[i] &= not _held_together(b, a, int(-end), float(foot[i]))
@@ -425,7 +428,16 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     if close.size:
         distance, sigma[close], foot = _feet(pair, lines[1], lines[0].at(A.s[close]), G.s[nearest[close]])
         D[close] = np.where(foot, distance, np.inf)
-    return D, sigma
+    return _not_gone_round(pair, lines, D), sigma
+
+
+def _not_gone_round(pair: Pair, lines: Lines, D: Array) -> Array:
+    """D, infinite where A lies beyond B and has not come there through it, but round an end."""
+    beyond = D + pair.offset + pair.a.h < 0.0  # nearer it may have come through
+    if not np.any(beyond):
+        return D
+    A, B = (np.stack((line.sampled.x, line.sampled.y), axis=1) for line in lines)
+    return D if cross(A, B) else np.where(beyond, np.inf, D)
 
 
 def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:
