@@ -67,6 +67,7 @@ BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces 
 
 STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
 ON_IT = 1e-9  # gap and slope of two clamped ends, and how far they lie apart along the beams, where they touch
+STRAIGHT = 0.1  # of an element: by less a line is off the chords between its samples
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)  # of the mean on either side of a border of B
 
 Lines = tuple[smooth.SmoothLine, smooth.SmoothLine]
@@ -433,7 +434,7 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
 
 def _not_gone_round(pair: Pair, lines: Lines, D: Array) -> Array:
     """D, infinite where A lies beyond B and has not come there through it, but round an end."""
-    beyond = D + pair.offset + pair.a.h < 0.0  # nearer it may have come through
+    beyond = D + pair.offset + STRAIGHT * (pair.a.h + pair.b.h) < 0.0
     if not np.any(beyond):
         return D
     A, B = (np.stack((line.sampled.x, line.sampled.y), axis=1) for line in lines)
