@@ -179,12 +179,20 @@ class Pair:
 
     def least_gap(self, state: State, at: Positions) -> float:
         """Least gap of the two beams along A and at the ends of B, units of length; infinite where nothing faces A."""
-        lines = self.lines(state, at)
+        D, E = self._distances(self.lines(state, at))
+        return float(np.min(np.append(D, E), initial=np.inf)) - self.offset
+
+    def gone_round(self, state: State, at: Positions) -> bool:
+        """Whether a part of a beam lies beyond the other and has come there round an end."""
+        return any(np.any(np.isneginf(distances)) for distances in self._distances(self.lines(state, at), gone=-np.inf))
+
+    def _distances(self, lines: Lines, gone: float = np.inf) -> tuple[Array, Array]:
+        """D along A and at the ends of B, infinite where there is no foot, ``gone`` where that is round an end."""
         s = np.concatenate((smooth.halves(self.a), _minima(self, lines, *_sampled(self, lines))[0]))
         D, _, foot = distance_along(self, lines, s)
         E, _, facing = distance_along(self.exchanged(), lines[::-1], self.b.s[[0, -1]])
-        D, E = _not_gone_round(self, lines, D), _not_gone_round(self.exchanged(), lines[::-1], E)
-        return float(np.min(np.append(D, E)[np.append(foot, facing)], initial=np.inf)) - self.offset
+        D, E = np.where(foot, D, np.inf), np.where(facing, E, np.inf)
+        return _not_gone_round(self, lines, D, gone), _not_gone_round(self.exchanged(), lines[::-1], E, gone)
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
         """Where the edges touch that touch at arc lengths ``s`` of A, (k, 2), units of length."""
@@ -432,13 +440,13 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     return _not_gone_round(pair, lines, D), sigma
 
 
-def _not_gone_round(pair: Pair, lines: Lines, D: Array) -> Array:
-    """D, infinite where A lies beyond B and has not come there through it, but round an end."""
+def _not_gone_round(pair: Pair, lines: Lines, D: Array, gone: float = np.inf) -> Array:
+    """D, but ``gone`` where A lies beyond B and has not come there through it, but round an end."""
     beyond = D + pair.offset + STRAIGHT * (pair.a.h + pair.b.h) < 0.0
     if not np.any(beyond):
         return D
     A, B = (np.stack((line.sampled.x, line.sampled.y), axis=1) for line in lines)
-    return D if cross(A, B) else np.where(beyond, np.inf, D)
+    return D if cross(A, B) else np.where(beyond, gone, D)
 
 
 def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:

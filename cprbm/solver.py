@@ -201,7 +201,10 @@ class _March:
                     f"a link turned by {turned:.2f} rad in one load step",
                 )
             elif ending is Ending.COMPLETED and (crossed := self.mechanism.passed(self.point, found.point)):
-                ending, sentence = Ending.BEAMS_CROSSED, f"in contact '{crossed}' the beam went across the circle"
+                ending, sentence = (
+                    Ending.BEAMS_CROSSED,
+                    f"in contact '{crossed}' the beam went across what it may touch",
+                )
             elif certificate.failures:
                 sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
             if ending is Ending.COMPLETED:
