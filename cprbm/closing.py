@@ -79,12 +79,11 @@ class Closings:
         return self._fitted(gap, closing, target - value)
 
     def _gap(self, mechanism: Mechanism, contact: str, value: float, point: Point) -> Gap:
-        """Of a mechanism with the contact, whose state near ``value`` is known."""
+        """Of a mechanism with the contact, whose state near ``value`` is about known."""
         without = replace(mechanism, problem=mechanism.without(contact))
-        gap = Gap(without, contact, self.values, self.load, self.settings)
-        start = point_at(without.problem, gap.at(value), point.state, point.mu, np.zeros(0), NO_ROWS)
-        gap.solved[value] = start
-        return gap
+        values = {**self.values, self.load: value}
+        guess = point_at(without.problem, values, point.state, point.mu, np.zeros(0), NO_ROWS)
+        return Gap(without, contact, self.values, self.load, self.settings, guess)
 
     def _fitted(self, gap: Gap, closing: float, way: float) -> float:
         """v_c on the mesh that is fitted to where the other contacts are then."""
@@ -107,13 +106,14 @@ class Closings:
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """c(v); ``mechanism`` is without the contact, ``solved`` are the states that are known, by v."""
+    """c(v); ``mechanism`` is without the contact, ``solved`` by v what is known, before there is any a ``guess``."""
 
     mechanism: Mechanism
     contact: str
     values: dict[str, float]
     load: str
     settings: Settings
+    guess: Point
     solved: dict[float, Point] = field(default_factory=dict)
 
     def at(self, value: float) -> dict[str, float]:
@@ -122,10 +122,14 @@ class Gap:
 
     def nearest(self, value: float) -> Point:
         """The state whose v is nearest."""
+        if not self.solved:
+            return self.guess
         return self.solved[min(self.solved, key=lambda other: abs(other - value))]
 
     def followed(self, value: float) -> Point | None:
         """The equilibrium at v, from the nearest that is known; None where there is none near that."""
+        if value in self.solved:
+            return self.solved[value]
         start = self.nearest(value)
         most = min(self.settings.iterations, SOON)
         found = equilibrium(self.mechanism.problem, self.at(value), start, self.settings.tolerance, most)

@@ -5,7 +5,11 @@ import pytest
 
 import cprbm
 import exact
+from cprbm.contact import NO_ROWS
 from cprbm.crossing import cross
+from cprbm.equilibrium import equilibrium, point_at
+from cprbm.kinematics import rest_state
+from cprbm.mechanism import mechanism_of
 from scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
 
@@ -83,3 +87,19 @@ def test_a_tip_slides_along_a_beam_whose_further_part_it_turns_its_back_on():
     found = check(beside_another(other, pressed, stations, thick=True, thicker=1.7), 20)
     assert found[-1]["contact.force"][0] > 0.0
     assert found[-1]["tip.rotation"][0] < -1.4
+
+
+@pytest.mark.parametrize(
+    ("begin", "end", "through"), [((1.5, -0.1), (0.5, -0.1), True), ((1.5, -0.1), (1.2, -0.1), False)]
+)
+def test_a_step_that_leads_through_a_beam_is_told_from_one_round_its_end(begin, end, through):
+    """A tip goes down by 0.7 of its beam's length, through another or past its end."""
+    pressed = {"kind": "force", "point": "T", "direction": [0.0, -1.0]}
+    mechanism = mechanism_of(beside_another((begin, end), pressed, [UNIT], thick=True), cprbm.Settings(links=20))
+    apart, pair = mechanism.without("contact"), mechanism.pairs["contact"]
+    rest = point_at(apart, {}, rest_state(apart.model), np.zeros(apart.closure.rows), np.zeros(0), NO_ROWS)
+    bent = equilibrium(apart, {"P": 4.7 * UNIT}, rest, 1e-11, 50)
+    assert bent.converged
+    for point in (rest, bent.point):
+        assert pair.least_gap(point.state, point.at) > 0.0
+    assert mechanism.passed(rest, bent.point) == ("contact" if through else "")
