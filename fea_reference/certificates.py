@@ -15,6 +15,7 @@ from scene.answer import Array, Certificate
 _VIOLATION = 1e-9
 _BALANCE = 1e-8
 _RESOLVED = 0.05  # of the thickness: overlap with a circle, whose penalty is as stiff as the elements can follow
+_SOFT = 0.05  # by which a penalty may fall short of the stiffness that its elements ask for
 _NOTHING = 10.0  # floors: forces below this are round-off themselves
 _MISSING = 1e-3  # of a contact's resultant
 
@@ -49,6 +50,8 @@ def certify(march: March) -> Certificate:
         overlap = one.penetration / one.pair.scale
         if not overlap <= allowed:
             failures.append(f"what touches in {one.pair.name} overlaps by {overlap:.1e}; {allowed:.1e} was asked")
+        elif one.closed and march.penalties[one.pair].stiffness < (1.0 - _SOFT) * one.pair.stiffest:
+            failures.append(f"the penalty of {one.pair.name} could not be raised to what the elements can follow")
     if not force <= balance:
         failures.append(f"the forces of loads and supports leave {force:.1e} of the largest")
     if not moment <= balance:

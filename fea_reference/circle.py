@@ -37,7 +37,7 @@ from fea_reference.edge import edge_of
 from fea_reference.hermite import NeutralLine, along, shapes, twice_along
 from fea_reference.model import Model, turned
 from fea_reference.state import State, squared, summed
-from fea_reference.touch import Circle, Penalty, Touch
+from fea_reference.touch import Circle, Penalty, Touch, together
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative
 from scene.answer import Array
 from scene.statement import CircleContact, Scene
@@ -133,14 +133,12 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
 
     H = shapes(xi)
     g_q, p = along(n, H, line, e), along(tau, H, line, e)
-    dofs = model.element_dofs[:, e + beam.elements.start]
     own = twice_along(n, H, line, e)
     if body.dofs is not None:
         arm = turned(np.array(circle.arm), z[body.dofs[2]])
         across = np.array([-arm[1], arm[0]])  # ∂(R arm)/∂φ; its derivative is −R arm
         g_q = np.concatenate([g_q, -n, -across[None] @ n])
         p = np.concatenate([p, -tau, -across[None] @ tau])
-        dofs = np.concatenate([dofs, np.repeat(body.dofs[:, None], zeta.size, axis=1)])
     g_qq = p[:, None] * p[None, :] / r
     g_qq[:7, :7] += own
     if body.dofs is not None:
@@ -148,10 +146,12 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
 
     g = g - penalty.lead
     weight = penalty.stiffness * ds
+    alike = together(quadrature, e)
     return Touch(
         pair=circle,
         zones=zones,
-        dofs=dofs,
+        chain=model.chain(((beam, e[::alike]),), z, body.dofs),
+        alike=alike,
         stiffness=weight,
         gap=g,
         gap_by=g_q,

@@ -41,7 +41,7 @@ from fea_reference.hermite import NeutralLine, along, apart, shape_slopes, shape
 from fea_reference.model import BeamPart, Model
 from fea_reference.projection import project
 from fea_reference.state import State
-from fea_reference.touch import Pair, Penalty, Touch
+from fea_reference.touch import Pair, Penalty, Touch, together
 from fea_reference.zones import Zones, ends_over, find, side_of
 from scene.statement import BeamContact, Scene
 
@@ -130,14 +130,13 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     d_qq[7:, 7:] -= twice_along(n, H_m, line_m, e_m)
 
     weight = penalty.stiffness * ds
-    dofs = np.concatenate(
-        [model.element_dofs[:, e + beam.elements.start], model.element_dofs[:, e_m + beam_m.elements.start]]
-    )
+    alike = together(quadrature, e, e_m)
     normal = pair.side * n
     return Touch(
         pair=pair,
         zones=zones,
-        dofs=dofs,
+        chain=model.chain(((beam, e[::alike]), (beam_m, e_m[::alike])), z),
+        alike=alike,
         stiffness=weight,
         gap=g,
         gap_by=pair.side * d_q,

@@ -10,14 +10,15 @@ L, l⁰    arc length of the undeformed element, and its chord
 θ(s)     rotation of the section against the chord: a parabola through both ends
 γ        angle of shear, one per element: w' = θ + γ, and w is zero at both ends, so γ = −∫θ ds / L
 N        axial force, an unknown of its own
-c        axial compliance, the mean of 1/(EA), zero for an inextensible beam
+c_N      axial compliance, the mean of 1/(EA), zero for an inextensible beam
 EI, GA   bending stiffness; effective shear stiffness k_s G A, k_s = 5/6; both may vary along the element
 F        flexibility of the end rotations, :mod:`fea_reference.section`; K = F⁻¹
+c        slip, γ by −Δ: the shear force is −(1, 1)·K Δ / L, so that c = (1, 1)·K ∫ ds/(GA) / L²
 =======  =====================================================================================
 
 The element's contribution to the Hellinger–Reissner functional is
 
-    Π_e = ½ Δᵀ K Δ + N [ (l − l⁰) + ½ ∫ (w'² − w⁰'²) ds ] − ½ c L N²,
+    Π_e = ½ Δᵀ K Δ + N [ (l − l⁰) + ½ ∫ (w'² − w⁰'²) ds ] − ½ c_N L N²,
 
 with the membrane strain averaged over the element (a shallow arch on its chord), so that a curved element is
 neither locked nor shortened by its own curvature.  The parabola's middle value makes the energy of bending
@@ -43,13 +44,14 @@ from scene.answer import Array
 class Elements:
     """What n elements keep of their undeformed shape: element last in every array.
 
-    ``length`` L, ``chord`` l⁰, ``compliance`` c (n,); ``rotation`` ϑ⁰, ``slope`` ∫ w⁰' ∂w'/∂Δ ds (2, n);
+    ``length`` L, ``chord`` l⁰, ``compliance`` c_N (n,); ``slip`` c, ``rotation`` ϑ⁰, ``slope`` ∫ w⁰' ∂w'/∂Δ ds (2, n);
     ``bending`` K, ``shortening`` ∫ ∂w'/∂Δ ∂w'/∂Δ ds (2, 2, n).
     """
 
     length: Array
     chord: Array
     compliance: Array
+    slip: Array
     rotation: Array
     slope: Array
     bending: Array
@@ -102,7 +104,8 @@ def reference(
     W = G - m[:, None] * m[None, :] / L  # ∫ w' w' ds
     slope = np.einsum("kn,akn,abn,bjn->jn", rotation, rigid, W, stiff)
     shortening = np.einsum("ain,abn,bjn->ijn", stiff, W, stiff)
-    return Elements(L, np.hypot(*chord.T), axial / L, rotation, slope, K, shortening)
+    slip = shear / L**2 * K.sum(axis=0)
+    return Elements(L, np.hypot(*chord.T), axial / L, slip, rotation, slope, K, shortening)
 
 
 def _local(form: BilinearForm, basis: CellBasis) -> Array:
@@ -130,7 +133,6 @@ def _section_rotation(D: Array, m: Array, ratio: Array) -> Array:
 
 def forces(elements: Elements, dofs: Index, state: State) -> ElementForces:
     """Value and derivatives in ``state``, its unknowns ``dofs`` (7, n) in the order (x₁, y₁, θ₁, x₂, y₂, θ₂, N)."""
-    n = dofs.shape[1]
     dx, dy = state.difference(dofs[3:5], dofs[:2])
     l = np.hypot(dx, dy)  # noqa: E741 - the chord's length
     alpha = np.arctan2(dy, dx)
@@ -146,14 +148,7 @@ def forces(elements: Elements, dofs: Index, state: State) -> ElementForces:
     elongation = l - elements.chord + ((elements.slope + 0.5 * shortened) * delta).sum(axis=0)
     energy = 0.5 * (delta * bent).sum(axis=0) + 0.5 * elements.compliance * elements.length * N**2
 
-    # Derivatives of the chord: l by the nodes is r, α is z/l.
-    cos, sin, zero = dx / l, dy / l, np.zeros(n)
-    r = np.stack([-cos, -sin, zero, cos, sin, zero, zero])
-    z = np.stack([sin, -cos, zero, -sin, cos, zero, zero])
-    turn = np.zeros((2, 7, n))  # ϑ by the unknowns
-    turn[:] = -z / l
-    turn[0, 2] += 1.0
-    turn[1, 5] += 1.0
+    r, z, turn = _chord(dx, dy, l)
     total = moment.sum(axis=0)
 
     gradient = N * r + np.einsum("in,ian->an", moment, turn)
@@ -166,6 +161,39 @@ def forces(elements: Elements, dofs: Index, state: State) -> ElementForces:
     H[:, 6] += coupling
     H[6, 6] -= elements.compliance * elements.length
     return ElementForces(gradient, H, energy, theta)
+
+
+@dataclass(frozen=True, slots=True)
+class Shear:
+    """γ of n elements (n,), its derivatives ``by`` (6, n) and ``by_twice`` (6, 6, n) the nodes' (x, y, θ)."""
+
+    angle: Array
+    by: Array
+    by_twice: Array
+
+
+def shear(elements: Elements, part: slice, dofs: Index, state: State) -> Shear:
+    """γ of those elements that are ``part`` of all, with unknowns ``dofs`` (7, n)."""
+    dx, dy = state.difference(dofs[3:5], dofs[:2])
+    l, alpha = np.hypot(dx, dy), np.arctan2(dy, dx)  # noqa: E741 - the chord's length
+    ends, slip = dofs[[2, 5]], elements.slip[:, part]
+    delta = _wrapped(state[ends] - alpha) + state.rest[ends] - elements.rotation[:, part]
+    r, z, turn = _chord(dx, dy, l)
+    rz = r[:6, None] * z[None, :6]
+    by_twice = -slip.sum(axis=0) / l**2 * (rz + rz.transpose(1, 0, 2))
+    return Shear(-(slip * delta).sum(axis=0), -np.einsum("in,ian->an", slip, turn[:, :6]), by_twice)
+
+
+def _chord(dx: Array, dy: Array, l: Array) -> tuple[Array, Array, Array]:  # noqa: E741 - the chord's length
+    """Derivatives of the chord, l by the unknowns r (7, n), α z/l (7, n), and ϑ (2, 7, n)."""
+    cos, sin, zero = dx / l, dy / l, np.zeros_like(l)
+    r = np.stack([-cos, -sin, zero, cos, sin, zero, zero])
+    z = np.stack([sin, -cos, zero, -sin, cos, zero, zero])
+    turn = np.zeros((2, *r.shape))
+    turn[:] = -z / l
+    turn[0, 2] += 1.0
+    turn[1, 5] += 1.0
+    return r, z, turn
 
 
 def _wrapped(angle: Array) -> Array:

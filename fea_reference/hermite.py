@@ -1,4 +1,4 @@
-"""The smooth neutral line: cubic Hermite through the nodes, with the nodal rotations as tangents.
+"""The smooth neutral line: cubic Hermite through the nodes, with a tangent at each.
 
 ======  ======================================================================
 symbol  meaning
@@ -6,6 +6,7 @@ symbol  meaning
 ζ       place on the beam: element number plus ξ in [0, 1] within the element
 H       the four cubic shape functions of (x₁, m t₁, x₂, m t₂)
 m       speed of the cubic at both nodes, L (1 + c N + (θ₂ − θ₁)²/48)
+θ       tangent angle at a node, :mod:`fea_reference.leaning`
 t, n    unit tangent (cos θ, sin θ) at a node, and its normal (−sin θ, cos θ)
 ======  ======================================================================
 

@@ -30,7 +30,14 @@ _LED = 1e-5  # of a known pressure, that may be another than the one led with
 _NEARBY = (1e-3, 1e-2, 1e-1)  # of a step: where to look for a closing under tighter penalties
 _DEEPER = 1e-3  # of the shortest element: by how much a contact sinks that is about to be passed
 _CLOSED = 1e-9  # of the thickness, a gap that is none
-_SLACK = 1.3  # on the penalty foreseen for the penetration asked
+_AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
+_EVEN = 0.03  # by which a penalty may differ from the one wanted
+_SAME = 1e-9  # by which the one of a circle may
+_POLISHINGS = 8  # tries after which a penetration below the one asked will do
+_IN_A_POINT = 1.5  # the power of one over the penetration with which the penalty of a contact in a point goes
+_FALLS = (1.0, 2.0)  # in an area, and at a tip
+_FAR = 4.0  # elements: a zone that goes farther from station to station is sought with loose penalties, if it had to
+_POINT = 1.0  # elements: a zone no wider is a point
 
 
 class StoppedError(Exception):
@@ -47,8 +54,8 @@ class March:
 
     ``values`` are the loads' and then the drives' without units; ``penalties`` the contacts that have closed so
     far, with their stiffness; ``closing`` the value of the stepped load or drive at which each did; ``iterations``
-    are counted since the last station; ``far`` is whether zones have been too far from one station to the next for
-    tight penalties, and the way to the next one begins with loose ones on circles.
+    are counted since the last station; ``far`` is whether zones have been too far from one station to the last for
+    tight penalties and have not come nearer since, so that the way to the next one begins with loose ones on circles.
     """
 
     model: Model
@@ -69,6 +76,7 @@ class March:
         """
         self.iterations = 0
         self._watch_what_touches(load)
+        before = self._zones()
         if self.far and self.values[load] != target:
             self._loosen(Circle)
         stride, cuts, searching = np.inf, 0, False
@@ -99,6 +107,8 @@ class March:
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
         self._tighten()
+        after = self._zones()
+        self.far = self.far and any(np.abs(after[one] - before[one]).max() > _FAR for one in before if one in after)
 
     @property
     def _moving(self) -> Array:
@@ -272,40 +282,80 @@ class March:
             return True
         return False
 
+    def _zones(self) -> dict[Contact, Array]:
+        """Where the zones on circles begin and end, (2,) each."""
+        return {
+            one.pair: np.array([one.zones.intervals.min(), one.zones.intervals.max()])
+            for one in self.system.touches
+            if isinstance(one.pair, Circle) and one.closed
+        }
+
     def _tighten(self) -> None:
-        """Raise penalties, each time from the last equilibrium, until none is too soft."""
+        """Change penalties, each time from the last equilibrium, until each leaves the penetration that it aims at.
+
+        Contacts in a point are held meanwhile, at the depth foreseen: another one that moves by more than they are
+        deep would open them, or make of the overlap a force thousands of times their own.
+        """
         most = _TIGHTEN
-        for _ in range(_TIGHTENINGS):
-            factors = {one.pair: self._too_soft(one) for one in self.system.touches}
+        falls: dict[Contact, float] = {}
+        for tries in range(_TIGHTENINGS):
+            factors = {one.pair: self._wanted(one, falls.get(one.pair, _IN_A_POINT)) for one in self.system.touches}
             pressures = {one.pair: resting_pressure(self.model, one, self.system.z) for one in self.system.touches}
-            if max(factors.values(), default=1.0) <= 1.0 and not self._misled(pressures):
+            done = all(self._will_do(one, factors[one.pair], tries) for one in self.system.touches)
+            if done and not self._misled(pressures):
                 return
             tighter = dict(self.penalties)
-            for pair, wanted in factors.items():
-                factor = min(wanted, most)
-                stiffness = factor * self.penalties[pair].stiffness
-                tighter[pair] = Penalty(stiffness, pressures[pair] / stiffness)
-            solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, {}, self._pushes())
+            depths: dict[Contact, float] = {}
+            for one in self.system.touches:
+                factor = min(max(factors[one.pair], 1.0 / most), most)
+                stiffness = factor * self.penalties[one.pair].stiffness
+                tighter[one.pair] = Penalty(stiffness, pressures[one.pair] / stiffness)
+                if isinstance(one.pair, Pair) and one.closed and np.ptp(one.zones.intervals) < _POINT:
+                    depths[one.pair] = one.penetration * factor ** (-1.0 / falls.get(one.pair, _IN_A_POINT))
+            solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, depths, self._pushes())
             self.iterations += solved.iterations
             if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
+                falls = self._falls(solved.system, tighter)
                 self.system, self.penalties = solved.system, tighter
                 most = min(most**1.5, _TIGHTEN)
             else:
                 most = max(most**0.4, 1.2)
 
-    def _too_soft(self, one: Touch) -> float:
-        """The factor by which a penalty falls short of the penetration asked, or of the stiffest one.
+    def _wanted(self, one: Touch, fall: float) -> float:
+        """The factor from a penalty to the one that leaves the penetration aimed at, or to the least for a station.
 
-        The penetration of a contact in a point falls with the penalty to the power −2/3, in an area with −1.  On a
-        circle a penalty stiffer than the elements can follow spoils more than the overlap that it leaves.
+        The penetration falls with the penalty to the power −1/``fall``: −2/3 in a point between sides, −1/2 at a tip,
+        −1 in an area.  On a circle a penalty stiffer than the elements can follow spoils more than the overlap that it
+        leaves: its penalty is always the same.
         """
+        least = one.pair.stiffest / self.penalties[one.pair].stiffness
+        if not one.closed:
+            return 1.0
         if isinstance(one.pair, Circle):
-            return max(1.0, one.pair.stiffest / self.penalties[one.pair].stiffness) if one.closed else 1.0
-        ratio = one.penetration / (self.settings.penetration * one.pair.scale)
-        wanted = _SLACK * ratio**1.5 if ratio > 1.0 else 1.0
-        if one.closed:
-            wanted = max(wanted, one.pair.stiffest / self.penalties[one.pair].stiffness)
-        return wanted
+            return max(1.0, least)
+        aim = _AIM * self.settings.penetration * one.pair.scale
+        return max(float((one.penetration / aim) ** fall), least)
+
+    def _will_do(self, one: Touch, factor: float, tries: int) -> bool:
+        """Whether a penalty is as wanted; after some tries that of beams may be stiffer."""
+        if isinstance(one.pair, Circle):
+            return factor <= 1.0 + _SAME
+        if abs(factor - 1.0) <= _EVEN:
+            return True
+        enough = one.penetration <= self.settings.penetration * one.pair.scale
+        stiff = one.pair.stiffest <= (1.0 + _EVEN) * self.penalties[one.pair].stiffness
+        return tries >= _POLISHINGS and enough and stiff
+
+    def _falls(self, system: System, tighter: Mapping[Contact, Penalty]) -> dict[Contact, float]:
+        """How the penetrations have fallen from the penalties of now to those of ``system``: −ln ε by ln depth."""
+        before = {one.pair: one.penetration for one in self.system.touches}
+        found = {}
+        for one in system.touches:
+            factor = tighter[one.pair].stiffness / self.penalties[one.pair].stiffness
+            share = one.penetration / before[one.pair] if before[one.pair] > 0.0 else 0.0
+            if share > 0.0 and abs(np.log(share)) > _EVEN:
+                found[one.pair] = float(np.clip(-np.log(factor) / np.log(share), *_FALLS))
+        return found
 
     def _misled(self, pressures: Mapping[Contact, float]) -> bool:
         """Whether a lead belongs to another pressure than the axial forces give."""

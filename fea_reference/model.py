@@ -10,6 +10,7 @@ guide (a sliding body has two: no motion across, no rotation) and of a drive.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,7 @@ from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLi
 from fea_reference.curves import length, sample
 from fea_reference.element import Elements, reference
 from fea_reference.hermite import Index, NeutralLine
+from fea_reference.leaning import Chain, Span, chain, tangent_angles
 from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
 from fea_reference.settings import Settings
 from fea_reference.state import State
@@ -194,12 +196,23 @@ class Model:
         dofs = self.node_dofs[:, beam.nodes]
         return NeutralLine.through(
             z[dofs[:2]],
-            z[dofs[2]],
+            tangent_angles(self.elements, self._span(beam), z),
             self.elements.length[beam.elements],
             z.rest[dofs[:2]],
             self.elements.compliance[beam.elements],
             z[self.element_dofs[6, beam.elements]],
         )
+
+    def chain(self, places: Sequence[tuple[BeamPart, Index]], z: State, body: Index | None = None) -> Chain:
+        """From what lines go by to the unknowns: of beams at elements (k,) of theirs, and of a ``body``'s three."""
+        k = places[0][1].size
+        moved = np.empty((0, k), dtype=np.int64) if body is None else np.repeat(body[:, None], k, axis=1)
+        return chain(self.elements, tuple((self._span(beam), e) for beam, e in places), moved, z)
+
+    def _span(self, beam: BeamPart) -> Span:
+        ends = (beam.record.start, beam.record.end)
+        welded = tuple(isinstance(end, WeldedEnd) for end in ends)
+        return Span(beam.elements, self.element_dofs[:, beam.elements], (welded[0], welded[1]))
 
     def body_state(self, body: BodyPart, z: State) -> Array:
         """(X, Y, φ) of a body, zero for the ground."""

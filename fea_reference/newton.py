@@ -36,6 +36,7 @@ from scene.answer import Array
 _TURN = 0.4  # rad, and the same in lengths of the longest beam: the most that one iteration may move anything
 _NEAR = 3.0  # factor between penetrations that Newton's method bridges by itself
 _SETTLED = 1e-4  # correction after which holding has done what it can
+_FALLING = 0.1  # of the unbalanced force before: who has come so far needs a few iterations more
 _HELD = 6  # iterations for which a contact is held at most
 
 
@@ -64,14 +65,17 @@ def equilibrium(
     pushed with there, (k,) each.
     """
     moving = np.concatenate([model.node_dofs.ravel(), *(b.dofs for b in model.bodies if b.dofs is not None)])
-    correction = np.inf
+    correction, last, iteration = np.inf, np.inf, 0
     held, foreseen = dict(depths), dict(before)
     system = assemble(model, penalties, settings.quadrature, values, z, held, foreseen)
-    for iteration in range(settings.newton_limit):
+    while True:
         unbalanced = float(np.abs(system.residual).max())
         accepted = max(settings.residual * system.scale, system.floor)
         if not held and correction <= settings.correction and unbalanced <= accepted:
             return Solved(system, converged=True, iterations=iteration)
+        if iteration >= settings.newton_limit and not unbalanced <= _FALLING * last:
+            return Solved(system, converged=False, iterations=iteration)
+        last = unbalanced
         try:
             step = splu(system.tangent).solve(-system.residual)
         except RuntimeError:  # exactly singular
@@ -97,7 +101,7 @@ def equilibrium(
                 if near or settled or (iteration > 0 and foreseen[one.pair].sum() < 0.0):
                     del held[one.pair]
             system = assemble(model, penalties, settings.quadrature, values, z, held, foreseen)
-    return Solved(system, converged=False, iterations=settings.newton_limit)
+        iteration += 1
 
 
 def _along(

@@ -5,7 +5,7 @@ element's own end force and end moment there, and the contact's forces at the Ga
 forces follow from equilibrium of the whole and not from differentiated displacements, so the moment is as
 accurate as the nodes' positions (of fourth order), continuous across the nodes, and keeps the contact's kink
 where it is.  The contact's share of the nodal forces is taken out of the end forces first, for it acts within
-the element.
+the element; what it has in the elements beside, by their shear, is balanced in each.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ import numpy as np
 
 from fea_reference.model import BeamPart, Model
 from fea_reference.system import System
-from fea_reference.touch import Pair, Touch
+from fea_reference.touch import Circle, Pair, Touch
 from scene.answer import Array
 
-_NOTHING = (np.empty(0), np.empty((2, 0)), np.empty((2, 0)), np.empty((3, 0)))
+_NOTHING = (np.empty(0), np.empty((2, 0)), np.empty((2, 0)))
 
 
 def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:
@@ -26,10 +26,14 @@ def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Arra
     ends = system.elements.gradient[:3, beam.elements].copy()  # force and moment on every element's first node
     number = model.beams.index(beam)
     parts = [_NOTHING, *(_on_beam(touch, number) for touch in system.touches)]
-    place, point, force, gradient = (np.concatenate(arrays, axis=-1) for arrays in zip(*parts, strict=True))
+    place, point, force = (np.concatenate(arrays, axis=-1) for arrays in zip(*parts, strict=True))
     owner, _ = line.locate(place)
-    for i in range(3):
-        np.add.at(ends[i], owner, gradient[i])
+    for touch in system.touches:
+        gradient = touch.gradient
+        for of_line, row, elements in touch.chain.shares:
+            if number == (touch.pair.first if of_line == 0 or isinstance(touch.pair, Circle) else touch.pair.second):
+                for i in range(3):
+                    np.add.at(ends[i], elements, gradient[row + i])
 
     zeta = fractions * line.n
     e, _ = line.locate(zeta)
@@ -42,10 +46,10 @@ def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Arra
     return np.asarray(moment)
 
 
-def _on_beam(touch: Touch, number: int) -> tuple[Array, Array, Array, Array]:
-    """Places, points, forces and the gradient at the element's first node, of one contact on one beam."""
+def _on_beam(touch: Touch, number: int) -> tuple[Array, Array, Array]:
+    """Places, points and forces of one contact on one beam."""
     if touch.pair.first == number:
-        return touch.zeta, touch.x, touch.force, touch.gradient[:3]
+        return touch.zeta, touch.x, touch.force
     if isinstance(touch.pair, Pair) and touch.pair.second == number:
-        return touch.zeta_m, touch.x_m, -touch.force, touch.gradient[7:10]
+        return touch.zeta_m, touch.x_m, -touch.force
     return _NOTHING

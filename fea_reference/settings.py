@@ -29,7 +29,7 @@ class Settings:
         residual: unbalanced generalised force at which an equilibrium is accepted, as a fraction of the
             largest.
         correction: last Newton correction (of lengths over the longest beam, and of angles) at which it is.
-        newton_limit: Newton iterations after which a load step is cut.
+        newton_limit: Newton iterations after which a load step is cut, unless they are just arriving.
         iteration_limit: Newton iterations, of all load steps, after which a station is given up.
 
     Raises:

@@ -8,6 +8,7 @@ import numpy as np
 
 from fea_reference.edge import Edge
 from fea_reference.hermite import Index
+from fea_reference.leaning import Chain
 from fea_reference.zones import Zones
 from scene.answer import Array
 
@@ -95,8 +96,9 @@ class Touch:
     """A contact at its k Gauss points.
 
     ``stiffness`` (k,) is the penalty's times the length that a point stands for, ``gap`` (k,) that to where the
-    pressure begins, ``gap_by`` (m, k) and ``gap_by_twice`` (m, m, k) its derivatives by the unknowns ``dofs`` (m, k):
-    those of the element of the first beam, then those of the second's or of the circle's body, if that is free.
+    pressure begins, ``gap_by`` (m, k) and ``gap_by_twice`` (m, m, k) its derivatives by what the lines go by: that of
+    the first beam, then that of the second's or the circle's body's unknowns, if that is free.  ``chain`` leads on to
+    all unknowns, for every ``alike`` points that lie in the same elements: at c = k/alike places.
     Places ``zeta`` (k,) on the first beam and ``zeta_m`` on the second (empty for a circle), points ``x`` of the
     first beam's neutral line and ``x_m`` of the second's or of the circle's edge (2, k), the ``normal`` (2, k) away
     from what it touches.
@@ -105,7 +107,8 @@ class Touch:
 
     pair: Contact
     zones: Zones
-    dofs: Index
+    chain: Chain
+    alike: int
     stiffness: Array
     gap: Array
     gap_by: Array
@@ -128,17 +131,27 @@ class Touch:
         return self.pushes * self.normal
 
     @property
+    def dofs(self) -> Index:
+        """Unknowns (M, c) on which the contact's energy depends."""
+        return self.chain.dofs
+
+    @property
     def gradient(self) -> Array:
-        """Of the penalty's energy by the unknowns, (m, k)."""
-        return -self.pushes * self.gap_by
+        """Of the penalty's energy by the unknowns, (M, c)."""
+        return self.chain.gradient(self._summed(-self.pushes * self.gap_by))
 
     def hessian(self, pushes: Array) -> Array:
-        """Of the penalty's energy by the unknowns, (m, m, k), if the points push with ``pushes`` (k,)."""
-        return np.asarray(self.stiffness * self.gap_by[:, None] * self.gap_by[None, :] - pushes * self.gap_by_twice)
+        """Of the penalty's energy by the unknowns, (M, M, c), if the points push with ``pushes`` (k,)."""
+        local = self.stiffness * self.gap_by[:, None] * self.gap_by[None, :] - pushes * self.gap_by_twice
+        return self.chain.hessian(self._summed(local), self._summed(-pushes * self.gap_by))
 
     def foreseen(self, step: Array) -> Array:
         """What the points will push with after a ``step`` (size,) of the unknowns, to first order, (k,)."""
-        return np.asarray(self.pushes - self.stiffness * (self.gap_by * step[self.dofs]).sum(axis=0))
+        local = np.repeat(self.chain.local(step, len(self.gap_by)), self.alike, axis=1)
+        return np.asarray(self.pushes - self.stiffness * (self.gap_by * local).sum(axis=0))
+
+    def _summed(self, at_points: Array) -> Array:
+        return np.asarray(at_points.reshape(*at_points.shape[:-1], -1, self.alike).sum(axis=-1))
 
     @property
     def penetration(self) -> float:
@@ -154,3 +167,12 @@ class Touch:
     def closed(self) -> bool:
         """Whether the beams touch anywhere."""
         return self.zeta.size > 0
+
+
+def together(quadrature: int, *elements: Index) -> int:
+    """How many points that follow each other are in the same ``elements`` (k,) each: those of an interval, or one.
+
+    An interval lies within one element, but for what its ends are rounded to.
+    """
+    same = all((e.reshape(-1, quadrature) == e[::quadrature, None]).all() for e in elements)
+    return quadrature if same else 1

@@ -141,6 +141,7 @@ def negative(
         neighbours: whether the gap is known between a place and the next (k−1,).
         kinks: those of the places, but for nodes, at which the gap has a kink.
     """
+    zeta, there, neighbours = _with_bends(at, zeta, there, neighbours)
     g, slope, curvature, zeta_m = there.g, there.slope, there.curvature, there.zeta_m
 
     def slope_at(where: Array, guess: Array) -> tuple[Array, Array, Array]:
@@ -180,28 +181,60 @@ def negative(
     return Zones(np.stack([zeta[low], zeta[high]], axis=1), np.stack([zeta_m[low], zeta_m[high]], axis=1), least)
 
 
+def _with_bends(
+    at: Callable[[Array, Array], Gap], zeta: Array, there: Gap, neighbours: NDArray[np.bool_]
+) -> tuple[Array, Gap, NDArray[np.bool_]]:
+    """The same with further places, where between two of the old ones the gap may have a largest and a least value.
+
+    Its slope has one sign at both, and by the cubic through both places' g and g' it turns towards the other sign
+    and back: the new place is where it turns back.  A zone that was not looked for there would come into being at its
+    full width when one of its ends passes a place, and the force with a jump.
+    """
+    width, slope = np.diff(zeta), there.slope
+    before, behind, rise = slope[:-1], slope[1:], np.diff(there.g) / width
+    # g' = before + 2 b ξ + 3 a ξ², over the width
+    b, a = 3.0 * rise - 2.0 * before - behind, before + behind - 2.0 * rise
+    turned = -b / np.where(a == 0.0, 1.0, 3.0 * a)
+    inside = (a != 0.0) & (turned > _INSIDE) & (turned < 1.0 - _INSIDE)
+    bends = np.flatnonzero(neighbours & (before * behind > 0.0) & (before * b < 0.0) & inside)
+    if bends.size == 0:
+        return zeta, there, neighbours
+    share = turned[bends]
+    where = zeta[bends] + share * width[bends]
+    more = at(where, there.zeta_m[bends] + share * (there.zeta_m[bends + 1] - there.zeta_m[bends]))
+    after = bends + 1
+    merged = Gap(
+        np.insert(there.g, after, more.g),
+        np.insert(there.slope, after, more.slope),
+        np.insert(there.curvature, after, more.curvature),
+        np.insert(there.zeta_m, after, more.zeta_m),
+        np.insert(there.found, after, more.found),
+    )
+    return np.insert(zeta, after, where), merged, np.insert(neighbours, bends, True)
+
+
 def _reach(first: NeutralLine, second: NeutralLine, T: float) -> float:
     """Where no node of the second beam is nearer than this, neither a place nor its neighbours can touch."""
     return float(2.0 * abs(T) + 2.0 * second.lengths.max() + first.lengths.max())
 
 
 def _samples(first: NeutralLine, second: NeutralLine, T: float) -> Array:
-    """Equal steps within every element, and the places straight across from the second beam's ends.
+    """Equal steps within every element, and the places straight across from the second beam's nodes.
 
-    Beyond an end there is no gap, and a zone that reaches up to one may be narrower than a step.
+    Beyond an end there is no gap, and a zone that reaches up to one may be narrower than a step; at the others the
+    gap's curvature jumps.
     """
     even = np.arange(SAMPLES_PER_ELEMENT * first.n + 1) / SAMPLES_PER_ELEMENT
-    ends, tangents = second.points[:, [0, -1]], second.tangents[:, [0, -1]]
-    square = ((first.points[:, :, None] - ends[:, None, :]) ** 2).sum(axis=0)
-    near = square.min(axis=0) < _reach(first, second, T) ** 2
+    distance, nearest = KDTree(first.points.T).query(second.points.T)
+    near = distance < _reach(first, second, T)
     if not near.any():
         return even
-    ends, tangents = ends[:, near], tangents[:, near]
-    zeta = np.argmin(square[:, near], axis=0).astype(float)
+    nodes, tangents = second.points[:, near], second.tangents[:, near]
+    zeta = nearest[near].astype(float)
     for _ in range(_END_ITERATIONS):
         x, x1, _ = first.at(zeta)
         ahead = (x1 * tangents).sum(axis=0)
-        step = ((x - ends) * tangents).sum(axis=0) / np.where(ahead == 0.0, 1.0, ahead)
+        step = ((x - nodes) * tangents).sum(axis=0) / np.where(ahead == 0.0, 1.0, ahead)
         moved = np.clip(zeta - np.clip(step, -1.0, 1.0), 0.0, first.n)
         done = np.abs(moved - zeta).max() < 1e-8
         zeta = moved

@@ -21,9 +21,11 @@ difference at all, parts that cancel are told along v_f.
 
 The limits in N and n are :func:`comparisons.convergence.limit`'s, of the order that :mod:`comparisons.order` assumes.
 What the penalty does is proportional to p once p is small: v_0 is extrapolated from p/4 and p/16, and v(p) beside
-that line says whether p is small as well.  In every theory L_t is extrapolated in n from values less what the
-penalty does to them, δ at n elements and p/16 and δ/16 at 2n and p/256.  On a circle the elements' length decides how
-deep a beam presses, whatever p: there the penalty is a part of ``elements``.
+that line says whether p is small as well.  Where it lies farther off than half of what the line says of p, no law is
+seen: v_0 is then the value at p/16, and what the line says of that a matter of uncertainty.  In every theory L_t is
+extrapolated in n from values less what the penalty does to them, δ at n elements and p/16 and δ/16 at 2n and p/256.
+On a circle the elements' length decides how deep a beam presses, whatever p: there the penalty is a part of
+``elements``.
 
 Where ``auto`` was chosen, the distance of ``paper`` at N is told beside the parts and belongs to no sum.  Nor does what
 both solvers leave out of a stress alike, :mod:`comparisons.budgets.curved_beam`.
@@ -45,6 +47,9 @@ from comparisons.scales import denominator, norm, probe_scale
 from comparisons.spots import clear_of_spots
 from scene import Answer, Probe, Scene, Stage
 from scene.answer import Array
+
+LINEAR = 0.5
+"""Of what the line says of p: the most by which the value at p may be off it."""
 
 LEAST = 1e-9
 """Parts that come to less, as a fraction, tell of tolerances and of no part."""
@@ -140,6 +145,10 @@ def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: f
     tighter = np.array([v(answer) for answer in runs.penalty[1:]])
     v_0 = limit(TIGHTNESS[1:], tighter, 1.0).value
     delta = tighter[-1] - v_0
+    off_line = norm(probe.quantity, v_f - (v_0 + TIGHTNESS[-1] * delta))
+    in_doubt = np.zeros_like(delta)
+    if off_line > LINEAR * norm(probe.quantity, TIGHTNESS[-1] * delta):
+        v_0, delta, in_doubt = tighter[-1], in_doubt, np.abs(delta)
     left = np.outer(DEEPER, delta)
     L = [limit(ELEMENTS, np.array([v(each) for each in answers]) - left, order) for answers in runs.fea.values()]
     d = v_c - v_f
@@ -152,9 +161,9 @@ def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: f
     return Budget(
         row=replace(row, difference=norm(probe.quantity, d)),
         parts=Parts(contact, links, rest, stretch, shear, elements, penalty),
-        rest_uncertainty=float(np.dot(L_c.uncertainty + L[0].uncertainty, np.abs(along))),
-        elements_uncertainty=float(np.dot(L[-1].uncertainty, np.abs(along))),
-        off_line=norm(probe.quantity, v_f - (v_0 + TIGHTNESS[-1] * delta)),
+        rest_uncertainty=float(np.dot(L_c.uncertainty + L[0].uncertainty + in_doubt, np.abs(along))),
+        elements_uncertainty=float(np.dot(L[-1].uncertainty + in_doubt, np.abs(along))),
+        off_line=off_line,
         paper=None if paper is None else float(np.dot(paper[counts] - v_a, along)),
         inner_edge=K,
         curved=None if K is None else float(np.max((K - 1.0)[counts] * np.abs(v_f))),

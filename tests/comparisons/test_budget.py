@@ -111,6 +111,18 @@ def test_a_penalty_that_does_not_go_with_the_penetration_is_off_the_line(hinge, 
     assert abs(found.parts.penalty) == pytest.approx(0.9 * LOAD * 1e-3, rel=1e-9)
 
 
+def test_a_change_with_the_penetration_that_follows_no_law_spoils_no_limit(hinge, right):
+    """1e-3 too much at a quarter of the penetration alone: the line through it would move every limit by 3e-4."""
+
+    def restless(scene, choices):
+        tighter = choices.kinematics == "shear" and choices.penetration == 2.5e-5
+        return MadeUp("fea", 0.0, stiffness=1.0 / 1.001 if tighter else 1.0)(scene, choices)
+
+    found = budget_at(hinge, Solvers(MadeUp("cprbm", 0.0), restless))
+    assert abs(found.parts.rest) < 1e-12
+    assert found.rest_uncertainty == pytest.approx(0.9 * LOAD * 1e-3 / 3.0, rel=2e-2)
+
+
 def test_what_is_known_is_not_run_again(hinge, right):
     calls = []
 

@@ -6,7 +6,7 @@ import pytest
 from fea_reference import Settings, answer
 from fea_reference.crossing import cross
 from fea_reference.hermite import NeutralLine
-from fea_reference.zones import find
+from fea_reference.zones import Gap, find, negative
 from scene import Ending
 from scene.reading import scene_from
 
@@ -221,3 +221,26 @@ def test_a_tip_s_zone_ends_where_its_gap_does(depth, angle):
     begin, end = found.intervals.min(), found.intervals.max()
     assert end == n
     assert n - begin == pytest.approx(n * depth / np.sin(angle), rel=1e-6, abs=4e-14 * n)
+
+
+@pytest.mark.parametrize("depth", [1e-2, 1e-5, 1e-9, 1e-12])
+def test_a_zone_between_two_places_is_found_although_the_gap_falls_at_neither(depth):
+    """g = 4 (ζ − ¼) (ζ − ¾)² − depth rises at 0 and at 1 and overlaps about ζ = ¾ by ``depth``.
+
+    Its roots there are where (ζ − ¾)² = depth/(4 ζ − 1).
+    """
+
+    def at(zeta, guess):
+        u, v = zeta - 0.25, zeta - 0.75
+        slope, curvature = 4 * v**2 + 8 * u * v, 16 * v + 8 * u
+        return Gap(4 * u * v**2 - depth, slope, curvature, guess, np.ones(zeta.shape, dtype=bool))
+
+    places = np.array([0.4, 1.0])
+    there = at(places, places)
+    assert (there.g > 0.0).all()
+    assert (there.slope > 0.0).all()
+    found = negative(at, places, there, np.array([True]))
+    ((low, high),) = found.intervals
+    assert found.least == pytest.approx(-depth, rel=1e-6)
+    assert 0.75 - low == pytest.approx(np.sqrt(depth / (4 * low - 1)), rel=1e-4)
+    assert high - 0.75 == pytest.approx(np.sqrt(depth / (4 * high - 1)), rel=1e-4)

@@ -20,7 +20,7 @@ from comparisons.converging.told import beside, between
 from comparisons.pairing import ALONE, Solvers
 from scene import Scene
 from tests.references import hinge as exact
-from tests.together.test_calibration import truth_of, wrapped_truth
+from tests.together.truths import hinge_truth, wrapped_truth
 
 APART, TOUCHING = (0.201, 0.268), (0.402, 0.67)  # N·m on the hinge, which closes at 0.32
 QUIET = 1e-9  # of the scale: below this a change is no matter of discretisation
@@ -61,7 +61,7 @@ def _solved(moment: float) -> tuple[exact.HingeSolution, float]:
 
 
 def _hinge_truth(probe: str, moment: float, arc: np.ndarray | None = None) -> np.ndarray:
-    return np.asarray(truth_of(*_solved(moment), probe, arc), dtype=float)
+    return np.asarray(hinge_truth(*_solved(moment), probe, arc), dtype=float)
 
 
 SMOOTH = (

@@ -23,9 +23,9 @@ from comparisons.tolerances.levels import SceneLevels
 from comparisons.tolerances.tolerated import solved
 from scene import Answer, Scene
 from tests.references import hinge as exact
-from tests.together.test_calibration import truth_of, wrapped_truth
 from tests.together.test_tapered import FORCE, LENGTH, scene_of
 from tests.together.test_tapered import exact as tapered
+from tests.together.truths import hinge_truth, wrapped_truth
 
 BENDING = Choices(kinematics="bending")
 
@@ -47,8 +47,8 @@ def hinge_at(load: float) -> exact.HingeSolution:
     return exact.solve(exact.PAPER, load)
 
 
-def hinge_truth(probe: str, load: float, arc):
-    return truth_of(hinge_at(load), exact.closing_moment(exact.PAPER), probe, arc)
+def of_hinge(probe: str, load: float, arc):
+    return hinge_truth(hinge_at(load), exact.closing_moment(exact.PAPER), probe, arc)
 
 
 def hinge_before_and_in_contact() -> Scene:
@@ -71,7 +71,7 @@ def tapered_truth(probe: str, load: float, arc):
 
 
 QUESTIONS: dict[str, tuple[Scene, Callable]] = {
-    "hinge": (hinge_before_and_in_contact(), hinge_truth),
+    "hinge": (hinge_before_and_in_contact(), of_hinge),
     "wrapped": (cases.opened("wrapped"), lambda probe, load, arc: wrapped_truth(probe, load)),
     "tapered": (scene_of("both", "force"), tapered_truth),
 }
@@ -143,7 +143,8 @@ def test_nothing_finer_is_solved_than_the_cheapest_n_needs_for_its_own_estimate(
     levels = SceneLevels(scene, answers, BENDING, ("bending",), Remembering(solvers=SOLVERS), beside=solver == "cprbm")
     n = smallest(levels, tolerance, 100)
     assert levels.checked(n).fraction <= tolerance
-    assert found.n <= 1.5 * n
+    if found.n < max(found.solved):  # else it is settled there, and nothing finer was needed
+        assert found.n <= 1.5 * n
     assert max(found.solved) <= 1.5 * 2 * n
 
 

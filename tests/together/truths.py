@@ -76,51 +76,55 @@ def of_hinge(of: hinge.Hinge, shares: tuple[float, ...]) -> tuple[Scene, Solver]
     scene = scene_from(data)
 
     def truth(probe: Probe, moment: float) -> object:
-        solution = hinge.solve(of, moment)
-        if probe.quantity == "bending_stress":
-            arc = np.linspace(0.0, length(scene.beams[probe.of].curve), probe.points)
-            return solution.bending_stress(int(probe.of[4]), arc)
-        return {
-            "B.displacement": solution.displacement_B,
-            "D.displacement": solution.displacement_D,
-            "BD.rotation": [solution.rotation],
-            "contact.force": [solution.contact_force],
-            "contact.centre": [solution.contact_arc_lengths[0]] if solution.contact_arc_lengths else [],
-            "contact.closing_load": [closing] if solution.contact_arc_lengths else [],
-            "A.reaction": solution.reaction_A,
-            "A.reaction_moment": [solution.reaction_moment_A],
-            "C.reaction": solution.reaction_C,
-            "C.reaction_moment": [solution.reaction_moment_C],
-            "scene.potential_energy": [solution.potential_energy],
-        }[probe.name]
+        arc = np.linspace(0.0, length(scene.beams[probe.of].curve), probe.points) if probe.of in scene.beams else None
+        return hinge_truth(hinge.solve(of, moment), closing, probe.name, arc)
 
     return scene, told_by(truth)
+
+
+def hinge_truth(solution: hinge.HingeSolution, closing: float, probe: str, arc: np.ndarray | None) -> object:
+    """A probe's true value; of a stress at arc lengths (k,)."""
+    if probe.endswith("bending_stress"):
+        assert arc is not None
+        return solution.bending_stress(int(probe[4]), arc)
+    return {
+        "B.displacement": solution.displacement_B,
+        "D.displacement": solution.displacement_D,
+        "BD.rotation": [solution.rotation],
+        "contact.force": [solution.contact_force],
+        "contact.centre": [solution.contact_arc_lengths[0]] if solution.contact_arc_lengths else [],
+        "contact.closing_load": [closing] if solution.contact_arc_lengths else [],
+        "A.reaction": solution.reaction_A,
+        "A.reaction_moment": [solution.reaction_moment_A],
+        "C.reaction": solution.reaction_C,
+        "C.reaction_moment": [solution.reaction_moment_C],
+        "scene.potential_energy": [solution.potential_energy],
+    }[probe]
 
 
 PAPER_HINGE = hinge.PAPER
 OTHER_HINGE = dataclasses.replace(hinge.PAPER, radius=0.0287, yc=0.0287 + 0.0017, thickness=0.0023)
 
 
+def wrapped_truth(probe: str, load: float) -> object:
+    """A probe's true value; the numbers are those of ``comparisons/cases/wrapped.toml``."""
+    beam = Wrapped(length=0.0973, radius=0.0711, thickness=0.00103, width=0.0097, youngs_modulus=2.07e11, force=load)
+    return {
+        "T.displacement": lambda: beam.displacement,
+        "tip.rotation": lambda: [beam.rotation],
+        "contact.force": lambda: [np.linalg.norm(beam.contact_force)],
+        "contact.centre": lambda: [beam.contact_centre] if beam.wrapped else [],
+        "contact.ends": lambda: [0.0, beam.wrap_length] if beam.wrapped else [],
+        "C.reaction": lambda: beam.reaction,
+        "C.reaction_moment": lambda: [beam.reaction_moment],
+        "beam.bending_stress": lambda: beam.bending_stress(81),
+        "scene.potential_energy": lambda: [beam.potential_energy],
+    }[probe]()
+
+
 def of_wrapped() -> tuple[Scene, Solver]:
-    """Contact over a length: a closed form.  The numbers are those of ``comparisons/cases/wrapped.toml``."""
-
-    def truth(probe: Probe, load: float) -> object:
-        beam = Wrapped(
-            length=0.0973, radius=0.0711, thickness=0.00103, width=0.0097, youngs_modulus=2.07e11, force=load
-        )
-        return {
-            "T.displacement": lambda: beam.displacement,
-            "tip.rotation": lambda: [beam.rotation],
-            "contact.force": lambda: [np.linalg.norm(beam.contact_force)],
-            "contact.centre": lambda: [beam.contact_centre] if beam.wrapped else [],
-            "contact.ends": lambda: [0.0, beam.wrap_length] if beam.wrapped else [],
-            "C.reaction": lambda: beam.reaction,
-            "C.reaction_moment": lambda: [beam.reaction_moment],
-            "beam.bending_stress": lambda: beam.bending_stress(81),
-            "scene.potential_energy": lambda: [beam.potential_energy],
-        }[probe.name]()
-
-    return cases.opened("wrapped"), told_by(truth)
+    """Contact over a length: a closed form."""
+    return cases.opened("wrapped"), told_by(lambda probe, load: wrapped_truth(probe.name, load))
 
 
 def of_tapered() -> tuple[Scene, Solver]:

@@ -1,0 +1,140 @@
+"""The neutral line leans from its sections by the angle of shear: its tangents, and their derivatives.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+θ       rotation of the section at a node
+γ       angle of shear, one per element: γ = −c·Δ, see :mod:`fea_reference.element`
+ψ       tangent angle of the neutral line at a node, θ + γ̄
+γ̄       mean of the γ beside a node; at a free or pinned end the one of the element there, at a welded end zero
+u       what an element's line goes by: (x₁, y₁, ψ₁, x₂, y₂, ψ₂, N)
+======  =====================================================================================
+
+A line with the sections' rotations for tangents would wind about the nodes' chords by 0.1 γ L in every element.  Its
+slope would be wrong by γ at the nodes, and by γ/2 the other way between them: a place of contact would be wrong by γ
+over the curvature, up and down along every element and however short that is.  One tangent at a node, between the two
+that its elements have, keeps the line smooth; they differ as the shear force does from one element to the next.
+
+At a welded end the section's rotation is given, and with it the line's: a pressure beside a clamp turns the line there
+with a moment that is the clamp's, and handed on to the shear of one element it would be a force between clamp and
+contact, of first order in the element.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea_reference.element import Elements, shear
+from fea_reference.hermite import Index
+from fea_reference.state import State
+from scene.answer import Array
+
+_LINE = 7  # unknowns of an element's line
+_TANGENTS = (2, 5)  # of which these are tangent angles
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """One beam: its ``part`` of all elements, their unknowns ``dofs`` (7, n), which of its two ends are ``welded``."""
+
+    part: slice
+    dofs: Index
+    welded: tuple[bool, bool]
+
+
+def tangent_angles(elements: Elements, span: Span, z: State) -> Array:
+    """ψ (n+1,) of a beam."""
+    dofs = span.dofs
+    theta = np.append(z[dofs[2]], z[dofs[5, -1:]])
+    if not elements.slip[:, span.part].any():
+        return theta
+    gamma = shear(elements, span.part, dofs, z).angle
+    start, end = (0.0 if welded else 1.0 for welded in span.welded)
+    beside = np.append(start * gamma[:1], gamma) + np.append(gamma, end * gamma[-1:])
+    beside[[0, -1]] *= start, end
+    return np.asarray(theta + 0.5 * beside)
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """From what lines go by, and a body's unknowns if there is one, to all unknowns, at k places.
+
+    Attributes:
+        dofs: unknowns (M, k), the first m of them those of the lines' own elements and of the body, θ for ψ.
+        rows: which of the m are tangent angles ψ.
+        by: ∂γ̄ of each of the rows by the unknowns (rows, M, k); twice: second derivatives (rows, M, M, k).
+        shares: line, first of the six rows of M that an element's nodes have, and the element at every place (k,).
+    """
+
+    dofs: Index
+    rows: tuple[int, ...]
+    by: Array
+    twice: Array
+    shares: tuple[tuple[int, int, Index], ...]
+
+    def gradient(self, local: Array) -> Array:
+        """By all unknowns (M, k) what is ``local`` (m, k) by the lines' own."""
+        every = np.zeros(self.dofs.shape)
+        every[: len(local)] = local
+        for row, by in zip(self.rows, self.by, strict=True):
+            every += local[row] * by
+        return every
+
+    def hessian(self, local: Array, gradient: Array) -> Array:
+        """The same of second derivatives ``local`` (m, m, k), where the first are ``gradient`` (m, k)."""
+        m, size = len(gradient), self.dofs.shape
+        half = np.zeros((m, *size))
+        half[:, :m] = local
+        for row, by in zip(self.rows, self.by, strict=True):
+            half += local[:, row, None] * by
+        every = np.zeros((size[0], *size))
+        every[:m] = half
+        for row, by, twice in zip(self.rows, self.by, self.twice, strict=True):
+            every += by[:, None] * half[row] + gradient[row] * twice
+        return every
+
+    def local(self, step: Array, m: int) -> Array:
+        """What a ``step`` (size,) of all unknowns is of the first m, tangent angles for rotations, (m, k)."""
+        every = step[self.dofs]
+        own = every[:m].copy()
+        for row, by in zip(self.rows, self.by, strict=True):
+            own[row] += (by * every).sum(axis=0)
+        return own
+
+
+def chain(elements: Elements, lines: tuple[tuple[Span, Index], ...], body: Index, z: State) -> Chain:
+    """Of k places on one or two lines and of a body's unknowns ``body`` (0 or 3, k), in this order.
+
+    Args:
+        elements: of all beams.
+        lines: for each its beam, and the element of each place (k,) counted in the beam.
+        body: may be empty.
+        z: the state.
+    """
+    own = np.concatenate([*(span.dofs[:, e] for span, e in lines), body])
+    shares = [(i, _LINE * i, e) for i, (_, e) in enumerate(lines)]
+    leaning = [(i, line) for i, line in enumerate(lines) if elements.slip[:, line[0].part].any()]
+    if not leaning:
+        return Chain(own, (), np.empty((0, *own.shape)), np.empty((0, len(own), *own.shape)), tuple(shares))
+    size, k = len(own) + 12 * len(leaning), own.shape[1]
+    rows, beside = [], [own]
+    by, twice = np.zeros((2 * len(leaning), size, k)), np.zeros((2 * len(leaning), size, size, k))
+    for number, (i, (span, e)) in enumerate(leaning):
+        last = span.dofs.shape[1] - 1
+        slip = shear(elements, span.part, span.dofs, z)
+        for tangent in (0, 1):
+            one = 2 * number + tangent
+            rows.append(_LINE * i + _TANGENTS[tangent])
+            neighbour = np.clip(e + 2 * tangent - 1, 0, last)
+            share = np.where(neighbour == e, 0.0, 0.5)
+            own_share = np.where(neighbour == e, 0.0 if span.welded[tangent] else 1.0, 0.5)
+            row = len(own) + 12 * number + 6 * tangent
+            beside.append(span.dofs[:6, neighbour])
+            shares.append((i, row, neighbour))
+            for begin, where, weight in ((_LINE * i, e, own_share), (row, neighbour, share)):
+                here = slice(begin, begin + 6)
+                by[one, here] = weight * slip.by[:, where]
+                twice[one, here, here] = weight * slip.by_twice[:, :, where]
+    return Chain(np.concatenate(beside), tuple(rows), by, twice, tuple(shares))
