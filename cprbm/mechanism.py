@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +21,7 @@ from cprbm.rigid import RigidCircle, rigid_circle
 from cprbm.settings import Settings
 from scene import BeamContact, Scene
 
-BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle
+BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle or another
 SHALLOW = 0.05  # of the radius: an overlap between rows of a coarse mesh
 WAY = 0.02  # of the longest beam, by which a way of one radian may differ from the unknowns' even one
 
@@ -59,29 +59,48 @@ class Mechanism:
         return max((float(group.values.max()) for group in groups), default=float("-inf"))
 
     def passed(self, before: Point, after: Point) -> str:
-        """Name of a contact with a circle that its beam has swept over between two states; empty if none."""
-        for circle in self.pairs.values():
-            if not isinstance(circle, Circle):
-                continue
-            if circle.passed(before.at, after.at) or self._overlapped_between(circle, before.state, after.state):
-                return circle.name
+        """Name of a contact whose beam went across the circle or the other beam between two states; empty if none."""
+        for pair in self.pairs.values():
+            if isinstance(pair, Circle):
+                across = pair.passed(before.at, after.at) or self._overlapped_between(pair, before.state, after.state)
+            else:
+                # without having been there a beam comes to lie beyond another by its end or through it
+                across = pair.gone_round(after.state, after.at) and self._crossed_between(pair, before, after)
+            if across:
+                return pair.name
         return ""
 
     def _overlapped_between(self, circle: Circle, before: State, after: State) -> bool:
         """Whether the beam lay deep in the circle on the way from one state to another, the unknowns going evenly."""
-        turned = float(np.max(np.abs(after.theta - before.theta)))
         # the real way differs by the square of the step
-        allowed = 0.5 * circle.offset + SHALLOW * circle.radius + WAY * turned**2
-        for part in BETWEEN:
-            state = State(
-                before.theta + part * (after.theta - before.theta),
-                before.bodies + part * (after.bodies - before.bodies),
-            )
+        allowed = 0.5 * circle.offset + SHALLOW * circle.radius + WAY * _turned(before, after) ** 2
+        for state in _between(before, after):
             at = positions(self.problem.model, state)
             places = circle.line(state, at).sampled
             if np.max(circle.offset - circle.placed(at).distance(places)) > allowed:
                 return True
         return False
+
+    def _crossed_between(self, pair: Pair, before: Point, after: Point) -> bool:
+        """Whether a beam lay across the other, by more than the way is known, on the way from one state to another."""
+        allowed = pair.offset + WAY * _turned(before.state, after.state) ** 2
+        return any(
+            pair.least_gap(state, positions(self.problem.model, state)) + pair.offset < -allowed
+            for state in _between(before.state, after.state)
+        )
+
+
+def _turned(before: State, after: State) -> float:
+    """The most that a link turns by, rad."""
+    return float(np.max(np.abs(after.theta - before.theta)))
+
+
+def _between(before: State, after: State) -> Iterator[State]:
+    """States on the way from one to another, the unknowns going evenly."""
+    for part in BETWEEN:
+        yield State(
+            before.theta + part * (after.theta - before.theta), before.bodies + part * (after.bodies - before.bodies)
+        )
 
 
 def _groups(

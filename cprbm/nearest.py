@@ -44,6 +44,7 @@ from scipy.spatial import cKDTree
 
 from cprbm import smooth, wells
 from cprbm.contact import Group
+from cprbm.crossing import cross
 from cprbm.gathering import Touches, gathered
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed
@@ -66,6 +67,7 @@ BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces 
 
 STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
 ON_IT = 1e-9  # gap and slope of two clamped ends, and how far they lie apart along the beams, where they touch
+STRAIGHT = 0.1  # of an element: by less a line is off the chords between its samples
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)  # of the mean on either side of a border of B
 
 Lines = tuple[smooth.SmoothLine, smooth.SmoothLine]
@@ -177,11 +179,20 @@ class Pair:
 
     def least_gap(self, state: State, at: Positions) -> float:
         """Least gap of the two beams along A and at the ends of B, units of length; infinite where nothing faces A."""
-        lines = self.lines(state, at)
+        D, E = self._distances(self.lines(state, at))
+        return float(np.min(np.append(D, E), initial=np.inf)) - self.offset
+
+    def gone_round(self, state: State, at: Positions) -> bool:
+        """Whether a part of a beam lies beyond the other and has come there round an end."""
+        return any(np.any(np.isneginf(distances)) for distances in self._distances(self.lines(state, at), gone=-np.inf))
+
+    def _distances(self, lines: Lines, gone: float = np.inf) -> tuple[Array, Array]:
+        """D along A and at the ends of B, infinite where there is no foot, ``gone`` where that is round an end."""
         s = np.concatenate((smooth.halves(self.a), _minima(self, lines, *_sampled(self, lines))[0]))
         D, _, foot = distance_along(self, lines, s)
         E, _, facing = distance_along(self.exchanged(), lines[::-1], self.b.s[[0, -1]])
-        return float(np.min(np.append(D, E)[np.append(foot, facing)], initial=np.inf)) - self.offset
+        D, E = np.where(foot, D, np.inf), np.where(facing, E, np.inf)
+        return _not_gone_round(self, lines, D, gone), _not_gone_round(self.exchanged(), lines[::-1], E, gone)
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
         """Where the edges touch that touch at arc lengths ``s`` of A, (k, 2), units of length."""
@@ -392,6 +403,7 @@ def _facing_ends(pair: Pair, lines: Lines) -> Places:
     if not near.size:
         return Places(np.zeros(0), np.zeros(0), near)
     E, foot, facing = distance_along(pair.exchanged(), lines[::-1], ends.s[near])
+    E = _not_gone_round(pair.exchanged(), lines[::-1], E)
     facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
     for i, end in enumerate(near):
         facing[i] &= not _held_together(b, a, int(-end), float(foot[i]))
@@ -425,7 +437,16 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     if close.size:
         distance, sigma[close], foot = _feet(pair, lines[1], lines[0].at(A.s[close]), G.s[nearest[close]])
         D[close] = np.where(foot, distance, np.inf)
-    return D, sigma
+    return _not_gone_round(pair, lines, D), sigma
+
+
+def _not_gone_round(pair: Pair, lines: Lines, D: Array, gone: float = np.inf) -> Array:
+    """D, but ``gone`` where A lies beyond B and has not come there through it, but round an end."""
+    beyond = D + pair.offset + STRAIGHT * (pair.a.h + pair.b.h) < 0.0
+    if not np.any(beyond):
+        return D
+    A, B = (np.stack((line.sampled.x, line.sampled.y), axis=1) for line in lines)
+    return D if cross(A, B) else np.where(beyond, gone, D)
 
 
 def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:

@@ -7,14 +7,15 @@ from there on the mesh that was asked, fitted to where contact is (:mod:`cprbm.r
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
-from scipy.optimize import brentq, root_scalar
 from threadpoolctl import threadpool_limits
 
 from cprbm.boundary import FittedBoundary
 from cprbm.certifying import certify
+from cprbm.closing import Closings, Stood
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import Equilibrium, Point, equilibrium, point_at
 from cprbm.forces import contact_imbalance
@@ -23,13 +24,10 @@ from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.probing import probed, shapes, touching
 from cprbm.refining import all_zones, carried_over, coarser, fits, fitted, long_ones
 from cprbm.settings import Settings
-from scene import Answer, Certificate, Ending, Event, Scene, StationAnswer
+from scene import Answer, Certificate, Ending, Event, Scene, Stage, StationAnswer
 
 GROWTH = 2.0
-EVENT_TOLERANCE = 1e-10  # of the load step in which a contact closed
-CLOSER = 8
 SETTLE = 0.1  # of the way between stations: in shorter steps steady rows may settle which places there are
-NEARLY = 0.05  # of a closing load: it lies no farther from that on even elements
 AGAIN = 12  # iterations on a mesh that fits a little better
 FITS = 6  # of the mesh to where contact is, at most
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
@@ -90,23 +88,27 @@ class _March:
         self.events: list[Event] = []
         self.closed_at: dict[str, float] = {}
         self.asked_events = [p.of for p in scene.probes if p.quantity == "closing_load"]
+        # where contacts stood open in this stage, of those that have not closed yet
+        self.opened: dict[str, list[Stood]] = {}
 
     def run(self) -> tuple[Ending, str]:
         """March through every stage; the Ending and its sentence."""
         for stage in self.scene.stages:
+            here = self.values.get(stage.steps, 0.0), self.point
+            self.opened = {name: [here] for name in self.asked_events if name not in self.closed_at}
             for target in stage.stations:
                 begin = self.values.get(stage.steps, 0.0)
                 ending, sentence, certificate = self._advance(stage.name, stage.steps, begin, target)
                 if certificate is None:
                     last = f"the last good value of {stage.steps} is {self.values.get(stage.steps, 0.0):.6g}"
                     return ending, f"{ending.value}: {sentence}; {last}"
-                station = self._station(stage.name, target, certificate)
+                station = self._station(stage, target, certificate)
                 if station is None:
                     return Ending.STEP_TOO_SMALL, "the finer meshes do not follow the coarsest"
                 self.reached.append(station)
         return Ending.COMPLETED, Ending.COMPLETED.value
 
-    def _station(self, stage: str, value: float, certificate: Certificate) -> StationAnswer | None:
+    def _station(self, stage: Stage, value: float, certificate: Certificate) -> StationAnswer | None:
         """The answer at a station that the march has reached, on the mesh that was asked; None if that fails."""
         fitted = self._fitted(certificate)
         if fitted is None:
@@ -114,8 +116,10 @@ class _March:
                 return None
             fitted = self.mechanism, self.point, certificate
         mechanism, point, certificate = fitted
+        # what is open on the march's mesh may be closed on this one
+        self._note_closings(stage.name, stage.steps, point, value)
         return StationAnswer(
-            stage=stage,
+            stage=stage.name,
             value=value,
             values=probed(self.scene, mechanism, point, self.closed_at),
             shapes=shapes(mechanism, point),
@@ -197,12 +201,18 @@ class _March:
                     f"a link turned by {turned:.2f} rad in one load step",
                 )
             elif ending is Ending.COMPLETED and (crossed := self.mechanism.passed(self.point, found.point)):
-                ending, sentence = Ending.BEAMS_CROSSED, f"in contact '{crossed}' the beam went across the circle"
+                ending, sentence = (
+                    Ending.BEAMS_CROSSED,
+                    f"in contact '{crossed}' the beam went across what it may touch",
+                )
             elif certificate.failures:
                 sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
             if ending is Ending.COMPLETED:
-                self._note_events(stage, load, found.point, value)
+                self._note_closings(stage, load, found.point, value)
                 self.point, done = found.point, fraction
+                for name, opened in self.opened.items():
+                    if not _presses(self.point, name):
+                        opened.append((value, self.point))
                 self.values[load] = value
                 if fraction == 1.0:
                     return ending, "", replace(certificate, iterations=iterations)
@@ -220,89 +230,20 @@ class _March:
         problem, settings = self.mechanism.problem, self.settings
         return equilibrium(problem, values, start, settings.tolerance, settings.iterations, settle=settle)
 
-    def _note_events(self, stage: str, load: str, after: Point, value: float) -> None:
-        """Find where contacts closed in the load step that led to ``after``, if the scene asks."""
-        for name in self.asked_events:
-            if name in self.closed_at or not _presses(after, name) or _presses(self.point, name):
-                continue
-            closing = self._closing(name, load, value)
+    def _note_closings(self, stage: str, load: str, after: Point, value: float) -> None:
+        """Note which contacts have closed on the way to ``after``, and where, if the scene asks."""
+        for name in [name for name in self.opened if _presses(after, name)]:
+            closings = Closings(self.scene, self.family[-1], self.mechanism, self.asked, load, self.values)
+            closing = closings.first(name, self.opened[name], value)
             if closing is not None:
+                del self.opened[name]
                 self.closed_at[name] = closing
                 self.events.append(Event(stage, name, "closes", closing))
 
-    def _closing(self, name: str, load: str, target: float) -> float | None:
-        """The load at which the gap of an open contact becomes zero, the contact itself left out."""
-        mechanism, point, begin = self.mechanism, self.point, self.values.get(load, 0.0)
-        if len(self.family) > 1:
-            asked = mechanism_of(self.scene, self.family[-1])
-            mechanism, point = asked, carried_over(mechanism, point, asked, self.values)
-        gap = _Gap(replace(mechanism, problem=mechanism.without(name)), name, self.values, load, self.settings)
-        gap.known(begin, point)
-        # without the contact the far end may be out of reach: come closer until it is not
-        low, high = gap.overlap(begin), gap.overlap(target)
-        for _ in range(CLOSER):
-            if not np.isnan(high):
-                break
-            target = 0.5 * (begin + target)
-            high = gap.overlap(target)
-        if not low <= 0.0 <= high:
-            return None
-        tolerance = EVENT_TOLERANCE * abs(target - begin)
-        try:
-            closing = float(brentq(gap.overlap, begin, target, xtol=tolerance, rtol=8.9e-16))
-        except ValueError:  # between the two the mechanism has no equilibrium without the contact
-            return None
-        return self._closing_fitted(gap, closing, 1e-3 * (target - begin), tolerance)
-
-    def _closing_fitted(self, gap: _Gap, closing: float, step: float, tolerance: float) -> float:
-        """The same on the mesh that is fitted to where the other contacts are then."""
-        for _ in range(FITS):
-            mechanism, point = gap.mechanism, gap.nearest(closing)
-            fit = fitted(mechanism, point, all_zones(mechanism, point), self.family[-1])
-            if fits(mechanism, fit):
-                break
-            target = mechanism_of(self.scene, self.family[-1], fit)
-            gap = replace(gap, mechanism=replace(target, problem=target.without(gap.contact)), solved={})
-            gap.known(closing, carried_over(mechanism, point, gap.mechanism, {**self.values, gap.load: closing}))
-            found = root_scalar(gap.overlap, method="secant", x0=closing, x1=closing + step, xtol=tolerance)
-            if not found.converged or not abs(found.root - closing) <= NEARLY * abs(closing):
-                break  # on a mesh that fits a little less it is known already
-            closing = float(found.root)
-        return closing
-
-
-@dataclass(frozen=True, slots=True)
-class _Gap:
-    """How far a contact that holds nothing apart is open or violated, as a function of the load.
-
-    ``mechanism`` is without the contact; ``solved`` are the states that are known, by the load's value.
-    """
-
-    mechanism: Mechanism
-    contact: str
-    values: dict[str, float]
-    load: str
-    settings: Settings
-    solved: dict[float, Point] = field(default_factory=dict)
-
-    def known(self, value: float, point: Point) -> None:
-        """Begin from a state near ``value``."""
-        problem, values = self.mechanism.problem, {**self.values, self.load: value}
-        self.solved[value] = point_at(problem, values, point.state, point.mu, np.zeros(0), NO_ROWS)
-
-    def nearest(self, value: float) -> Point:
-        """The state whose load is nearest."""
-        return self.solved[min(self.solved, key=lambda other: abs(other - value))]
-
-    def overlap(self, value: float) -> float:
-        """Largest overlap at a value of the load, units of length; NaN where there is no equilibrium."""
-        values = {**self.values, self.load: value}
-        start, settings = self.nearest(value), self.settings
-        found = equilibrium(self.mechanism.problem, values, start, settings.tolerance, settings.iterations)
-        if not found.converged:
-            return float("nan")
-        self.solved[value] = found.point
-        return max(self.mechanism.overlap(self.contact, found.point.state, found.point.at), -1.0)
+    @cached_property
+    def asked(self) -> Mechanism:
+        """The scene on even elements of the mesh that was asked."""
+        return self.mechanism if len(self.family) == 1 else mechanism_of(self.scene, self.family[-1])
 
 
 def _presses(point: Point, contact: str) -> bool:

@@ -1,0 +1,87 @@
+"""When contacts first close: what touches from rest, and what a beam would sweep over if nothing held it."""
+
+import numpy as np
+import pytest
+
+import cprbm
+import exact
+from scene.reading import scene_from
+from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
+
+UNIT = RIGIDITY / LENGTH**2  # a force that bends the beam by about as much as it is long
+
+
+def beside_circle(gap, stations, *, place=0.62, radius=0.17):
+    """A cantilever above a circle, pressed down at its tip; ``gap``, ``place`` and ``radius`` over the length."""
+    data = cantilever_data(force(0.0, -1.0), stations)
+    below = 0.5 * THICKNESS + (gap + radius) * LENGTH
+    data["contacts"] = {
+        "circle": {
+            "kind": "beam-circle",
+            "beam": "beam",
+            "body": "wall",
+            "center": [place * LENGTH, -below],
+            "radius": radius * LENGTH,
+        }
+    }
+    data["probes"] = [{"of": "circle", "quantity": quantity} for quantity in ("force", "closing_load")]
+    return scene_from(data)
+
+
+def closing_loads(scene, links=20):
+    answer = cprbm.answer(scene, cprbm.Settings(links=links))
+    assert answer.completed, answer.sentence
+    return [station.values["circle.closing_load"].tolist() for station in answer.stations]
+
+
+@pytest.mark.parametrize("links", [20, 160])
+def test_what_touches_from_rest_closes_at_nothing(links):
+    # reference: statics, any force presses the beam on what it touches
+    assert closing_loads(beside_circle(0.0, [0.5 * UNIT, 9.0 * UNIT]), links) == [[0.0], [0.0]]
+
+
+def test_what_touches_from_rest_and_parts_closes_where_it_comes_back():
+    # reference: under no load the beam is straight, and touches
+    (apart, back) = closing_loads(beside_circle(0.0, [-1.3 * UNIT, 2.1 * UNIT]))
+    assert apart == []
+    assert back == pytest.approx([0.0], abs=1e-9 * UNIT)
+
+
+def test_what_touches_and_parts_for_good_never_closes():
+    assert closing_loads(beside_circle(0.0, [-0.7 * UNIT, -2.0 * UNIT])) == [[], []]
+
+
+def test_a_small_gap_closes_where_a_cantilever_bridges_it():
+    """w(s) = P s² (3L − s) / 6EI is the gap, with s = place: its least distance from a small circle is there."""
+    gap, place, links = 1e-7, 0.62, 20
+    expected = 6.0 * gap * UNIT / (place**2 * (3.0 - place))
+    (found,) = closing_loads(beside_circle(gap, [30.0 * expected], radius=0.002), links)
+    assert found == pytest.approx([expected], rel=1.0 / links**2)
+
+
+def test_a_circle_that_the_beam_would_sweep_over_closes_at_the_same_load_however_far_the_next_station_is():
+    # reference: the beam's differential equation
+    stations = [0.9 * UNIT, 3.0 * UNIT, 9.0 * UNIT, 23.0 * UNIT]
+    reference = exact.answer(beside_circle(0.33, stations)).stations[-1].values["circle.closing_load"][0]
+    errors = []
+    for links in (20, 40):
+        by_steps, at_once = (closing_loads(beside_circle(0.33, asked), links) for asked in (stations, stations[-1:]))
+        assert by_steps[0] == []
+        assert by_steps[-1] == pytest.approx(at_once[-1], rel=1e-8)
+        errors.append(abs(by_steps[-1][0] / reference - 1.0))
+    assert errors[0] < 2.0 / 20**2
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.1)
+
+
+def test_what_is_closed_at_a_station_has_a_closing_load_that_is_not_beyond():
+    stations = (UNIT * np.linspace(0.3, 11.0, 9)).tolist()
+    answer = cprbm.answer(beside_circle(0.21, stations), cprbm.Settings(links=120))
+    assert answer.completed, answer.sentence
+    closed = [station.values["circle.force"][0] > 0.0 for station in answer.stations]
+    assert not closed[0]
+    assert closed[-1]
+    for station, pressed in zip(answer.stations, closed, strict=True):
+        found = station.values["circle.closing_load"]
+        assert found.size == pressed
+        assert not pressed or 0.0 < found[0] <= station.value
+    assert len(answer.events) == 1
