@@ -17,7 +17,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.optimize import brentq, root_scalar
+from scipy.optimize import brentq
 
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import Point, equilibrium, point_at
@@ -35,6 +35,7 @@ SHORTEST = 1e-6  # of the way: a step behind which there is no equilibrium witho
 EXACTLY = 1e-10  # of the way
 BEGUN = 1e-3  # of the way: what touches where it begins has parted by then, or never does
 NEARLY = 0.05  # of a closing value: it lies no farther from that on even elements
+NEARBY = (1e-3, 1e-2)  # of the way, on either side of where a less fitted mesh closes
 FITS = 6  # of the mesh to where the other contacts are, at most
 
 
@@ -95,12 +96,10 @@ class Closings:
             target = mechanism_of(self.scene, self.settings, fit)
             start = carried_over(mechanism, point, target, gap.at(closing))
             gap = self._gap(target, gap.contact, closing, start)
-            found = root_scalar(
-                gap.overlap, method="secant", x0=closing, x1=closing + BEGUN * way, xtol=EXACTLY * abs(way)
-            )
-            if not found.converged or not abs(found.root - closing) <= NEARLY * abs(closing):
+            again = gap.root_near(closing, way)
+            if again is None or not abs(again - closing) <= NEARLY * abs(closing):
                 break  # on a mesh that fits a little less it is known already
-            closing = float(found.root)
+            closing = again
         return closing
 
 
@@ -119,6 +118,14 @@ class Gap:
     def at(self, value: float) -> dict[str, float]:
         """The values of all loads and drives at v."""
         return {**self.values, self.load: value}
+
+    def root_near(self, value: float, way: float) -> float | None:
+        """v_c within a small part of a ``way`` from a value; None if the gap does not change its sign there."""
+        for part in NEARBY:
+            low, high = sorted((value - part * way, value + part * way))
+            if self.overlap(low) * self.overlap(high) < 0.0:
+                return float(brentq(self.overlap, low, high, xtol=EXACTLY * abs(way), rtol=8.9e-16))
+        return None
 
     def nearest(self, value: float) -> Point:
         """The state whose v is nearest."""

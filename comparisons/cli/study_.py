@@ -24,7 +24,7 @@ Step = TypeVar("Step")
 def command(ctx: click.Context) -> None:
     """Answer one of the longer questions; without a name, say which there are."""
     if ctx.invoked_subcommand is None:
-        for name, study in command.commands.items():
+        for name, study in sorted(command.commands.items()):
             click.echo(f"{name:<16} {study.get_short_help_str(100)}")
 
 
