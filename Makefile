@@ -18,7 +18,7 @@ compare: $(READY)
 	$(ENVIRONMENT) $(BIN)/cprbm compare all
 
 test: $(READY)
-	$(ENVIRONMENT) $(BIN)/python -m pytest
+	$(ENVIRONMENT) OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --dist loadfile
 
 check: $(READY)
 	$(BIN)/ruff check .
