@@ -258,16 +258,15 @@ def _family_size(scene: Scene, probe: Probe, stage: Stage, value: float, answers
     return family_size(scene, probe.quantity, here, alone, contact=probe.of)
 
 
-def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, unsettled: float) -> Row:
-    compared = (runs.cprbm[0], runs.reference)
+def bare_row(scene: Scene, compared: tuple[Answer, Answer], probe: Probe, stage: Stage, value: float) -> Row:
+    """The values of the CPRBM and of the finite elements that are compared, and no difference yet.
+
+    Raises:
+        KeyError: an answer lacks the station or the probe.
+    """
     scale = probe_scale(scene, probe, stage, compared)
-    stations = {name: station_of(answer, stage.name, value) for name, answer in runs.everything()}
-    values = {name: station.values[probe.name] for name, station in stations.items()}
-    chosen = f"fea {runs.kinematics}"
-    v_c, v_f, v_b = values["cprbm"], values[chosen], values["fea bending"]
-    is_stress = probe.quantity == "bending_stress"
-    exact = _exact_station(runs, stage.name, value)
-    row = Row(
+    v_c, v_f = (station_of(answer, stage.name, value).values[probe.name] for answer in compared)
+    return Row(
         probe=probe,
         stage=stage.name,
         station=value,
@@ -276,7 +275,20 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
         fea=v_f,
         scale=scale,
         denominator=denominator(probe, v_f, scale),
-        arc_length=arc_lengths(scene, probe) if is_stress else None,
+        arc_length=arc_lengths(scene, probe) if probe.quantity == "bending_stress" else None,
+    )
+
+
+def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, unsettled: float) -> Row:
+    compared = (runs.cprbm[0], runs.reference)
+    stations = {name: station_of(answer, stage.name, value) for name, answer in runs.everything()}
+    values = {name: station.values[probe.name] for name, station in stations.items()}
+    chosen = f"fea {runs.kinematics}"
+    v_c, v_f, v_b = values["cprbm"], values[chosen], values["fea bending"]
+    is_stress = probe.quantity == "bending_stress"
+    exact = _exact_station(runs, stage.name, value)
+    row = replace(
+        bare_row(scene, compared, probe, stage, value),
         largest=abs(norm(probe.quantity, v_c) - norm(probe.quantity, v_f)) if is_stress else None,
         exact=None if exact is None else exact.values[probe.name],
     )
@@ -314,7 +326,7 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
         true_errors = TrueErrors(
             cprbm=size(v_c - row.exact),
             bending=size(v_b - row.exact),
-            allowance=max(open_end * _family_size(scene, probe, stage, value, compared), EXACT_TO * scale),
+            allowance=max(open_end * _family_size(scene, probe, stage, value, compared), EXACT_TO * row.scale),
         )
     return replace(
         row,

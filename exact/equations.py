@@ -48,7 +48,6 @@ class Equations:
         stepped: the load or drive whose value is λ.
         others: values of the others, without dimension.
         nodes: Gauss points of a piece.
-        guess: tangent angles from which pieces are solved.
     """
 
     model: Model
@@ -56,15 +55,14 @@ class Equations:
     stepped: str
     others: Mapping[str, float]
     nodes: int
-    guess: Guess
 
     @cached_property
     def layout(self) -> Layout:
         """Where the unknowns stand."""
         return layout(self.model, self.structure)
 
-    def __call__(self, z: Columns, lam: Columns) -> Evaluation:
-        """Everything at z (n, K) and λ (K,).
+    def __call__(self, z: Columns, lam: Columns, guess: Guess) -> Evaluation:
+        """Everything at z (n, K) and λ (K,), with pieces solved from the tangent angles of a ``guess``.
 
         Raises:
             UnsolvableError: a piece cannot be integrated.
@@ -72,7 +70,7 @@ class Equations:
         out = Evaluation(self.model)
         self._place_bodies(out, z)
         for strip in self.model.strips.values():
-            self._beam(out, strip, z)
+            self._beam(out, strip, z, guess)
         touch_points(out, self.structure, self.layout, z)
         self._loads(out, z, lam)
         for name, freedoms in self.model.moving.items():
@@ -125,13 +123,13 @@ class Equations:
 
     # ------------------------------------------------------------------------------------------- beams
 
-    def _beam(self, out: Evaluation, strip: Strip, z: Columns) -> None:
+    def _beam(self, out: Evaluation, strip: Strip, z: Columns, guess: Guess) -> None:
         """A beam's pieces, with the rows at its ends and knots and along circles."""
         name, order = strip.name, self.structure.order[strip.name]
         wraps = {wrap.contact: wrap for wrap in self.structure.wraps(name)}
         begins, stops = self._borders(strip, z)
         parts = out.parts[name] = [
-            self._integrated(strip, a, b, z[index])
+            self._integrated(strip, a, b, z[index], guess)
             for index, a, b in zip(self.layout.pieces[name], begins, stops, strict=True)
         ]
         if not any(wrap.from_start for wrap in wraps.values()):
@@ -192,12 +190,12 @@ class Equations:
         """Arc lengths at which a beam's pieces begin, of unknowns z (n,)."""
         return [float(begin[0]) for begin in self._borders(self.model.strips[beam], z[:, None])[0]]
 
-    def _integrated(self, strip: Strip, a: Columns, b: Columns, start: Columns) -> Part:
+    def _integrated(self, strip: Strip, a: Columns, b: Columns, start: Columns, guess: Guess) -> Part:
         """A piece, from its start's state (6, K)."""
         q = np.concatenate([start, [a, b]])
         real = np.ascontiguousarray(q[:, 0].real)
         nodes = real[6] + (real[7] - real[6]) * rule(self.nodes).points
-        solved = piece(strip.law, real, self.guess(strip.name, nodes))
+        solved = piece(strip.law, real, guess(strip.name, nodes))
         end = np.tile(solved.end[:, None], (1, q.shape[1])).astype(q.dtype)
         if np.iscomplexobj(q):
             end = end + 1j * (solved.slopes @ q.imag)

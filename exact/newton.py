@@ -54,12 +54,11 @@ def solve(
     last, free = np.inf, int(condition is not None)
     n = len(z)
     for _ in range(iterations):
-        asked = replace(equations, guess=angles_of(guess))
-        found, r, J = linearised(asked, z, lam, condition)
+        found, r, J = linearised(equations, z, lam, guess, condition)
         size = float(np.max(np.abs(r)))
         if not size <= _LARGEST:
             raise LostError
-        here = State(asked, z, lam, found, size)
+        here = State(equations, z, lam, found, size)
         if size < _ROUND_OFF or (size < _SETTLED and size >= 0.5 * last):
             return here
         last = size
@@ -75,9 +74,11 @@ def solve(
 
 
 def linearised(
-    equations: Equations, z: Array, lam: float, condition: Condition | None = None
+    equations: Equations, z: Array, lam: float, guess: Known, condition: Condition | None = None
 ) -> tuple[Evaluation, Array, Array]:
-    """Everything at z (n,) and λ; the rows r (n,) and their derivative J (n, n), with a condition (n + 1,) and so on.
+    """Everything at z (n,) and λ, pieces solved from a ``guess``; the rows r (n,) and their derivative J (n, n).
+
+    With a condition r and J have a row more, and J a column for λ.
 
     Raises:
         LostError: a piece cannot be integrated, or something is not finite.
@@ -85,7 +86,7 @@ def linearised(
     n, free = len(z), int(condition is not None)
     columns = np.concatenate([z, [lam]])[:, None] + 1j * _STEP * np.eye(n + 1)[:, : n + free]
     try:
-        found = equations(columns[:n], columns[n])
+        found = equations(columns[:n], columns[n], _angles_of(guess))
     except (UnsolvableError, FloatingPointError) as error:
         raise LostError from error
     rows = np.stack([*found.rows, *([condition(columns[:n], found)] if condition is not None else [])])
@@ -94,7 +95,7 @@ def linearised(
     return found.real(), np.ascontiguousarray(rows[:, 0].real), rows.imag / _STEP
 
 
-def angles_of(known: Known) -> Callable[[str, Array], Array]:
+def _angles_of(known: Known) -> Callable[[str, Array], Array]:
     """Tangent angles of the last iterate; places of contact, where pieces begin, may have moved since."""
     return lambda beam, s: known.along(beam, s)[2]
 
@@ -105,10 +106,9 @@ def checked(state: State, further: int) -> float:
     Raises:
         LostError: a piece cannot be integrated so.
     """
-    equations = state.equations
-    finer = replace(equations, nodes=equations.nodes + further, guess=angles_of(state))
+    finer = replace(state.equations, nodes=state.equations.nodes + further)
     try:
-        found = finer(state.z[:, None], np.array([state.lam]))
+        found = finer(state.z[:, None], np.array([state.lam]), _angles_of(state))
     except UnsolvableError as error:
         raise LostError from error
     return float(np.max(np.abs(np.concatenate(found.rows))))

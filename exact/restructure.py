@@ -15,7 +15,7 @@ from exact.state import Known
 from exact.structure import Meeting, Resting, Structure, Touch, Wrap
 
 Places = Mapping[tuple[str, str], float]
-"""Of a structure's contacts, by (contact, key) as in :class:`exact.equations.Layout`."""
+"""Of a structure's contacts, by (contact, key) as in :class:`exact.layout.Layout`."""
 
 
 class NotCoveredError(Exception):

@@ -29,7 +29,7 @@ from math import ceil, hypot, pi, sqrt
 import numpy as np
 from frozendict import frozendict
 
-from exact.newton import LostError, angles_of, linearised
+from exact.newton import LostError, linearised
 from exact.state import State, start_of
 from exact.structure import Structure
 
@@ -45,9 +45,9 @@ def least_curvature(state: State) -> float:
         LostError: the equations are singular.
     """
     structure, spacing = _cut(state)
-    equations = replace(state.equations, structure=structure, guess=angles_of(state))
+    equations = replace(state.equations, structure=structure)
     z = start_of(equations, state, {**state.places, **state.forces})
-    found, _, J = linearised(equations, z, state.lam)
+    found, _, J = linearised(equations, z, state.lam, state)
     free = sum(state.equations.model.moving.values())  # bodies come first among the unknowns, and last of the rows
     n = len(z)
     index = [*range(free), *(place for place, _ in found.turnings.values())]

@@ -116,7 +116,7 @@ class Way:
             NotCoveredError: there are no equations for it.
         """
         structure = structured(self.model, touches, places)
-        equations = Equations(self.model, structure, self.stepped, dict(self.values), self.settings.nodes, _nothing)
+        equations = Equations(self.model, structure, self.stepped, dict(self.values), self.settings.nodes)
         guesses: dict[Any, float] = {**places, **(forces or {})}
         z = start_of(equations, near, guesses)
         where = equations.layout
@@ -211,8 +211,3 @@ def places_of(state: State, without: str) -> dict[tuple[str, str], float]:
 def _held_at(index: int, value: float) -> Condition:
     """That an unknown has a value."""
     return lambda z, found: z[index] - value
-
-
-def _nothing(beam: str, s: Array) -> Array:
-    """No guess: the solution brings its own."""
-    raise NotImplementedError(beam)

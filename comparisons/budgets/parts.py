@@ -41,9 +41,9 @@ from comparisons.budgets.curved_beam import inner_edge_factor
 from comparisons.budgets.runs import DEEPER, ELEMENTS, LEVELS, TIGHTNESS, BudgetRuns
 from comparisons.converging.limits import limit
 from comparisons.geometry import bentness_on, length
-from comparisons.measures import Row, arc_lengths, components, direction, station_of, unit_of
+from comparisons.measures import Row, bare_row, components, direction, station_of
 from comparisons.order import order_of
-from comparisons.scales import denominator, norm, probe_scale
+from comparisons.scales import norm
 from comparisons.spots import clear_of_spots
 from scene import Answer, Probe, Scene, Stage
 from scene.answer import Array
@@ -129,7 +129,7 @@ def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: f
     every = [station.values[probe.name] for station in stations]
     if every[0].size == 0 or any(v.shape != every[0].shape for v in every) or not any(v.any() for v in every):
         return None
-    row = _row(scene, runs, probe, stage, value)
+    row = bare_row(scene, (runs.cprbm, runs.reference), probe, stage, value)
     counts = np.ones(row.cprbm.shape, dtype=bool)
     if row.arc_length is not None:
         counts = clear_of_spots(scene, probe.of, row.arc_length, stations)
@@ -167,24 +167,6 @@ def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: f
         paper=None if paper is None else float(np.dot(paper[counts] - v_a, along)),
         inner_edge=K,
         curved=None if K is None else float(np.max((K - 1.0)[counts] * np.abs(v_f))),
-    )
-
-
-def _row(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: float) -> Row:
-    """The two values that are compared, as :mod:`comparisons.measures` shows them, and no difference yet."""
-    compared = (runs.cprbm, runs.reference)
-    scale = probe_scale(scene, probe, stage, compared)
-    v_c, v_f = (station_of(answer, stage.name, value).values[probe.name] for answer in compared)
-    return Row(
-        probe=probe,
-        stage=stage.name,
-        station=value,
-        unit=unit_of(scene, probe, stage),
-        cprbm=v_c,
-        fea=v_f,
-        scale=scale,
-        denominator=denominator(probe, v_f, scale),
-        arc_length=arc_lengths(scene, probe) if probe.quantity == "bending_stress" else None,
     )
 
 
