@@ -11,6 +11,7 @@ from frozendict import frozendict
 
 from exact.gaps import Overlap
 from exact.model import Model
+from exact.newton import LostError
 from exact.state import Known
 from exact.structure import Meeting, Resting, Structure, Touch, Wrap
 
@@ -50,7 +51,7 @@ def at_ends(known: Known, model: Model, touch: Touch, places: Places) -> tuple[T
     """A touch whose place lies beyond an end of a beam, at that end, and the places; others as they are.
 
     Raises:
-        NotCoveredError: an end that touches has slid off the other beam's end.
+        LostError: an end that touches has slid off the other beam's end, perhaps in a step that is too long.
     """
     kept = dict(places)
     if isinstance(touch, Wrap):
@@ -66,7 +67,7 @@ def at_ends(known: Known, model: Model, touch: Touch, places: Places) -> tuple[T
     if sigma == places[name, touch.onto]:
         return touch, kept
     if touch.at is not None:
-        raise NotCoveredError(f"the place of {name} slides off the end of {touch.onto}")
+        raise LostError(f"the place of {name} slides off the end of {touch.onto}")
     # the end of the second beam touches the first one, which may run the other way
     del kept[name, touch.onto]
     angles = [float(known.along(beam, np.array([at]))[2, 0]) for beam, at in ((touch.beam, s), (touch.onto, sigma))]
