@@ -28,6 +28,7 @@ from exact.state import State
 from exact.structure import Meeting, Wrap
 from exact.way import Way
 from scene import Answer, Ending, Scene, StationAnswer
+from scene.statement import TurningBody
 
 _OVERLAP = 1e-10  # of the unit of length
 _FIRST_STEP = 0.2  # of the way to the first station
@@ -50,6 +51,7 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
     stations: list[StationAnswer] = []
     ending, sentence = Ending.COMPLETED, ""
     try:
+        _covered(scene)
         for stage in scene.stages:
             way.begin(stage)
             step = 0.0
@@ -68,6 +70,18 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
         events=tuple(way.events),
         seconds=time.perf_counter() - began,
     )
+
+
+def _covered(scene: Scene) -> None:
+    """Refuse what has no equations here.
+
+    Raises:
+        NotCoveredError: the scene has stops, an assembly or a body on a pivot.
+    """
+    pivots = any(isinstance(body, TurningBody) for body in scene.bodies.values())
+    for what, there in (("stops", scene.stops), ("assembly", scene.assembly is not None), ("bodies on pivots", pivots)):
+        if there:
+            raise NotCoveredError(f"there are no equations for {what} here")
 
 
 def _certified(way: Way, station: float) -> StationAnswer:

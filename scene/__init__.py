@@ -5,7 +5,7 @@ This room states; it never computes mechanics.  Both solvers read the same
 :class:`~scene.answer.Answer`, and share nothing else.
 """
 
-from scene.answer import Answer, Certificate, Ending, Event, Shape, StationAnswer
+from scene.answer import Answer, Certificate, Critical, Ending, Event, Loss, Shape, StationAnswer
 from scene.mistakes import Mistake, SceneError
 from scene.offset import OffsetClaim, OffsetQuestion, Spacing
 from scene.reading import Question, read, read_question
@@ -29,6 +29,7 @@ from scene.statement import (
     Profile,
     Scene,
     Stage,
+    Stop,
     WeldedEnd,
 )
 
@@ -42,12 +43,14 @@ __all__ = [
     "Certificate",
     "CircleContact",
     "Claim",
+    "Critical",
     "Drive",
     "Ending",
     "Event",
     "FreeEnd",
     "Line",
     "Load",
+    "Loss",
     "Material",
     "Mistake",
     "OffsetClaim",
@@ -64,6 +67,7 @@ __all__ = [
     "Spacing",
     "Stage",
     "StationAnswer",
+    "Stop",
     "WeldedEnd",
     "read",
     "read_question",

@@ -20,6 +20,8 @@ reaction           (2,)    force of the ground on what is joined at a point, N; 
 reaction_moment    (1,)    moment of the ground there, about that point, N·m; of a body that is turned by a
                            drive the drive's moment
 potential_energy   (1,)    strain energy less the work of the dead loads from the initial state, J
+angle              (1,)    of a stop, from the line between its body's two points to the beam, rad
+moment             (1,)    magnitude of the moment by which a stop holds, N·m; 0 where no limit is reached
 =================  ======  ====================================================================
 """
 
@@ -47,6 +49,7 @@ class Ending(Enum):
     BEAMS_CROSSED = "the beams of a contact pass through each other where nothing holds them apart"
     TURNED_TOO_FAR = "an element turned by more than the discretisation can carry"
     NOT_CERTIFIED = "an equilibrium was found whose certificate does not hold"
+    BRANCH_ENDS = "the branch that was followed ends: beyond it no equilibrium near by is a minimum"
     NOT_COVERED = "no exact solution is known here for what happens"
 
 
@@ -100,7 +103,7 @@ class StationAnswer:
     """What was asked at one station: ``values`` by probe name, the shapes, and the certificate.
 
     ``value`` is the stepped load's or drive's; ``touching`` holds, per closed contact, the places (k, 2) in metres
-    where the beams touch.
+    where the beams touch; ``branch`` is the number of branches that have ended before, each at a critical point.
     """
 
     stage: str
@@ -109,6 +112,7 @@ class StationAnswer:
     shapes: Mapping[str, Shape]
     touching: Mapping[str, Array]
     certificate: Certificate
+    branch: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +123,43 @@ class Event:
     contact: str
     kind: str
     value: float
+
+
+class Loss(Enum):
+    """How an equilibrium ceases to be a minimum; the value names it for people."""
+
+    FOLD = "fold"
+    BIFURCATION = "bifurcation"
+    CONTACT = "contact lets go"
+    STOP = "stop lets go"
+
+
+@dataclass(frozen=True, slots=True)
+class Critical:
+    """Where a branch ends: at ``value`` of the load or drive that ``stage`` steps its equilibria cease to be minima.
+
+    Attributes:
+        stage: name of the stage.
+        value: of the stepped load or drive, SI.
+        uncertainty: of the value on this discretisation, in the same unit.
+        loss: how stability is lost.
+        what: the contact or stop that lets go; empty for a fold or a bifurcation.
+        curvature: smallest curvature of the potential energy on the feasible directions as the branch comes to its
+            end, over the bending stiffness scale of the certificate: about zero unless something lets go.
+        left: the same once what lets go holds no more; of a fold or a bifurcation the curvature itself.
+        energy: potential energy there, J.
+        after: that of the state to which its decrease leads, J; None where the solver stopped.
+    """
+
+    stage: str
+    value: float
+    uncertainty: float
+    loss: Loss
+    what: str
+    curvature: float
+    left: float
+    energy: float
+    after: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,6 +177,7 @@ class Answer:
     sentence: str
     stations: tuple[StationAnswer, ...]
     events: tuple[Event, ...] = ()
+    critical: tuple[Critical, ...] = ()
     seconds: float = 0.0
     notes: tuple[str, ...] = field(default=())
 

@@ -1,19 +1,21 @@
-"""Drives and slides: each has a direction, drives what can move, and has its freedom to itself."""
+"""Drives and guides: each has a direction or a pivot, drives what can move, and has its freedom to itself."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from scene.freedoms import Row, body_of, held, is_stated, row_of, same_point, slide_rows
-from scene.mistakes import Mistake
-from scene.statement import Drive, RotationDrive, Scene, SlidingBody
+from scene.freedoms import Row, body_of, guide_rows, has_guide, held, is_stated, row_of, same_point
+from scene.mistakes import Mistake, unknown_name
+from scene.statement import Drive, RotationDrive, Scene, SlidingBody, TurningBody
 
 
-def wrong_slides(scene: Scene) -> Iterator[Mistake]:
-    """Slides without a direction."""
+def wrong_guides(scene: Scene) -> Iterator[Mistake]:
+    """Slides without a direction, pivots that are no point of their body."""
     for name, body in scene.bodies.items():
         if isinstance(body, SlidingBody) and body.along == (0.0, 0.0):
             yield Mistake(f"bodies.{name}.along", "[0, 0]", "a direction, at least one number not zero")
+        elif isinstance(body, TurningBody) and body.about not in body.points:
+            yield unknown_name(f"bodies.{name}.about", body.about, "point of this body", body.points)
 
 
 def wrong_drives(scene: Scene) -> Iterator[Mistake]:
@@ -31,15 +33,16 @@ def wrong_drives(scene: Scene) -> Iterator[Mistake]:
             found = f"a drive of {_what(drive)} of the fixed body {owner!r}"
             yield Mistake(f"drives.{name}.{what}", found, f"a {what} that can move: {_movable(scene, what)}")
             continue
-        if isinstance(body, SlidingBody) and body.along == (0.0, 0.0):
+        if not has_guide(scene, owner):
             continue
-        guide, row, others = slide_rows(body), row_of(scene, drive), taken.setdefault(owner, {})
+        guide, row, others = guide_rows(scene, owner), row_of(scene, drive), taken.setdefault(owner, {})
         if held(row, guide):
             if isinstance(drive, RotationDrive):
                 found, allowed = f"the rotation of {owner!r}, which slides", "a free body's rotation"
                 yield Mistake(f"drives.{name}.body", found, allowed)
             else:
-                found = f"a direction across the slide of {owner!r}"
+                guide_of = "towards the pivot" if isinstance(body, TurningBody) else "across the slide"
+                found = f"a direction {guide_of} of {owner!r}"
                 allowed = "a direction along which the point can move"
                 yield Mistake(f"drives.{name}.direction", found, allowed)
             continue
@@ -58,7 +61,7 @@ def _loads_on_driven(scene: Scene, taken: dict[str, dict[str, Row]]) -> Iterator
         owner = body_of(scene, load)
         drives = taken[owner]
         there = [each for each in drives if same_point(scene, load, scene.drives[each])]
-        row, guide = row_of(scene, load), slide_rows(scene.bodies[owner])
+        row, guide = row_of(scene, load), guide_rows(scene, owner)
         if there or (held(row, [*guide, *drives.values()]) and not held(row, guide)):
             found = f"a load on a freedom of {owner!r} that is driven by {_listed(there or drives)}"
             yield Mistake(f"loads.{name}", found, "a load or a drive on one freedom, not both")
@@ -75,7 +78,7 @@ def _listed(names: list[str] | dict[str, Row]) -> str:
 def _movable(scene: Scene, what: str) -> str:
     moving = {name: body for name, body in scene.bodies.items() if body.motion != "fixed"}
     if what == "body":
-        names = [name for name, body in moving.items() if body.motion == "free"]
+        names = [name for name, body in moving.items() if body.motion in ("free", "turns")]
     else:
         names = [point for body in moving.values() for point in body.points]
     return ", ".join(map(repr, names)) or "there is none"

@@ -6,15 +6,15 @@ from collections.abc import Iterator
 from math import isclose
 
 from scene.check_names import point_names
-from scene.freedoms import body_of, held, is_named, is_stated, rank, row_of, slide_rows
+from scene.freedoms import body_of, guide_rows, has_guide, held, is_named, is_stated, rank, row_of
 from scene.mistakes import Mistake
-from scene.statement import Force, FreeEnd, Moment, PinnedEnd, Scene, SlidingBody
+from scene.statement import Force, FreeEnd, Moment, PinnedEnd, Scene, TurningBody
 
 FREEDOMS = 3  # of what is rigid in the plane
 
 
 def wrong_supports(scene: Scene) -> Iterator[Mistake]:
-    """Beams and bodies that nothing holds: no fixed body, and neither slides nor drives enough."""
+    """Beams and bodies that nothing holds: no fixed body, and neither guides nor drives enough."""
     if all(body.motion == "free" for body in scene.bodies.values()) and not scene.drives:
         yield Mistake("bodies", "no fixed body", 'at least one body with motion = "fixed"')
         return
@@ -36,11 +36,11 @@ def wrong_supports(scene: Scene) -> Iterator[Mistake]:
     for name, body in scene.bodies.items():
         if _holds(scene, _together(name, met)):
             continue
-        kind = "sliding" if isinstance(body, SlidingBody) else "free"
+        kind = {"slides": "sliding", "turns": "turning"}.get(body.motion, "free")
         if not any(name in bodies for bodies in met.values()):
             yield Mistake(f"bodies.{name}", f"a {kind} body that no beam meets", "a beam's end at one of its points")
         else:
-            allowed = "beams that lead to a fixed body, or slides and drives that hold it"
+            allowed = "beams that lead to a fixed body, or slides, pivots and drives that hold it"
             yield Mistake(f"bodies.{name}", f"a {kind} body that no fixed body holds", allowed)
 
 
@@ -59,14 +59,15 @@ def wrong_loads(scene: Scene) -> Iterator[Mistake]:
             found = f"a moment on {of}" if isinstance(load, Moment) else f"a force at {load.point!r}, a point of {of}"
             a = "a body" if isinstance(load, Moment) else "a point of a body"
             yield Mistake(f"loads.{name}.{what}", found, f"{a} that can move: {_movable(scene)}")
-        elif isinstance(body, SlidingBody) and is_stated(scene, load) and body.along != (0.0, 0.0):
-            if not held(row_of(scene, load), slide_rows(body)):
+        elif is_stated(scene, load) and has_guide(scene, owner):
+            if not held(row_of(scene, load), guide_rows(scene, owner)):
                 continue
             if isinstance(load, Moment):
                 found = f"a moment on {owner!r}, which slides and does not turn"
                 yield Mistake(f"loads.{name}.body", found, "a body that can turn")
             else:
-                found, allowed = f"a force across the slide of {owner!r}", "a direction along which the body can move"
+                guide = "towards the pivot" if isinstance(body, TurningBody) else "across the slide"
+                found, allowed = f"a force {guide} of {owner!r}", "a direction along which the body can move"
                 yield Mistake(f"loads.{name}.direction", found, allowed)
 
 
@@ -84,9 +85,8 @@ def wrong_stages(scene: Scene) -> Iterator[Mistake]:
 
 
 def _rows_stated(scene: Scene) -> bool:
-    """Whether every slide and every drive says which motion it prescribes."""
-    slides = (body for body in scene.bodies.values() if isinstance(body, SlidingBody))
-    return all(body.along != (0.0, 0.0) for body in slides) and all(
+    """Whether every guide and every drive says which motion it prescribes."""
+    return all(has_guide(scene, name) for name in scene.bodies) and all(
         is_stated(scene, drive) for drive in scene.drives.values()
     )
 
@@ -102,10 +102,10 @@ def _together(body: str, met: dict[str, set[str]]) -> set[str]:
 
 
 def _holds(scene: Scene, bodies: set[str]) -> bool:
-    """Whether bodies that beams connect cannot all move as one: one is fixed, or slides and drives prevent it."""
+    """Whether bodies that beams connect cannot all move as one: one is fixed, or guides and drives prevent it."""
     if any(scene.bodies[name].motion == "fixed" for name in bodies):
         return True
-    rows = [row for name in bodies for row in slide_rows(scene.bodies[name])]
+    rows = [row for name in bodies for row in guide_rows(scene, name)]
     rows += [row_of(scene, drive) for drive in scene.drives.values() if body_of(scene, drive) in bodies]
     return rank(rows) == FREEDOMS
 

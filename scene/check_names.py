@@ -16,7 +16,7 @@ def point_names(scene: Scene) -> list[str]:
 
 
 def repeated_names(scene: Scene) -> Iterator[Mistake]:
-    """Names of points, bodies, beams, contacts, loads and drives that are used twice or reserved."""
+    """Names of points, bodies, beams, contacts, stops, loads and drives that are used twice or reserved."""
     bearers = [
         *((f"bodies.{name}", name) for name in scene.bodies),
         *((f"bodies.{name}.points.{point}", point) for name, body in scene.bodies.items() for point in body.points),
@@ -24,13 +24,14 @@ def repeated_names(scene: Scene) -> Iterator[Mistake]:
         *((f"loads.{name}", name) for name in scene.loads),
         *((f"drives.{name}", name) for name in scene.drives),
         *((f"contacts.{name}", name) for name in scene.contacts),
+        *((f"stops.{name}", name) for name in scene.stops),
     ]
     first: dict[str, str] = {}
     for key, name in bearers:
         if name == RESERVED:
             yield Mistake(key, f"the name {name!r}, which stands for the scene itself", "another name")
         elif name in first:
-            allowed = "names that are used once among points, bodies, beams, loads, drives and contacts"
+            allowed = "names that are used once among points, bodies, beams, loads, drives, contacts and stops"
             yield Mistake(key, f"the name {name!r}, which {first[name]} has too", allowed)
         first.setdefault(name, key)
 
@@ -60,6 +61,14 @@ def unknown_names(scene: Scene) -> Iterator[Mistake]:
                 yield unknown_name(f"contacts.{name}.{key}", beam_name, "beam", scene.beams)
         if isinstance(contact, CircleContact) and contact.body not in scene.bodies:
             yield unknown_name(f"contacts.{name}.body", contact.body, "body", scene.bodies)
+    for name, stop in scene.stops.items():
+        if stop.beam not in scene.beams:
+            yield unknown_name(f"stops.{name}.beam", stop.beam, "beam", scene.beams)
+        if stop.towards not in points:
+            yield unknown_name(f"stops.{name}.towards", stop.towards, "point", points)
+    for beam_name in scene.assembly.moments if scene.assembly is not None else ():
+        if beam_name not in scene.beams:
+            yield unknown_name(f"assembly.moments.{beam_name}", beam_name, "beam", scene.beams)
     for i, stage in enumerate(scene.stages):
         if stage.steps not in scene.loads and stage.steps not in scene.drives:
             yield unknown_name(f"stages[{i}].steps", stage.steps, "load or drive", (*scene.loads, *scene.drives))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from scene.check_names import RESERVED, point_names
 from scene.mistakes import Mistake, unknown_name
-from scene.statement import DisplacementDrive, FreeEnd, Quantity, RotationDrive, Scene
+from scene.statement import DisplacementDrive, FreeEnd, Quantity, RotationDrive, Scene, TurningBody
 
 # what a quantity may be asked of
 _OF: dict[Quantity, str] = {
@@ -20,13 +20,16 @@ _OF: dict[Quantity, str] = {
     "reaction": "support",
     "reaction_moment": "turned",
     "potential_energy": RESERVED,
+    "angle": "stop",
+    "moment": "stop",
 }
 _SAID = {
     "point": "a body's point",
     "body": "a body",
     "contact": "a contact",
     "beam": "a beam",
-    "support": "a point of a fixed body at which a beam ends, or a driven point",
+    "support": "a point of a fixed body at which a beam ends, a pivot, or a driven point",
+    "stop": "a stop",
     "turned": "a point of a fixed body at which a beam ends, or a body whose rotation is driven",
     RESERVED: f"{RESERVED!r}, the scene itself",
 }
@@ -41,7 +44,7 @@ def wrong_probes(scene: Scene) -> Iterator[Mistake]:
         key = f"probes[{i}]"
         kind = _OF[probe.quantity]
         if probe.of not in everything:
-            yield unknown_name(f"{key}.of", probe.of, "point, body, beam or contact", everything)
+            yield unknown_name(f"{key}.of", probe.of, "point, body, beam, contact or stop", everything)
         elif probe.of not in bearers[kind]:
             listed = ", ".join(repr(name) for name in bearers[kind]) or "there is none"
             found = f"{probe.quantity!r} of {probe.of!r}"
@@ -70,6 +73,7 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
     fixed = {p for body in scene.bodies.values() if body.motion == "fixed" for p in body.points}
     ends = [end for beam in scene.beams.values() for end in (beam.start, beam.end)]
     supports = [end.point for end in ends if not isinstance(end, FreeEnd) and end.point in fixed]
+    pivots = [body.about for body in scene.bodies.values() if isinstance(body, TurningBody)]
     points = [drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)]
     bodies = [drive.body for drive in scene.drives.values() if isinstance(drive, RotationDrive)]
     return {
@@ -77,7 +81,8 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
         "body": list(scene.bodies),
         "contact": list(scene.contacts),
         "beam": list(scene.beams),
-        "support": list(dict.fromkeys((*supports, *points))),
+        "support": list(dict.fromkeys((*supports, *pivots, *points))),
         "turned": list(dict.fromkeys((*supports, *bodies))),
+        "stop": list(scene.stops),
         RESERVED: [RESERVED],
     }

@@ -20,7 +20,7 @@ from scene import polynomial
 from scene.check_profiles import has_sizes
 from scene.geometry import arc_length, curvature_on, distance, largest_coordinate, largest_curvature
 from scene.mistakes import Mistake, written_place
-from scene.statement import Arc, Beam, Curve, FreeEnd, Polynomial, Scene
+from scene.statement import Arc, Beam, Curve, FreeEnd, PinnedEnd, Polynomial, Scene
 
 THINNEST, THICKEST = 1e-5, 0.2
 MOST_CURVED = 0.5
@@ -60,13 +60,26 @@ def wrong_ends(scene: Scene) -> Iterator[Mistake]:
                 continue
             place = places[end.point]
             apart = distance(at, place)
-            if not apart <= MEETING * arc_length(beam.curve):
+            if not apart <= MEETING * arc_length(beam.curve) and not (side == "end" and may_be_apart(scene, beam)):
                 yield Mistake(
                     f"beams.{name}.{side}",
                     f"a beam end that meets no body: the curve's {side} is at {written_place(at)} m, "
                     f"the point {end.point!r} at {written_place(place)} m, {apart:.3g} m apart",
                     f"at most {MEETING:g} of the beam's length between them",
                 )
+
+
+def may_be_apart(scene: Scene, beam: Beam) -> bool:
+    """Whether the beam's end may be drawn apart from its point, to be brought there by an assembly."""
+    return scene.assembly is not None and isinstance(beam.end, PinnedEnd)
+
+
+def is_apart(scene: Scene, beam: Beam) -> bool:
+    """Whether the beam's end is to be brought to its point, which exists and its curve too."""
+    if not (may_be_apart(scene, beam) and _has_shape(beam.curve)) or isinstance(beam.end, FreeEnd):
+        return False
+    place = scene.place_of(beam.end.point)
+    return not distance(beam.curve.end, place) <= MEETING * arc_length(beam.curve)
 
 
 def is_beam(beam: Beam) -> bool:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from scene.check_assembly import wrong_assembly
 from scene.check_beside_itself import beside_themselves
 from scene.check_circles import circle_overlaps, wrong_circles
-from scene.check_drives import wrong_drives, wrong_slides
+from scene.check_drives import wrong_drives, wrong_guides
 from scene.check_motion import wrong_loads, wrong_stages, wrong_supports
 from scene.check_names import repeated_names, unknown_names
 from scene.check_overlaps import overlaps, wrong_contacts
@@ -14,6 +15,7 @@ from scene.check_paper import wrong_hints, wrong_spacings
 from scene.check_profiles import thick_contacts, wrong_profiles
 from scene.check_questions import wrong_claims, wrong_probes
 from scene.check_shapes import wrong_curves, wrong_ends, wrong_sections
+from scene.check_stops import wrong_stops
 from scene.mistakes import Mistake
 from scene.statement import Scene
 
@@ -25,7 +27,9 @@ _CHECKS = (
     wrong_sections,
     beside_themselves,
     wrong_ends,
-    wrong_slides,
+    wrong_assembly,
+    wrong_stops,
+    wrong_guides,
     wrong_supports,
     wrong_loads,
     wrong_drives,

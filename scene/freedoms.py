@@ -5,7 +5,7 @@ symbol   meaning
 =======  ==================================================================================
 u, v, ω  small translations, and rotation times ℓ, of what is rigid, about the scene's origin
 e        unit vector of a drive, a force or a slide
-r        place of a driven or loaded point less the origin, m
+r        place of a driven or loaded point, or of a pivot, less the origin, m
 ℓ        extent of all points, m: makes a row a pure number
 =======  ==================================================================================
 
@@ -21,7 +21,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from scene.statement import Body, Drive, Force, Load, Moment, Point, RotationDrive, Scene, SlidingBody
+from scene.statement import Drive, Force, Load, Moment, Point, RotationDrive, Scene, SlidingBody, TurningBody
 
 Row = NDArray[np.float64]
 NEGLIGIBLE = 1e-9
@@ -49,12 +49,27 @@ def row_of(scene: Scene, acting: Load | Drive) -> Row:
     return np.array([e[0], e[1], x * e[1] - y * e[0]])
 
 
-def slide_rows(body: Body) -> list[Row]:
-    """The motions that a body's guide prevents; none if it does not slide."""
-    if not isinstance(body, SlidingBody):
-        return []
-    e = unit(body.along)
-    return [np.array([-e[1], e[0], 0.0]), _TURN]
+def guide_rows(scene: Scene, name: str) -> list[Row]:
+    """The motions that a slide or a pivot prevents of the body of a ``name``; none where it has no guide.
+
+    A slide has a direction, and a pivot a point of the body.
+    """
+    body = scene.bodies[name]
+    if isinstance(body, SlidingBody):
+        e = unit(body.along)
+        return [np.array([-e[1], e[0], 0.0]), _TURN]
+    if isinstance(body, TurningBody):
+        x, y = _offsets(scene)[name, body.about]
+        return [np.array([1.0, 0.0, -y]), np.array([0.0, 1.0, x])]
+    return []
+
+
+def has_guide(scene: Scene, name: str) -> bool:
+    """Whether a slide's direction or a pivot's point is stated, if the body of a ``name`` has one."""
+    body = scene.bodies[name]
+    if isinstance(body, TurningBody):
+        return body.about in body.points
+    return not isinstance(body, SlidingBody) or body.along != (0.0, 0.0)
 
 
 def body_of(scene: Scene, acting: Load | Drive) -> str:

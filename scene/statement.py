@@ -225,7 +225,46 @@ class SlidingBody(Record):
     points: Points
 
 
-Body = Annotated[FixedBody | FreeBody | SlidingBody, Field(discriminator="motion")]
+class TurningBody(Record):
+    """A rigid body on a frictionless pivot of the ground: it turns ``about`` one of its own points.
+
+    ``points`` in metres, initial position.
+    """
+
+    motion: Literal["turns"]
+    about: Name
+    points: Points
+
+
+Body = Annotated[FixedBody | FreeBody | SlidingBody | TurningBody, Field(discriminator="motion")]
+
+
+class Stop(Record):
+    """Limits the angle at which a pinned ``beam`` stands at its pin, rad.
+
+    The angle runs counter-clockwise from the line that leads from the pin to ``towards``, another point of the same
+    body, to the direction in which the beam leaves the pin.  As drawn it lies in (−π, π], and it is counted on from
+    there: it grows as the beam's ``end`` turns counter-clockwise against the body.  Without friction; a limit that is
+    reached holds by a moment.
+    """
+
+    beam: Name
+    end: Literal["start", "end"]
+    towards: Name
+    least: float | None = None
+    most: float | None = None
+
+
+class Assembly(Record):
+    """Beams are drawn free of stress, some with their pinned ``end`` apart from its point, and brought there first.
+
+    Three parts, in which nothing else is loaded or driven: ``moments`` (N·m, counter-clockwise on that end of the
+    beam of the name) grow while the ends are free; the ends go straight to their points; the moments go away.
+    Where beams can be assembled in several ways, the moments say in which.  Contacts act throughout, stops as soon
+    as the ends are at their points.
+    """
+
+    moments: Named[float] = Field(default_factory=frozendict)
 
 
 class Moment(Record):
@@ -332,11 +371,15 @@ class Stage(Record):
 
     Loads and drives that no stage has stepped yet are zero (such a drive holds what it drives where it is);
     each keeps its last value in later stages.
+
+    ``beyond`` is what happens where the branch that is followed ends because it is no minimum of the potential
+    energy any more: ``stop`` there, or ``jump`` to the state that the decrease of the energy leads to.
     """
 
     name: Name
     steps: Name
     stations: Annotated[tuple[float, ...], Field(min_length=1)]
+    beyond: Literal["stop", "jump"] = "stop"
 
 
 Quantity = Literal[
@@ -350,13 +393,15 @@ Quantity = Literal[
     "reaction",
     "reaction_moment",
     "potential_energy",
+    "angle",
+    "moment",
 ]
 
 
 class Probe(Record):
     """A number (or a few) that is wanted at every station, named ``of.quantity``.
 
-    ``of`` is the name of a body's point, a body, a beam, a contact, or ``scene`` itself;
+    ``of`` is the name of a body's point, a body, a beam, a contact, a stop, or ``scene`` itself;
     ``points`` the number of equal arc-length steps plus one at which a beam's stress is wanted;
     ``verdict_limit`` stands in the place of the scene's for this probe.
     """
@@ -391,7 +436,7 @@ class Claim(Record):
 class Scene(Record):
     """One problem statement: what is there, what happens to it, and what is asked.
 
-    Names of points, bodies, beams, contacts, loads and drives are unique across the scene.
+    Names of points, bodies, beams, contacts, stops, loads and drives are unique across the scene.
     ``verdict_limit`` is the largest total uncertainty (a fraction of a probe's scale)
     with which the scene still wants to hear AGREE; a probe may have its own.
     """
@@ -405,6 +450,8 @@ class Scene(Record):
     loads: Named[Load] = Field(default_factory=frozendict)
     drives: Named[Drive] = Field(default_factory=frozendict)
     contacts: Named[Contact] = Field(default_factory=frozendict)
+    stops: Named[Stop] = Field(default_factory=frozendict)
+    assembly: Assembly | None = None
     stages: Annotated[tuple[Stage, ...], Field(min_length=1)]
     probes: Annotated[tuple[Probe, ...], Field(min_length=1)]
     claims: tuple[Claim, ...] = ()
@@ -422,6 +469,14 @@ class Scene(Record):
             KeyError: nothing has the name that the stage says.
         """
         return self.loads[stage.steps] if stage.steps in self.loads else self.drives[stage.steps]
+
+    def place_of(self, point: str) -> Point:
+        """Initial position of a body's ``point``, m.
+
+        Raises:
+            KeyError: no body has a point of that name.
+        """
+        return self.bodies[self.body_of(point)].points[point]
 
     def body_of(self, point: str) -> str:
         """Name of the body that owns ``point``.
