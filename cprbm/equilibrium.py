@@ -15,7 +15,7 @@ directions where it is not, first by the stiffness of the contacts that press, t
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,6 +27,7 @@ from cprbm.complementarity import pressing
 from cprbm.contact import Formulation, Rows
 from cprbm.energy import (
     DeadLoad,
+    EndMoment,
     LoadWork,
     load_work,
     spring_moments,
@@ -66,7 +67,7 @@ class Problem:
 
     model: Model
     closure: Closure
-    loads: dict[str, DeadLoad]
+    loads: Mapping[str, DeadLoad | EndMoment]
     formulation: Formulation
     steady: Formulation
 
@@ -122,7 +123,8 @@ def point_at(problem: Problem, values: dict[str, float], state: State, mu: Array
     at = positions(model, state)
     rows = problem.formulation(state, at)
     work = load_work(model, problem.loads, values, state)
-    gradient = np.concatenate((strain_gradient(model, state), -work.gradient))
+    gradient = -work.gradient
+    gradient[: model.n_links] += strain_gradient(model, state)
     A_E = closure_rows(model, problem.closure, state, at)
     return Point(
         state=state,
@@ -138,7 +140,7 @@ def point_at(problem: Problem, values: dict[str, float], state: State, mu: Array
 
 
 def local_rows(model: Model, state: State, at: Positions, joints: Ints, angles: Ints) -> Array:
-    """Derivatives of local numbers over q: for joints (g, p) and links (g, a), (g, 2p + a, n_links + 3B)."""
+    """Derivatives of local numbers over q: for joints (g, p) and angles (g, a), (g, 2p + a, n_links + 3B)."""
     (g, p), a = joints.shape, angles.shape[1]
     rows_x, rows_y = position_rows(model, state, at, joints.ravel())
     width = rows_x.shape[1]
@@ -164,9 +166,9 @@ def contact_rows(model: Model, point: Point) -> Array:
 
 def contact_gradient(model: Model, point: Point) -> Array:
     """∂(λ·c) over q (n_links + 3B,), without forming ∂c."""
-    fx, fy, moments = point.rows.forces(point.lam, model.n_joints, model.n_links)
+    fx, fy, moments = point.rows.forces(point.lam, model.n_joints, model.n_unknowns)
     over_theta, over_bodies, _, _ = pulled_back(model, point.state, point.at, fx, fy)
-    return np.concatenate((over_theta + moments, over_bodies))
+    return np.concatenate((over_theta, over_bodies)) + moments
 
 
 def carried(before: Rows, lam: Array, rows: Rows, model: Model) -> Array:
@@ -242,7 +244,7 @@ def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System
     n, n_bodies = model.n_links, 3 * len(model.free_bodies)
     A_I = contact_rows(model, point)
     fx, fy = closure_forces(model, closure, point.mu)
-    cx, cy, _ = rows.forces(point.lam, model.n_joints, n)
+    cx, cy, _ = rows.forces(point.lam, model.n_joints, model.n_unknowns)
     fx, fy = fx + cx, fy + cy
     _, _, second, second_bodies = pulled_back(model, point.state, point.at, fx, fy)
     diagonal, off = strain_hessian(model)
@@ -254,6 +256,8 @@ def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System
         if not np.any(lam > 0.0):
             continue
         blocks = group.curvature(lam)
+        if not blocks.matrices.size:
+            continue
         sigma, V = np.linalg.eigh(blocks.matrices)
         J = local_rows(model, point.state, point.at, blocks.joints, blocks.angles)
         along = np.einsum("gkj,gkn->gjn", V, J).reshape(sigma.size, -1)

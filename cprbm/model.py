@@ -143,6 +143,11 @@ class Model:
         return len(self.lengths)
 
     @property
+    def n_unknowns(self) -> int:
+        """Link angles, and u, v, φ of the free bodies."""
+        return self.n_links + 3 * len(self.free_bodies)
+
+    @property
     def n_joints(self) -> int:
         """Joints of all beams, ends included, and the marks behind them."""
         return self.first_mark + len(self.marks)

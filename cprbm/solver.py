@@ -7,12 +7,14 @@ from there on the mesh that was asked, fitted to where contact is (:mod:`cprbm.r
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from threadpoolctl import threadpool_limits
 
+from cprbm.assembling import brought, freed, released
 from cprbm.boundary import FittedBoundary
 from cprbm.certifying import certify
 from cprbm.closing import Closings, Stood
@@ -70,6 +72,30 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
     )
 
 
+@dataclass(frozen=True, slots=True)
+class _Way:
+    """What is stepped from one equilibrium that is wanted to the next: some values (SI) that go evenly.
+
+    ``stage`` and ``load`` are the scene's; an assembly steps no load.
+    """
+
+    stage: str
+    load: str
+    begin: Mapping[str, float]
+    target: Mapping[str, float]
+
+    def at(self, fraction: float) -> dict[str, float]:
+        """All values at a fraction of the way."""
+        if fraction == 1.0:
+            return dict(self.target)
+        return {name: self.begin[name] + fraction * (end - self.begin[name]) for name, end in self.target.items()}
+
+    @property
+    def aim(self) -> str:
+        """Where it leads, for people."""
+        return f"{self.load} = {self.target[self.load]:.6g}" if self.load else "the end of this part"
+
+
 class _March:
     """The state while marching: where we are, under which loads, and what was reached.
 
@@ -92,13 +118,18 @@ class _March:
         self.opened: dict[str, list[Stood]] = {}
 
     def run(self) -> tuple[Ending, str]:
-        """March through every stage; the Ending and its sentence."""
+        """Assemble, and march through every stage; the Ending and its sentence."""
+        if self.scene.assembly is not None:
+            ending, sentence = self._assemble()
+            if ending is not Ending.COMPLETED:
+                return ending, sentence
         for stage in self.scene.stages:
             here = self.values.get(stage.steps, 0.0), self.point
             self.opened = {name: [here] for name in self.asked_events if name not in self.closed_at}
             for target in stage.stations:
-                begin = self.values.get(stage.steps, 0.0)
-                ending, sentence, certificate = self._advance(stage.name, stage.steps, begin, target)
+                begin = {**self.values, stage.steps: self.values.get(stage.steps, 0.0)}
+                way = _Way(stage.name, stage.steps, begin, {**begin, stage.steps: target})
+                ending, sentence, certificate = self._advance(way)
                 if certificate is None:
                     last = f"the last good value of {stage.steps} is {self.values.get(stage.steps, 0.0):.6g}"
                     return ending, f"{ending.value}: {sentence}; {last}"
@@ -107,6 +138,19 @@ class _March:
                     return Ending.STEP_TOO_SMALL, "the finer meshes do not follow the coarsest"
                 self.reached.append(station)
         return Ending.COMPLETED, Ending.COMPLETED.value
+
+    def _assemble(self) -> tuple[Ending, str]:
+        """Bring the beams' ends to their points; the Ending and its sentence."""
+        whole = self.mechanism
+        for begun in (freed, brought, released):
+            part = begun(self.scene, whole, self.point)
+            self.mechanism, self.point = part.mechanism, part.start
+            ending, sentence, certificate = self._advance(_Way("assembly", "", part.begin, part.target))
+            if certificate is None:
+                return ending, f"{ending.value}: as {part.sentence}, {sentence}"
+        self.mechanism, self.values = whole, {}
+        self.closed_at |= {name: 0.0 for name in self.asked_events if _presses(self.point, name)}
+        return Ending.COMPLETED, ""
 
     def _station(self, stage: Stage, value: float, certificate: Certificate) -> StationAnswer | None:
         """The answer at a station that the march has reached, on the mesh that was asked; None if that fails."""
@@ -184,14 +228,14 @@ class _March:
                 )
         return said
 
-    def _advance(self, stage: str, load: str, begin: float, target: float) -> tuple[Ending, str, Certificate | None]:
-        """Go from one load value to the next, directly or in steps; the certificate at the target."""
+    def _advance(self, way: _Way) -> tuple[Ending, str, Certificate | None]:
+        """Go all the way, directly or in steps; the certificate at its end."""
         done, step, iterations = 0.0, 1.0, 0
         while True:
             step = min(step, 1.0 - done)
             fraction = 1.0 if done + step >= 1.0 else done + step
-            value = target if fraction == 1.0 else begin + fraction * (target - begin)
-            found = self._try(self.point, {**self.values, load: value}, settle=step <= SETTLE)
+            values = way.at(fraction)
+            found = self._try(self.point, values, settle=step <= SETTLE)
             iterations += found.iterations
             certificate, ending = certify(self.mechanism, self.settings, found)
             turned = float(np.max(np.abs(found.point.state.theta - self.point.state.theta)))
@@ -208,19 +252,19 @@ class _March:
             elif certificate.failures:
                 sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
             if ending is Ending.COMPLETED:
-                self._note_closings(stage, load, found.point, value)
-                self.point, done = found.point, fraction
+                if self.opened:
+                    self._note_closings(way.stage, way.load, found.point, values[way.load])
+                self.point, self.values, done = found.point, values, fraction
                 for name, opened in self.opened.items():
                     if not _presses(self.point, name):
-                        opened.append((value, self.point))
-                self.values[load] = value
+                        opened.append((values[way.load], self.point))
                 if fraction == 1.0:
                     return ending, "", replace(certificate, iterations=iterations)
                 step *= GROWTH
                 continue
             step *= 0.5
             if iterations > self.settings.iteration_limit:
-                return Ending.STEP_TOO_SMALL, f"{iterations} iterations did not lead to {load} = {target:.6g}", None
+                return Ending.STEP_TOO_SMALL, f"{iterations} iterations did not lead to {way.aim}", None
             if step < self.settings.smallest_step:
                 if not found.converged:
                     ending = Ending.STEP_TOO_SMALL
