@@ -12,6 +12,7 @@ from pathlib import Path
 from comparisons import archive, documents, figures, offset_drawn, offset_pages, reactions_drawn, sheets
 from comparisons.offset_verdict import OffsetComparison
 from comparisons.rendering import Embedded, embedded, rendered
+from comparisons.sheet import Sheet
 from comparisons.verdict import Comparison, Verdict
 from comparisons.writing import write
 from scene import Question
@@ -26,7 +27,7 @@ class Chapter:
     source: str
     word: str
     sentence: str
-    sheets: tuple[sheets.Sheet, ...]
+    sheets: tuple[Sheet, ...]
     explanation: tuple[str, ...]
     pictures: tuple[Embedded, ...]
     files: tuple[str, ...]
@@ -92,7 +93,7 @@ def offset_chapter(compared: OffsetComparison, pictures: tuple[figures.Picture, 
 def _chapter(
     asked: Question,
     verdict: Verdict,
-    tables: tuple[sheets.Sheet, ...],
+    tables: tuple[Sheet, ...],
     explanation: tuple[str, ...],
     pictures: tuple[figures.Picture, ...],
     files: tuple[str, ...],

@@ -374,11 +374,13 @@ class Stage(Record):
 
     ``beyond`` is what happens where the branch that is followed ends because it is no minimum of the potential
     energy any more: ``stop`` there, or ``jump`` to the state that the decrease of the energy leads to.
+    ``shown`` are the stations that tables and pictures are to show beside the last of all.
     """
 
     name: Name
     steps: Name
     stations: Annotated[tuple[float, ...], Field(min_length=1)]
+    shown: tuple[float, ...] = ()
     beyond: Literal["stop", "jump"] = "stop"
 
 
@@ -417,20 +419,34 @@ class Probe(Record):
         return f"{self.of}.{self.quantity}"
 
 
+CRITICAL = "critical"
+"""What a claim of a critical value has in the place of a probe's name."""
+
+
 class Claim(Record):
     """What a publication says of one probe: its relative difference stays below ``bound``.
 
-    Without a ``station`` it says so of every station at which the probe has a value.
+    Without a ``station`` it says so of every station at which the probe has a value, without a ``stage`` of every
+    stage.  With a ``value`` (SI) it says what the probe's is: ours then stays within ``bound`` of it, a share of the
+    value, or of the probe's scale where the value is zero.
+
+    Of the probe ``critical`` it speaks of the first critical value of the ``stage``, without one of every stage.
     """
 
     probe: str
+    stage: Name | None = None
     station: float | None = None
+    value: float | None = None
     bound: Positive
     text: str = ""
 
-    def speaks_of(self, station: float) -> bool:
+    def speaks_of(self, stage: str, station: float) -> bool:
         """Whether the claim is made at a station: at its own, whose digits may be written in another way, or at all."""
-        return self.station is None or isclose(self.station, station, rel_tol=1e-9)
+        return self.in_stage(stage) and (self.station is None or isclose(self.station, station, rel_tol=1e-9))
+
+    def in_stage(self, stage: str) -> bool:
+        """Whether the claim is made in a stage: in its own, or in all."""
+        return self.stage is None or self.stage == stage
 
 
 class Scene(Record):

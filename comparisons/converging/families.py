@@ -27,12 +27,13 @@ import numpy as np
 
 from comparisons.choices import Choices, Kinematics
 from comparisons.converging.limits import COMMON, Limit, limit, observed, orders
-from comparisons.measures import arc_lengths, round_off, station_of, unit_of
+from comparisons.measures import arc_lengths, round_off, unit_of
 from comparisons.order import OWN, order_of
 from comparisons.pairing import Crew, Job, Solvers
 from comparisons.scales import norm, probe_scale
 from comparisons.soundness import complaints
 from comparisons.spots import clear_of_spots
+from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, Stage
 from scene.answer import Array
 

@@ -9,7 +9,7 @@ from comparisons import documents
 from comparisons.converging.families import STANDARD_AT, Convergence, Family
 from comparisons.documents import Plain, plain
 from comparisons.formats import number, percent, scaled_unit, vector
-from comparisons.sheets import Sheet
+from comparisons.sheet import Sheet
 
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA"}
 

@@ -32,9 +32,9 @@ import numpy as np
 from frozendict import frozendict
 
 from comparisons.converging.limits import limit
-from comparisons.measures import station_of
 from comparisons.order import order_of, richardson
 from comparisons.scales import norm
+from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, StationAnswer
 from scene.answer import Array, frozen_array
 
