@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
-
 from comparisons.branches import Place
 from comparisons.criticals import mechanism, released
 from comparisons.formats import number, scaled_unit
 from comparisons.measures import load_unit
-from comparisons.per_branch import critical_word, value_and_unit
+from comparisons.per_branch import critical_word, distance, value_and_unit
 from comparisons.sheet import Sheet
 from comparisons.verdict import Comparison
 from scene import Answer, Critical, Scene
@@ -21,15 +19,15 @@ def of_criticals(compared: Comparison) -> Sheet:
         bounds = row.bounds
         body.append(
             (
-                f"{row.stage} {row.place + 1}",
+                row.stage if row.place == 0 else f"{row.stage}, {row.place + 1}",
                 *(_ends(found, row.unit) for found in (row.cprbm, row.fea)),
-                _along(row.difference, row.unit),
+                distance(row.difference, row.unit),
                 *(
                     ("–", "–", "–")
                     if bounds is None
-                    else (_along(size, row.unit) for size in (bounds.cprbm, bounds.fea, bounds.theory))
+                    else (distance(size, row.unit) for size in (bounds.cprbm, bounds.fea, bounds.theory))
                 ),
-                _along(row.allowed, row.unit),
+                distance(row.allowed, row.unit),
                 *(_released(found) for found in (row.cprbm, row.fea)),
                 critical_word(row).value,
             )
@@ -89,13 +87,6 @@ def _ends(critical: Critical | None, unit: str) -> str:
     return "–" if critical is None else f"{value_and_unit(critical.value, unit)}, {mechanism(critical)}"
 
 
-def _along(value: float, unit: str) -> str:
-    """A distance along the load or drive; of a rotation in degrees."""
-    if not math.isfinite(value):
-        return "–"
-    return f"{number(math.degrees(value), 2)}°" if unit == "rad" else f"{number(value, 2)} {unit}"
-
-
 def _released(critical: Critical | None) -> str:
     energy = None if critical is None else released(critical)
     if energy is None:
@@ -111,7 +102,7 @@ def of_ends(scene: Scene, answer: Answer) -> Sheet:
         (
             each.stage,
             value_and_unit(each.value, units[each.stage]),
-            _along(each.uncertainty, units[each.stage]),
+            distance(each.uncertainty, units[each.stage]),
             mechanism(each),
             number(each.curvature),
             number(each.left),

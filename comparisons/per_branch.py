@@ -78,8 +78,8 @@ def critical_sentence(row: CriticalRow) -> str:
     if row.bounds is None:
         why = "" if row.steady else ", and the runs of one solver are not of one mind"
     else:
-        apart, total = _size(row.difference, row.unit), _size(row.bounds.total, row.unit)
-        why = f", {apart} apart against a stated {total}, {_size(row.allowed, row.unit)} allowed"
+        apart, total = distance(row.difference, row.unit), distance(row.bounds.total, row.unit)
+        why = f", {apart} apart against a stated {total}, {distance(row.allowed, row.unit)} allowed"
     return f"The branch ends in {row.stage} at {said}{why}: {critical_word(row).value}."
 
 
@@ -89,12 +89,15 @@ def value_and_unit(value: float, unit: str) -> str:
     return f"{number(value, 5)} {unit}{degrees}"
 
 
+def distance(value: float, unit: str) -> str:
+    """A distance along a load or drive; of a rotation in degrees."""
+    if not math.isfinite(value):
+        return "–"
+    return f"{number(math.degrees(value), 2)}°" if unit == "rad" else f"{number(value, 2)} {unit}"
+
+
 def _value(critical: Critical, unit: str) -> str:
     return value_and_unit(critical.value, unit)
-
-
-def _size(value: float, unit: str) -> str:
-    return f"{number(math.degrees(value), 2)}°" if unit == "rad" else f"{number(value, 2)} {unit}"
 
 
 def _of_branch(stage: str, branch: int, mine: Sequence[tuple[Row, Word | None]]) -> BranchVerdict:

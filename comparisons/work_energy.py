@@ -109,7 +109,7 @@ def reactions(scene: Scene, cprbm: Answer, fea: Answer, near: Answer) -> tuple[R
     for stage in scene.stages:
         asked = is_asked(scene, stage)
         largest = (
-            max(abs(_along(scene, stage, station_of(cprbm, stage.name, d))) for d in stage.stations) if asked else 0.0
+            max(abs(along(scene, stage, station_of(cprbm, stage.name, d))) for d in stage.stations) if asked else 0.0
         )
         for d in stage.stations:
             values = visited(d) if asked else (d,)
@@ -118,7 +118,7 @@ def reactions(scene: Scene, cprbm: Answer, fea: Answer, near: Answer) -> tuple[R
             if not asked or d == 0.0:
                 continue
             here = station_of(cprbm, stage.name, d)
-            F = _along(scene, stage, here)
+            F = along(scene, stage, here)
             jumped = any(station.branch != here.branch for station in beside)
             found.append(
                 Reaction(
@@ -128,7 +128,7 @@ def reactions(scene: Scene, cprbm: Answer, fea: Answer, near: Answer) -> tuple[R
                     unit=UNITS[reaction_of(scene.drives[stage.steps]).quantity],
                     multiplier=F,
                     work_energy=None if jumped else _work_energy(d, values, beside),
-                    fea=_along(scene, stage, station_of(fea, stage.name, d)),
+                    fea=along(scene, stage, station_of(fea, stage.name, d)),
                     scale=abs(F) if abs(F) >= VANISHING * largest else largest,
                     floor=_floor(d, beside),
                     changes=_changes(closed, (stage.name, d), beside),
@@ -137,6 +137,25 @@ def reactions(scene: Scene, cprbm: Answer, fea: Answer, near: Answer) -> tuple[R
                 )
             )
     return tuple(found)
+
+
+def along(scene: Scene, stage: Stage, station: StationAnswer) -> float:
+    """The multiplier F of the drive that a stage steps: along its direction in N, or its moment in N·m.
+
+    Raises:
+        KeyError: the station lacks the drive's reaction.
+    """
+    drive = scene.drives[stage.steps]
+    values = station.values[reaction_of(drive).name]
+    if not isinstance(drive, DisplacementDrive):
+        return float(values[0])
+    others = {
+        name: unit(each.direction)
+        for name, each in scene.drives.items()
+        if isinstance(each, DisplacementDrive) and each.point == drive.point
+    }
+    F = np.linalg.lstsq(np.stack(list(others.values()), axis=1), values)[0]
+    return float(F[list(others).index(stage.steps)])
 
 
 def by_drive(found: tuple[Reaction, ...]) -> dict[str, tuple[Reaction, ...]]:
@@ -195,21 +214,6 @@ def _floor(d: float, beside: tuple[StationAnswer, ...]) -> float:
 
 def _energy(station: StationAnswer) -> float:
     return float(station.values[ENERGY.name][0])
-
-
-def _along(scene: Scene, stage: Stage, station: StationAnswer) -> float:
-    """The multiplier F of the drive that a stage steps: along its direction, or its moment."""
-    drive = scene.drives[stage.steps]
-    values = station.values[reaction_of(drive).name]
-    if not isinstance(drive, DisplacementDrive):
-        return float(values[0])
-    others = {
-        name: unit(each.direction)
-        for name, each in scene.drives.items()
-        if isinstance(each, DisplacementDrive) and each.point == drive.point
-    }
-    F = np.linalg.lstsq(np.stack(list(others.values()), axis=1), values)[0]
-    return float(F[list(others).index(stage.steps)])
 
 
 @dataclass(frozen=True, slots=True)
