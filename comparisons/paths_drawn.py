@@ -94,7 +94,8 @@ def _drawn(compared: Comparison, stepped: str, stages: list[Stage], shown: list[
                 for critical in answer.critical:
                     if critical.stage in names:
                         axes.axvline(critical.value / step, color=_LOOKS[name][0], linewidth=0.7, linestyle=":")
-            axes.axhline(0.0, color=GREY, linewidth=0.5)
+            if min(map(ordinate.of, mine)) < 0.0 < max(map(ordinate.of, mine)):
+                axes.axhline(0.0, color=GREY, linewidth=0.5)
             axes.set_ylabel(f"{ordinate.title}, {shown_unit}")
         for place, critical in enumerate(each for each in runs.cprbm[0].critical if each.stage in names):
             _mark(panels[0], critical, step, step_unit, place)

@@ -11,13 +11,15 @@ from scene import Answer, Ending, Scene
 
 
 def within_reach(scene: Scene, runs: Runs) -> tuple[Scene, Runs] | None:
-    """The scene and all answers up to the last station that every run reached; None where no run's branch ends.
+    """The scene and all answers up to the last station that every run reached; None where no run's branch ends, or
+    one has ended before the last station for another reason.
 
     The answers say that they are complete, which they are for such a scene; what was found beyond is left out.
     None as well where not a single station was reached.
     """
     every = [answer for _, answer in runs.everything()]
-    if not any(answer.ending is Ending.BRANCH_ENDS for answer in every):
+    asked = sum(len(stage.stations) for stage in scene.stages)
+    if not any(map(_ends, every)) or any(len(answer.stations) < asked for answer in every if not _ends(answer)):
         return None
     count = min(len(answer.stations) for answer in every)
     if count == 0:
@@ -30,8 +32,8 @@ def within_reach(scene: Scene, runs: Runs) -> tuple[Scene, Runs] | None:
             stages.append(stage.model_copy(update={"stations": stations}))
 
     def cut(answer: Answer) -> Answer:
-        whole = answer.ending in (Ending.BRANCH_ENDS, Ending.COMPLETED)
-        return replace(answer, stations=answer.stations[:count], ending=Ending.COMPLETED if whole else answer.ending)
+        ending = Ending.COMPLETED if _ends(answer) else answer.ending
+        return replace(answer, stations=answer.stations[:count], ending=ending)
 
     def maybe(answer: Answer | None) -> Answer | None:
         return None if answer is None else cut(answer)
@@ -44,3 +46,9 @@ def within_reach(scene: Scene, runs: Runs) -> tuple[Scene, Runs] | None:
         beside=maybe(runs.beside),
         paper=None,
     )
+
+
+def _ends(answer: Answer) -> bool:
+    """Whether an answer says that its branch ends, and where."""
+    last = answer.stations[-1].branch if answer.stations else 0
+    return answer.ending is Ending.BRANCH_ENDS and len(answer.critical) == last + 1
