@@ -53,7 +53,7 @@ class Jumping:
         critical: list[Critical] = []
         last = 0.0
         for station in base.stations:
-            at = self._passed(last, station.value, shift)
+            at = self._passed(last, station.value, shift, away=len(critical) % 2 == 1)
             if at is not None:
                 end = Critical(station.stage, at, 1e-6, self.loss, self.what, 1e-7, -0.1, 1.0, 1.0 - FALL)
                 critical.append(replace(end, after=None) if self.stops else end)
@@ -64,14 +64,11 @@ class Jumping:
         ending = Ending.BRANCH_ENDS if len(stations) < len(base.stations) else Ending.COMPLETED
         return replace(base, stations=tuple(stations), critical=tuple(critical), ending=ending, events=())
 
-    def _passed(self, last: float, value: float, shift: float) -> float | None:
-        """The critical value between two stations; forwards one, and backwards another."""
-        forwards, backwards = FORWARD + shift, BACK - shift
-        if not self.jumps:
-            return None
-        if last < forwards <= value:
-            return forwards
-        return backwards if value <= backwards < last else None
+    def _passed(self, last: float, value: float, shift: float, *, away: bool) -> float | None:
+        """The critical value between two stations: before the jump the one forwards, after it the one back."""
+        end = BACK - shift if away else FORWARD + shift
+        passed = value <= end < last if away else last < end <= value
+        return end if self.jumps and passed else None
 
     def _station(self, scene: Scene, station: StationAnswer, factor: float, branch: int) -> StationAnswer:
         alpha, away = station.value, branch % 2
