@@ -85,8 +85,8 @@ def standings(scene: Scene, rows: Sequence[Row], criticals: Sequence[CriticalRow
     for claim in scene.claims:
         mine: list[tuple[float, Row | CriticalRow]] = []
         if claim.probe == CRITICAL:
-            about = [each for each in criticals if each.place == 0 and claim.in_stage(each.stage)]
-            mine += [(off, each) for each in about if (off := _critical_difference(claim, each)) is not None]
+            of_stages = [each for each in criticals if _is_about_critical(claim, each)]
+            mine += [(off, each) for each in of_stages if (off := critical_difference(claim, each)) is not None]
         else:
             mine += [
                 (off, row)
@@ -99,12 +99,23 @@ def standings(scene: Scene, rows: Sequence[Row], criticals: Sequence[CriticalRow
     return tuple(found)
 
 
-def _critical_difference(claim: Claim, found: CriticalRow) -> float | None:
+def claim_of_critical(scene: Scene, found: CriticalRow) -> Claim | None:
+    """What is claimed of a critical value, in its stage or else in all; None if nothing is."""
+    about = [claim for claim in scene.claims if claim.probe == CRITICAL and _is_about_critical(claim, found)]
+    own = [claim for claim in about if claim.stage is not None]
+    return next(iter((*own, *about)), None)
+
+
+def critical_difference(claim: Claim, found: CriticalRow) -> float | None:
     """Of the CPRBM's critical value from the claimed one, or else from the finite elements', a fraction."""
     reference = found.fea.value if claim.value is None and found.fea is not None else claim.value
     if found.cprbm is None or reference is None:
         return None
     return abs(found.cprbm.value - reference) / (abs(reference) or found.span)
+
+
+def _is_about_critical(claim: Claim, found: CriticalRow) -> bool:
+    return found.place == 0 and claim.in_stage(found.stage)
 
 
 def _is_about(claim: Claim, row: Row) -> bool:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.benchmark import Benchmark, trend
-from comparisons.claims import claim_met, claim_of, claimed_difference
+from comparisons.claims import claim_met, claim_of, claim_of_critical, claimed_difference, critical_difference
 from comparisons.criticals import CriticalRow, released
 from comparisons.measures import Row, arc_lengths, unit_of
 from comparisons.per_branch import critical_word
@@ -47,7 +47,7 @@ def comparison(compared: Comparison) -> Plain:
             {**_row(compared.scene, row), "verdict": None if word is None else word.value}
             for row, word in zip(compared.rows, compared.verdict.words, strict=True)
         ],
-        "critical": [_critical_row(each) for each in compared.criticals],
+        "critical": [_critical_row(compared.scene, each) for each in compared.criticals],
         "branches": [
             {
                 "stage": each.stage,
@@ -254,6 +254,7 @@ def _row(scene: Scene, row: Row) -> Plain:
             "round_off": None if bounds is None else row.fraction(bounds.round_off),
         },
         "claim": None if claim is None else claim.bound,
+        "claim_value": None if claim is None else claim.value,
         "claim_met": claim_met(claim, row),
         "claim_difference": None if claim is None else claimed_difference(claim, row),
         "difference_same_theory": row.fraction(row.same_theory),
@@ -278,8 +279,10 @@ def _row(scene: Scene, row: Row) -> Plain:
     }
 
 
-def _critical_row(row: CriticalRow) -> Plain:
+def _critical_row(scene: Scene, row: CriticalRow) -> Plain:
     bounds = row.bounds
+    claim = claim_of_critical(scene, row)
+    off = None if claim is None else critical_difference(claim, row)
     both = {"cprbm": row.cprbm, "fea": row.fea}
     return {
         "probe": "critical",
@@ -299,6 +302,10 @@ def _critical_row(row: CriticalRow) -> Plain:
             "fea_bending": None if bounds is None else plain(bounds.bending),
             "round_off": None if bounds is None else plain(bounds.round_off),
         },
+        "claim": None if claim is None else claim.bound,
+        "claim_value": None if claim is None else claim.value,
+        "claim_met": None if claim is None or off is None else off <= claim.bound,
+        "claim_difference": off,
         "allowed": row.allowed,
         "span": row.span,
         "verdict": critical_word(row).value,

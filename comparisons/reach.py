@@ -19,7 +19,9 @@ def within_reach(scene: Scene, runs: Runs) -> tuple[Scene, Runs] | None:
     """
     every = [answer for _, answer in runs.everything()]
     asked = sum(len(stage.stations) for stage in scene.stages)
-    if not any(map(_ends, every)) or any(len(answer.stations) < asked for answer in every if not _ends(answer)):
+    if not any(map(ends_at_critical, every)) or any(
+        len(answer.stations) < asked for answer in every if not ends_at_critical(answer)
+    ):
         return None
     count = min(len(answer.stations) for answer in every)
     if count == 0:
@@ -32,7 +34,7 @@ def within_reach(scene: Scene, runs: Runs) -> tuple[Scene, Runs] | None:
             stages.append(stage.model_copy(update={"stations": stations}))
 
     def cut(answer: Answer) -> Answer:
-        ending = Ending.COMPLETED if _ends(answer) else answer.ending
+        ending = Ending.COMPLETED if ends_at_critical(answer) else answer.ending
         return replace(answer, stations=answer.stations[:count], ending=ending)
 
     def maybe(answer: Answer | None) -> Answer | None:
@@ -48,7 +50,7 @@ def within_reach(scene: Scene, runs: Runs) -> tuple[Scene, Runs] | None:
     )
 
 
-def _ends(answer: Answer) -> bool:
+def ends_at_critical(answer: Answer) -> bool:
     """Whether an answer says that its branch ends, and where."""
     last = answer.stations[-1].branch if answer.stations else 0
     return answer.ending is Ending.BRANCH_ENDS and len(answer.critical) == last + 1

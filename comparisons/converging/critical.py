@@ -1,7 +1,7 @@
 """How critical values go with N.
 
-A size counts if its run has the critical value, and by the mechanism of the finest size; of the sizes that do not, the
-coarser ones do not count either.
+A size counts if its run gave a whole answer, or one that ends where its branch does, and has the critical value by the
+mechanism of the finest size; of the sizes that do not, the coarser ones do not count either.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from comparisons.converging.limits import Limit, limit, orders
 from comparisons.criticals import mechanism
 from comparisons.measures import load_unit
 from comparisons.order import OWN, USUAL
-from scene import Critical, Scene, Stage
+from comparisons.reach import ends_at_critical
+from scene import Answer, Critical, Scene, Stage
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,11 +62,11 @@ class CriticalFamily:
 
 
 def critical_families(scene: Scene, series: Sequence[Series]) -> tuple[CriticalFamily, ...]:
-    """Every critical value of every series that has a whole answer, in the order of stages."""
+    """Every critical value of every series, in the order of stages."""
     found = []
     for stage in scene.stages:
         own = {
-            id(one): {n: [each for each in a.critical if each.stage == stage.name] for n, a in one.whole.items()}
+            id(one): {n: [each for each in a.critical if each.stage == stage.name] for n, a in _answers(one).items()}
             for one in series
         }
         most = max((len(each) for sizes in own.values() for each in sizes.values()), default=0)
@@ -77,8 +78,12 @@ def critical_families(scene: Scene, series: Sequence[Series]) -> tuple[CriticalF
     return tuple(found)
 
 
+def _answers(series: Series) -> dict[int, Answer]:
+    return {n: each for n, each in series.answers.items() if n in series.whole or ends_at_critical(each)}
+
+
 def _family(scene: Scene, series: Series, stage: Stage, place: int, here: dict[int, Critical]) -> CriticalFamily:
-    ns = sorted(series.whole)
+    ns = sorted(_answers(series))
     last = here[max(here)]
     alike = [n in here and (here[n].loss, here[n].what) == (last.loss, last.what) for n in ns]
     first = max((i + 1 for i, same in enumerate(alike) if not same), default=0)

@@ -64,11 +64,10 @@ def _entries(found: Convergence, family: Family) -> Iterable[Plain]:
 
 def sheets_of(found: Convergence) -> tuple[Sheet, ...]:
     """Critical values, the limits at the last station, and over all stations orders and how far limits are apart."""
-    if not found.families:
-        return ()
     title = found.scene.title or found.scene.name
     critical = critical_told.sheet_of(title, found.sizes, critical_families(found.scene, found.series))
-    return (*((critical,) if critical.rows else ()), _limits(found), _orders(found))
+    of_probes = (_limits(found), _orders(found)) if found.families else ()
+    return (*((critical,) if critical.rows else ()), *of_probes)
 
 
 def sentences_of(found: Convergence) -> tuple[str, ...]:

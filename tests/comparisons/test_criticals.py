@@ -6,15 +6,18 @@ from math import radians
 import pytest
 from frozendict import frozendict
 
-from comparisons import cases, claims, sheets
+from comparisons import cases, claims, documents, sheets
 from comparisons.choices import Choices
+from comparisons.converging import told
+from comparisons.converging.critical import critical_families
+from comparisons.converging.families import converged
 from comparisons.criticals import SHARE, TURN, critical_rows
-from comparisons.pairing import Runs, Solvers, paired
+from comparisons.pairing import ALONE, Runs, Solvers, paired
 from comparisons.per_branch import critical_sentence, critical_word
 from comparisons.verdict import compared
 from comparisons.words import Word
 from scene import Answer, Claim, Critical, Ending, Loss, Stage
-from tests.comparisons.jumping import Jumping
+from tests.comparisons.jumping import FORWARD, Jumping
 
 
 @pytest.fixture(scope="module")
@@ -148,3 +151,40 @@ def test_a_claimed_value_of_a_probe_is_held_against_the_cprbms(scene):
 def test_a_stage_without_a_critical_value_has_none(hinge, right):
     assert critical_rows(hinge, paired(hinge, Choices(), right)) == ()
     assert Stage(name="a", steps="M", stations=(1.0,)).shown == ()
+
+
+def test_the_document_holds_the_claim_of_the_stage_it_is_made_of(scene):
+    far = Claim(probe="critical", stage="forward", value=radians(35.5), bound=0.5 / 35.5)
+    claiming = scene.model_copy(update={"claims": (far,)})
+    forward, back = documents.comparison(compared(claiming, paired(claiming, Choices(), Solvers(C, F))))["critical"]
+    assert (forward["claim"], forward["claim_value"], forward["claim_met"]) == (far.bound, far.value, False)
+    assert (back["claim"], back["claim_value"], back["claim_met"]) == (None, None, None)
+
+
+def test_answers_that_end_with_their_branch_have_their_critical_values_against_n(scene):
+    """Nothing follows the first jump: no probe has all stations, and the critical value converges all the same."""
+    solvers = Solvers(replace(C, stops=True), replace(F, stops=True))
+    found = converged(scene, (20, 40, 80), Choices(), solvers, ALONE)
+    assert not found.completed
+    assert found.families == ()
+    entries = told.document(found)["families"]
+    assert [(each["solver"], each["component"]) for each in entries] == [
+        (solver, "forward") for solver in ("cprbm", "fea", "fea")
+    ]
+    assert entries[0]["limit"] == pytest.approx(FORWARD, abs=1e-8)
+    (sheet,) = told.sheets_of(found)
+    assert len(sheet.rows) == 3
+    assert any("within bending" in sentence for sentence in told.sentences_of(found))
+
+
+def test_a_mechanism_that_changes_with_n_counts_from_there_on(scene):
+    """A contact lets go at 20 links, a fold is found from 40 on."""
+
+    def changing(scene, choices):
+        return replace(C, loss=Loss.CONTACT if choices.links == 20 else Loss.FOLD)(scene, choices)
+
+    found = converged(scene, (20, 40, 80, 160), Choices(), Solvers(changing, F), ALONE)
+    family = critical_families(scene, found.series)[0]
+    assert family.used == (40, 80, 160)
+    assert family.error(20) is None
+    assert family.orders == pytest.approx((2.0,), abs=1e-2)
