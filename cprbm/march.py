@@ -22,6 +22,7 @@ from cprbm.following import Follower, Reached, Way, to
 from cprbm.forces import contact_imbalance
 from cprbm.kinematics import rest_state
 from cprbm.leap import Landed, leap
+from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.probing import probed, shapes, touching
 from cprbm.refining import all_zones, carried_over, fits, fitted, long_ones
@@ -212,6 +213,9 @@ class March:
                 solved = equilibrium(target.problem, values, start, settings.tolerance, most, settle=settle)
                 iterations += solved.iterations
                 if solved.converged:
+                    break
+                if fit.kinks and (level := levelled(self.scene, settings, mechanism, point, fit, values)) is not None:
+                    target, solved = level
                     break
             turned = float(np.max(np.abs(solved.point.state.theta - start.state.theta)))
             if not solved.converged or turned > FOLLOWED:
