@@ -66,7 +66,7 @@ class March:
         for stage in self.scene.stages:
             here = self.on.values.get(stage.steps, 0.0), self.on.point
             self.opened = {name: [here] for name in self.asked_events if name not in self.closed_at}
-            self.on.trail = []
+            self.on.trail, self.on.careful = [], stage.beyond is not None
             for target in stage.stations:
                 reached = self._reach(stage, target)
                 if reached.certificate is None:
@@ -151,7 +151,7 @@ class March:
             if mechanism is on.mechanism:
                 return end
             stood = Minimum(start.value, point, certificate)
-            finer = Follower(mechanism, asked, point, values, [stood])
+            finer = Follower(mechanism, asked, point, values, [stood], careful=on.careful)
             finer.go(to(load, values, end.value + ahead), _unseen)
             sharper = branch_end(mechanism, finer.trail, finer.refused)
             if sharper is not None and (sharper.loss, sharper.what) == (end.loss, end.what):
