@@ -40,7 +40,8 @@ def on_branch(equations: Equations, guess: Array, across: Array, tolerance: floa
         R, J = equations(X, tolerance)
         step = np.linalg.solve(np.vstack((J, across)), np.append(-R, across @ (guess - X)))
         X = X + step
-        if np.linalg.norm(step) < 30.0 * tolerance * (1.0 + np.linalg.norm(X)):
+        # the error that is left is as this step squared
+        if np.linalg.norm(step) < 0.1 * np.sqrt(tolerance) * (1.0 + np.linalg.norm(X)):
             return X
     raise ValueError("Newton's method found no solution")
 
@@ -72,6 +73,6 @@ def vanishing(equations: Equations, wanted: Wanted, start: Array, along: Array, 
                 return on_branch(equations, last + share * (X - last), chord)
 
             # both ends were found loosely: a little beyond them
-            return at(float(brentq(lambda share: wanted(at(share), TIGHT), -0.01, 1.01, xtol=1e-13)))
+            return at(float(brentq(lambda share: wanted(at(share), TIGHT), -0.01, 1.01, xtol=1e-12)))
         last = X
     raise ValueError(f"no change of sign in {reach} steps")

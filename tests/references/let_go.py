@@ -12,10 +12,10 @@ n        (sin θ, −cos θ) at σ, unit vector from c to the column
 =======  =================================================================================
 
 The circle lies above, the column bends up to it and under it.  From the clamp to σ it carries the force (−P, Q) + N n,
-from σ to the tip (−P, Q).  The moment at the tip vanishes, the place at σ is c + ρ n, and n has the angle of the tangent
-there: four equations in M₀, σ, that angle, N and Q.  As Q falls, N does, and vanishes at Q*.  What is left there is an
-equilibrium of the column alone.  Beyond Euler's load it is the one between the two that are stable, with a force Q*
-against the side to which the column bends.  So it is no minimum, and the column jumps.
+from σ to the tip (−P, Q).  The moment at the tip vanishes, the place at σ is c + ρ n, and n has the angle of the
+tangent there: four equations in M₀, σ, that angle, N and Q.  As Q falls, N does, and vanishes at Q*.  What is left
+there is an equilibrium of the column alone.  Beyond Euler's load it is the one between the two that are stable, with a
+force Q* against the side to which the column bends.  So it is no minimum, and the column jumps.
 
 For small deflections (k² = P/EI, π/2 < k L < π) the column alone is
 

@@ -100,8 +100,18 @@ def test_what_comes_first(support, first):
         assert arch.bifurcation.displacement > critical.displacement
 
 
+@pytest.mark.parametrize("support", ["pinned", "clamped"])
+def test_under_a_drive_it_deflects_sideways(support):
+    # reference: Ritz's method; the crown does not move down
+    arch = Arch(0.79, support)
+    pieces, held = whole(arch, arch.bifurcation)
+    found = curvatures(pieces, [*held, (1, (0.0, 1.0, 0.0))])
+    assert found[0] == pytest.approx(0.0, abs=1e-6)
+    assert found[1] > 0.1
+
+
 def test_higher_arches_lose_more():
     # what a path kept symmetric overstates: a fifth at 60° to either side, three quarters at 90°
-    overstated = [Arch(a, "pinned") for a in (np.pi / 3.0, 1.23, np.pi / 2.0)]
+    overstated = [Arch(a, "pinned") for a in (np.pi / 3.0, np.pi / 2.0)]
     ratios = [arch.force_fold.force / arch.bifurcation.force for arch in overstated]
-    assert ratios == pytest.approx([1.198, 1.282, 1.732], abs=0.02)
+    assert ratios == pytest.approx([1.2, 1.73], abs=0.005)
