@@ -21,7 +21,7 @@ carries, but not M and F_x, y nor P:
 
 The first of (1) or (2) and (3) on the way from the unloaded arch ends the stable branch.
 
-Sources: S. P. Timoshenko and J. M. Gere, Theory of Elastic Stability, section 7.7 (arches deflect sideways);
+Sources: S. P. Timoshenko and J. M. Gere, Theory of Elastic Stability, chapter 7 (arches deflect sideways);
 J. V. Huddleston, Finite deflections and snap-through of high circular arches, Journal of Applied Mechanics 35 (1968)
 763-769; D. A. DaDeppo and R. Schmidt, Sidesway buckling of deep circular arches under a concentrated load, ibid. 36
 (1969) 325-327.

@@ -19,7 +19,7 @@ K is least, π/2, at k = 0: the straight branch ends at P = (π/2)² EI/l² in a
 
 so that it is stable, and the least disturbance leads to it.
 
-Source: S. P. Timoshenko and J. M. Gere, Theory of Elastic Stability, sections 2.1 and 2.7.  The column clamped at both
+Source: S. P. Timoshenko and J. M. Gere, Theory of Elastic Stability, chapter 2.  The column clamped at both
 ends is :mod:`tests.references.post_buckled`.
 """
 

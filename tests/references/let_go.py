@@ -22,7 +22,7 @@ For small deflections (k² = P/EI, π/2 < k L < π) the column alone is
     y(x) = (Q/P) (sin kx − kx + tan kL (1 − cos kx)) / k                                   (1)
 
 Sources: L. D. Landau and E. M. Lifshitz, Theory of Elasticity, §19; S. P. Timoshenko and J. M. Gere, Theory of Elastic
-Stability, section 1.11 (1).
+Stability, chapter 1 (1).
 """
 
 from __future__ import annotations

@@ -20,6 +20,8 @@ Source: L. D. Landau and E. M. Lifshitz, Theory of Elasticity, §19.
 
 from __future__ import annotations
 
+from math import cos, sin
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
@@ -44,16 +46,18 @@ def carried(
     derivative[0, 0] = derivative[1, 1] = 1.0
     state = np.concatenate((start, [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0], np.zeros(8)))
 
-    def rates(_: float, z: Array) -> Array:
-        cos, sin = np.cos(z[2]), np.sin(z[2])
-        stiff = force[0] * cos + force[1] * sin
-        d = z[4:].reshape(4, 4)
-        out = np.empty((5, 4))
-        out[0] = cos, sin, curvature + z[3], force[0] * sin - force[1] * cos
-        out[1:, 0], out[1:, 1], out[1:, 2], out[1:, 3] = -sin * d[:, 2], cos * d[:, 2], d[:, 3], stiff * d[:, 2]
-        out[3, 3] += sin
-        out[4, 3] -= cos
-        return out.ravel()
+    Fx, Fy = float(force[0]), float(force[1])
+
+    def rates(_: float, z: Array) -> list[float]:
+        # plain numbers: arrays of four are slower
+        _, _, theta, M, _, _, a, ma, _, _, b, mb, _, _, c, mc, _, _, d, md = z.tolist()
+        cosine, sine = cos(theta), sin(theta)
+        stiff = Fx * cosine + Fy * sine
+        changes = (a, ma, 0.0), (b, mb, 0.0), (c, mc, sine), (d, md, -cosine)
+        out = [cosine, sine, curvature + M, Fx * sine - Fy * cosine]
+        for eta, mu, own in changes:
+            out += (-sine * eta, cosine * eta, mu, stiff * eta + own)
+        return out
 
     found = solve_ivp(rates, (0.0, length), state, method="DOP853", rtol=tolerance, atol=0.1 * tolerance)
     assert found.success
@@ -65,8 +69,8 @@ def shape(start: Array, force: Array, length: float, curvature: float, places: A
     """x, y, θ, M (4, k) at arc lengths ``places`` (k,), ascending in [0, length]."""
 
     def rates(_: float, z: Array) -> list[float]:
-        cos, sin = np.cos(z[2]), np.sin(z[2])
-        return [cos, sin, curvature + z[3], force[0] * sin - force[1] * cos]
+        cosine, sine = cos(z[2]), sin(z[2])
+        return [cosine, sine, curvature + z[3], force[0] * sine - force[1] * cosine]
 
     found = solve_ivp(rates, (0.0, length), start, method="DOP853", rtol=TIGHT, atol=0.1 * TIGHT, dense_output=True)
     assert found.success

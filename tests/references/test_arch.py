@@ -18,7 +18,7 @@ def shallow(support, q):
     """Largest P/a of a shallow arch of half-length one under the thrust q².
 
     y'' = A cos qx + B sin qx, P = −2 q B, y' = (A sin qx − B cos qx + B)/q with y'' = −a at a pin and y' = −a at a
-    clamp, and ∫ y'² = a²/3 as at rest: S. P. Timoshenko and J. M. Gere, Theory of Elastic Stability, section 7.9.
+    clamp, and ∫ y'² = a²/3 as at rest: S. P. Timoshenko and J. M. Gere, Theory of Elastic Stability, chapter 7.
     """
     sin, cos = np.sin(q), np.cos(q)
     # A = u + v B
@@ -47,7 +47,7 @@ def test_shallow_arches(support, q, span):
 
 
 def test_thrust_of_the_sideways_deflection():
-    # reference: Timoshenko and Gere, section 7.9: the arch deflects sideways under Euler's load of half its length
+    # reference: Timoshenko and Gere, chapter 7: the arch deflects sideways under Euler's load of half its length
     arch = Arch(0.01, "pinned")
     assert arch.bifurcation.thrust * 0.01**2 == pytest.approx(euler_load_pinned(1.0, 1.0), rel=1e-4)
 

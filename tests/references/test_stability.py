@@ -19,7 +19,7 @@ TURN, ACROSS = (0.0, 0.0, 1.0), (0.0, 1.0, 0.0)
         ([(0, TURN), (2, ACROSS), (2, TURN)], euler_load_clamped(1.0, 1.0)),
         # half way a support: the first buckling of each half is left
         ([(1, ACROSS), (2, ACROSS)], 4.0 * euler_load_pinned(1.0, 1.0)),
-        # tan x = x, S. P. Timoshenko and J. M. Gere, section 2.4
+        # tan x = x, S. P. Timoshenko and J. M. Gere, chapter 2
         ([(0, TURN), (2, ACROSS)], 4.493409457909064**2),
     ],
     ids=["cantilever", "pinned", "clamped", "supported", "propped"],
