@@ -122,8 +122,9 @@ def local_system(
     rows: Rows,
     gradient: Array,
     work: LoadWork,
+    stiffened: Array,
 ) -> LocalSystem:
-    """Assemble the system at a state."""
+    """Assemble the system at a state; ``stiffened`` (n_links,) is added to the second derivatives over θ."""
     n, J, n_bodies = model.n_links, model.n_joints, 3 * len(model.free_bodies)
     first_body = n + 2 * J
     first_rho = first_body + n_bodies
@@ -138,7 +139,7 @@ def local_system(
 
     entries = _Entries()
     links = np.arange(n)
-    entries.add(links, links, diagonal + second)
+    entries.add(links, links, diagonal + second + stiffened)
     entries.both(links[:-1], links[1:], off)
     bodies = first_body + 2 + 3 * np.arange(len(model.free_bodies))
     entries.add(bodies, bodies, over_phi)

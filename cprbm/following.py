@@ -1,0 +1,147 @@
+"""Following a branch of minima by load steps that are cut where one fails and grow where they succeed.
+
+A step is refused where no certified minimum is found, where a link turns too far, where a beam goes across what it may
+touch, and where energy goes that no work accounts for (:mod:`cprbm.slope`): the state found is of another branch then.
+After a step was refused, the way on is cut by what will soon be zero (:func:`cprbm.critical.foreseen`), so that a
+branch's end is closed in on from the side where it stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cprbm.certifying import certify
+from cprbm.critical import Minimum, foreseen
+from cprbm.equilibrium import Equilibrium, Point, equilibrium
+from cprbm.mechanism import Mechanism
+from cprbm.settings import Settings
+from cprbm.slope import leapt
+from scene import Certificate, Ending
+
+GROWTH = 2.0
+SETTLE = 0.1  # of the way: in shorter steps steady rows may settle which places there are
+SHIFTED = 0.02  # rad: links turn by less where contact only comes to be carried by other rows
+CLOSER = 0.98  # of the way that is left to where something ends
+JUST = 2.0  # smallest steps, to see that there is nothing beyond
+TRAIL = 30  # minima that are kept
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """What is stepped from one equilibrium that is wanted to the next: some values (SI) that go evenly.
+
+    ``load`` is the one that the scene steps; an assembly steps none.
+    """
+
+    load: str
+    begin: Mapping[str, float]
+    target: Mapping[str, float]
+
+    def at(self, fraction: float) -> dict[str, float]:
+        """All values at a fraction of the way."""
+        if fraction == 1.0:
+            return dict(self.target)
+        return {name: self.begin[name] + fraction * (end - self.begin[name]) for name, end in self.target.items()}
+
+    def value(self, fraction: float) -> float:
+        """That of the load; of an assembly the fraction."""
+        return self.at(fraction)[self.load] if self.load else fraction
+
+    @property
+    def aim(self) -> str:
+        """Where it leads, for people."""
+        return f"{self.load} = {self.target[self.load]:.6g}" if self.load else "the end of this part"
+
+
+def to(load: str, values: Mapping[str, float], target: float) -> Way:
+    """The way from present ``values`` to a ``target`` of one load or drive; what has no value is at zero."""
+    begin = {**values, load: values.get(load, 0.0)}
+    return Way(load, begin, {**begin, load: target})
+
+
+@dataclass(frozen=True, slots=True)
+class Reached:
+    """How a way ended: with a ``certificate`` at its end, or none and the Ending and sentence that say why."""
+
+    ending: Ending
+    sentence: str
+    certificate: Certificate | None
+
+
+@dataclass
+class Follower:
+    """Where on a branch we are: the state of the one loop that steps.
+
+    Attributes:
+        mechanism, settings: what is followed.
+        point, values: the state, and the values (SI) of all loads and drives.
+        trail: minima since it was cleared, the last ones.
+        refused: the value at which the last step was refused.
+    """
+
+    mechanism: Mechanism
+    settings: Settings
+    point: Point
+    values: dict[str, float]
+    trail: list[Minimum]
+    refused: float = 0.0
+
+    def go(self, way: Way, accept: Callable[[Point, dict[str, float]], None]) -> Reached:
+        """Go all the way, directly or in steps; ``accept`` sees every next minimum before it is the present one."""
+        done, step, iterations, refused = 0.0, 1.0, 0, False
+        while True:
+            step = min(step, 1.0 - done)
+            fraction = 1.0 if done + step >= 1.0 else done + step
+            values = way.at(fraction)
+            found = self._solved(values, settle=step <= SETTLE)
+            iterations += found.iterations
+            certificate, ending = certify(self.mechanism, self.settings, found)
+            if ending is Ending.COMPLETED:
+                ending, sentence = self._strayed(way, found.point, values)
+            else:
+                sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
+            if ending is Ending.COMPLETED:
+                accept(found.point, values)
+                self.point, self.values, done = found.point, values, fraction
+                self.trail = [*self.trail[-TRAIL:], Minimum(way.value(fraction), self.point, certificate)]
+                if fraction == 1.0:
+                    return Reached(ending, "", replace(certificate, iterations=iterations))
+                step = self._cut(way, done, GROWTH * step) if refused else GROWTH * step
+                continue
+            step, refused, self.refused = self._cut(way, done, 0.5 * step), True, way.value(fraction)
+            if iterations > self.settings.iteration_limit:
+                return Reached(
+                    Ending.STEP_TOO_SMALL, f"{iterations} iterations did not lead to {way.aim}", certificate=None
+                )
+            if step < self.settings.smallest_step:
+                ending = ending if found.converged else Ending.STEP_TOO_SMALL
+                return Reached(ending, sentence, certificate=None)
+
+    def _solved(self, values: dict[str, float], *, settle: bool) -> Equilibrium:
+        problem, settings = self.mechanism.problem, self.settings
+        return equilibrium(problem, values, self.point, settings.tolerance, settings.iterations, settle=settle)
+
+    def _strayed(self, way: Way, found: Point, values: dict[str, float]) -> tuple[Ending, str]:
+        """Why a minimum is not on the branch; COMPLETED where it is."""
+        turned = float(np.max(np.abs(found.state.theta - self.point.state.theta)))
+        if turned > self.settings.largest_turn:
+            return Ending.STEP_TOO_SMALL, f"a link turned by {turned:.2f} rad in one load step"
+        if crossed := self.mechanism.passed(self.point, found):
+            return Ending.BEAMS_CROSSED, f"in contact '{crossed}' the beam went across what it may touch"
+        if way.load and turned > SHIFTED:
+            before, after = (self.values.get(way.load, 0.0), self.point), (values[way.load], found)
+            if leapt(self.mechanism.problem, way.load, before, after):
+                return Ending.STEP_TOO_SMALL, "energy went that no work accounts for: that is another branch"
+        return Ending.COMPLETED, ""
+
+    def _cut(self, way: Way, done: float, step: float) -> float:
+        """A step that ends before what is about to end the branch does, or just beyond where that is near."""
+        begin, ahead = way.value(done), way.value(min(1.0, done + step))
+        zero = foreseen(self.trail, ahead)
+        if zero is None:
+            return step
+        smallest, left = self.settings.smallest_step, CLOSER * step * (zero - begin) / (ahead - begin)
+        return left if left > smallest else min(step, JUST * smallest)
