@@ -35,10 +35,11 @@ def lost(answer):
     return [(critical.loss, critical.what) for critical in answer.critical]
 
 
-def nothing_lets_go(critical):
-    # the curvature comes down to zero, from more than it would be for the best column of this scale
-    assert critical.curvature == pytest.approx(0.0, abs=1e-3)
-    assert critical.left == pytest.approx(critical.curvature, abs=1e-12)
+def nothing_lets_go(answer, critical):
+    # the curvature comes down to zero; at a fold as the root of what is left of the way, so it is known less well
+    first = answer.stations[0].certificate.smallest_curvature
+    assert critical.curvature == pytest.approx(0.0, abs=0.01 * first)
+    assert critical.left == critical.curvature
 
 
 def ends(answer, loss, value, within):
@@ -47,7 +48,7 @@ def ends(answer, loss, value, within):
     assert lost(answer) == [(loss, "")]
     assert answer.critical[0].value == pytest.approx(value, rel=within)
     assert answer.critical[0].after is None
-    nothing_lets_go(answer.critical[0])
+    nothing_lets_go(answer, answer.critical[0])
     assert len(answer.stations) == 2
 
 
@@ -89,7 +90,8 @@ def test_clamped_arch_that_is_driven_deflects_sideways(solve, within):
     way = CLAMPED_ARCH.bifurcation.displacement
     assert way > 1.5 * CLAMPED_ARCH.force_fold.displacement
     answer = solve(branches.driven_arch(CLAMPED_ARCH.half_angle, "weld", "weld", around(way)))
-    ends(answer, Loss.BIFURCATION, way * LENGTH, within)
+    # there the arch is bent the most of all of these: CPRBM is 0.50 % short at N = 40, 1.92 % at 20, 0.13 % at 80
+    ends(answer, Loss.BIFURCATION, way * LENGTH, 2.0 * within)
 
 
 @SOLVERS
@@ -108,6 +110,20 @@ def test_clamped_and_pinned_arch_that_is_driven(solve, within):
     ends(answer, Loss.FOLD, way * LENGTH, within)
 
 
+@pytest.mark.parametrize("kind", ["force", "displacement"])
+def test_cprbm_comes_nearer_by_its_second_order(kind):
+    # reference: arch.py; halving the links' length leaves a quarter of the error
+    if kind == "force":
+        value, unit = PINNED_ARCH.bifurcation.force, FORCE
+        data = branches.arch(PINNED_ARCH.half_angle, "pin", "pin", around(value))
+    else:
+        value, unit = CLAMPED_ARCH.bifurcation.displacement, LENGTH
+        data = branches.driven_arch(CLAMPED_ARCH.half_angle, "weld", "weld", around(value))
+    answers = [cprbm.answer(scene_from(data), cprbm.Settings(links=n)) for n in (20, 40)]
+    errors = [answer.critical[0].value / unit / value - 1.0 for answer in answers]
+    assert errors[0] / errors[1] == pytest.approx(4.0, abs=0.3)
+
+
 # -------------------------------------------------------------------------------------------------- columns
 
 
@@ -119,7 +135,7 @@ def test_cantilever_column(solve, within):
     assert answer.completed, answer.sentence
     assert lost(answer) == [(Loss.BIFURCATION, "")]
     assert answer.critical[0].value == pytest.approx(euler * FORCE, rel=within)
-    nothing_lets_go(answer.critical[0])
+    nothing_lets_go(answer, answer.critical[0])
     straight, found = (station.values for station in answer.stations)
     exact = columns.bent("cantilever", 1.2 * euler)
     assert straight["T.displacement"] == pytest.approx([0.0, 0.0], abs=1e-9 * LENGTH)
@@ -163,7 +179,7 @@ def test_turned_beam_snaps_there_and_back(solve, within):
     there, back = answer.critical
     assert [there.value, back.value] == pytest.approx([fold.clamp, -fold.clamp], rel=within)
     for critical in (there, back):
-        nothing_lets_go(critical)
+        nothing_lets_go(answer, critical)
         assert critical.energy == pytest.approx(fold.energy * MOMENT, rel=10.0 * within)
         assert critical.after == pytest.approx(SNAP.above(fold.clamp).energy * MOMENT, rel=10.0 * within)
     assert [station.branch for station in answer.stations] == [0, 0, 1, 1, 2]
@@ -235,7 +251,7 @@ def test_lever_goes_over_the_centre(solve, within):
     assert answer.completed, answer.sentence
     assert lost(answer) == [(Loss.FOLD, "")]
     assert answer.critical[0].value == pytest.approx(fold.moment * MOMENT, rel=within)
-    nothing_lets_go(answer.critical[0])
+    nothing_lets_go(answer, answer.critical[0])
     turned = rest.lever - TOGGLE.beyond(pushed).lever
     assert answer.stations[-1].values["lever.rotation"][0] == pytest.approx(turned, rel=3.0 * within)
     assert [station.branch for station in answer.stations] == [0, 0, 1]
