@@ -22,6 +22,7 @@ from cprbm.following import Follower, Reached, Way, to
 from cprbm.forces import contact_imbalance
 from cprbm.kinematics import rest_state
 from cprbm.leap import Landed, leap
+from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.probing import probed, shapes, touching
 from cprbm.refining import all_zones, carried_over, fits, fitted, long_ones
@@ -65,7 +66,7 @@ class March:
         for stage in self.scene.stages:
             here = self.on.values.get(stage.steps, 0.0), self.on.point
             self.opened = {name: [here] for name in self.asked_events if name not in self.closed_at}
-            self.on.trail = []
+            self.on.trail, self.on.careful = [], stage.beyond is not None
             for target in stage.stations:
                 reached = self._reach(stage, target)
                 if reached.certificate is None:
@@ -150,7 +151,7 @@ class March:
             if mechanism is on.mechanism:
                 return end
             stood = Minimum(start.value, point, certificate)
-            finer = Follower(mechanism, asked, point, values, [stood])
+            finer = Follower(mechanism, asked, point, values, [stood], careful=on.careful)
             finer.go(to(load, values, end.value + ahead), _unseen)
             sharper = branch_end(mechanism, finer.trail, finer.refused)
             if sharper is not None and (sharper.loss, sharper.what) == (end.loss, end.what):
@@ -212,6 +213,9 @@ class March:
                 solved = equilibrium(target.problem, values, start, settings.tolerance, most, settle=settle)
                 iterations += solved.iterations
                 if solved.converged:
+                    break
+                if fit.kinks and (level := levelled(self.scene, settings, mechanism, point, fit, values)) is not None:
+                    target, solved = level
                     break
             turned = float(np.max(np.abs(solved.point.state.theta - start.state.theta)))
             if not solved.converged or turned > FOLLOWED:

@@ -372,16 +372,18 @@ class Stage(Record):
     Loads and drives that no stage has stepped yet are zero (such a drive holds what it drives where it is);
     each keeps its last value in later stages.
 
-    ``beyond`` is what happens where the branch that is followed ends because it is no minimum of the potential
-    energy any more: ``stop`` there, or ``jump`` to the state that the decrease of the energy leads to.
-    ``shown`` are the stations that tables and pictures are to show beside the last of all.
+    ``beyond`` asks where the branch that is followed ends because it is no minimum of the potential energy any more,
+    and says what happens there: ``stop``, or ``jump`` to the state that the decrease of the energy leads to.  Then
+    steps are so short that no end is passed.  Without it they are as long as they can be, and an end is told of only
+    where a step finds no way past it.  ``shown`` are the stations that tables and pictures are to show beside the last
+    of all.
     """
 
     name: Name
     steps: Name
     stations: Annotated[tuple[float, ...], Field(min_length=1)]
     shown: tuple[float, ...] = ()
-    beyond: Literal["stop", "jump"] = "stop"
+    beyond: Literal["stop", "jump"] | None = None
 
 
 Quantity = Literal[
