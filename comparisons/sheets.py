@@ -11,9 +11,9 @@ from comparisons.branches import Place
 from comparisons.calibration import FAR, JUDGED, Held, every, held, tally
 from comparisons.claims import as_claimed, standings
 from comparisons.documents import worst
-from comparisons.formats import number, percent, scaled_unit, vector
+from comparisons.formats import along, number, percent, scaled_unit, vector
 from comparisons.geometry import bentness
-from comparisons.measures import Row, Steps, unit_of
+from comparisons.measures import Row, Steps, load_unit, unit_of
 from comparisons.scales import norm
 from comparisons.sheet import Sheet
 from comparisons.stations import station_of
@@ -201,7 +201,10 @@ def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
                 ),
             )
         )
-    where = f"{rows[0].stage} {rows[0].station:g}" if rows else "no station"
+    where = "no station"
+    if rows:
+        stage = next(stage for stage in compared.scene.stages if stage.name == rows[0].stage)
+        where = f"{stage.name} {along(rows[0].station, load_unit(compared.scene, stage))}"
     return Sheet(
         f"{compared.scene.title or compared.scene.name}: {where}",
         (
@@ -447,10 +450,10 @@ def _answered(scene: Scene, answer: Answer, station: StationAnswer) -> Sheet:
         factor, unit = scaled_unit(unit_of(scene, probe, stage), norm(probe.quantity, found))
         body.append((probe.name, unit, vector(found, factor)))
     return Sheet(
-        f"{scene.title or scene.name}: {station.stage} {station.value:g}",
+        f"{scene.title or scene.name}: {stage.name} {along(station.value, load_unit(scene, stage))}",
         ("probe", "unit", answer.solver),
         tuple(body),
-        f"{answer.ending.name}: {answer.sentence or answer.ending.value}",
+        f"{answer.ending.name}: {answer.sentence or answer.ending.value}" if station is answer.stations[-1] else "",
     )
 
 

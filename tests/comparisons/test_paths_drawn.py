@@ -1,9 +1,10 @@
 """Figures of what is stepped back and forth: which there are, and what is in them."""
 
+import numpy as np
 import pytest
 
 from comparisons import cases, figures, paths_drawn, reactions_drawn
-from comparisons.bodies_drawn import places_at
+from comparisons.bodies_drawn import draw_stops, places_at
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict import compared
@@ -59,3 +60,22 @@ def test_a_pivot_and_the_ends_have_places(comparison):
     assert first["B"] == pytest.approx((-0.02, 0.05), abs=1e-12)
     last = places_at(scene, next(s for s in comparison.runs.reference.stations if s.value > 1.57))
     assert last["B"] == pytest.approx((-0.04, -0.01), abs=1e-6)
+
+
+def test_the_rays_of_a_stop_turn_with_its_body(comparison):
+    """At 90° the line from B to C points up, and 45° to either side of it is where the rays go."""
+    scene = comparison.scene
+    last = places_at(scene, next(s for s in comparison.runs.reference.stations if s.value > 1.57))
+    with figures.canvas(3.0, 3.0) as figure:
+        axes = figure.add_subplot()
+        draw_stops(axes, scene, last)
+        rays = [np.diff(line.get_xydata(), axis=0)[0] for line in axes.get_lines()]
+    ways = [np.degrees(np.arctan2(y, x)) for x, y in rays]
+    np.testing.assert_allclose(ways, [45.0, 135.0, -135.0, -45.0], atol=1e-6)
+
+
+def test_a_stop_of_a_body_whose_rotation_is_not_known_is_not_drawn(comparison):
+    with figures.canvas(3.0, 3.0) as figure:
+        axes = figure.add_subplot()
+        draw_stops(axes, comparison.scene, {"B": (0.0, 0.0)})
+        assert axes.get_lines() == []
