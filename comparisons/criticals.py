@@ -7,7 +7,7 @@ v_c     the CPRBM's critical value at N links, v_f the finite elements' in the c
 v_b     the finite elements' in ``bending``
 U, U_b  what may lie between v_c and v_f, and between v_c and v_b: as of every row (:mod:`comparisons.measures`), by
         the same runs; r is what following a branch leaves open of a value on its discretisation
-T       0.3 degrees of a rotation, 1 % of the stage's span of anything else
+T       what the stage asks, or else 0.3 degrees of a rotation and 1 % of the stage's span of anything else
 ======  =======================================================================================================
 
     DIFFER     one of the two has no such critical value, or another mechanism of losing stability, or
@@ -139,7 +139,7 @@ def _row(scene: Scene, runs: Runs, stage: Stage, place: int, here: Mapping[str, 
         cprbm=here["cprbm"],
         fea=here[chosen],
         span=span,
-        allowed=TURN if turns(scene, stage) else SHARE * span,
+        allowed=stage.critical_limit or (TURN if turns(scene, stage) else SHARE * span),
         steady=len(of_cprbm) == len(of_fea) == 1,
     )
     present = {name: each for name, each in here.items() if each is not None}

@@ -376,13 +376,15 @@ class Stage(Record):
     and says what happens there: ``stop``, or ``jump`` to the state that the decrease of the energy leads to.  Then
     steps are so short that no end is passed.  Without it they are as long as they can be, and an end is told of only
     where a step finds no way past it.  ``shown`` are the stations that tables and pictures are to show beside the last
-    of all.
+    of all.  ``critical_limit`` (in the unit of the stations) is how far critical values may be apart, and how uncertain,
+    for the stage still to hear AGREE; without it what is usual.
     """
 
     name: Name
     steps: Name
     stations: Annotated[tuple[float, ...], Field(min_length=1)]
     shown: tuple[float, ...] = ()
+    critical_limit: Positive | None = None
     beyond: Literal["stop", "jump"] | None = None
 
 

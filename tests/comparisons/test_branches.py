@@ -25,7 +25,8 @@ C, F = Jumping("cprbm"), Jumping("fea", error=-5e-4)
 def scene():
     """The case at every second degree, with the two probes that the made-up jump is of."""
     whole = cases.opened("prestressed")
-    stages = tuple(stage.model_copy(update={"stations": stage.stations[::2], "shown": ()}) for stage in whole.stages)
+    usual = {"shown": (), "critical_limit": None}
+    stages = tuple(stage.model_copy(update={"stations": stage.stations[::2], **usual}) for stage in whole.stages)
     probes = tuple(probe for probe in whole.probes if probe.name in ("crank.reaction_moment", "scene.potential_energy"))
     return whole.model_copy(update={"stages": stages, "probes": probes, "claims": ()})
 

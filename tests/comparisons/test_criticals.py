@@ -23,7 +23,8 @@ from tests.comparisons.jumping import FORWARD, Jumping
 @pytest.fixture(scope="module")
 def scene():
     whole = cases.opened("prestressed")
-    stages = tuple(stage.model_copy(update={"stations": stage.stations[::5], "shown": ()}) for stage in whole.stages)
+    usual = {"shown": (), "critical_limit": None}
+    stages = tuple(stage.model_copy(update={"stations": stage.stations[::5], **usual}) for stage in whole.stages)
     return whole.model_copy(update={"stages": stages})
 
 
@@ -99,6 +100,15 @@ def test_an_uncertainty_of_more_than_is_allowed_is_undecided(scene):
     assert {critical_word(row) for row in found} == {Word.UNDECIDED}
     assert found[0].difference > found[0].allowed
     assert "UNDECIDED" in critical_sentence(found[0])
+
+
+def test_a_stage_may_ask_for_more_or_less(scene):
+    """0.4° apart, 0.5° asked; and 0.01° where 0.024° are between the theories."""
+    for limit, off, word in ((0.5, 0.4, Word.AGREE), (0.01, 0.0, Word.UNDECIDED)):
+        stages = tuple(stage.model_copy(update={"critical_limit": radians(limit)}) for stage in scene.stages)
+        found = rows(scene.model_copy(update={"stages": stages}), replace(C, late=radians(off)))
+        assert {row.allowed for row in found} == {radians(limit)}
+        assert {critical_word(row) for row in found} == {word}
 
 
 def answer(solver, *values):
