@@ -103,11 +103,12 @@ def _drawn(compared: Comparison, stepped: str, stages: list[Stage], shown: list[
         handles, labels = panels[0].get_legend_handles_labels()
         order = sorted(range(len(labels)), key=lambda place: (labels[place] != "FEA", labels[place]))
         figure.legend([handles[i] for i in order], [labels[i] for i in order], loc="outside lower center", ncols=3)
+        titles = " and ".join(each.title for each in shown)
         return picture(
             figure,
             f"path-{stepped}",
-            f"{' and '.join(each.title for each in shown).capitalize()} against {stepped}: triangles point the way of "
-            "the stage. Dashed: jumps. Dotted: critical values of either solver, those of the CPRBM named above.",
+            f"{titles[:1].upper()}{titles[1:]} against {stepped}: triangles point the way of the stage. Dashed: jumps, from the last station before to the first behind. Dotted: critical values of "
+            "either solver, those of the CPRBM named above.",
         )
 
 

@@ -376,8 +376,8 @@ class Stage(Record):
     and says what happens there: ``stop``, or ``jump`` to the state that the decrease of the energy leads to.  Then
     steps are so short that no end is passed.  Without it they are as long as they can be, and an end is told of only
     where a step finds no way past it.  ``shown`` are the stations that tables and pictures are to show beside the last
-    of all.  ``critical_limit`` (in the unit of the stations) is how far critical values may be apart, and how uncertain,
-    for the stage still to hear AGREE; without it what is usual.
+    of all.  ``critical_limit`` (in the unit of the stations) is how far apart and how uncertain critical values may be
+    with which the stage still wants to hear AGREE; without it what is usual.
     """
 
     name: Name
