@@ -26,6 +26,7 @@ GROWTH = 2.0
 SETTLE = 0.1  # of the way: in shorter steps steady rows may settle which places there are
 CLOSER = 0.98  # of the way that is left to where something ends
 SHORT = 0.2  # rad: the most that a link may turn in a step that hides no end of a branch
+ISOLATED = 0.01  # rad: the most in which a contact or stop may close or open: what it catches did not fall far
 JUST = 2.0  # smallest steps, to see that there is nothing beyond
 TRAIL = 30  # minima that are kept
 
@@ -142,6 +143,8 @@ class Follower:
             return Ending.STEP_TOO_SMALL, f"a link turned by {turned:.2f} rad in one load step"
         if crossed := self.mechanism.passed(self.point, found):
             return Ending.BEAMS_CROSSED, f"in contact '{crossed}' the beam went across what it may touch"
+        if self.careful and turned > ISOLATED and _pressing(found) != _pressing(self.point):
+            return Ending.STEP_TOO_SMALL, "a contact or stop closes or opens on the way"
         if way.load:
             problem, step = self.mechanism.problem, values[way.load] - self.values.get(way.load, 0.0)
             ways = (step * rate(problem, point, way.load) for point in (self.point, found))
@@ -157,3 +160,8 @@ class Follower:
             return step
         smallest, left = self.settings.smallest_step, CLOSER * step * (zero - begin) / (ahead - begin)
         return left if left > smallest else min(step, JUST * smallest)
+
+
+def _pressing(point: Point) -> frozenset[str]:
+    """Names of the contacts and stops that press."""
+    return frozenset(name for lam, name in zip(point.lam, point.rows.contact, strict=True) if lam > 0.0)

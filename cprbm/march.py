@@ -32,6 +32,7 @@ from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAns
 AGAIN = 12  # iterations on a mesh that fits a little better
 FITS = 6  # of the mesh to where contact is, at most
 BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is no doubt that it has ended
+ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all branches are near
 FURTHER = 30.0  # times as far before it, a finer mesh is on the branch still
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
 
@@ -110,8 +111,8 @@ class March:
             # beyond the end on this mesh and on the one that was asked
             ends = (end.value, on.refused)
             furthest = max(ends) if target > on.trail[-1].value else min(ends)
-            value = furthest + BEYOND * (on.refused - on.trail[-1].value)
-            value = min(value, target) if target > furthest else max(value, target)
+            step = max(BEYOND * abs(on.refused - on.trail[-1].value), ONWARD * abs(target - furthest))
+            value = furthest + np.copysign(min(step, abs(target - furthest)), target - furthest)
             values = {**on.values, stage.steps: value}
             landed = leap(on.mechanism, on.settings, values, on.point, end.direction)
             reached = Reached(Ending.STEP_TOO_SMALL, f"no minimum found to which {of} leads", certificate=None)

@@ -65,6 +65,8 @@ PLACE_TOLERANCE = 1e-13  # of a minimum's place, units of length
 SETTLED = 1e-9  # slope of D at a minimum
 BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces A leaves its place to that
 
+DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even
+
 STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
 ON_IT = 1e-9  # gap and slope of two clamped ends, and how far they lie apart along the beams, where they touch
 STRAIGHT = 0.1  # of an element: by less a line is off the chords between its samples
@@ -242,7 +244,9 @@ class Pair:
         inner = (along.keys > 0) & (along.keys <= self.a.n)
         found = []
         if np.any(inner):
-            found += self._mean_rows(lines, at, along.only(inner))
+            eased = self._eased()
+            means = self._mean_rows(lines, at, along.only(inner))
+            found += [(replace(rows, values=rows.values - eased), sigma) for rows, sigma in means]
         if not np.all(inner):
             places = along.only(~inner)
             found.append((self._rows_at(lines, at, places), places.sigma))
@@ -250,6 +254,16 @@ class Pair:
             rows = self.exchanged()._rows_at(lines[::-1], at, across)
             found.append((replace(rows, arc=across.sigma), across.s))
         return found
+
+    def _eased(self) -> float:
+        """By how much joints may dip where rows are fixed to places.
+
+        Even curvature in the element of a place moves the line beside it, against the place, by up to V·h³/(64·E·I).
+        """
+        if not self.fixed:
+            return 0.0
+        jumps = (np.abs(kinks.behind - kinks.before).max(initial=0.0) for kinks in self.kinks)
+        return sum(DIP * float(jump) * chain.h**3 for jump, chain in zip(jumps, self.chains, strict=True))
 
     def _rows_at(self, lines: Lines, at: Positions, places: Places) -> Group:
         """Rows at single places."""

@@ -22,7 +22,7 @@ from cprbm.equilibrium import Point, Problem, local_system_at, many, system
 from scene.answer import Array
 
 APART = 0.5  # of the mean way that the rates make: curvature of the way, and more than one contact
-SHIFTED = 0.02  # rad: links turn by less where contact only comes to be carried by other rows
+SHIFTED = 0.002  # rad: links turn by less where contact only comes to be carried by other rows
 
 
 def rate(problem: Problem, point: Point, name: str) -> Array:
