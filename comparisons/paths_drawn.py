@@ -107,8 +107,9 @@ def _drawn(compared: Comparison, stepped: str, stages: list[Stage], shown: list[
         return picture(
             figure,
             f"path-{stepped}",
-            f"{titles[:1].upper()}{titles[1:]} against {stepped}: triangles point the way of the stage. Dashed: jumps, from the last station before to the first behind. Dotted: critical values of "
-            "either solver, those of the CPRBM named above.",
+            f"{titles[:1].upper()}{titles[1:]} against {stepped}: triangles point the way of the stage. Dashed: jumps, "
+            "from the last station before to the first behind. Dotted: critical values of either solver, those of the "
+            "CPRBM named above.",
         )
 
 
