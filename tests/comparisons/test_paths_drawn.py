@@ -49,7 +49,7 @@ def test_a_load_that_goes_back_has_the_path_of_its_body(hinge, right):
     back = Stage(name="back", steps="M", stations=(0.3, 0.1))
     scene = hinge.model_copy(update={"stages": (*hinge.stages, back)})
     (path,) = paths_drawn.of_comparison(compared(scene, paired(scene, Choices(), right)))
-    assert path.caption.startswith("Rotation of BD against M")
+    assert path.caption.startswith("Rotation of BD")
 
 
 def test_a_pivot_and_the_ends_have_places(comparison):
