@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from cprbm.assembling import brought, freed, released
+from cprbm.assembling import brought, formulated, freed, released
 from cprbm.boundary import FittedBoundary
 from cprbm.certifying import certify
 from cprbm.closing import Closings, Stood
@@ -162,7 +162,7 @@ class March:
     def _assemble(self) -> tuple[Ending, str]:
         """Bring the beams' ends to their points; the Ending and its sentence."""
         on, whole = self.on, self.on.mechanism
-        for begun in (freed, brought, released):
+        for begun in (freed, brought, released, formulated):
             part = begun(self.scene, whole, on.point)
             on.mechanism, on.point, on.trail, on.careful = part.mechanism, part.start, [], True
             reached = on.go(Way("", part.begin, part.target), _unseen)
