@@ -4,7 +4,7 @@
 symbol  meaning
 ======  =====================================================================================
 K       the tangent of the Lagrangian, with the joints' rows and the axial forces
-u, q    motions of all nodes and bodies; those that no joint, guide or drive gives, u = T q
+u, q    motions of all nodes and bodies; those that no joint, stop, guide or drive gives, u = T q
 H, B    K's block of the motions, and its rows of the axial forces by them
 c l     the axial forces' diagonal in K, turned round: compliance times length
 M       lumped mass, diagonal in u: arc length for the nodes, one for the bodies
@@ -31,6 +31,7 @@ from scipy.sparse import block_diag, csr_array, diags_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from fea_reference.model import Model
+from fea_reference.stops import acting_stops
 from fea_reference.system import System
 from scene.answer import Array
 
@@ -80,11 +81,18 @@ def _on_feasible_directions(model: Model, system: System) -> tuple[csr_array, cs
     place = np.full(model.size, -1)
     place[motions] = np.arange(motions.size)
 
-    held = np.concatenate([np.empty(0, dtype=np.int64), *(joint.dofs[: joint.rows.size] for joint in model.joints)])
-    rows = np.concatenate([np.empty(0, dtype=np.int64), *(joint.rows for joint in model.joints)])
+    joints = [joint for joint in model.joints if not model.free(joint, system.acting)]
+    stops = [stop for stop, _ in acting_stops(model.stops, system.acting)]
+    held = np.concatenate(
+        [
+            np.array([stop.theta for stop in stops], dtype=np.int64),
+            *(joint.dofs[: joint.rows.size] for joint in joints),
+        ]
+    )
+    rows = np.concatenate([np.array([stop.row for stop in stops], dtype=np.int64), *(joint.rows for joint in joints)])
     free = np.ones(motions.size, dtype=bool)
     free[place[held]] = False
-    # A joint's row is its node's motion, less what the body makes of it.
+    # A joint's row is its node's motion, less what the body makes of it, and so is a stop's.
     follow = csr_array((motions.size, motions.size))
     if held.size:
         own = csr_array((np.ones(held.size), (place[held], np.arange(held.size))), (motions.size, held.size))

@@ -1,20 +1,22 @@
-"""From station to station: load steps that are cut and grow, contacts that close, penalties that tighten."""
+"""From station to station: load steps that are cut and grow, contacts and stops that close, penalties that tighten."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
+from fea_reference.acting import Acting
 from fea_reference.advance import advance
 from fea_reference.contacts import passed_through, resting_pressure, zones_of
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.settings import Settings
 from fea_reference.state import State
+from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
 from scene.answer import Array, Ending
@@ -30,6 +32,9 @@ _LED = 1e-5  # of a known pressure, that may be another than the one led with
 _NEARBY = (1e-3, 1e-2, 1e-1)  # of a step: where to look for a closing under tighter penalties
 _DEEPER = 1e-3  # of the shortest element: by how much a contact sinks that is about to be passed
 _CLOSED = 1e-9  # of the thickness, a gap that is none
+_AT_LIMIT = 1e-10  # rad: by which an angle may be beyond its limit before its stop closes
+_PULLS = 1e-9  # of the largest force: with which a stop may pull before it lets go
+_SWITCHED = 1e-8  # rad, or of the largest force: from its limit where a stop was found to close or to let go
 _AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
 _EVEN = 0.03  # by which a penalty may differ from the one wanted
 _SAME = 1e-9  # by which the one of a circle may
@@ -52,9 +57,10 @@ class StoppedError(Exception):
 class March:
     """Where the march stands: the state of the one loop that is allowed one.
 
-    ``values`` are the loads' and then the drives' without units; ``penalties`` the contacts that have closed so
-    far, with their stiffness; ``closing`` the value of the stepped load or drive at which each did; ``iterations``
-    are counted since the last station; ``far`` is whether zones have been too far from one station to the last for
+    ``values`` are those of all that is stepped, without units; ``acting`` which pins and stops do; ``penalties`` the
+    contacts that have closed so far, with their stiffness; ``closing`` the value of the stepped load or drive at which
+    each did, and each stop first; ``switched`` that at which each stop last closed or let go; ``iterations`` are
+    counted since the last station; ``far`` is whether zones have been too far from one station to the last for
     tight penalties and have not come nearer since, so that the way to the next one begins with loose ones on circles.
     """
 
@@ -63,8 +69,10 @@ class March:
     open: list[Contact]
     values: Array
     system: System
+    acting: Acting
     penalties: dict[Contact, Penalty] = field(default_factory=dict)
     closing: dict[str, float] = field(default_factory=dict)
+    switched: dict[str, float] = field(default_factory=dict)
     iterations: int = 0
     far: bool = False
 
@@ -75,6 +83,7 @@ class March:
             StoppedError: it cannot be reached.
         """
         self.iterations = 0
+        self.switched = {}
         self._watch_what_touches(load)
         before = self._zones()
         if self.far and self.values[load] != target:
@@ -118,7 +127,7 @@ class March:
     def _rate(self, load: int) -> Array:
         """dz/dvalue along the branch; zero where the tangent is singular."""
         try:
-            rate = splu(self.system.tangent).solve(load_direction(self.model, load, self.system.z))
+            rate = splu(self.system.tangent).solve(load_direction(self.model, load, self.system.z, self.acting))
         except RuntimeError:
             return np.zeros(self.model.size)
         return rate if np.isfinite(rate).all() else np.zeros(self.model.size)
@@ -127,12 +136,14 @@ class March:
         """Equilibrium at ``value`` near ``z``; None if there is none to be found."""
         values = self.values.copy()
         values[load] = value
-        solved = equilibrium(self.model, self.settings, self.penalties, values, z, self._depths(), self._pushes())
+        solved = equilibrium(
+            self.model, self.settings, self.penalties, values, z, self.acting, self._depths(), self._pushes()
+        )
         self.iterations += solved.iterations
         return solved.system if solved.converged else None
 
     def _step(self, load: int, value: float, rate: Array) -> tuple[Ending, str] | None:
-        """Try to step to ``value``, or to where a contact closes before; the trouble if neither can be."""
+        """Try to step to ``value``, or to where a contact or stop changes before; the trouble if neither can be."""
         before, start = self.system.z, float(self.values[load])
         predicted = advance(self.model, before, (value - start) * rate)
         system = self._solve(load, value, predicted)
@@ -146,15 +157,22 @@ class March:
                 Ending.STEP_TOO_SMALL,
                 f"beyond {self._shown(load, start)} the nearest equilibrium is on another branch",
             )
-        touched = bool(self.open) and self._least_gap(system) < 0.0
+        touched = self._least_gap(system) < 0.0
+        changing = [stop for stop in self.model.stops if self._room(stop, system) < 0.0]
         if touched:
             found = self._first_touch(load, {start: self.system, value: system})
             if found is None:
                 return (
                     Ending.STEP_TOO_SMALL,
-                    f"no closing of a contact found beyond {self._shown(load, start)}",
+                    f"no closing of a contact or stop found beyond {self._shown(load, start)}",
                 )
             value, system = found
+            again = [stop.name for stop in changing if self.switched.get(stop.name) == value]
+            if again:
+                return (
+                    Ending.STEP_TOO_SMALL,
+                    f"beyond {self._shown(load, start)} the stop {again[0]} neither holds nor lets go",
+                )
         pressing = {one.pair for one in system.touches if one.closed}
         for pair in (*self.open, *self.penalties):
             closing = zones_of(self.model, pair, system.z).least <= _CLOSED * pair.scale
@@ -179,7 +197,45 @@ class March:
         if touched:
             self._close_tightly(load, value - start)
             self._watch_what_touches(load)
+            self._switch(load, changing)
         return None
+
+    def _room(self, stop: StopPart, system: System) -> float:
+        """How far a stop is from closing (rad), or one that holds from letting go, over the largest force."""
+        if self.acting.ways is None:
+            return np.inf
+        limit = self.acting.limits.get(stop.name)
+        if limit is None:
+            return stop.room(system.z)[0] + _AT_LIMIT
+        return stop.press(system.z, limit) / system.scale + _PULLS
+
+    def _switch(self, load: int, changing: Iterable[StopPart]) -> None:
+        """Let those stops act, or act no more, that have arrived where they change."""
+        for stop in changing:
+            if self._room(stop, self.system) > _SWITCHED:
+                continue
+            self.switched[stop.name] = float(self.values[load])
+            if stop.name in self.acting.limits:
+                self.acting = self.acting.released(stop.name)
+            else:
+                self.acting = self.acting.stopped(stop.name, stop.room(self.system.z)[1])
+                self.closing.setdefault(stop.name, self._value(load))
+        self._renew()
+
+    def act(self, acting: Acting) -> None:
+        """Let other pins and stops act, without moving."""
+        self.acting = acting
+        self._renew()
+
+    def _renew(self) -> None:
+        """The system of what acts and presses now, in the same state."""
+        self.system = assemble(
+            self.model, self.penalties, self.settings.quadrature, self.values, self.system.z, self.acting
+        )
+
+    def _value(self, load: int) -> float:
+        """Of what is stepped, SI."""
+        return float(self.values[load]) * self.model.stepped[load].unit
 
     def _overlapped_between(self, pair: Contact, before: State, after: State) -> bool:
         """Whether a contact that is open after a step overlaps on the straight way there, deeper than before.
@@ -202,7 +258,7 @@ class March:
         return min(float(self.model.line(beam, self.model.start).lengths.min()) for beam in self.model.beams)
 
     def _first_touch(self, load: int, known: dict[float, System]) -> tuple[float, System] | None:
-        """The value at which the least gap of the open contacts is zero, on the equilibria without them.
+        """The value at which the least gap of what may change is zero, on the equilibria where it has not.
 
         ``known`` are two equilibria by their values, before and beyond it.
         """
@@ -227,7 +283,7 @@ class March:
         return root, known[root]
 
     def _close_tightly(self, load: int, way: float) -> None:
-        """Where a contact has closed, tighten the others and find again where it does.
+        """Where a contact or stop has closed, tighten the others and find again where it does.
 
         What sinks into loose penalties closes elsewhere.  ``way`` is that of the step.  If nothing is found, an open
         contact stays open.
@@ -250,8 +306,9 @@ class March:
                 return
 
     def _least_gap(self, system: System) -> float:
-        """Of the open contacts."""
-        return min(zones_of(self.model, pair, system.z).least for pair in self.open)
+        """Of the open contacts, and how far stops are from changing."""
+        gaps = [zones_of(self.model, pair, system.z).least for pair in self.open]
+        return min((*gaps, *(self._room(stop, system) for stop in self.model.stops)), default=np.inf)
 
     def _watch_what_touches(self, load: int) -> None:
         """Give a penalty to every open contact whose gap has vanished."""
@@ -259,8 +316,8 @@ class March:
             if zones_of(self.model, pair, self.system.z).least <= _CLOSED * pair.scale:
                 self.open.remove(pair)
                 self.penalties[pair] = Penalty(pair.stiffness)
-                self.closing[pair.name] = float(self.values[load]) * self.model.stepped[load].unit
-        self.system = assemble(self.model, self.penalties, self.settings.quadrature, self.values, self.system.z)
+                self.closing[pair.name] = self._value(load)
+        self._renew()
 
     def _loosen(self, *kinds: type[Circle | Pair]) -> bool:
         """Go back to the loosest penalties: the ends of a zone move by a layer's width per iteration.
@@ -274,7 +331,7 @@ class March:
         if looser == self.penalties:
             return False
         solved = equilibrium(
-            self.model, self.settings, looser, self.values, self.system.z, self._depths(), self._pushes()
+            self.model, self.settings, looser, self.values, self.system.z, self.acting, self._depths(), self._pushes()
         )
         self.iterations += solved.iterations
         if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
@@ -312,7 +369,9 @@ class March:
                 tighter[one.pair] = Penalty(stiffness, pressures[one.pair] / stiffness)
                 if isinstance(one.pair, Pair) and one.closed and np.ptp(one.zones.intervals) < _POINT:
                     depths[one.pair] = one.penetration * factor ** (-1.0 / falls.get(one.pair, _IN_A_POINT))
-            solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, depths, self._pushes())
+            solved = equilibrium(
+                self.model, self.settings, tighter, self.values, self.system.z, self.acting, depths, self._pushes()
+            )
             self.iterations += solved.iterations
             if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
                 falls = self._falls(solved.system, tighter)
@@ -394,5 +453,5 @@ class March:
 def begin(model: Model, settings: Settings, contacts: tuple[Contact, ...]) -> March:
     """The undeformed mechanism, unloaded."""
     values = np.zeros(len(model.stepped))
-    system = assemble(model, {}, settings.quadrature, values, model.start)
-    return March(model, settings, list(contacts), values, system)
+    system = assemble(model, {}, settings.quadrature, values, model.start, model.drawn)
+    return March(model, settings, list(contacts), values, system, model.drawn)

@@ -23,6 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.linalg import splu
 
+from fea_reference.acting import Acting
 from fea_reference.advance import advance
 from fea_reference.hermite import Index
 from fea_reference.linesearch import searched
@@ -55,10 +56,11 @@ def equilibrium(
     penalties: Mapping[Contact, Penalty],
     values: Array,
     z: State,
+    acting: Acting,
     depths: Mapping[Contact, float],
     before: Mapping[Contact, Array],
 ) -> Solved:
-    """Seek the equilibrium near ``z`` under load ``values``.
+    """Seek the equilibrium near ``z`` under load ``values``, with those stops ``acting`` that do, whatever their sign.
 
     ``depths`` are the penetrations of the contacts that were closed in the equilibrium before: these are held
     until their penetration is near that again, or until they pull.  ``before`` is what the points of the contacts
@@ -67,7 +69,7 @@ def equilibrium(
     moving = np.concatenate([model.node_dofs.ravel(), *(b.dofs for b in model.bodies if b.dofs is not None)])
     correction, last, iteration = np.inf, np.inf, 0
     held, foreseen = dict(depths), dict(before)
-    system = assemble(model, penalties, settings.quadrature, values, z, held, foreseen)
+    system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen)
     while True:
         unbalanced = float(np.abs(system.residual).max())
         accepted = max(settings.residual * system.scale, system.floor)
@@ -90,7 +92,7 @@ def equilibrium(
             z = system.z
         else:
             z = advance(model, z, step)
-            system = assemble(model, penalties, settings.quadrature, values, z, held, foreseen)
+            system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen)
         if held:
             for one in system.touches:
                 depth = held.get(one.pair)
@@ -100,7 +102,7 @@ def equilibrium(
                 settled = iteration >= _HELD or correction < _SETTLED
                 if near or settled or (iteration > 0 and foreseen[one.pair].sum() < 0.0):
                     del held[one.pair]
-            system = assemble(model, penalties, settings.quadrature, values, z, held, foreseen)
+            system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen)
         iteration += 1
 
 
@@ -121,7 +123,7 @@ def _along(
 
     def after(fraction: float) -> System:
         z = advance(model, system.z, forces + fraction * motions)
-        return assemble(model, penalties, settings.quadrature, values, z, {}, foreseen)
+        return assemble(model, penalties, settings.quadrature, values, z, system.acting, {}, foreseen)
 
     def slope(there: System) -> float:
         return float(motions @ there.residual)

@@ -6,6 +6,7 @@ import time
 
 from threadpoolctl import threadpool_limits
 
+from fea_reference.assembly import assemble_ends
 from fea_reference.certificates import certify
 from fea_reference.contacts import contacts
 from fea_reference.march import March, StoppedError, begin
@@ -26,7 +27,7 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     smaller than what they add to bending.  An answer that ends early holds the stations reached before.
 
     Raises:
-        SceneError: the settings do not fit the scene.
+        SceneError: the settings do not fit the scene, or a stop forbids the assembly.
     """
     began = time.perf_counter()
     model = build(scene, settings)
@@ -37,16 +38,18 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     # small blocks: more than one thread of BLAS costs more than it brings
     with threadpool_limits(limits=1, user_api="blas"):
         try:
+            known: set[str] = set()
+            assemble_ends(scene, march)
             for stage in scene.stages:
                 load = [part.name for part in model.stepped].index(stage.steps)
                 for station in stage.stations:
-                    known = set(march.closing)
                     march.reach(load, station / model.stepped[load].unit)
                     events += [
                         Event(stage.name, name, "closes", closing)
                         for name, closing in march.closing.items()
                         if name not in known
                     ]
+                    known = set(march.closing)
                     stations.append(_certified(scene, march, stage, station))
         except StoppedError as stopped:
             ending, sentence = stopped.ending, stopped.sentence

@@ -56,7 +56,7 @@ def test_a_column_beyond_eulers_loads(times, unstable, elements):
     z = model.start.values.copy()
     z[model.element_dofs[6]] = -pushed
     z[[joint.rows[0] for joint in model.joints]] = -pushed, pushed
-    system = assemble(model, {}, 6, np.array([pushed]), State.of(z))
+    system = assemble(model, {}, 6, np.array([pushed]), State.of(z), model.drawn)
     assert np.abs(system.residual).max() < 1e-9 * pushed
     got = smallest_curvature(model, system)
     assert (got < 0.0) == unstable
