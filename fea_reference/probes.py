@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from fea_reference.ends import ends
+from fea_reference.energy import potential_energy
 from fea_reference.march import March
 from fea_reference.model import Model
 from fea_reference.projection import project
@@ -40,7 +41,7 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
             # M t/(2I), with I of the rectangle that is there
             return frozen_array(moment * units.moment * 6.0 / (beam.width_at(u) * beam.thickness_at(u) ** 2))
         case "potential_energy":
-            return frozen_array(_potential_energy(march) * units.moment)
+            return frozen_array(potential_energy(model, march.system, march.values) * units.moment)
         case "closing_load":
             touch = _touch(march, probe.of)
             return frozen_array([] if touch is None else march.closing[probe.of])
@@ -149,17 +150,3 @@ def _arc_lengths(march: March, touch: Touch, zeta: Array) -> Array:
     e, xi = line.locate(zeta)
     start = np.concatenate([[0.0], np.cumsum(line.lengths)])
     return np.asarray(start[e] + xi * line.lengths[e])
-
-
-def _potential_energy(march: March) -> float:
-    """Strain energy less the work of the dead loads; what drives put in is in the strain energy."""
-    model, z = march.model, march.system.z
-    energy = float(march.system.elements.energy.sum())
-    for part, load in zip(model.loads, march.values[: len(model.loads)], strict=True):
-        body = model.bodies[part.body]
-        if part.direction is None:
-            energy -= load * model.body_state(body, z)[2]
-        else:
-            moved = model.carried(body, part.arm, z) - (body.centre + part.arm)
-            energy -= load * float(part.direction @ moved)
-    return energy
