@@ -14,6 +14,7 @@ from fea_reference.acting import Acting
 from fea_reference.march import March, StoppedError
 from fea_reference.model import MOMENTS, WAY
 from fea_reference.stops import StopPart
+from fea_reference.travel import Course, reach
 from scene.answer import Array
 from scene.mistakes import Mistake, SceneError
 from scene.statement import Scene
@@ -33,13 +34,13 @@ def assemble_ends(scene: Scene, march: March) -> None:
         return
     moments, way = (model.stepped.index(share) for share in (MOMENTS, WAY))
     try:
-        march.reach(moments, 1.0)
+        reach(march, Course(moments, 1.0), 1.0)
         march.act(Acting(np.array([_way(march, i) for i in range(len(model.apart))])))
-        march.reach(way, 1.0)
+        reach(march, Course(way, 1.0), 1.0)
         forbidden = [mistake for stop in model.stops for mistake in _forbidden(march, stop, scene.file)]
         if forbidden:
             raise SceneError(forbidden)
-        march.reach(moments, 0.0)
+        reach(march, Course(moments, 1.0), 0.0)
     except StoppedError as stopped:
         raise StoppedError(stopped.ending, f"during the assembly: {stopped.sentence}") from stopped
     # what closed meanwhile is closed before anything of the scene is loaded or driven

@@ -215,6 +215,12 @@ class Model:
         return (*self.loads, *self.drives, *((MOMENTS, WAY) if self.apart else ()))
 
     @property
+    def moving(self) -> Index:
+        """The motions among the unknowns: of all nodes and bodies."""
+        bodies = [body.dofs for body in self.bodies if body.dofs is not None]
+        return np.concatenate([self.node_dofs.ravel(), *bodies])
+
+    @property
     def drawn(self) -> Acting:
         """What acts while the ends that are drawn apart are free."""
         return Acting(None if self.apart else np.zeros((0, 2)))

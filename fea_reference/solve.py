@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 from fea_reference.assembly import assemble_ends
@@ -13,6 +14,7 @@ from fea_reference.march import March, StoppedError, begin
 from fea_reference.model import build
 from fea_reference.probes import probed, shapes, touching
 from fea_reference.settings import Settings
+from fea_reference.travel import Course, reach
 from scene.answer import Answer, Ending, Event, StationAnswer
 from scene.statement import Scene, Stage
 
@@ -41,9 +43,9 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
             known: set[str] = set()
             assemble_ends(scene, march)
             for stage in scene.stages:
-                load = [part.name for part in model.stepped].index(stage.steps)
+                course = _course(march, stage)
                 for station in stage.stations:
-                    march.reach(load, station / model.stepped[load].unit)
+                    reach(march, course, station / model.stepped[course.load].unit)
                     events += [
                         Event(stage.name, name, "closes", closing)
                         for name, closing in march.closing.items()
@@ -63,6 +65,7 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
         sentence=sentence,
         stations=tuple(stations),
         events=tuple(events),
+        critical=tuple(march.critical),
         seconds=time.perf_counter() - began,
         notes=tuple(tested),
     )
@@ -88,4 +91,12 @@ def _certified(scene: Scene, march: March, stage: Stage, station: float) -> Stat
         shapes=shapes(march),
         touching=touching(march),
         certificate=certificate,
+        branch=len(march.critical),
     )
+
+
+def _course(march: March, stage: Stage) -> Course:
+    """What a stage steps, and over which span: from where it is, through all stations."""
+    load = [part.name for part in march.model.stepped].index(stage.steps)
+    ways = [march.values[load], *(station / march.model.stepped[load].unit for station in stage.stations)]
+    return Course(load, float(np.ptp(ways)) or 1.0, stage.name, stage.beyond == "jump")

@@ -7,7 +7,7 @@ included, and the tangent its second derivative: symmetric and indefinite.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from frozendict import frozendict
@@ -54,6 +54,21 @@ class System:
     floor: float
 
 
+@dataclass(frozen=True, slots=True)
+class Drag:
+    """Springs of stiffness ``weights`` (size,) from every motion to where it was in the state ``anchor``."""
+
+    anchor: State
+    weights: Array
+
+
+def stiffened(model: Model, system: System, one: Touch, factor: float) -> System:
+    """The same state, one of its contacts ``factor`` times as stiff and pushing as before; the tangent only."""
+    stiffer = replace(one, stiffness=factor * one.stiffness)
+    more = stiffer.hessian(one.pushes) - one.hessian(one.pushes)
+    return replace(system, tangent=(system.tangent + _matrix(one.dofs, more, model.size).tocsr()).tocsc())
+
+
 def assemble(
     model: Model,
     penalties: Mapping[Contact, Penalty],
@@ -63,6 +78,7 @@ def assemble(
     acting: Acting,
     held: Mapping[Contact, float] = _NONE_HELD,
     foreseen: Mapping[Contact, Array] = _NOTHING_FORESEEN,
+    drag: Drag | None = None,
 ) -> System:
     """Sum everything up in state ``z``.
 
@@ -76,6 +92,7 @@ def assemble(
         held: the contacts that are held at a depth, see :func:`~fea_reference.contact.touch`.
         foreseen: what the points of contacts (k,) were foreseen to push with; the tangent takes it for what they do
             push with, see :mod:`fea_reference.newton`.
+        drag: what resists motions besides.
     """
     elements = forces(model.elements, model.element_dofs, z)
     touches = tuple(touch(model, pair, penalty, quadrature, z, held.get(pair)) for pair, penalty in penalties.items())
@@ -88,6 +105,10 @@ def assemble(
     rigid, rows, columns, entries = _rigid(model, values, z, acting)
     matrices.append(COOData(np.array([rows, columns]), np.array(entries), (model.size, model.size), local_shape=None))
     residual = sum(vectors).toarray() + rigid
+    if drag is not None:
+        residual += drag.weights * (z.values - drag.anchor.values + (z.rest - drag.anchor.rest))
+        every = np.arange(model.size)
+        matrices.append(COOData(np.array([every, every]), drag.weights, (model.size, model.size), local_shape=None))
     tangent = sum(matrices).tocsr().tocsc()
     balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values[: len(model.loads)]).max(initial=0.0)]
     balanced += [np.abs(one.gradient).max(initial=0.0) for one in touches]
@@ -158,9 +179,7 @@ def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
     return f
 
 
-def _rigid(
-    model: Model, values: Array, z: State, acting: Acting
-) -> tuple[Array, list[int], list[int], list[float]]:
+def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array, list[int], list[int], list[float]]:
     """Joints, guides, drives, stops and loads: few, so one after the other."""
     residual = np.zeros(model.size)
     ways: dict[int, Array] = {}

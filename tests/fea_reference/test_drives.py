@@ -10,6 +10,7 @@ from fea_reference.march import begin
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.system import assemble
+from fea_reference.travel import Course, reach
 from scene import Ending
 from tests.cprbm.driven import TURN, UNIT_FORCE, UNIT_MOMENT, driven_cantilever, driven_hinge, guided, push
 from tests.cprbm.scenes import LENGTH, MODULUS, THICKNESS, WIDTH, hinge
@@ -149,5 +150,5 @@ def test_the_smallest_curvature_is_on_what_guides_and_drives_leave_free(stations
     names = [part.name for part in model.stepped]
     asked = [(names.index(stage.steps), value) for stage in scene.stages for value in stage.stations]
     for number, value in asked[:stations]:
-        march.reach(number, value / model.stepped[number].unit)
+        reach(march, Course(number, 1.0), value / model.stepped[number].unit)
     assert smallest_curvature(model, march.system) == pytest.approx(dense(model, march.system), rel=1e-3)
