@@ -275,7 +275,9 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
     mass = lumped_mass(march.model)
     along = float(before.mode.direction @ (mass * before.way))
     size = float(np.sqrt(before.way @ (mass * before.way)))
-    fold = before.rate * behind.rate < 0.0 and abs(along) > _ALONG * size
+    # τ goes to zero as μ does, or not at all
+    turning = (before.rate / first.rate) ** 2 < abs(before.curvature / first.curvature)
+    fold = turning and abs(along) > _ALONG * size
     direction = before.mode.direction * (-1.0 if fold and along < 0.0 else 1.0)
     loss = Loss.FOLD if fold else Loss.BIFURCATION
     zero = before.curvature if before.curvature < -behind.curvature else behind.curvature
