@@ -94,6 +94,9 @@ def _fallen(march: March, load: int, drag: float) -> bool:
         if march.moved(march.system, before.z) > _NEAR:
             continue
         saved = march.saved()
+        march.renew()  # without the drag
+        if not softest(march.model, march.system).curvature > 0.0:
+            continue
         at_rest = _step(march, load, march.system.z, 0.0, march.system.z)
         if at_rest and penalised_energy(march.model, march.system, march.values) <= now + _ROUNDED * abs(now):
             mode = softest(march.model, march.system)

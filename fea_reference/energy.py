@@ -17,10 +17,10 @@ def potential_energy(model: Model, system: System, values: Array) -> float:
     for part, load in zip(model.loads, values[: len(model.loads)], strict=True):
         body = model.bodies[part.body]
         if part.direction is None:
-            energy -= load * model.body_state(body, z)[2]
+            energy -= float(load * model.body_state(body, z)[2])
         else:
             moved = model.carried(body, part.arm, z) - (body.centre + part.arm)
-            energy -= load * float(part.direction @ moved)
+            energy -= float(load * (part.direction @ moved))
     return energy
 
 

@@ -172,6 +172,17 @@ def stop_lost(march: March, load: int, held: float, system: System) -> Lost | No
     return Lost(value, uncertainty, Loss.STOP, gone[0], held, left.curvature, energy, march.system, left.direction)
 
 
+def about_to_go(march: March, load: int, value: float) -> bool:
+    """Whether the force of a contact will vanish before ``value``, at the rate of now, that nothing stands without."""
+    way = value - float(march.values[load])
+    going = _next_to_go(march, load, float(np.sign(way)))
+    return (
+        going is not None
+        and abs(going[1]) < abs(way)
+        and not softest(march.model, _without(march, going[0])).curvature > 0.0
+    )
+
+
 def _letting_go(march: March, load: int, target: float, span: float) -> Lost | None:
     """A contact that lets go of what cannot stand without it, if one is about to."""
     onward = float(np.sign(target - march.values[load]))
@@ -243,7 +254,9 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
         # regula falsi, with the weight halved of the end that stays (the Illinois variant)
         above, below = weights[0] * before.curvature, weights[1] * behind.curvature
         share = min(max(above / (above - below), 0.02), 0.98)
-        middle = onwards(branch, here, s + share * (t - s))
+        # where the tangent is as good as singular there may be no place to be found
+        tried = ((part, onwards(branch, here, s + part * (t - s))) for part in (share, 0.5 * share, 0.5 + 0.5 * share))
+        share, middle = next(((part, found) for part, found in tried if found is not None), (share, None))
         if middle is None:
             break
         if middle.curvature > 0.0:
@@ -252,8 +265,8 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
             high, weights = (s + share * (t - s), middle), [0.5 * weights[0], 1.0]
     before, behind = low[1], high[1]
     share = before.curvature / (before.curvature - behind.curvature)
-    value = before.value + share * (behind.value - before.value)
-    uncertainty = abs(behind.value - before.value) + float(np.spacing(abs(value)))
+    value = float(before.value + share * (behind.value - before.value))
+    uncertainty = float(abs(behind.value - before.value) + np.spacing(abs(value)))
     march.values, march.system = branch.at(before.value), before.system
     energy = potential_energy(march.model, march.system, march.values)
     for one in before.system.touches:

@@ -25,7 +25,7 @@ import numpy as np
 
 from fea_reference.curvature import smallest_curvature
 from fea_reference.descent import descended
-from fea_reference.following import Lost, followed
+from fea_reference.following import Lost, about_to_go, followed
 from fea_reference.march import March, StoppedError, Trouble
 from fea_reference.touch import Circle, Pair
 from scene.answer import Array, Critical, Ending, Loss
@@ -65,9 +65,34 @@ def reach(march: March, course: Course, target: float) -> None:
     march.iterations = 0
     march.switched = {}
     march.watch_what_touches(load)
-    before = march.zones()
+    origin, before = march.saved(), march.zones()
     if march.far and march.values[load] != target:
         march.loosen(Circle)
+    _arrive(march, course, target)
+    march.tighten()
+    same = len(march.critical) == len(origin.critical) and march.values[load] != origin.values[load]
+    if same and not smallest_curvature(march.model, march.system) > 0.0:
+        # with the penalties of the way it was a minimum: the branch ends before, with those of its beginning
+        there = march.saved()
+        march.restore(origin)
+        lost = followed(march, load, target, course.span)
+        if lost is None:
+            march.restore(there)
+        else:
+            _beyond(march, course, target, lost)
+            _arrive(march, course, target)
+            march.tighten()
+    after = march.zones()
+    march.far = march.far and any(np.abs(after[one] - before[one]).max() > _FAR for one in before if one in after)
+
+
+def _arrive(march: March, course: Course, target: float) -> None:
+    """March to the value ``target``, with penalties as they are.
+
+    Raises:
+        StoppedError: it cannot be reached.
+    """
+    load = course.load
     stride, cuts, searching, follow = np.inf, 0, False, True
     reason: Trouble = (Ending.STEP_TOO_SMALL, "")
     known: list[tuple[float, float]] = []
@@ -93,6 +118,7 @@ def reach(march: March, course: Course, target: float) -> None:
         value = target if size >= abs(way) else march.values[load] + np.copysign(size, way)
         if value == march.values[load]:
             raise StoppedError(*reason)
+        close = close or (minimum and follow and about_to_go(march, load, float(value)))
         saved, spent = march.saved(), march.iterations
         trouble: Trouble | None = None
         unstable = False
@@ -136,9 +162,6 @@ def reach(march: March, course: Course, target: float) -> None:
                 searching, march.far, known = True, True, []
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
-    march.tighten()
-    after = march.zones()
-    march.far = march.far and any(np.abs(after[one] - before[one]).max() > _FAR for one in before if one in after)
 
 
 def _vanishing(known: list[tuple[float, float]]) -> float:
