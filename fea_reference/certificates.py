@@ -18,7 +18,7 @@ _BALANCE = 1e-8
 _RESOLVED = 0.05  # of the thickness: overlap with a circle, whose penalty is as stiff as the elements can follow
 _SOFT = 0.05  # by which a penalty may fall short of the stiffness that its elements ask for
 _NOTHING = 10.0  # floors: forces below this are round-off themselves
-_PULLS = 1e-8  # of the largest force: what a stop may pull with
+_PULLS = 1e-8  # of the largest force or of EI/length: what a stop may pull with
 _MISSING = 1e-3  # of a contact's resultant
 
 
@@ -50,7 +50,7 @@ def certify(march: March) -> Certificate:
         failures.append(f"a joint, a stop or an element's length is violated by {violation:.1e} of the longest beam")
     for stop, limit in acting_stops(model.stops, march.acting):
         press = stop.press(system.z, limit)
-        if not press >= -_PULLS * system.scale:
+        if not press >= -_PULLS * max(1.0, system.scale):
             failures.append(f"the stop {stop.name} holds with {press * model.units.moment:.1e} N·m on the wrong side")
     for one in system.touches:
         allowed = settings.penetration if isinstance(one.pair, Pair) else max(settings.penetration, _RESOLVED)

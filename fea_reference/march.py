@@ -30,8 +30,8 @@ _NEARBY = (1e-3, 1e-2, 1e-1)  # of a step: where to look for a closing under tig
 _DEEPER = 1e-3  # of the shortest element: by how much a contact sinks that is about to be passed
 _CLOSED = 1e-9  # of the thickness, a gap that is none
 _AT_LIMIT = 1e-10  # rad: by which an angle may be beyond its limit before its stop closes
-_PULLS = 1e-9  # of the largest force: with which a stop may pull before it lets go
-_SWITCHED = 1e-8  # rad, or of the largest force: from its limit where a stop was found to close or to let go
+_PULLS = 1e-9  # of the largest force or of EI/length: with which a stop may pull before it lets go
+_SWITCHED = 1e-8  # rad, or of these: how near to its change a stop is found
 _AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
 _EVEN = 0.03  # by which a penalty may differ from the one wanted
 _SAME = 1e-9  # by which the one of a circle may
@@ -171,13 +171,14 @@ class March:
         return None
 
     def room(self, stop: StopPart, system: System) -> float:
-        """How far a stop is from closing (rad), or one that holds from letting go, over the largest force."""
-        if self.acting.ways is None:
+        """How far a stop is from closing (rad), or one that holds from letting go, without units."""
+        if not self.acting.stopping:
             return np.inf
         limit = self.acting.limits.get(stop.name)
         if limit is None:
             return stop.room(system.z)[0] + _AT_LIMIT
-        return stop.press(system.z, limit) / system.scale + _PULLS
+        # the largest force may be the stop's own, which is of no size where it lets go
+        return stop.press(system.z, limit) / max(1.0, system.scale) + _PULLS
 
     def switch(self, load: int, changing: Iterable[StopPart]) -> None:
         """Let those stops act, or act no more, that have arrived where they change."""

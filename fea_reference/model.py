@@ -223,7 +223,7 @@ class Model:
     @property
     def drawn(self) -> Acting:
         """What acts while the ends that are drawn apart are free."""
-        return Acting(None if self.apart else np.zeros((0, 2)))
+        return Acting(None if self.apart else np.zeros((0, 2)), stopping=not self.apart)
 
     def free(self, joint: JointPart, acting: Acting) -> bool:
         """Whether a joint does not act because its end is not assembled yet."""
