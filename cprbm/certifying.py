@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm.equilibrium import Equilibrium, smallest_curvature
+from cprbm.equilibrium import Equilibrium
 from cprbm.forces import balances
 from cprbm.mechanism import Mechanism
 from cprbm.settings import Settings
+from cprbm.stability import smallest_curvature
 from scene import Certificate, Ending
 
 LARGEST_BEND = 1.0  # rad: change of angle of one spring beyond which a chord no longer stands for its element

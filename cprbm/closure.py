@@ -1,7 +1,7 @@
 """Loop closures, welds, slides and drives: the equalities Z(θ) = 0 of eq. (1).
 
 ==========  =======================================================================
-Z_x, Z_y    beam's last joint less the point of the body it is joined to
+Z_x, Z_y    beam's last joint less the point of the body it is joined to, less how far apart they are meant to be
 Z_w         angle of the first or last link, less its stress-free one, less φ
 Z_h         of slides and drives, :mod:`cprbm.holding`
 μ           multipliers: force and moment of the beam on what its end is joined to
@@ -52,8 +52,8 @@ class Closure:
         return 2 * len(self.ends) + len(self.welds)
 
 
-def closure_of(model: Model, holds: tuple[Hold, ...]) -> Closure:
-    """The equalities of a mechanism."""
+def closure_of(model: Model, holds: tuple[Hold, ...], free: frozenset[str] = frozenset()) -> Closure:
+    """The equalities of a mechanism; the ends of some beams are ``free`` as yet."""
     ends, welds, fixed = [], [], []
     for c, chain in enumerate(model.chains):
         start, end = chain.start, chain.end
@@ -62,7 +62,7 @@ def closure_of(model: Model, holds: tuple[Hold, ...]) -> Closure:
                 fixed.append(chain.first_link)
             else:
                 welds.append((chain.first_link, start.body))
-        if end is not None:
+        if end is not None and chain.name not in free:
             ends.append(c)
             if end.welded:
                 welds.append((chain.first_link + chain.n, end.body))
@@ -70,18 +70,24 @@ def closure_of(model: Model, holds: tuple[Hold, ...]) -> Closure:
     return Closure(tuple(ends), np.array(last, dtype=np.intp), tuple(welds), np.array(fixed, dtype=np.intp), holds)
 
 
-def closure_values(model: Model, closure: Closure, state: State, at: Positions, drives: dict[str, float]) -> Array:
-    """Z (rows,) with the ``drives``' values (SI); those without one are at zero."""
+def apart_by(beam: str) -> tuple[str, str]:
+    """Names of the values that say how far, along x and y, a beam's end is apart from its point, m."""
+    return f"{beam}.apart.x", f"{beam}.apart.y"  # no name in a scene holds a dot
+
+
+def closure_values(model: Model, closure: Closure, state: State, at: Positions, given: dict[str, float]) -> Array:
+    """Z (rows,) with the ``given`` values (SI) of drives and of how far ends are apart; without one they are zero."""
     values = []
     for c, joint in zip(closure.ends, closure.end_joints, strict=True):
         end = model.chains[c].end
         assert end is not None
         px, py = place(model, end, state.bodies)
-        values += [at.x[joint] - px, at.y[joint] - py]
+        gx, gy = (given.get(name, 0.0) / model.unit_length for name in apart_by(model.chains[c].name))
+        values += [at.x[joint] - px - gx, at.y[joint] - py - gy]
     for link, body in closure.welds:
         turned = state.bodies[body, 2] if body >= 0 else 0.0
         values.append(state.theta[link] - model.rest[link] - turned)
-    values += [hold.value(state, drives) for hold in closure.holds]
+    values += [hold.value(state, given) for hold in closure.holds]
     return np.array(values, dtype=float)
 
 

@@ -1,6 +1,6 @@
 """What a contact formulation hands to the equilibrium solver.
 
-A gap depends on a few local numbers z: positions of some joints and angles of some links.  A formulation
+A gap depends on a few local numbers z: positions of some joints, and angles of some links (or bodies).  A formulation
 states its constraints c(z) ≤ 0, their first derivatives, and the second derivative of λ·c; how z depends
 on the unknowns is the same for all and lives in :mod:`cprbm.kinematics`.
 """
@@ -38,8 +38,8 @@ class Group:
     Attributes:
         contact: name of the contact.
         values: c (m,), units of length, feasible where ≤ 0.
-        joints, angles: what enters each row, (m, p) and (m, a).
-        slopes: ∂c over (x of joints, y of joints, θ of angles), (m, 2p + a).
+        joints, angles: what enters each row, (m, p) and (m, a); angles by their number among the unknowns.
+        slopes: ∂c over (x of joints, y of joints, angles), (m, 2p + a).
         curvature: λ (m,) ↦ blocks of ∂²(λ·c)/∂z².
         keys: what each row is, to recognise it again in the next iteration; −1 for a place that moves.
         arc: arc length on the contact's first beam where each row acts (m,).
@@ -105,9 +105,9 @@ class Rows:
         ends = np.cumsum([len(group.values) for group in self.groups])
         return list(zip(self.groups, np.split(multipliers, ends[:-1]), strict=True)) if self.groups else []
 
-    def forces(self, multipliers: Array, n_joints: int, n_links: int) -> tuple[Array, Array, Array]:
-        """∂(λ·c) over x and y of all joints (n_joints,) and θ of all links (n_links,)."""
-        fx, fy, moments = np.zeros(n_joints), np.zeros(n_joints), np.zeros(n_links)
+    def forces(self, multipliers: Array, n_joints: int, n_unknowns: int) -> tuple[Array, Array, Array]:
+        """∂(λ·c) over x and y of all joints (n_joints,), and what is over unknown angles at once (n_unknowns,)."""
+        fx, fy, moments = np.zeros(n_joints), np.zeros(n_joints), np.zeros(n_unknowns)
         for group, lam in self.shares(multipliers):
             p = group.joints.shape[1]
             local = lam[:, None] * group.slopes

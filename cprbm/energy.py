@@ -6,11 +6,12 @@ m_i     k_i δ_i, moment of spring i
 W       work of the dead loads from the initial state
 ======  ========================================================================
 
-PE = Σ ½ k_i δ_i² − W; the Hessian over θ is tridiagonal, W depends on bodies only.
+PE = Σ ½ k_i δ_i² − W; the Hessian over θ is tridiagonal, W is linear in θ.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +33,14 @@ class DeadLoad:
     point: tuple[float, float]
 
 
+@dataclass(frozen=True, slots=True)
+class EndMoment:
+    """A moment on a beam's last link, in units of S per N·m."""
+
+    link: int
+    moment: float
+
+
 def dead_loads(scene: Scene, model: Model) -> dict[str, DeadLoad]:
     """The scene's loads by name."""
     loads = {}
@@ -50,6 +59,21 @@ def dead_loads(scene: Scene, model: Model) -> dict[str, DeadLoad]:
             )
             loads[name] = DeadLoad(body, 0.0, (load.direction[0] / size, load.direction[1] / size), r)
     return loads
+
+
+def moment_on(beam: str) -> str:
+    """Name of the value of the moment on a beam's end while it is assembled, N·m."""
+    return f"{beam}.end"  # no name in a scene holds a dot
+
+
+def end_moments(scene: Scene, model: Model) -> dict[str, EndMoment]:
+    """Those on the ends of the beams that are assembled."""
+    assembly = scene.assembly
+    return {
+        moment_on(chain.name): EndMoment(chain.first_link + chain.n, 1.0 / model.unit_moment)
+        for chain in model.chains
+        if assembly is not None and chain.name in assembly.moments
+    }
 
 
 def spring_moments(model: Model, state: State) -> Array:
@@ -82,26 +106,33 @@ def strain_hessian(model: Model) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, slots=True)
 class LoadWork:
-    """W and its derivatives over the bodies' u, v, φ: value, gradient (3B,), second over φ (B,)."""
+    """W and its derivatives: value, gradient over all unknowns (n_links + 3B,), second over φ of the bodies (B,)."""
 
     value: float
     gradient: Array
     second: Array
 
 
-def load_work(model: Model, loads: dict[str, DeadLoad], values: dict[str, float], state: State) -> LoadWork:
+def load_work(
+    model: Model, loads: Mapping[str, DeadLoad | EndMoment], values: dict[str, float], state: State
+) -> LoadWork:
     """Work of all loads at their present ``values`` (SI)."""
     total = 0.0
-    gradient = np.zeros((len(model.free_bodies), 3))
+    gradient = np.zeros(model.n_unknowns)
+    over_bodies = gradient[model.n_links :].reshape(-1, 3)  # a view
     second = np.zeros(len(model.free_bodies))
     for name, load in loads.items():
         value = values.get(name, 0.0)
+        if isinstance(load, EndMoment):
+            total += value * load.moment * (state.theta[load.link] - model.rest[load.link])
+            gradient[load.link] += value * load.moment
+            continue
         u, v, phi = state.bodies[load.body]
         fx, fy = value * load.force[0], value * load.force[1]
         px, py = load.point
         cos, sin = np.cos(phi), np.sin(phi)
         rx, ry = cos * px - sin * py, sin * px + cos * py
         total += value * load.moment * phi + fx * (u + rx - px) + fy * (v + ry - py)
-        gradient[load.body] += (fx, fy, value * load.moment + rx * fy - ry * fx)
+        over_bodies[load.body] += (fx, fy, value * load.moment + rx * fy - ry * fx)
         second[load.body] -= fx * rx + fy * ry
-    return LoadWork(float(total), gradient.ravel(), second)
+    return LoadWork(float(total), gradient, second)

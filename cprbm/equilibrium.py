@@ -15,18 +15,18 @@ directions where it is not, first by the stiffness of the contacts that press, t
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import eigvalsh_tridiagonal
 
-from cprbm.bordered import Bordered, bordered
+from cprbm.bordered import Bordered, anchored, bordered, without
 from cprbm.closure import Closure, closure_forces, closure_rows, closure_second, closure_values
 from cprbm.complementarity import pressing
 from cprbm.contact import Formulation, Rows
 from cprbm.energy import (
     DeadLoad,
+    EndMoment,
     LoadWork,
     load_work,
     spring_moments,
@@ -44,13 +44,18 @@ CONTACT_STIFFNESS = 1e4  # of pressing contacts while the energy alone is not co
 MANY = 40  # contact rows beyond which the system is solved with the joints' positions as unknowns
 LOCAL = 8  # joints in a row that is local
 PATIENCE = 12  # iterations; then the set that presses may go in circles, and is found by a rule that cannot
-DENSE = 120  # unknowns up to which all curvatures are computed at once
-LANCZOS = 40  # steps
-SMALL = 1e-9  # of the largest compliance: negative ones below it are round-off
 SAME = 0.1  # part by which residuals differ that are the same again
 CIRCLES = 4  # returns that end the search for places of their own
 NOTHING = 1e-12  # S: moments below it are no load at all, and what is left is measured by S
 EPS = float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True, slots=True)
+class Drag:
+    """A pull back to the angles ``theta`` (n_links,), of ``strength`` per length: adds ½ η Σ L_i (θ_i − θ*_i)²."""
+
+    theta: Array
+    strength: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,13 +67,19 @@ class Problem:
         formulation: the contact rows at a state.
         steady: the same with rows at joints and ends alone, which come and go with nothing but the gaps there; for
             where rows at places of their own come and go in a circle.
+        drag: what slows a leap from one branch to another; none in an equilibrium.
     """
 
     model: Model
     closure: Closure
-    loads: dict[str, DeadLoad]
+    loads: Mapping[str, DeadLoad | EndMoment]
     formulation: Formulation
     steady: Formulation
+    drag: Drag | None = None
+
+    def stiffened(self) -> Array:
+        """What the drag adds to the second derivatives over θ (n_links,)."""
+        return self.model.lengths * (0.0 if self.drag is None else self.drag.strength)
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +133,10 @@ def point_at(problem: Problem, values: dict[str, float], state: State, mu: Array
     at = positions(model, state)
     rows = problem.formulation(state, at)
     work = load_work(model, problem.loads, values, state)
-    gradient = np.concatenate((strain_gradient(model, state), -work.gradient))
+    gradient = -work.gradient
+    gradient[: model.n_links] += strain_gradient(model, state)
+    if problem.drag is not None:
+        gradient[: model.n_links] += problem.stiffened() * (state.theta - problem.drag.theta)
     A_E = closure_rows(model, problem.closure, state, at)
     return Point(
         state=state,
@@ -138,7 +152,7 @@ def point_at(problem: Problem, values: dict[str, float], state: State, mu: Array
 
 
 def local_rows(model: Model, state: State, at: Positions, joints: Ints, angles: Ints) -> Array:
-    """Derivatives of local numbers over q: for joints (g, p) and links (g, a), (g, 2p + a, n_links + 3B)."""
+    """Derivatives of local numbers over q: for joints (g, p) and angles (g, a), (g, 2p + a, n_links + 3B)."""
     (g, p), a = joints.shape, angles.shape[1]
     rows_x, rows_y = position_rows(model, state, at, joints.ravel())
     width = rows_x.shape[1]
@@ -164,9 +178,9 @@ def contact_rows(model: Model, point: Point) -> Array:
 
 def contact_gradient(model: Model, point: Point) -> Array:
     """∂(λ·c) over q (n_links + 3B,), without forming ∂c."""
-    fx, fy, moments = point.rows.forces(point.lam, model.n_joints, model.n_links)
+    fx, fy, moments = point.rows.forces(point.lam, model.n_joints, model.n_unknowns)
     over_theta, over_bodies, _, _ = pulled_back(model, point.state, point.at, fx, fy)
-    return np.concatenate((over_theta + moments, over_bodies))
+    return np.concatenate((over_theta, over_bodies)) + moments
 
 
 def carried(before: Rows, lam: Array, rows: Rows, model: Model) -> Array:
@@ -242,11 +256,11 @@ def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System
     n, n_bodies = model.n_links, 3 * len(model.free_bodies)
     A_I = contact_rows(model, point)
     fx, fy = closure_forces(model, closure, point.mu)
-    cx, cy, _ = rows.forces(point.lam, model.n_joints, n)
+    cx, cy, _ = rows.forces(point.lam, model.n_joints, model.n_unknowns)
     fx, fy = fx + cx, fy + cy
     _, _, second, second_bodies = pulled_back(model, point.state, point.at, fx, fy)
     diagonal, off = strain_hessian(model)
-    diagonal = diagonal + second + shift * model.lengths
+    diagonal = diagonal + second + shift * model.lengths + problem.stiffened()
     over_phi = second_bodies + closure_second(model, closure, point.state, point.mu) - point.work.second
 
     columns, curvatures, known = [], [], []
@@ -254,6 +268,8 @@ def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System
         if not np.any(lam > 0.0):
             continue
         blocks = group.curvature(lam)
+        if not blocks.matrices.size:
+            continue
         sigma, V = np.linalg.eigh(blocks.matrices)
         J = local_rows(model, point.state, point.at, blocks.joints, blocks.angles)
         along = np.einsum("gkj,gkn->gjn", V, J).reshape(sigma.size, -1)
@@ -267,7 +283,8 @@ def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System
         known.append(-rows.values[stiff])
     low_rank = np.concatenate(columns, axis=1) if columns else np.zeros((n + n_bodies, 0))
     sigma = np.concatenate(curvatures) if curvatures else np.zeros(0)
-    anchors = np.array([c.first_link for c in model.chains if c.first_link not in closure.fixed], dtype=np.intp)
+    free = [c.first_link for c in model.chains if c.first_link not in closure.fixed]
+    anchors = anchored(diagonal, off, model.lengths, np.array(free, dtype=np.intp), closure.fixed)
 
     m_E, m_I, r, k = closure.rows, rows.size, len(sigma), len(anchors)
     first = n_bodies + k
@@ -279,16 +296,15 @@ def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System
     corner[2:n_bodies:3, 2:n_bodies:3] = np.diag(over_phi)
     i = np.arange(r)
     corner[first + i, first + i] = -1.0 / sigma
-    off = off.copy()
     for place, link in enumerate(anchors, start=n_bodies):
         corner[place, place] = diagonal[link]
         corner[place, first:] = border[link, first:]
-        border[link + 1, place] = off[link]
+        border[link + 1 : link + 2, place] = off[link : link + 1]
+        border[max(link - 1, 0) : link, place] = off[max(link - 1, 0) : link]
     corner[first:, :first] = corner[:first, first:].T
     held = np.concatenate((anchors, closure.fixed))
     border[held] = 0.0
-    diagonal[held] = 1.0
-    off[held] = 0.0
+    diagonal, off = without(diagonal, off, held)
     return System(
         factors=bordered(diagonal, off, border, corner),
         base=np.arange(first + r + m_E),
@@ -324,12 +340,13 @@ def _convex_system(problem: Problem, point: Point) -> System:
     raise np.linalg.LinAlgError("the energy cannot be made convex")
 
 
-def _many(rows: Rows) -> bool:
+def many(rows: Rows) -> bool:
     """Whether the contacts are many and each is local: the rows of a fitted boundary are not."""
     return rows.size > MANY and all(group.joints.shape[1] <= LOCAL for group in rows.groups)
 
 
-def _local_system(problem: Problem, point: Point) -> LocalSystem:
+def local_system_at(problem: Problem, point: Point) -> LocalSystem:
+    """The system with the joints' positions as unknowns, at a state."""
     return local_system(
         problem.model,
         problem.closure,
@@ -341,6 +358,7 @@ def _local_system(problem: Problem, point: Point) -> LocalSystem:
         point.rows,
         point.gradient,
         point.work,
+        problem.stiffened(),
     )
 
 
@@ -356,8 +374,8 @@ def newton_step(problem: Problem, point: Point, *, thorough: bool = False) -> tu
     Raises:
         np.linalg.LinAlgError: the linearised problem has no solution.
     """
-    if _many(point.rows) and not thorough:
-        return local_step(_local_system(problem, point), point.lam > 0.0)
+    if many(point.rows) and not thorough:
+        return local_step(local_system_at(problem, point), point.lam > 0.0)
     found = _convex_system(problem, point)
     f = -point.gradient.copy()
     f[problem.closure.fixed] = 0.0
@@ -438,93 +456,3 @@ def _settled(now: Measure, longest: float, tolerance: float) -> bool:
         and now.overlap <= max(tolerance, 100.0 * EPS)
         and longest <= 1e-5
     )
-
-
-def smallest_curvature(problem: Problem, point: Point) -> float:
-    """Smallest curvature of PE on the directions that keep the equalities and the pressing contacts.
-
-    Over EI/ℓ² of the stiffest beam, in the metric ∫ dθ² ds.  Minus infinity where the system is singular.
-    """
-    root = np.sqrt(problem.model.lengths)
-    root[problem.closure.fixed] = 0.0
-    try:
-        if _many(point.rows):
-            inverse, lowest = _local_inverse(problem, point, root), None
-        else:
-            inverse, lowest = _bordered_inverse(problem, point, root)
-        value = _extreme(inverse, problem.model.n_links, lowest=lowest)
-    except (np.linalg.LinAlgError, RuntimeError):
-        return float("-inf")
-    return 1.0 / value if value != 0.0 else float("inf")
-
-
-def _bordered_inverse(problem: Problem, point: Point, root: Array) -> tuple[Callable[[Array], Array], bool]:
-    """√M K⁻¹ √M on columns over θ, and whether it has a negative eigenvalue."""
-    found = system(problem, point, np.zeros(point.rows.size, dtype=bool), 0.0)
-    keep = np.concatenate((found.base, found.contacts[point.lam > 0.0]))
-    n, n_bodies = found.n_links, 3 * len(problem.model.free_bodies)
-    place = slice(n_bodies, n_bodies + len(found.anchors))
-
-    def inverse(x: Array) -> Array:
-        columns = root[:, None] * x
-        right = np.zeros((len(keep), columns.shape[1]))
-        right[place] = columns[found.anchors]
-        a, b = found.factors.solve(columns, right, keep)
-        a[found.anchors] = b[place]
-        return np.asarray(root[:, None] * a[:n])
-
-    return inverse, found.factors.negative(keep) > found.expected + int(np.sum(point.lam > 0.0))
-
-
-def _local_inverse(problem: Problem, point: Point, root: Array) -> Callable[[Array], Array]:
-    """√M K⁻¹ √M on columns over θ, through the system with the joints' positions."""
-    found = _local_system(problem, point)
-    active = point.lam > 0.0
-    factors = found.factorised(active)
-    size, n = found.size + int(np.sum(active)), found.n_links
-
-    def inverse(x: Array) -> Array:
-        right = np.zeros((size, x.shape[1]))
-        right[:n] = root[:, None] * x
-        return np.asarray(root[:, None] * factors.solve(right)[:n])
-
-    return inverse
-
-
-def _extreme(inverse: Callable[[Array], Array], n: int, *, lowest: bool | None) -> float:
-    """The lowest or highest eigenvalue of a symmetric operator on R^n; unknown which, the lowest if negative."""
-    if n <= DENSE:
-        full = inverse(np.eye(n))
-        values = np.linalg.eigvalsh(0.5 * (full + full.T))
-        if lowest is None:
-            lowest = bool(values[0] < -SMALL * values[-1])
-        return float(values[0] if lowest else values[-1])
-    lowest_ritz, highest_ritz = _ritz(inverse, n)
-    if lowest is None:
-        lowest = lowest_ritz < -SMALL * abs(highest_ritz)
-    return lowest_ritz if lowest else highest_ritz
-
-
-def _ritz(inverse: Callable[[Array], Array], n: int) -> tuple[float, float]:
-    """Extreme eigenvalues by Lanczos' method with full reorthogonalisation, from a start with no symmetry.
-
-    The compliances of a beam fall with the fourth power of their number, so that a few steps settle the ends.
-    """
-    vector = np.cos(0.7 * np.arange(n)) + 1.5
-    basis = np.zeros((n, LANCZOS))
-    diagonal, off = np.zeros(LANCZOS), np.zeros(LANCZOS)
-    vector /= np.linalg.norm(vector)
-    steps = LANCZOS
-    for k in range(LANCZOS):
-        basis[:, k] = vector
-        image = inverse(vector[:, None])[:, 0]
-        diagonal[k] = vector @ image
-        for _ in range(2):
-            image = image - basis[:, : k + 1] @ (basis[:, : k + 1].T @ image)
-        off[k] = np.linalg.norm(image)
-        if off[k] <= 1e-13 * np.max(np.abs(diagonal)):
-            steps = k + 1
-            break
-        vector = image / off[k]
-    values = eigvalsh_tridiagonal(diagonal[:steps], off[: steps - 1])
-    return float(values[0]), float(values[-1])

@@ -33,7 +33,7 @@ class Support:
 
 @dataclass(frozen=True, slots=True)
 class ContactForces:
-    """Forces of the contacts on the joints fx, fy (n_joints,) and moments on the links (n_links,)."""
+    """Forces of the contacts on the joints fx, fy (n_joints,) and moments on links and bodies (n_links + 3B,)."""
 
     fx: Array
     fy: Array
@@ -44,7 +44,7 @@ def contact_forces(problem: Problem, point: Point, only: str | None = None) -> C
     """Forces that all contacts (or ``only`` one) exert on the chains."""
     model, rows = problem.model, point.rows
     mine = np.array([only is None or name == only for name in rows.contact], dtype=bool)
-    fx, fy, moments = rows.forces(-np.where(mine, point.lam, 0.0), model.n_joints, model.n_links)
+    fx, fy, moments = rows.forces(-np.where(mine, point.lam, 0.0), model.n_joints, model.n_unknowns)
     return ContactForces(fx, fy, moments)
 
 
@@ -116,11 +116,12 @@ def balances(problem: Problem, point: Point) -> tuple[float, float]:
         (support.place, support.force, support.moment) for support in supports(problem, point)
     ]
     parts += [(each.place, each.force, each.moment) for each in holding(problem, point)]
-    work = point.work.gradient.reshape(-1, 3)
+    contact = contact_forces(problem, point)
+    work, stops = (over[model.n_links :].reshape(-1, 3) for over in (point.work.gradient, contact.moments))
     for b in range(len(model.free_bodies)):
         place = model.references[b] + point.state.bodies[b, :2]
-        parts.append((place, work[b, :2], float(work[b, 2])))
-    contact = contact_forces(problem, point)
+        parts.append((place, work[b, :2], float(work[b, 2] + stops[b, 2])))
+    parts.append((np.zeros(2), np.zeros(2), float(np.sum(point.work.gradient[: model.n_links]))))
     for chain in model.chains:
         j = chain.joints
         force = np.array([np.sum(contact.fx[j]), np.sum(contact.fy[j])])

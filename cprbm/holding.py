@@ -1,13 +1,13 @@
-"""What holds a body beside its beams: slides and drives, one equality each.
+"""What holds a body beside its beams: slides, pivots and drives, one equality each.
 
 ======  ======================================================================================
 e, r    direction; the held point on the body, from its reference place
 Z_h     e·((u, v) + (R(φ) − 1) r) + τ φ − q: a displacement along e (τ = 0), or φ (e = 0, τ = 1)
-q       value of the drive; zero for a slide
+q       value of the drive; zero for a slide or a pivot
 μ       multiplier; −μ e and −μ τ are the force at the point and the moment on the body
 ======  ======================================================================================
 
-A slide is two of them: none across its direction, and no rotation.
+A slide is two of them: none across its direction, and no rotation.  So is a pivot: its point stays where it is.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cprbm.kinematics import State, arm
 from cprbm.model import Attachment, Model
 from scene import Scene
 from scene.answer import Array
-from scene.statement import DisplacementDrive, SlidingBody
+from scene.statement import DisplacementDrive, SlidingBody, TurningBody
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class Hold:
     """One equality on a body that moves.
 
     Attributes:
-        drive: the drive's name; empty for a slide.
+        drive: the drive's name, or that of the point which is a pivot; empty for a slide.
         at: r and the body.
         along: e, a unit vector or zero.
         turn: τ, one or zero.
@@ -65,7 +65,7 @@ class Hold:
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """What a slide or drive does to a body: ``force`` (2,) at ``place`` (2,) and ``moment``, without units."""
+    """What a slide, pivot or drive does to a body: ``force`` (2,) at ``place`` (2,), ``moment``; without units."""
 
     drive: str
     place: Array
@@ -74,23 +74,28 @@ class Held:
 
 
 def holds_of(scene: Scene, model: Model) -> tuple[Hold, ...]:
-    """The scene's slides and drives."""
+    """The scene's slides, pivots and drives."""
+
+    def at(point: str) -> Attachment:
+        owner = scene.body_of(point)
+        b = model.free_bodies.index(owner)
+        x, y = np.array(scene.bodies[owner].points[point]) / model.unit_length - model.references[b]
+        return Attachment(b, (float(x), float(y)), welded=False)
+
     found = []
     for name, body in scene.bodies.items():
         if isinstance(body, SlidingBody):
-            at = Attachment(model.free_bodies.index(name), (0.0, 0.0), welded=False)
+            body_itself = Attachment(model.free_bodies.index(name), (0.0, 0.0), welded=False)
             ex, ey = _unit(body.along)
-            found += [Hold("", at, (-ey, ex), 0.0, 0.0), Hold("", at, (0.0, 0.0), 1.0, 0.0)]
+            found += [Hold("", body_itself, (-ey, ex), 0.0, 0.0), Hold("", body_itself, (0.0, 0.0), 1.0, 0.0)]
+        elif isinstance(body, TurningBody):
+            found += [Hold(body.about, at(body.about), axis, 0.0, 0.0) for axis in ((1.0, 0.0), (0.0, 1.0))]
     for name, drive in scene.drives.items():
         if isinstance(drive, DisplacementDrive):
-            owner = scene.body_of(drive.point)
-            b = model.free_bodies.index(owner)
-            x, y = np.array(scene.bodies[owner].points[drive.point]) / model.unit_length - model.references[b]
-            at = Attachment(b, (float(x), float(y)), welded=False)
-            found.append(Hold(name, at, _unit(drive.direction), 0.0, 1.0 / model.unit_length))
+            found.append(Hold(name, at(drive.point), _unit(drive.direction), 0.0, 1.0 / model.unit_length))
         else:
-            at = Attachment(model.free_bodies.index(drive.body), (0.0, 0.0), welded=False)
-            found.append(Hold(name, at, (0.0, 0.0), 1.0, 1.0))
+            driven = Attachment(model.free_bodies.index(drive.body), (0.0, 0.0), welded=False)
+            found.append(Hold(name, driven, (0.0, 0.0), 1.0, 1.0))
     return tuple(found)
 
 

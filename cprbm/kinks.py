@@ -22,12 +22,13 @@ to the same), and are constants while the next one is sought; how γ changes as 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cprbm.kinematics import State
 from cprbm.model import Chain, Kinks
+from cprbm.smooth import Points
 from scene.answer import Array, Flags, Ints
 
 SLIGHT = 1e-3  # of h² and the largest slope: γ is at most an eighth
@@ -66,6 +67,14 @@ def missed(chain: Chain, kinks: Kinks, s: Array) -> Missed:
         np.where(active, -(p * u * (2.0 * v - u) + q * v * (v - 2.0 * u)) / (2.0 * h), 0.0),
         np.where(active, between + _integral(u, h, p, q) - start, 0.0),
     )
+
+
+def kinked(chain: Chain, kinks: Kinks, points: Points) -> Points:
+    """Points of the smooth line with the true tangents; where they lie is not changed."""
+    if not kinks.places.size:
+        return points
+    more = missed(chain, kinks, points.s)
+    return replace(points, psi=points.psi + more.angle, bend=points.bend + more.bend)
 
 
 def _integral(u: Array, h: Array, p: Array, q: Array) -> Array:

@@ -122,8 +122,9 @@ def local_system(
     rows: Rows,
     gradient: Array,
     work: LoadWork,
+    stiffened: Array,
 ) -> LocalSystem:
-    """Assemble the system at a state."""
+    """Assemble the system at a state; ``stiffened`` (n_links,) is added to the second derivatives over θ."""
     n, J, n_bodies = model.n_links, model.n_joints, 3 * len(model.free_bodies)
     first_body = n + 2 * J
     first_rho = first_body + n_bodies
@@ -131,14 +132,14 @@ def local_system(
     size = first_mu + closure.rows
 
     fx, fy = closure_forces(model, closure, mu)
-    cx, cy, _ = rows.forces(lam, J, n)
+    cx, cy, _ = rows.forces(lam, J, model.n_unknowns)
     _, _, second, second_bodies = pulled_back(model, state, at, fx + cx, fy + cy)
     over_phi = second_bodies + closure_second(model, closure, state, mu) - work.second
     diagonal, off = strain_hessian(model)
 
     entries = _Entries()
     links = np.arange(n)
-    entries.add(links, links, diagonal + second)
+    entries.add(links, links, diagonal + second + stiffened)
     entries.both(links[:-1], links[1:], off)
     bodies = first_body + 2 + 3 * np.arange(len(model.free_bodies))
     entries.add(bodies, bodies, over_phi)
@@ -173,7 +174,7 @@ def local_system(
     row_numbers, columns, values = [], [], []
     first = 0
     for group, share in rows.shares(lam):
-        own = np.concatenate((n + group.joints, n + J + group.joints, group.angles), axis=1)
+        own = _numbers(model, group.joints, group.angles)
         m = len(group.values)
         row_numbers.append(np.repeat(first + np.arange(m), own.shape[1]))
         columns.append(own.ravel())
@@ -181,7 +182,7 @@ def local_system(
         first += m
         if np.any(share > 0.0):
             blocks = group.curvature(share)
-            local = np.concatenate((n + blocks.joints, n + J + blocks.joints, blocks.angles), axis=1)
+            local = _numbers(model, blocks.joints, blocks.angles)
             entries.add(local[:, :, None], local[:, None, :], blocks.matrices)
     right = np.zeros(size)
     right[:n], right[first_body:first_rho] = -gradient[:n], -gradient[n:]
@@ -203,6 +204,12 @@ def local_system(
         values=rows.values,
         first_mu=first_mu,
     )
+
+
+def _numbers(model: Model, joints: Ints, angles: Ints) -> Ints:
+    """Where local numbers are in the system, whose bodies stand behind the joints."""
+    n, J = model.n_links, model.n_joints
+    return np.concatenate((n + joints, n + J + joints, np.where(angles < n, angles, angles + 2 * J)), axis=1)
 
 
 def _tie(entries: _Entries, row: int, x: int, y: int, first_body: int, body: int, lever: tuple[float, float]) -> None:

@@ -11,7 +11,7 @@ from cprbm.boundary import FittedBoundary, fitted_boundary
 from cprbm.circle import Circle, circle_of
 from cprbm.closure import closure_of
 from cprbm.contact import Formulation, Group, Rows
-from cprbm.energy import dead_loads
+from cprbm.energy import dead_loads, end_moments
 from cprbm.equilibrium import Point, Problem
 from cprbm.holding import holds_of
 from cprbm.kinematics import Positions, State, positions
@@ -19,6 +19,7 @@ from cprbm.model import EVEN, Fit, build
 from cprbm.nearest import Pair, pair_of
 from cprbm.rigid import RigidCircle, rigid_circle
 from cprbm.settings import Settings
+from cprbm.stops import AngleStop, stop_of
 from scene import BeamContact, Scene
 
 BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle or another
@@ -36,22 +37,22 @@ class Mechanism:
         problem: with every contact.
         pairs: smooth beams of each contact, which measure overlap whatever the formulation.
         boundaries: of the formulation ``paper``; empty for ``auto``.
+        stops: limits of pins' angles.
         fit: what the mesh was made for.
     """
 
     problem: Problem
     pairs: dict[str, Pair | Circle]
     boundaries: dict[str, FittedBoundary | RigidCircle]
+    stops: dict[str, AngleStop]
     fit: Fit
 
-    def without(self, contact: str) -> Problem:
-        """The problem in which ``contact`` holds nothing apart."""
-        return Problem(
-            self.problem.model,
-            self.problem.closure,
-            self.problem.loads,
-            *_formulations({name: pair for name, pair in self.pairs.items() if name != contact}, self.boundaries),
-        )
+    def without(self, *names: str) -> Problem:
+        """The problem in which some contacts and stops hold nothing."""
+        pairs = {name: pair for name, pair in self.pairs.items() if name not in names}
+        stops = {name: stop for name, stop in self.stops.items() if name not in names}
+        formulation, steady = _formulations(pairs, self.boundaries, stops)
+        return replace(self.problem, formulation=formulation, steady=steady)
 
     def overlap(self, contact: str, state: State, at: Positions) -> float:
         """Largest constraint value of ``contact``, units of length: positive where it is violated."""
@@ -110,11 +111,14 @@ def _groups(
 
 
 def _formulations(
-    pairs: Mapping[str, Pair | Circle], boundaries: Mapping[str, FittedBoundary | RigidCircle]
+    pairs: Mapping[str, Pair | Circle],
+    boundaries: Mapping[str, FittedBoundary | RigidCircle],
+    stops: Mapping[str, AngleStop],
 ) -> tuple[Formulation, Formulation]:
-    """The rows of some contacts, and the steady ones."""
+    """The rows of some contacts and stops, and the steady ones."""
     steady = {name: replace(pair, own_places=False) for name, pair in pairs.items()}
-    every, few = ({name: _groups(name, these, boundaries) for name in these} for these in (pairs, steady))
+    limits: dict[str, Groups] = {name: stop.groups for name, stop in stops.items()}
+    every, few = ({name: _groups(name, these, boundaries) for name in these} | limits for these in (pairs, steady))
     return _formulation(every), _formulation(few)
 
 
@@ -144,6 +148,8 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism
             else rigid_circle(scene, model, name)
             for name, contact in scene.contacts.items()
         }
+    stops = {name: stop_of(scene, model, name) for name in scene.stops}
     closure = closure_of(model, holds_of(scene, model))
-    problem = Problem(model, closure, dead_loads(scene, model), *_formulations(pairs, boundaries))
-    return Mechanism(problem, pairs, boundaries, fit)
+    loads = dead_loads(scene, model) | end_moments(scene, model)
+    problem = Problem(model, closure, loads, *_formulations(pairs, boundaries, stops))
+    return Mechanism(problem, pairs, boundaries, stops, fit)

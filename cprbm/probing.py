@@ -56,6 +56,11 @@ def _value(
             return force * model.unit_force if probe.quantity == "reaction" else moment * model.unit_moment
         case "potential_energy":
             return potential_energy(problem, point) * model.unit_moment
+        case "angle":
+            return mechanism.stops[probe.of].angle(point.state)
+        case "moment":
+            held = [lam for lam, name in zip(point.lam, point.rows.contact, strict=True) if name == probe.of]
+            return float(sum(held)) * model.unit_moment
 
 
 def _displacement(scene: Scene, problem: Problem, point: Point, name: str) -> Array:
@@ -81,11 +86,18 @@ def _reaction(scene: Scene, problem: Problem, point: Point, name: str) -> tuple[
             force = force + support.force
             moment += support.moment
     for each in holding(problem, point):
-        drive = scene.drives.get(each.drive)  # a slide's name is none
-        if drive is not None and name == (drive.point if isinstance(drive, DisplacementDrive) else drive.body):
+        if name == _held(scene, each.drive):
             force = force + each.force
             moment += each.moment
     return force, moment
+
+
+def _held(scene: Scene, drive: str) -> str:
+    """Of which point or body a drive's reaction is asked; a pivot's own point, and of a slide nothing."""
+    if drive not in scene.drives:
+        return drive
+    driven = scene.drives[drive]
+    return driven.point if isinstance(driven, DisplacementDrive) else driven.body
 
 
 def shapes(mechanism: Mechanism, point: Point) -> dict[str, Shape]:

@@ -8,6 +8,7 @@ from frozendict import frozendict
 from exact.equations import unit
 from exact.gaps import SAMPLES
 from exact.model import Model
+from exact.restructure import NotCoveredError
 from exact.spectral import rule
 from exact.state import State
 from exact.structure import Meeting, Wrap
@@ -88,6 +89,8 @@ def _value(
             return force * model.unit_force if probe.quantity == "reaction" else moment * model.unit_moment
         case "potential_energy":
             return _energy(model, state) * model.unit_moment
+        case "angle" | "moment":
+            raise NotCoveredError("there are no equations for stops here")
 
 
 def _displacement(model: Model, state: State, point: str) -> Array:

@@ -1,0 +1,138 @@
+"""Where a branch of minima ends, and why: from the last states before, and what goes to zero there.
+
+==========  =====================================================================================
+v, v_c      value of what is stepped; that at which the branch ends
+κ, φ        smallest curvature of the energy and its direction, :mod:`cprbm.stability`
+F           resultant of a contact, moment of a stop: sum of its multipliers
+τ           direction of the branch, dθ/dv
+==========  =====================================================================================
+
+* A contact or stop lets go: F goes to zero, linearly, with κ still positive; without it κ is negative.
+* A fold: the branch turns back.  κ² is linear in v_c − v, and τ turns into φ.
+* A bifurcation: another branch crosses.  κ is linear in v_c − v; τ has no part in φ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cprbm.equilibrium import Point
+from cprbm.mechanism import Mechanism
+from cprbm.stability import Softest, released, softest
+from scene import Certificate, Loss
+from scene.answer import Array
+
+LEAST = 2  # minima from which the end of a branch can be told
+TURNED = 0.5  # part of τ in φ: a fold has all of it, a bifurcation nothing
+STILL = 1e-6  # rad: a fold, where the branch moves ever faster, turns links by more between two states
+NEAR = 20.0  # times as far as the branch's end is known from the last state: what goes to zero does so within
+SPREAD = 2.0  # times as far from the end as the last state is the one that a law is continued from
+
+
+@dataclass(frozen=True, slots=True)
+class Minimum:
+    """A minimum on the branch: the value v, its state, and its certificate."""
+
+    value: float
+    point: Point
+    certificate: Certificate
+
+    @property
+    def curvature(self) -> float:
+        """κ."""
+        return self.certificate.smallest_curvature
+
+
+@dataclass(frozen=True, slots=True)
+class BranchEnd:
+    """Where and how a branch ends.
+
+    Attributes:
+        value, uncertainty: v_c and how far it may be from there.
+        loss, what: how, and of which contact or stop.
+        curvature, left: κ at the end, and once nothing holds there.
+        direction: in which the curvature is lost (n_links,).
+    """
+
+    value: float
+    uncertainty: float
+    loss: Loss
+    what: str
+    curvature: float
+    left: float
+    direction: Array
+
+
+def told(loss: Loss, what: str) -> str:
+    """How a branch ends, for people."""
+    return f"{loss.value} ('{what}')" if what else loss.value
+
+
+def branch_end(mechanism: Mechanism, trail: list[Minimum], beyond: float) -> BranchEnd | None:
+    """Why there is no minimum near the last of the ``trail`` at the value ``beyond``; None where nothing says it.
+
+    Args:
+        mechanism: what was followed.
+        trail: minima on the branch in order; the last are near its end.
+        beyond: the nearest value at which no minimum was found that continues the branch.
+    """
+    if len(trail) < LEAST:
+        return None
+    last = trail[-1]
+    width = beyond - last.value
+    before = next((one for one in reversed(trail) if abs(one.value - beyond) >= SPREAD * abs(width)), trail[0])
+    if before is last:
+        return None
+    for name in dict.fromkeys(last.point.rows.contact):
+        force, earlier = _force(last.point, name), _force(before.point, name)
+        zero = _continued(last.value, force, before.value, earlier)
+        if force <= 0.0 or zero is None or not 0.0 <= (zero - last.value) / width <= NEAR:
+            continue
+        soft = softest(mechanism.problem, released(last.point, name))
+        if soft.curvature <= 0.0:
+            loss = Loss.STOP if name in mechanism.stops else Loss.CONTACT
+            return BranchEnd(zero, abs(width), loss, name, last.curvature, soft.curvature, soft.direction)
+    soft = softest(mechanism.problem, last.point)
+    fold = _part_in(mechanism, last, before, soft) > TURNED
+    power = 2.0 if fold else 1.0
+    zero = _continued(last.value, last.curvature**power, before.value, before.curvature**power)
+    if zero is None or not -1.0 <= (zero - last.value) / width <= NEAR:
+        return None
+    loss = Loss.FOLD if fold else Loss.BIFURCATION
+    return BranchEnd(zero, abs(width), loss, "", last.curvature, last.curvature, soft.direction)
+
+
+def foreseen(trail: list[Minimum], ahead: float) -> float | None:
+    """The nearest value on the way from the last minimum to ``ahead`` at which something that falls will be zero."""
+    if len(trail) < LEAST:
+        return None
+    before, last = trail[-2:]
+    names = dict.fromkeys(last.point.rows.contact)
+    falling = [(_force(last.point, name), _force(before.point, name)) for name in names]
+    falling += [(last.curvature**power, before.curvature**power) for power in (1.0, 2.0)]
+    zeros = [_continued(last.value, now, before.value, earlier) for now, earlier in falling if now > 0.0]
+    reached = [zero for zero in zeros if zero is not None and 0.0 < (zero - last.value) / (ahead - last.value) < 1.0]
+    return min(reached, key=lambda zero: abs(zero - last.value), default=None)
+
+
+def _force(point: Point, name: str) -> float:
+    return float(sum(lam for lam, each in zip(point.lam, point.rows.contact, strict=True) if each == name))
+
+
+def _continued(value: float, amount: float, before: float, earlier: float) -> float | None:
+    """Where what falls linearly is zero; None where it does not fall."""
+    if not earlier > amount:
+        return None
+    return value + amount * (value - before) / (earlier - amount)
+
+
+def _part_in(mechanism: Mechanism, last: Minimum, before: Minimum, soft: Softest) -> float:
+    """|τ·φ| in the metric of lengths, τ from two states; nothing where the branch does not move."""
+    lengths = mechanism.problem.model.lengths
+    tau = last.point.state.theta - before.point.state.theta
+    if float(np.max(np.abs(tau))) < STILL:
+        return 0.0
+    sizes = np.sqrt((lengths @ tau**2) * (lengths @ soft.direction**2))
+    return float(abs(lengths @ (tau * soft.direction)) / sizes)

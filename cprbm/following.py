@@ -1,0 +1,167 @@
+"""Following a branch of minima by load steps that are cut where one fails and grow where they succeed.
+
+A step is refused where no certified minimum is found, where a link turns too far, where a beam goes across what it may
+touch, and where the links went another way than their rates say (:mod:`cprbm.rate`), which leads to another branch.
+Where ends of branches are asked for, a step is no longer than a small turn of the links, so that none hides in it.
+After a step was refused, the way on is cut by what will soon be zero (:func:`cprbm.critical.foreseen`), so that a
+branch's end is closed in on from the side where it stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cprbm.certifying import certify
+from cprbm.critical import Minimum, foreseen
+from cprbm.equilibrium import Equilibrium, Point, equilibrium
+from cprbm.mechanism import Mechanism
+from cprbm.rate import rate, strayed
+from cprbm.settings import Settings
+from scene import Certificate, Ending
+
+GROWTH = 2.0
+SETTLE = 0.1  # of the way: in shorter steps steady rows may settle which places there are
+CLOSER = 0.98  # of the way that is left to where something ends
+SHORT = 0.2  # rad: the most that a link may turn in a step that hides no end of a branch
+ISOLATED = 0.01  # rad: the most in which a contact or stop may close or open: what it catches did not fall far
+JUST = 2.0  # smallest steps, to see that there is nothing beyond
+TRAIL = 30  # minima that are kept
+
+
+@dataclass(frozen=True, slots=True)
+class Way:
+    """What is stepped from one equilibrium that is wanted to the next: some values (SI) that go evenly.
+
+    ``load`` is the one that the scene steps; an assembly steps none.
+    """
+
+    load: str
+    begin: Mapping[str, float]
+    target: Mapping[str, float]
+
+    def at(self, fraction: float) -> dict[str, float]:
+        """All values at a fraction of the way."""
+        if fraction == 1.0:
+            return dict(self.target)
+        return {name: self.begin[name] + fraction * (end - self.begin[name]) for name, end in self.target.items()}
+
+    def value(self, fraction: float) -> float:
+        """That of the load; of an assembly the fraction."""
+        return self.at(fraction)[self.load] if self.load else fraction
+
+    @property
+    def aim(self) -> str:
+        """Where it leads, for people."""
+        return f"{self.load} = {self.target[self.load]:.6g}" if self.load else "the end of this part"
+
+
+def to(load: str, values: Mapping[str, float], target: float) -> Way:
+    """The way from present ``values`` to a ``target`` of one load or drive; what has no value is at zero."""
+    begin = {**values, load: values.get(load, 0.0)}
+    return Way(load, begin, {**begin, load: target})
+
+
+@dataclass(frozen=True, slots=True)
+class Reached:
+    """How a way ended: with a ``certificate`` at its end, or none and the Ending and sentence that say why."""
+
+    ending: Ending
+    sentence: str
+    certificate: Certificate | None
+
+
+@dataclass
+class Follower:
+    """Where on a branch we are: the state of the one loop that steps.
+
+    Attributes:
+        mechanism, settings: what is followed.
+        point, values: the state, and the values (SI) of all loads and drives.
+        trail: minima since it was cleared, the last ones.
+        refused: the value at which the last step was refused.
+        careful: whether no end of a branch may be passed.
+    """
+
+    mechanism: Mechanism
+    settings: Settings
+    point: Point
+    values: dict[str, float]
+    trail: list[Minimum]
+    refused: float = 0.0
+    careful: bool = False
+
+    def go(self, way: Way, accept: Callable[[Point, dict[str, float]], None]) -> Reached:
+        """Go all the way, directly or in steps; ``accept`` sees every next minimum before it is the present one."""
+        done, step, iterations, refused = 0.0, 1.0, 0, False
+        while True:
+            step = min(step, 1.0 - done, self._longest(way))
+            fraction = 1.0 if done + step >= 1.0 else done + step
+            values = way.at(fraction)
+            found = self._solved(values, settle=step <= SETTLE)
+            iterations += found.iterations
+            certificate, ending = certify(self.mechanism, self.settings, found)
+            if ending is Ending.COMPLETED:
+                ending, sentence = self._strayed(way, found.point, values)
+            else:
+                sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
+            if ending is Ending.COMPLETED:
+                accept(found.point, values)
+                self.point, self.values, done = found.point, values, fraction
+                self.trail = [*self.trail[-TRAIL:], Minimum(way.value(fraction), self.point, certificate)]
+                if fraction == 1.0:
+                    return Reached(ending, "", replace(certificate, iterations=iterations))
+                step = self._cut(way, done, GROWTH * step) if refused else GROWTH * step
+                continue
+            step, refused, self.refused = self._cut(way, done, 0.5 * step), True, way.value(fraction)
+            if iterations > self.settings.iteration_limit:
+                return Reached(
+                    Ending.STEP_TOO_SMALL, f"{iterations} iterations did not lead to {way.aim}", certificate=None
+                )
+            if step < self.settings.smallest_step:
+                ending = ending if found.converged else Ending.STEP_TOO_SMALL
+                return Reached(ending, sentence, certificate=None)
+
+    def _longest(self, way: Way) -> float:
+        """The largest part of the way that may be taken at once."""
+        if not (self.careful and way.load):
+            return 1.0
+        whole = way.target[way.load] - way.begin[way.load]
+        turn = float(np.max(np.abs(whole * rate(self.mechanism.problem, self.point, way.load))))
+        return max(SHORT / turn, self.settings.smallest_step) if turn > SHORT else 1.0
+
+    def _solved(self, values: dict[str, float], *, settle: bool) -> Equilibrium:
+        problem, settings = self.mechanism.problem, self.settings
+        return equilibrium(problem, values, self.point, settings.tolerance, settings.iterations, settle=settle)
+
+    def _strayed(self, way: Way, found: Point, values: dict[str, float]) -> tuple[Ending, str]:
+        """Why a minimum is not on the branch; COMPLETED where it is."""
+        turned = float(np.max(np.abs(found.state.theta - self.point.state.theta)))
+        if turned > self.settings.largest_turn:
+            return Ending.STEP_TOO_SMALL, f"a link turned by {turned:.2f} rad in one load step"
+        if crossed := self.mechanism.passed(self.point, found):
+            return Ending.BEAMS_CROSSED, f"in contact '{crossed}' the beam went across what it may touch"
+        if self.careful and turned > ISOLATED and _pressing(found) != _pressing(self.point):
+            return Ending.STEP_TOO_SMALL, "a contact or stop closes or opens on the way"
+        if way.load:
+            problem, step = self.mechanism.problem, values[way.load] - self.values.get(way.load, 0.0)
+            ways = (step * rate(problem, point, way.load) for point in (self.point, found))
+            if strayed(problem.model.lengths, found.state.theta - self.point.state.theta, *ways):
+                return Ending.STEP_TOO_SMALL, "the links went another way than their rates say, to another branch"
+        return Ending.COMPLETED, ""
+
+    def _cut(self, way: Way, done: float, step: float) -> float:
+        """A step that ends before what is about to end the branch does, or just beyond where that is near."""
+        begin, ahead = way.value(done), way.value(min(1.0, done + step))
+        zero = foreseen(self.trail, ahead)
+        if zero is None:
+            return step
+        smallest, left = self.settings.smallest_step, CLOSER * step * (zero - begin) / (ahead - begin)
+        return left if left > smallest else min(step, JUST * smallest)
+
+
+def _pressing(point: Point) -> frozenset[str]:
+    """Names of the contacts and stops that press."""
+    return frozenset(name for lam, name in zip(point.lam, point.rows.contact, strict=True) if lam > 0.0)

@@ -1,0 +1,119 @@
+"""From where a branch ends to the state that the decrease of the energy leads to.
+
+==========  ==========================================================================
+E           potential energy at the fixed values of loads and drives
+θ_k         link angles after k steps
+L, η        links' lengths; drag
+==========  ==========================================================================
+
+A mechanism that is no longer held moves slowly where it is damped: η L dθ/dt = −∂E/∂θ, contacts and stops acting.
+Euler's implicit step is itself a minimum,
+
+    θ_{k+1} = argmin E(θ) + ½ η Σ L (θ − θ_k)²,    so that    E(θ_{k+1}) ≤ E(θ_k),
+
+and with η larger than the curvature that was lost a convex one.  The drag falls as the motion slows, and vanishes in
+the minimum in which it ends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cprbm.certifying import certify
+from cprbm.equilibrium import Drag, Equilibrium, Point, equilibrium, point_at, potential_energy
+from cprbm.kinematics import State
+from cprbm.mechanism import Mechanism
+from cprbm.settings import Settings
+from scene import Certificate, Ending
+from scene.answer import Array
+
+FIRST = 10.0  # η of the first step, S/ℓ³: some curvatures of a straight beam
+MOST = 1e7  # η beyond which nothing moves any more
+NUDGE = 1e-3  # rad, out of a state that is in equilibrium still
+STEP = 0.3  # rad: the most that a link turns by in a step
+SLOW = 0.1  # rad: a step of less lets the drag fall
+STILL = 0.02  # rad: after such a step it is seen whether there is a minimum near by
+EASED, RAISED = 0.4, 4.0
+STEPS = 400
+ROUNDED = 1e-10  # of the energy
+
+
+@dataclass(frozen=True, slots=True)
+class Landed:
+    """The minimum in which a leap ends, and its certificate."""
+
+    point: Point
+    certificate: Certificate
+
+
+def leap(
+    mechanism: Mechanism, settings: Settings, values: dict[str, float], start: Point, direction: Array
+) -> Landed | None:
+    """Go down from ``start``, which is about in equilibrium, to a certified minimum; None where none is found.
+
+    Args:
+        mechanism, settings: what is solved.
+        values: of all loads and drives (SI), just beyond those at which the branch ended.
+        start: the branch's last state.
+        direction: of the curvature that was lost, (n_links,); of its two senses the one that leads lower is taken.
+    """
+    nudge = NUDGE * direction / max(float(np.max(np.abs(direction))), 1e-300)
+    tried = [
+        _step(mechanism, settings, values, _nudged(mechanism, values, start, way), FIRST) for way in (nudge, -nudge)
+    ]
+    begun = [one for one in tried if one is not None]
+    point = min(begun, key=lambda one: potential_energy(mechanism.problem, one)) if begun else start
+    strength, iterations = FIRST, 0
+    for _ in range(STEPS):
+        ahead = _step(mechanism, settings, values, point, strength)
+        iterations += 1
+        if ahead is None:
+            strength *= RAISED
+            if strength > MOST:
+                return None
+            continue
+        turned = _turned(point, ahead)
+        point = ahead
+        if turned < STILL and (landed := _landed(mechanism, settings, values, point)) is not None:
+            return landed
+        if turned < SLOW:
+            strength *= EASED
+    return None
+
+
+def _nudged(mechanism: Mechanism, values: dict[str, float], start: Point, way: Array) -> Point:
+    state = State(start.state.theta + way, start.state.bodies)
+    return point_at(mechanism.problem, values, state, start.mu, start.lam, start.rows)
+
+
+def _step(
+    mechanism: Mechanism, settings: Settings, values: dict[str, float], point: Point, strength: float
+) -> Point | None:
+    """One step with the drag ``strength``; None where it is too long, goes through something or up."""
+    slowed = replace(mechanism.problem, drag=Drag(point.state.theta, strength))
+    found = equilibrium(slowed, values, point, settings.tolerance, settings.iterations, settle=True)
+    if not found.converged or _turned(point, found.point) > STEP or mechanism.passed(point, found.point):
+        return None
+    # as the energy of the problem without drag has it
+    return _undragged(mechanism, values, found)
+
+
+def _undragged(mechanism: Mechanism, values: dict[str, float], found: Equilibrium) -> Point:
+    point = found.point
+    return point_at(mechanism.problem, values, point.state, point.mu, point.lam, point.rows)
+
+
+def _landed(mechanism: Mechanism, settings: Settings, values: dict[str, float], point: Point) -> Landed | None:
+    """The certified minimum near a state, if there is one and it is not higher."""
+    found = equilibrium(mechanism.problem, values, point, settings.tolerance, settings.iterations, settle=True)
+    certificate, ending = certify(mechanism, settings, found)
+    if ending is not Ending.COMPLETED or _turned(point, found.point) > STEP or mechanism.passed(point, found.point):
+        return None
+    before, after = (potential_energy(mechanism.problem, each) for each in (point, found.point))
+    return Landed(found.point, certificate) if after <= before + ROUNDED * abs(before) else None
+
+
+def _turned(before: Point, after: Point) -> float:
+    return float(np.max(np.abs(after.state.theta - before.state.theta)))

@@ -1,0 +1,278 @@
+"""The march from rest through assembly and stations: load steps that cut and grow, branches that end.
+
+The march goes on even elements, on a coarse mesh where many are asked.  What is handed out at a station is solved
+from there on the mesh that was asked, fitted to where contact is (:mod:`cprbm.refining`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+
+import numpy as np
+
+from cprbm.assembling import brought, freed, released
+from cprbm.boundary import FittedBoundary
+from cprbm.certifying import certify
+from cprbm.closing import Closings, Stood
+from cprbm.contact import NO_ROWS
+from cprbm.critical import BranchEnd, Minimum, branch_end, told
+from cprbm.equilibrium import Point, equilibrium, point_at, potential_energy
+from cprbm.following import Follower, Reached, Way, to
+from cprbm.forces import contact_imbalance
+from cprbm.kinematics import rest_state
+from cprbm.leap import Landed, leap
+from cprbm.levelling import levelled
+from cprbm.mechanism import Mechanism, mechanism_of
+from cprbm.probing import probed, shapes, touching
+from cprbm.refining import all_zones, carried_over, fits, fitted, long_ones
+from cprbm.settings import Settings
+from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAnswer
+
+AGAIN = 12  # iterations on a mesh that fits a little better
+FITS = 6  # of the mesh to where contact is, at most
+BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is no doubt that it has ended
+ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all branches are near
+FURTHER = 30.0  # times as far before it, a finer mesh is on the branch still
+FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
+
+
+class March:
+    """The state while marching: where we are, under which loads, and what was reached.
+
+    ``family`` are the meshes from the one that is marched on to the one that is asked.
+    """
+
+    def __init__(self, scene: Scene, family: tuple[Settings, ...]) -> None:
+        self.scene, self.family = scene, family
+        mechanism = mechanism_of(scene, family[0])
+        problem = mechanism.problem
+        closed = np.zeros(problem.closure.rows)
+        rest = point_at(problem, {}, rest_state(problem.model), closed, np.zeros(0), NO_ROWS)
+        self.on = Follower(mechanism, family[0], rest, {}, [])
+        self.reached: list[StationAnswer] = []
+        self.events: list[Event] = []
+        self.closed_at: dict[str, float] = {}
+        self.asked_events = [p.of for p in scene.probes if p.quantity == "closing_load"]
+        # where contacts stood open in this stage, of those that have not closed yet
+        self.opened: dict[str, list[Stood]] = {}
+        self.critical: list[Critical] = []
+
+    def run(self) -> tuple[Ending, str]:
+        """Assemble, and march through every stage; the Ending and its sentence."""
+        if self.scene.assembly is not None:
+            ending, sentence = self._assemble()
+            if ending is not Ending.COMPLETED:
+                return ending, sentence
+        for stage in self.scene.stages:
+            here = self.on.values.get(stage.steps, 0.0), self.on.point
+            self.opened = {name: [here] for name in self.asked_events if name not in self.closed_at}
+            self.on.trail, self.on.careful = [], stage.beyond is not None
+            for target in stage.stations:
+                reached = self._reach(stage, target)
+                if reached.certificate is None:
+                    last = f"the last good value of {stage.steps} is {self.on.values.get(stage.steps, 0.0):.6g}"
+                    return reached.ending, f"{reached.ending.value}: {reached.sentence}; {last}"
+                station = self._station(stage, target, reached.certificate)
+                if station is None:
+                    return Ending.STEP_TOO_SMALL, "the finer meshes do not follow the coarsest"
+                self.reached.append(station)
+        return Ending.COMPLETED, Ending.COMPLETED.value
+
+    def _reach(self, stage: Stage, target: float) -> Reached:
+        """Go to a station, from branch to branch where one ends."""
+        on = self.on
+
+        def accept(point: Point, values: dict[str, float]) -> None:
+            if self.opened:
+                self._note_closings(stage.name, stage.steps, point, values[stage.steps])
+            for name, opened in self.opened.items():
+                if not _presses(point, name):
+                    opened.append((values[stage.steps], point))
+
+        while True:
+            reached = on.go(to(stage.steps, on.values, target), accept)
+            if reached.certificate is not None:
+                return reached
+            end = branch_end(on.mechanism, on.trail, on.refused)
+            if end is None:
+                return reached
+            landed, reached = self._ended(stage, target, self._sharpened(stage.steps, end))
+            if landed is None or on.values[stage.steps] == target:
+                return reached
+
+    def _ended(self, stage: Stage, target: float, end: BranchEnd) -> tuple[Landed | None, Reached]:
+        """Note that the branch ends, and leap from there if the stage goes on, to what is the present state then."""
+        on, of = self.on, f"{told(end.loss, end.what)} at {stage.steps} = {end.value:.6g}"
+        problem = on.mechanism.problem
+        before, after = potential_energy(problem, on.point) * problem.model.unit_moment, None
+        landed, reached = None, Reached(Ending.BRANCH_ENDS, of, certificate=None)
+        if stage.beyond == "jump":
+            # beyond the end on this mesh and on the one that was asked
+            ends = (end.value, on.refused)
+            furthest = max(ends) if target > on.trail[-1].value else min(ends)
+            step = max(BEYOND * abs(on.refused - on.trail[-1].value), ONWARD * abs(target - furthest))
+            value = furthest + np.copysign(min(step, abs(target - furthest)), target - furthest)
+            values = {**on.values, stage.steps: value}
+            landed = leap(on.mechanism, on.settings, values, on.point, end.direction)
+            reached = Reached(Ending.STEP_TOO_SMALL, f"no minimum found to which {of} leads", certificate=None)
+        if landed is not None:
+            on.point, on.values = landed.point, values
+            on.trail = [Minimum(value, landed.point, landed.certificate)]
+            after = potential_energy(problem, on.point) * problem.model.unit_moment
+            reached = Reached(Ending.COMPLETED, "", landed.certificate)
+        self.critical.append(
+            Critical(
+                stage=stage.name,
+                value=end.value,
+                uncertainty=end.uncertainty,
+                loss=end.loss,
+                what=end.what,
+                curvature=end.curvature,
+                left=end.left,
+                energy=before,
+                after=after,
+            )
+        )
+        return landed, reached
+
+    def _sharpened(self, load: str, end: BranchEnd) -> BranchEnd:
+        """The same end on the mesh that was asked, fitted to where contact is then; as it is where that fails."""
+        on, asked = self.on, self.family[-1]
+        width = abs(on.refused - on.trail[-1].value) + abs(end.value - on.trail[-1].value)
+        for start in reversed(on.trail):
+            ahead = end.value - start.value
+            if abs(ahead) < FURTHER * width:
+                continue
+            values = {**on.values, load: start.value}
+            found = self._fitted(start.point, values, start.certificate)
+            if found is None:
+                continue
+            mechanism, point, certificate = found
+            if mechanism is on.mechanism:
+                return end
+            stood = Minimum(start.value, point, certificate)
+            finer = Follower(mechanism, asked, point, values, [stood], careful=on.careful)
+            finer.go(to(load, values, end.value + ahead), _unseen)
+            sharper = branch_end(mechanism, finer.trail, finer.refused)
+            if sharper is not None and (sharper.loss, sharper.what) == (end.loss, end.what):
+                return sharper
+        return end
+
+    def _assemble(self) -> tuple[Ending, str]:
+        """Bring the beams' ends to their points; the Ending and its sentence."""
+        on, whole = self.on, self.on.mechanism
+        for begun in (freed, brought, released):
+            part = begun(self.scene, whole, on.point)
+            on.mechanism, on.point, on.trail = part.mechanism, part.start, []
+            reached = on.go(Way("", part.begin, part.target), _unseen)
+            if reached.certificate is None:
+                return reached.ending, f"{reached.ending.value}: as {part.sentence}, {reached.sentence}"
+        on.mechanism, on.values = whole, {}
+        self.closed_at |= {name: 0.0 for name in self.asked_events if _presses(on.point, name)}
+        return Ending.COMPLETED, ""
+
+    def _station(self, stage: Stage, value: float, certificate: Certificate) -> StationAnswer | None:
+        """The answer at a station that the march has reached, on the mesh that was asked; None if that fails."""
+        found = self._fitted(self.on.point, self.on.values, certificate)
+        if found is None:
+            if len(self.family) > 1:
+                return None
+            found = self.on.mechanism, self.on.point, certificate
+        mechanism, point, certificate = found
+        # what is open on the march's mesh may be closed on this one
+        self._note_closings(stage.name, stage.steps, point, value)
+        return StationAnswer(
+            stage=stage.name,
+            value=value,
+            values=probed(self.scene, mechanism, point, self.closed_at),
+            shapes=shapes(mechanism, point),
+            touching=touching(mechanism, point),
+            certificate=certificate,
+            branch=len(self.critical),
+        )
+
+    def _fitted(
+        self, point: Point, values: dict[str, float], certificate: Certificate
+    ) -> tuple[Mechanism, Point, Certificate] | None:
+        """A state on the branch on the mesh that was asked, its borders where zones of contact end."""
+        mechanism, iterations = self.on.mechanism, certificate.iterations
+        asked, now = self.family[-1], self.on.settings
+        for settings in (*self.family[1:-1], *[asked] * FITS):
+            zones = all_zones(mechanism, point)
+            if settings is not asked and not long_ones(zones):
+                continue  # a few places need no mesh between the coarsest and the finest
+            fit = fitted(mechanism, point, zones, settings)
+            if settings is now and fits(mechanism, fit):
+                break
+            target = mechanism_of(self.scene, settings, fit)
+            start = carried_over(mechanism, point, target, values)
+            # the first mesh, or one for other zones, may settle which places there are; the next ones know them
+            first = mechanism is self.on.mechanism or mechanism.fit.ends.keys() != fit.ends.keys()
+            most = settings.iterations if first else min(settings.iterations, AGAIN)
+            for settle in (False, True) if first and now is asked else (now is not asked,):
+                solved = equilibrium(target.problem, values, start, settings.tolerance, most, settle=settle)
+                iterations += solved.iterations
+                if solved.converged:
+                    break
+                if fit.kinks and (level := levelled(self.scene, settings, mechanism, point, fit, values)) is not None:
+                    target, solved = level
+                    break
+            turned = float(np.max(np.abs(solved.point.state.theta - start.state.theta)))
+            if not solved.converged or turned > FOLLOWED:
+                if now is asked:  # on a mesh that fits a little less it stands already
+                    break
+                return None
+            mechanism, point, now, found = target, solved.point, settings, solved
+        if mechanism is not self.on.mechanism:
+            certificate, ending = certify(mechanism, asked, found)
+            if ending is not Ending.COMPLETED:
+                return None
+        return mechanism, point, replace(certificate, iterations=iterations)
+
+    def notes(self) -> list[str]:
+        """What a reader should know besides the numbers."""
+        said = [
+            f"contact '{name}' never closed at a station"
+            for name in self.scene.contacts
+            if not any(name in station.touching for station in self.reached)
+        ]
+        for name, boundary in self.on.mechanism.boundaries.items():
+            if not isinstance(boundary, FittedBoundary):
+                continue
+            own = contact_imbalance(self.on.mechanism.problem, self.on.point, name)
+            said.append(
+                f"in contact '{name}' forces on the fitted boundary's points and on the joints that press it leave a "
+                f"moment of {own:.1e} of the largest; the formulation has no rotational invariance"
+            )
+            beyond = boundary.range_left(self.on.point.state, self.on.point.at)
+            if np.any(beyond > 0.0):
+                farthest = float(beyond.max()) * self.on.mechanism.problem.model.unit_length
+                said.append(
+                    f"in contact '{name}' {np.sum(beyond > 0.0)} of {len(beyond)} related joints lie beyond the fitted "
+                    f"boundary's ends, by up to {farthest:.2g} m, where it is continued; none of them presses"
+                )
+        return said
+
+    def _note_closings(self, stage: str, load: str, after: Point, value: float) -> None:
+        """Note which contacts have closed on the way to ``after``, and where, if the scene asks."""
+        for name in [name for name in self.opened if _presses(after, name)]:
+            closings = Closings(self.scene, self.family[-1], self.on.mechanism, self.asked, load, self.on.values)
+            closing = closings.first(name, self.opened[name], value)
+            if closing is not None:
+                del self.opened[name]
+                self.closed_at[name] = closing
+                self.events.append(Event(stage, name, "closes", closing))
+
+    @cached_property
+    def asked(self) -> Mechanism:
+        """The scene on even elements of the mesh that was asked."""
+        return self.on.mechanism if len(self.family) == 1 else mechanism_of(self.scene, self.family[-1])
+
+
+def _unseen(point: Point, values: dict[str, float]) -> None:
+    """Of minima on the way that nobody asks for."""
+
+
+def _presses(point: Point, contact: str) -> bool:
+    return any(lam > 0.0 for lam, name in zip(point.lam, point.rows.contact, strict=True) if name == contact)

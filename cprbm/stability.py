@@ -1,0 +1,136 @@
+"""Stability of an equilibrium: curvatures of the potential energy on the directions that are free.
+
+==========  =================================================================================
+K           Newton's system with the equalities and the contacts that press, on θ
+M           metric ∫ dθ² ds: the links' lengths, zero for links that do not turn
+κ, φ        √M K⁻¹ √M x = x/κ, φ = x/√M; κ in EI/ℓ² of the stiffest beam
+==========  =================================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import eigh_tridiagonal
+
+from cprbm.equilibrium import Point, Problem, local_system_at, many, system
+from scene.answer import Array
+
+DENSE = 120  # unknowns up to which all curvatures are computed at once
+LANCZOS = 40  # steps
+SMALL = 1e-9  # of the largest compliance: negative ones below it are round-off
+
+
+@dataclass(frozen=True, slots=True)
+class Softest:
+    """The smallest ``curvature`` κ, or of several negative ones that nearest to zero, and its direction (n_links,)."""
+
+    curvature: float
+    direction: Array
+
+
+def softest(problem: Problem, point: Point) -> Softest:
+    """κ and φ of PE on the directions that keep the equalities and the pressing contacts.
+
+    Minus infinity where the system is singular.
+    """
+    root = np.sqrt(problem.model.lengths)
+    root[problem.closure.fixed] = 0.0
+    try:
+        if many(point.rows):
+            inverse, lowest = _local_inverse(problem, point, root), None
+        else:
+            inverse, lowest = _bordered_inverse(problem, point, root)
+        value, vector = _extreme(inverse, problem.model.n_links, lowest=lowest)
+    except (np.linalg.LinAlgError, RuntimeError):
+        return Softest(float("-inf"), np.zeros(problem.model.n_links))
+    direction = np.divide(vector, root, out=np.zeros_like(vector), where=root > 0.0)
+    return Softest(1.0 / value if value != 0.0 else float("inf"), direction)
+
+
+def smallest_curvature(problem: Problem, point: Point) -> float:
+    """κ, as :func:`softest` finds it."""
+    return softest(problem, point).curvature
+
+
+def released(point: Point, name: str) -> Point:
+    """A state in which the contact or stop of a ``name`` holds nothing any more."""
+    others = np.array([each != name for each in point.rows.contact], dtype=bool)
+    return replace(point, lam=np.where(others, point.lam, 0.0))
+
+
+def _bordered_inverse(problem: Problem, point: Point, root: Array) -> tuple[Callable[[Array], Array], bool]:
+    """√M K⁻¹ √M on columns over θ, and whether it has a negative eigenvalue."""
+    found = system(problem, point, np.zeros(point.rows.size, dtype=bool), 0.0)
+    keep = np.concatenate((found.base, found.contacts[point.lam > 0.0]))
+    n, n_bodies = found.n_links, 3 * len(problem.model.free_bodies)
+    place = slice(n_bodies, n_bodies + len(found.anchors))
+
+    def inverse(x: Array) -> Array:
+        columns = root[:, None] * x
+        right = np.zeros((len(keep), columns.shape[1]))
+        right[place] = columns[found.anchors]
+        a, b = found.factors.solve(columns, right, keep)
+        a[found.anchors] = b[place]
+        return np.asarray(root[:, None] * a[:n])
+
+    return inverse, found.factors.negative(keep) > found.expected + int(np.sum(point.lam > 0.0))
+
+
+def _local_inverse(problem: Problem, point: Point, root: Array) -> Callable[[Array], Array]:
+    """√M K⁻¹ √M on columns over θ, through the system with the joints' positions."""
+    found = local_system_at(problem, point)
+    active = point.lam > 0.0
+    factors = found.factorised(active)
+    size, n = found.size + int(np.sum(active)), found.n_links
+
+    def inverse(x: Array) -> Array:
+        right = np.zeros((size, x.shape[1]))
+        right[:n] = root[:, None] * x
+        return np.asarray(root[:, None] * factors.solve(right)[:n])
+
+    return inverse
+
+
+def _extreme(inverse: Callable[[Array], Array], n: int, *, lowest: bool | None) -> tuple[float, Array]:
+    """The lowest or highest eigenvalue of a symmetric operator on R^n, and its vector.
+
+    Where it is unknown which of the two is wanted, the lowest if it is negative.
+    """
+    if n <= DENSE:
+        full = inverse(np.eye(n))
+        values, vectors = np.linalg.eigh(0.5 * (full + full.T))
+    else:
+        values, vectors = _ritz(inverse, n)
+    if lowest is None:
+        lowest = bool(values[0] < -SMALL * abs(values[-1]))
+    end = 0 if lowest else -1
+    return float(values[end]), vectors[:, end]
+
+
+def _ritz(inverse: Callable[[Array], Array], n: int) -> tuple[Array, Array]:
+    """Eigenvalues and vectors, the outer of them good, by Lanczos' method from a start with no symmetry.
+
+    With full reorthogonalisation.  The compliances of a beam fall with the fourth power of their number, so that a few
+    steps settle the ends.
+    """
+    vector = np.cos(0.7 * np.arange(n)) + 1.5
+    basis = np.zeros((n, LANCZOS))
+    diagonal, off = np.zeros(LANCZOS), np.zeros(LANCZOS)
+    vector /= np.linalg.norm(vector)
+    steps = LANCZOS
+    for k in range(LANCZOS):
+        basis[:, k] = vector
+        image = inverse(vector[:, None])[:, 0]
+        diagonal[k] = vector @ image
+        for _ in range(2):
+            image = image - basis[:, : k + 1] @ (basis[:, : k + 1].T @ image)
+        off[k] = np.linalg.norm(image)
+        if off[k] <= 1e-13 * np.max(np.abs(diagonal)):
+            steps = k + 1
+            break
+        vector = image / off[k]
+    values, vectors = eigh_tridiagonal(diagonal[:steps], off[: steps - 1])
+    return values, basis[:, :steps] @ vectors
