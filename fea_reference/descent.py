@@ -34,8 +34,10 @@ from fea_reference.newton import equilibrium
 from fea_reference.state import State
 from fea_reference.system import Drag, System
 from fea_reference.touch import Penalty
+from scene.answer import Loss
 
-_BEYOND = 1e-4  # of the span
+_BEYOND = 1e-6  # of the span
+_ASIDE = 1e-4  # the same where another branch goes off: both are as good as one nearer by
 _KICKS = (3e-3, 1e-2)  # rad (and lengths)
 _FARTHEST = 0.05  # rad (and lengths): the most that one step may move anything
 _NEAR = 0.02  # a step after which none at all is tried
@@ -48,7 +50,8 @@ _STRONGEST = 1e12
 def descended(march: March, load: int, target: float, span: float, lost: Lost) -> float | None:
     """Let the march fall from the end of a branch; the energy where it comes to rest, without units, or None."""
     onward = float(np.sign(target - lost.value))
-    march.values[load] = lost.value + onward * min(_BEYOND * span, abs(target - lost.value))
+    beyond = _ASIDE if lost.loss is Loss.BIFURCATION else _BEYOND
+    march.values[load] = lost.value + onward * min(beyond * span, abs(target - lost.value))
     march.penalties = {pair: Penalty(pair.stiffness) for pair in march.penalties}
     march.system = lost.system
     march.renew()

@@ -199,7 +199,7 @@ def _letting_go(march: March, load: int, target: float, span: float) -> Lost | N
             held = softest(march.model, stiffened(march.model, march.system, one, _RIGID))
             if not held.curvature > 0.0:
                 break
-            value = float(march.values[load]) + way
+            value = float(march.values[load] + way)
             energy = potential_energy(march.model, march.system, march.values)
             return Lost(
                 value,
@@ -231,7 +231,7 @@ def _next_to_go(march: March, load: int, onward: float) -> tuple[Touch, float] |
         change = float(one.foreseen(onward * rate).sum()) - one.push
         if change >= 0.0:
             continue
-        way = -one.push / change
+        way = float(-one.push / change)
         if found is None or way < abs(found[1]):
             found = one, onward * way
     return found

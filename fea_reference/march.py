@@ -12,6 +12,7 @@ from scipy.sparse.linalg import splu
 from fea_reference.acting import Acting
 from fea_reference.advance import advance
 from fea_reference.contacts import passed_through, resting_pressure, zones_of
+from fea_reference.curvature import smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.settings import Settings
@@ -61,7 +62,8 @@ class March:
     each did, and each stop first; ``switched`` that at which each stop last closed or let go; ``critical`` are the ends
     of branches that have been passed; ``iterations`` are counted since the last station; ``far`` is whether zones have
     been too far from one station to the last for tight penalties and have not come nearer since, so that the way to
-    the next one begins with loose ones on circles; ``loose`` whether penalties were loosened since they were tightened.
+    the next one begins with loose ones on circles; ``loose`` whether penalties were loosened since they were tightened;
+    ``known`` is the last system whose smallest curvature was asked for, with that.
     """
 
     model: Model
@@ -77,6 +79,14 @@ class March:
     iterations: int = 0
     far: bool = False
     loose: bool = False
+    known: tuple[System, float] | None = None
+
+    @property
+    def curvature(self) -> float:
+        """The smallest curvature of the potential energy on the feasible directions, found once for every system."""
+        if self.known is None or self.known[0] is not self.system:
+            self.known = self.system, smallest_curvature(self.model, self.system)
+        return self.known[1]
 
     def saved(self) -> March:
         """A copy to come back to."""

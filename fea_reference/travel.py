@@ -23,7 +23,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea_reference.curvature import smallest_curvature
 from fea_reference.descent import descended
 from fea_reference.following import Lost, about_to_go, followed
 from fea_reference.march import March, StoppedError, Trouble
@@ -71,7 +70,7 @@ def reach(march: March, course: Course, target: float) -> None:
     _arrive(march, course, target)
     march.tighten()
     same = len(march.critical) == len(origin.critical) and march.values[load] != origin.values[load]
-    if same and not smallest_curvature(march.model, march.system) > 0.0:
+    if same and not march.curvature > 0.0:
         # with the penalties of the way it was a minimum: the branch ends before, with those of its beginning
         there = march.saved()
         march.restore(origin)
@@ -106,7 +105,7 @@ def _arrive(march: March, course: Course, target: float) -> None:
                 f"{march.iterations} iterations only led to {march.shown(load, march.values[load])}",
             )
         if not known:
-            known = [(float(march.values[load]), smallest_curvature(march.model, march.system))]
+            known = [(float(march.values[load]), march.curvature)]
         rate = march.rate(load) if rate is None else rate
         speed = float(np.abs(rate[march.model.moving]).max())
         way = target - march.values[load]
@@ -132,7 +131,7 @@ def _arrive(march: March, course: Course, target: float) -> None:
                         f"beyond {saved.shown(load, saved.values[load])} the nearest equilibrium is on another branch",
                     )
                 else:
-                    curvature = smallest_curvature(march.model, march.system)
+                    curvature = march.curvature
                     unstable = minimum and curvature <= 0.0
         tired = trouble is not None and cuts >= _TIRED
         if minimum and follow and (close or unstable or tired):
@@ -195,10 +194,15 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
     """
     model, load = march.model, course.load
     unit = model.stepped[load].unit
-    what = {Loss.CONTACT: f" {lost.what}", Loss.STOP: f" {lost.what}"}.get(lost.loss, "")
+    why = {
+        Loss.FOLD: "it folds back",
+        Loss.BIFURCATION: "another one branches off",
+        Loss.CONTACT: f"the contact {lost.what} lets go",
+        Loss.STOP: f"the stop {lost.what} lets go",
+    }[lost.loss]
     sentence = (
-        f"at {march.shown(load, lost.value)} the branch ends: {lost.loss.value}{what}, the smallest curvature goes "
-        f"from {lost.curvature:.3g} to {lost.left:.3g}"
+        f"at {march.shown(load, lost.value)} the branch of minima ends, {why}: the smallest curvature comes to "
+        f"{lost.curvature:.3g} there, and what is left has {lost.left:.3g}"
     )
     after = descended(march, load, target, course.span, lost) if course.jump else None
     if course.stage:
