@@ -25,7 +25,6 @@ import numpy as np
 
 from fea_reference.advance import advance
 from fea_reference.contacts import zones_of
-from fea_reference.curvature import softest
 from fea_reference.energy import penalised_energy, potential_energy
 from fea_reference.following import Lost
 from fea_reference.march import March
@@ -40,7 +39,8 @@ _BEYOND = 1e-6  # of the span
 _ASIDE = 1e-4  # the same where another branch goes off: both are as good as one nearer by
 _KICKS = (3e-3, 1e-2)  # rad (and lengths)
 _FARTHEST = 0.05  # rad (and lengths): the most that one step may move anything
-_NEAR = 0.02  # a step after which none at all is tried
+_AIM = 0.03  # the same that is aimed at; after a step no longer, none but that to the minimum is tried
+_CONVEX = 2.0  # times a negative curvature: the least drag
 _STEPS = 400
 _CHANGES = 8  # of contacts and stops in one step
 _ROUNDED = 1e-9  # of the energy
@@ -58,6 +58,7 @@ def descended(march: March, load: int, target: float, span: float, lost: Lost) -
     size = float(np.abs(lost.direction[march.model.moving]).max())
     if not size > 0.0:
         return None
+    iterations = march.iterations
     for kick in _KICKS:
         ways: list[tuple[float, int, March, float]] = []
         for sense in (1.0, -1.0):
@@ -70,6 +71,7 @@ def descended(march: March, load: int, target: float, span: float, lost: Lost) -
                 ways.append((penalised_energy(trial.model, trial.system, trial.values), -len(ways), trial, drag))
         for _, _, trial, drag in sorted(ways, key=lambda way: way[:2]):
             if _fallen(trial, load, drag):
+                march.iterations += trial.iterations - iterations
                 march.restore(trial)
                 march.tighten()
                 return potential_energy(march.model, march.system, march.values)
@@ -78,35 +80,34 @@ def descended(march: March, load: int, target: float, span: float, lost: Lost) -
 
 def _fallen(march: March, load: int, drag: float) -> bool:
     """Fall to a minimum, if there is one to be found."""
+    march.renew()  # without the drag
     for _ in range(_STEPS):
         if drag > _STRONGEST:
             return False
-        before = march.system
+        before, saved = march.system, march.saved()
         energy = penalised_energy(march.model, before, march.values)
-        saved = march.saved()
-        if not _step(march, load, before.z, drag, before.z):
+        # with less drag than this the next state would be no minimum
+        drag = max(drag, -_CONVEX * march.curvature)
+        if not _step(march, load, before.z, drag, before.z) or _risen(march, energy):
             march.restore(saved)
             drag *= 4.0
             continue
-        now = penalised_energy(march.model, march.system, march.values)
-        if now > energy + _ROUNDED * abs(energy):
-            march.restore(saved)
-            drag *= 4.0
+        march.renew()
+        moved = march.moved(march.system, before.z)
+        drag *= min(max(moved / _AIM, 0.1), 4.0)
+        if moved > _AIM or not march.curvature > 0.0:
             continue
-        drag *= 0.4
-        if march.moved(march.system, before.z) > _NEAR:
-            continue
-        saved = march.saved()
-        march.renew()  # without the drag
-        if not softest(march.model, march.system).curvature > 0.0:
-            continue
+        saved, energy = march.saved(), penalised_energy(march.model, march.system, march.values)
         at_rest = _step(march, load, march.system.z, 0.0, march.system.z)
-        if at_rest and penalised_energy(march.model, march.system, march.values) <= now + _ROUNDED * abs(now):
-            mode = softest(march.model, march.system)
-            if mode.curvature > 0.0:
-                return True
+        if at_rest and not _risen(march, energy) and march.curvature > 0.0:
+            return True
         march.restore(saved)
     return False
+
+
+def _risen(march: March, energy: float) -> bool:
+    """Whether the energy is more than it was."""
+    return penalised_energy(march.model, march.system, march.values) > energy + _ROUNDED * abs(energy)
 
 
 def _step(march: March, load: int, anchor: State, drag: float, start: State) -> bool:

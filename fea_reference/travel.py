@@ -79,6 +79,7 @@ def reach(march: March, course: Course, target: float) -> None:
             march.restore(there)
         else:
             _beyond(march, course, target, lost)
+            march.iterations = 0
             _arrive(march, course, target)
             march.tighten()
     after = march.zones()
@@ -95,11 +96,12 @@ def _arrive(march: March, course: Course, target: float) -> None:
     stride, cuts, searching, follow = np.inf, 0, False, True
     reason: Trouble = (Ending.STEP_TOO_SMALL, "")
     known: list[tuple[float, float]] = []
+    limit = march.settings.iteration_limit
     rate: Array | None = None
     while march.values[load] != target:
         if cuts > _CUTS:
             raise StoppedError(*reason)
-        if march.iterations > march.settings.iteration_limit:
+        if march.iterations > limit:
             raise StoppedError(
                 Ending.STEP_TOO_SMALL,
                 f"{march.iterations} iterations only led to {march.shown(load, march.values[load])}",
@@ -140,6 +142,7 @@ def _arrive(march: March, course: Course, target: float) -> None:
             if lost is not None:
                 _beyond(march, course, target, lost)
                 stride, cuts, searching = np.inf, 0, False
+                limit = march.iterations + march.settings.iteration_limit
             elif tired:
                 march.restore(saved)
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble or reason
