@@ -47,6 +47,7 @@ _ROOTS = 60
 _FINE = 1e-8  # of the span
 _SHORT = 1e-4  # of a step
 _ALONG = 0.5  # cosine between branch and φ at a fold
+_TURNING = 0.1  # of dλ/ds at the beginning: what is left of it at a fold
 _APPROACHED = 1e-8  # of the span: from where a contact's force is zero
 _SHARE = 0.9  # of the way there, at a time
 _RIGID = 1e4  # times as stiff
@@ -288,9 +289,8 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
     mass = lumped_mass(march.model)
     along = float(before.mode.direction @ (mass * before.way))
     size = float(np.sqrt(before.way @ (mass * before.way)))
-    # τ goes to zero as μ does, or not at all
-    turning = (before.rate / first.rate) ** 2 < abs(before.curvature / first.curvature)
-    fold = turning and abs(along) > _ALONG * size
+    # τ goes to zero with μ, or not at all
+    fold = abs(before.rate) < _TURNING * abs(first.rate) and abs(along) > _ALONG * size
     direction = before.mode.direction * (-1.0 if fold and along < 0.0 else 1.0)
     loss = Loss.FOLD if fold else Loss.BIFURCATION
     zero = before.curvature if before.curvature < -behind.curvature else behind.curvature
