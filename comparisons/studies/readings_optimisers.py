@@ -10,7 +10,7 @@ import time
 import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 from frozendict import frozendict
@@ -37,7 +37,8 @@ class Answered:
 class Optimiser(Protocol):
     """One solve: problem, α in rad, start, and the seconds it may take."""
 
-    def __call__(self, problem: Problem, alpha: float, start: Array, seconds: float) -> Answered: ...
+    def __call__(self, problem: Problem, alpha: float, start: Array, seconds: float) -> Answered:
+        """Solve."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,8 +171,8 @@ class _Task:
         self.problem, self.alpha, self.differences = problem, alpha, differences
         self.per_energy, self.per_length = _FACTORS[units]
 
-    def energy(self, z: Array) -> Any:
-        return self.per_energy * self.problem.energy(z)[0]
+    def energy(self, z: Array) -> Array:
+        return np.asarray(self.per_energy * self.problem.energy(z)[0])
 
     def energy_slope(self, z: Array) -> Array:
         if self.differences:
@@ -195,7 +196,7 @@ class _Task:
         return self.per_length * self.problem.contact(z)[1]
 
 
-def _forward(values: Callable[[Array], Any], z: Array) -> Array:
+def _forward(values: Callable[[Array], Array], z: Array) -> Array:
     """Differences by √ε, as fmincon takes them."""
     steps = np.sqrt(np.finfo(float).eps) * np.maximum(1.0, np.abs(z))
     return np.asarray((values(z + np.diag(steps)) - values(z)).T / steps)

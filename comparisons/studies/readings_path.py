@@ -29,6 +29,7 @@ FINEST = np.radians(0.005)
 _STEP = 1e-30
 _LARGEST_TURN = np.radians(6.0)
 _NONE_LEFT = 0.05  # a curvature below this share of the largest on the branch is on its way to zero
+_LETS_GO = 0.01  # and so is a multiplier below this share of its own largest
 _NEWTON = 30
 
 Kind = Literal["fold", "contact lets go", "limit lets go", "lost"]
@@ -103,7 +104,7 @@ def settled(problem: Problem, alpha: float, z: Array, multipliers: Array, acting
             return None
         z, multipliers = solved
         g, G = constraints(problem, z, alpha)
-        broken = [(g[4 + i], i) for i in range(len(g) - 4) if i not in working and g[4 + i] > 1e-12]
+        broken = [(g[4 + i], i) for i in range(len(g) - 4) if i not in working and g[4 + i] > 1e-11]
         pulling = [(multipliers[4 + i], i) for i in working if multipliers[4 + i] < -1e-8]
         if broken:
             working.add(max(broken)[1])
@@ -121,16 +122,17 @@ def settled(problem: Problem, alpha: float, z: Array, multipliers: Array, acting
 def followed(problem: Problem, start: State, stations: Sequence[float]) -> Path:
     """The branch of ``start`` at stations, rad, in their order, as far as it goes."""
     states: list[State] = []
-    state, largest = start, start.curvature
+    state, largest, strongest = start, start.curvature, start.multipliers
     for station in stations:
         step = station - state.alpha
         while abs(station - state.alpha) > 1e-12:
             aim = state.alpha + np.sign(step) * min(abs(step), abs(station - state.alpha))
             after = settled(problem, aim, state.z, state.multipliers, state.acting)
             if after is not None and np.max(np.abs(after.z - state.z)) < _LARGEST_TURN and after.curvature > 0.0:
-                state, largest, step = after, max(largest, after.curvature), 2.0 * step
+                state, step = after, 2.0 * step
+                largest, strongest = max(largest, state.curvature), np.maximum(strongest, state.multipliers)
             elif abs(aim - state.alpha) < FINEST:
-                return Path(tuple(states), state, _ended(problem, state, largest))
+                return Path(tuple(states), state, _ended(problem, state, largest, strongest))
             else:
                 step = 0.5 * (aim - state.alpha)
         states.append(state)
@@ -148,7 +150,7 @@ def _newton(problem: Problem, alpha: float, z: Array, multipliers: Array, rows: 
         acting = np.zeros(len(g))
         acting[rows] = multipliers[rows]
         residual = np.concatenate((problem.energy(z)[1] + G[rows].T @ acting[rows], g[rows]))
-        if np.max(np.abs(residual[: len(z)])) < 1e-9 and np.max(np.abs(residual[len(z) :])) < 1e-13:
+        if np.max(np.abs(residual[: len(z)])) < 1e-8 and np.max(np.abs(residual[len(z) :])) < 1e-12:
             return z, acting
         H = hessian(problem, z, alpha, acting)
         matrix = np.block([[H, G[rows].T], [G[rows], np.zeros((len(rows), len(rows)))]])
@@ -168,13 +170,17 @@ def _curvature(H: Array, G: Array) -> float:
     return float(linalg.eigvalsh(Z.T @ H @ Z, subset_by_index=[0, 0])[0])
 
 
-def _ended(problem: Problem, state: State, largest: float) -> End:
-    """How the branch ends: κ has gone to zero, or the weakest of what acts lets go and leaves a negative κ."""
+def _ended(problem: Problem, state: State, largest: float, strongest: Array) -> End:
+    """How the branch ends: κ has gone to zero, or the weakest of what acts lets go and leaves a negative κ.
+
+    ``largest`` and ``strongest`` are the largest κ and λ of the branch.
+    """
     if state.curvature < _NONE_LEFT * largest:
         return End(state.alpha, "fold", state.curvature, None)
-    if not state.acting:
+    shares = {i: float(state.multipliers[4 + i] / strongest[4 + i]) for i in state.acting}
+    weakest = min(shares, key=shares.__getitem__, default=None)
+    if weakest is None or shares[weakest] > _LETS_GO:
         return End(state.alpha, "lost", state.curvature, None)
-    weakest = min(state.acting, key=lambda i: state.multipliers[4 + i])
     rows = _rows(set(state.acting) - {weakest})
     G = constraints(problem, state.z, state.alpha)[1]
     left = _curvature(hessian(problem, state.z, state.alpha, state.multipliers), G[rows])

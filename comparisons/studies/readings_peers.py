@@ -8,11 +8,14 @@ from __future__ import annotations
 import importlib.util
 from collections.abc import Mapping
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from comparisons.studies.readings_problem import Array, Problem
+
+if TYPE_CHECKING:
+    from casadi import MX, Function
 
 
 def there() -> bool:
@@ -20,7 +23,7 @@ def there() -> bool:
     return importlib.util.find_spec("casadi") is not None
 
 
-def expressions(problem: Problem) -> tuple[Any, Any, Any, Any]:
+def expressions(problem: Problem) -> tuple[MX, MX, MX, MX]:
     """z, the pins (x_B, y_B, x_C, y_C), PE in J, and closure and contact in m, one below the other.
 
     Raises:
@@ -46,7 +49,7 @@ def expressions(problem: Problem) -> tuple[Any, Any, Any, Any]:
     mean = 0.5 * (theta[1][related] + theta[1][before])
     half = 0.5 * float(related[-1]) * problem.mechanism.beam / n
 
-    def powers(heights: Any) -> Any:
+    def powers(heights: MX) -> MX:
         scaled = (heights - half) / half
         return ca.horzcat(*[scaled**exponent for exponent in range(degree + 1)])
 
@@ -57,7 +60,9 @@ def expressions(problem: Problem) -> tuple[Any, Any, Any, Any]:
 
 
 @lru_cache(maxsize=8)
-def solver(problem: Problem, per_energy: float, per_length: float, options: Mapping[str, Any]) -> tuple[Any, Array]:
+def solver(
+    problem: Problem, per_energy: float, per_length: float, options: Mapping[str, Any]
+) -> tuple[Function, Array]:
     """IPOPT on a problem in given units, and a row of zeros as long as its constraints.
 
     Raises:
@@ -67,7 +72,7 @@ def solver(problem: Problem, per_energy: float, per_length: float, options: Mapp
     import casadi as ca
 
     z, pins, energy, constraints = expressions(problem)
-    settings = {f"ipopt.{name}": value for name, value in options.items()}
-    quiet = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes", "error_on_fail": False}
+    settings: dict[str, Any] = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes", "error_on_fail": False}
+    settings.update({f"ipopt.{name}": value for name, value in options.items()})
     task = {"x": z, "p": pins, "f": per_energy * energy, "g": per_length * constraints}
-    return ca.nlpsol("ipopt", "ipopt", task, {**quiet, **settings}), np.zeros(constraints.shape[0])
+    return ca.nlpsol("ipopt", "ipopt", task, settings), np.zeros(constraints.shape[0])

@@ -64,8 +64,8 @@ class Reading:
     """What the text leaves open.
 
     ``reach`` (m) bounds the related joints by their height before the beams are bent; ``clamped`` says whether the
-    joint next to the clamp, which cannot move, is among them.  ``degree`` None stands for no fitted curve: the joints of
-    beam 1 keep the distance t from the nearest link of beam 2.
+    joint next to the clamp, which cannot move, is among them.  ``degree`` None stands for no fitted curve: the joints
+    of beam 1 keep the distance t from the nearest link of beam 2.
     """
 
     degree: int | None = 4
@@ -145,7 +145,7 @@ class Problem:
         m, turn = self.mechanism, self.reading.sense * alpha
         c, s = np.cos(turn), np.sin(turn)
         arm = np.array([[-m.BD, m.AD], [m.BD, m.AD]])
-        return np.array([0.0, m.OA]) + arm @ np.array([[c, s], [-s, c]])
+        return np.asarray(np.array([0.0, m.OA]) + arm @ np.array([[c, s], [-s, c]]))
 
     def closure(self, z: Array, alpha: complex) -> tuple[Array, Array]:
         """Ends less pins, m, (…, 4), and the Jacobian, (…, 4, 2N): x and y of beam 1, then of beam 2."""
@@ -162,31 +162,32 @@ class Problem:
     def limited(self, alpha: complex) -> Array:
         """Least and most θ_1N and θ_2N that the limit of the angle leaves, rad, (2, 2); ±∞ where it leaves all.
 
-        ``pin``: the beam leaves its pin within ``limit`` of the line to the other pin, on ``one side`` only where that is
-        said; ``away``: of the opposite line; ``flipped``: beam 1 of the line to the other pin and beam 2 of the opposite
-        one, which an acute angle of two lines allows as well; ``arm``: of the normal to BC towards the pivot; ``fixed``
-        and ``vertical``: of the line to the other pin and of the vertical as they are at α = 0.
+        ``pin``: the beam leaves its pin within ``limit`` of the line to the other pin, on ``one side`` only where that
+        is said; ``away``: of the opposite line; ``flipped``: beam 1 of the line to the other pin and beam 2 of the
+        opposite one, which an acute angle of two lines allows as well; ``arm``: of the normal to BC towards the pivot;
+        ``fixed`` and ``vertical``: of the line to the other pin and of the vertical as they are at α = 0.
         """
         turn, limit = self.reading.sense * alpha, self.reading.limit
         free = np.array([[-np.inf, np.inf], [-np.inf, np.inf]])
         within = np.array([-limit, limit])
         match self.reading.limits:
             case "none":
-                return free
+                found = free
             case "pin":
-                return np.array([[np.pi], [0.0]]) + turn + within
+                found = np.array([[np.pi], [0.0]]) + turn + within
             case "one side":
-                return np.array([[np.pi + turn - limit, np.inf], [-np.inf, turn + limit]])
+                found = np.array([[np.pi + turn - limit, np.inf], [-np.inf, turn + limit]])
             case "flipped":
-                return np.full((2, 1), np.pi) + turn + within
+                found = np.full((2, 1), np.pi) + turn + within
             case "away":
-                return np.array([[0.0], [np.pi]]) + turn + within
+                found = np.array([[0.0], [np.pi]]) + turn + within
             case "arm":
-                return np.full((2, 1), 0.5 * np.pi) + turn + within
+                found = np.full((2, 1), 0.5 * np.pi) + turn + within
             case "fixed":
-                return np.array([[np.pi], [0.0]]) + within
+                found = np.array([[np.pi], [0.0]]) + within
             case "vertical":
-                return np.full((2, 1), 0.5 * np.pi) + within
+                found = np.full((2, 1), 0.5 * np.pi) + within
+        return np.asarray(found)
 
     def contact(self, z: Array) -> tuple[Array, Array]:
         """c_j ≤ 0, m, (…, m), and the Jacobian, (…, m, 2N), of the related joints."""
@@ -275,4 +276,4 @@ class Problem:
         along = np.diff(np.stack((x[1], y[1]), axis=-1), axis=0)
         apart = np.stack((x[0, self.related], y[0, self.related]), axis=-1)[:, None, :] - start
         share = np.clip(np.sum(apart * along, axis=-1) / np.sum(along**2, axis=-1), 0.0, 1.0)
-        return np.argmin(np.sum((apart - share[..., None] * along) ** 2, axis=-1), axis=-1)
+        return np.asarray(np.argmin(np.sum((apart - share[..., None] * along) ** 2, axis=-1), axis=-1))
