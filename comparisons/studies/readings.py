@@ -30,7 +30,7 @@ from comparisons.studies.readings_problem import PAPER, Array, Mechanism, Proble
 
 JUMP = np.radians(30.0)
 """By this a link turns further than it may in an ordinary step."""
-ORDINARY = 2.0
+ORDINARY = 1.6
 """So much a link may turn for the crank's turn; on the branches it is about 1.5 at most."""
 THEIRS = (np.radians(35.0), np.radians(36.0))
 TOP = 90

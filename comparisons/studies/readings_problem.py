@@ -271,9 +271,19 @@ class Problem:
         return t + sine * away - cosine * along, jacobian
 
     def _nearest_links(self, z: Array) -> Array:
+        """Numbers of the links; off a bend, where two are as near, they change on its bisector: the gap has no step."""
         x, y = self.places(z)
-        start = np.stack((x[1, :-1], y[1, :-1]), axis=-1)
-        along = np.diff(np.stack((x[1], y[1]), axis=-1), axis=0)
-        apart = np.stack((x[0, self.related], y[0, self.related]), axis=-1)[:, None, :] - start
-        share = np.clip(np.sum(apart * along, axis=-1) / np.sum(along**2, axis=-1), 0.0, 1.0)
-        return np.asarray(np.argmin(np.sum((apart - share[..., None] * along) ** 2, axis=-1), axis=-1))
+        joints = np.stack((x[1], y[1]), axis=-1)
+        along = np.diff(joints, axis=0)
+        apart = np.stack((x[0, self.related], y[0, self.related]), axis=-1)[:, None, :] - joints
+        share = np.sum(apart[:, :-1] * along, axis=-1) / np.sum(along**2, axis=-1)
+        off = apart[:, :-1] - np.clip(share, 0.0, 1.0)[..., None] * along
+        i = np.argmin(np.sum(off**2, axis=-1), axis=-1)
+        rows = np.arange(len(i))
+        # off a bend both links have its joint as their nearest place, and round-off chooses
+        bend = np.where(share[rows, i] > 1.0, i + 1, i)
+        bent = (share[rows, i] > 1.0) | (share[rows, i] < 0.0)
+        unit = along / np.linalg.norm(along, axis=-1, keepdims=True)
+        before, after = np.maximum(bend - 1, 0), np.minimum(bend, self.links)
+        behind = np.sum(apart[rows, bend] * (unit[before] + unit[after]), axis=-1) > 0.0
+        return np.asarray(np.where(bent, np.where(behind, after, before), i))

@@ -69,8 +69,8 @@ def _ends(found: Readings) -> Sheet:
         "Branches followed with exact derivatives",
         ("reading", "way", "end", "how", "κ", "left", "beam", "PE before", "PE after", "limit", "35°–36°"),
         tuple(body),
-        "κ is the smallest curvature of the energy on the feasible directions at the end, left the one without what lets "
-        "go, N·m; energies in J at the stations on both sides; limit: whether it acts before the end.",
+        "κ is the smallest curvature of the energy on the feasible directions at the end, left the one without what "
+        "lets go, N·m; energies in J at the stations on both sides; limit: whether it acts before the end.",
     )
 
 
@@ -110,20 +110,20 @@ def _lowest(found: Readings) -> Sheet:
 
 
 def _branch(found: Readings) -> Sheet:
-    body = []
-    for track in (found.of(NEAREST, "forwards"), found.of(NEAREST, "backwards")):
-        body.extend(
-            (
-                track.way,
-                _degrees(each.alpha, 0),
-                number(each.energy, 5),
-                number(each.moment, 4),
-                str(each.touching),
-                "yes" if each.held else "no",
-            )
-            for each in (track.stood if track else ())
-            if round(float(np.degrees(each.alpha))) % _EVERY == 0
+    tracks = [track for track in (found.of(NEAREST, "forwards"), found.of(NEAREST, "backwards")) if track is not None]
+    body = [
+        (
+            track.way,
+            _degrees(each.alpha, 0),
+            number(each.energy, 5),
+            number(each.moment, 4),
+            str(each.touching),
+            "yes" if each.held else "no",
         )
+        for track in tracks
+        for each in track.stood
+        if round(float(np.degrees(each.alpha))) % _EVERY == 0
+    ]
     return Sheet(
         "The branches with true contact",
         ("way", "α", "PE, J", "moment, N·m", "touching joints", "limit acts"),
@@ -139,9 +139,9 @@ def _limited(track: Track) -> bool:
 
 def _words(found: Readings) -> tuple[str, ...]:
     words = [
-        "The paper turns the crank from 0° to 90° and sees beam 2 jump between 35° and 36°. A branch of minima can only "
-        "end where its smallest curvature on the feasible directions reaches zero, or where a contact or a limit lets go "
-        "and leaves a negative one; an optimiser can leave it earlier."
+        "The paper turns the crank from 0° to 90° and sees beam 2 jump between 35° and 36°. A branch of minima can "
+        "only end where its smallest curvature on the feasible directions reaches zero, or where a contact or a limit "
+        "lets go and leaves a negative one; an optimiser can leave it earlier."
     ]
     true = found.of(NEAREST, "forwards")
     if true is not None:
@@ -152,12 +152,12 @@ def _words(found: Readings) -> tuple[str, ...]:
     asked = [t for t in found.tracks if isinstance(t.variant, Optimised) and t.way == "forwards"]
     if asked:
         words.append(_optimisers(asked))
-    returns = [t for t in found.tracks if t.way == "backwards" and t.variant.name and not _over(t)]
+    returns = [t for t in found.tracks if t.way == "backwards" and not _over(t)]
     if returns:
         back = [t.variant.name for t in returns if t.jumps]
         words.append(
-            "On the way back to 0° no beam jumps in any of the readings and optimisers that were asked: what has jumped "
-            "stays."
+            "On the way back to 0° no beam jumps in any of the readings and optimisers that were asked: what has "
+            "jumped stays."
             if not back
             else f"On the way back to 0° a beam jumps under: {', '.join(back)}."
         )
@@ -224,14 +224,14 @@ def _optimisers(asked: list[Track]) -> str:
         low = min(once, key=lambda track: track.jumps[0].after)
         high = max(once, key=lambda track: track.jumps[0].after)
         parts.append(
-            f"Of {len(asked)} ways to ask an optimiser {len(once)} jump once, between {_between(low)} ({_name(low)}) and "
-            f"{_between(high)} ({_name(high)})."
+            f"Of {len(asked)} ways to ask an optimiser {len(once)} jump once, between {_between(low)} ({_name(low)}) "
+            f"and {_between(high)} ({_name(high)})."
         )
     if often:
         first = min(often, key=lambda track: track.jumps[0].after)
         parts.append(
-            f"{len(often)} go to and fro between the states, the first from {_between(first)} on ({_name(first)}): what "
-            "they find is a matter of the start, not of the mechanism."
+            f"{len(often)} go to and fro between the states, the first from {_between(first)} on ({_name(first)}): "
+            "what they find is a matter of the start, not of the mechanism."
         )
     return " ".join(parts)
 
