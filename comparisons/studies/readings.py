@@ -36,7 +36,7 @@ THEIRS = (np.radians(35.0), np.radians(36.0))
 TOP = 90
 TOUCHING = 1e-7
 """m or rad: a joint this near is counted as touching, and a limit as acting."""
-SECONDS = 3.0
+SECONDS = 5.0
 """What an optimiser may take for one station."""
 
 Way = Literal["forwards", "backwards"]

@@ -9,6 +9,7 @@ from comparisons.formats import number
 from comparisons.sheets import Sheet
 from comparisons.studies.readings import JUMP, NEAREST, SECONDS, THEIRS, Followed, Optimised, Readings, Track
 from comparisons.studies.readings_drawn import jumps_of_readings
+from comparisons.studies.readings_optimisers import Ipopt
 from comparisons.studies.readings_path import End
 from comparisons.studies.readings_problem import Reading
 from comparisons.studies.told import Told
@@ -111,12 +112,13 @@ def _lowest(found: Readings) -> Sheet:
 
 def _branch(found: Readings) -> Sheet:
     tracks = [track for track in (found.of(NEAREST, "forwards"), found.of(NEAREST, "backwards")) if track is not None]
+    largest = max((abs(each.moment or 0.0) for track in tracks for each in track.stood), default=0.0)
     body = [
         (
             track.way,
             _degrees(each.alpha, 0),
             number(each.energy, 5),
-            number(each.moment, 4),
+            number(_clear(each.moment, largest), 4),
             str(each.touching),
             "yes" if each.held else "no",
         )
@@ -129,6 +131,11 @@ def _branch(found: Readings) -> Sheet:
         ("way", "α", "PE, J", "moment, N·m", "touching joints", "limit acts"),
         tuple(body),
     )
+
+
+def _clear(moment: float | None, largest: float) -> float | None:
+    """Nothing in place of round-off."""
+    return 0.0 if moment is not None and abs(moment) < 1e-12 * largest else moment
 
 
 def _limited(track: Track) -> bool:
@@ -152,6 +159,7 @@ def _words(found: Readings) -> tuple[str, ...]:
     asked = [t for t in found.tracks if isinstance(t.variant, Optimised) and t.way == "forwards"]
     if asked:
         words.append(_optimisers(asked))
+        words.extend(_barrier(asked))
     returns = [t for t in found.tracks if t.way == "backwards" and not _over(t)]
     if returns:
         back = [t.variant.name for t in returns if t.jumps]
@@ -168,6 +176,7 @@ def _words(found: Readings) -> tuple[str, ...]:
             f"Between 35° and 36°: {'; '.join(matching)}."
             if matching
             else "Nothing that was asked gives 35° to 36°: no branch ends there, and no optimiser first jumps there."
+            + _nearest(found)
         )
     words.extend(
         f"Left out, since CasADi is not installed (the extra peers): {len(found.left_out)} variants of IPOPT."
@@ -199,7 +208,11 @@ def _physics(found: Readings, true: Track) -> str:
     if back is not None and not back.jumps:
         held = "its limit acts all the way" if all(each.held for each in back.stood) else "its limit acts in part"
         sentence += f" Beam 2 is then over, {held}, and it is still over when the crank is back at 0°."
-    return sentence
+    return sentence + (
+        " This is the reading of the case: the crank turns counter-clockwise as Fig. 17's letters have it, so that it "
+        "is beam 2 that jumps; within 45° of the line to the other pin the beams can only bulge towards each other; and "
+        "contact acts wherever they meet."
+    )
 
 
 def _branches(ahead: list[Track]) -> str:
@@ -234,6 +247,49 @@ def _optimisers(asked: list[Track]) -> str:
             "what they find is a matter of the start, not of the mechanism."
         )
     return " ".join(parts)
+
+
+def _barrier(asked: list[Track]) -> list[str]:
+    """The same question to one interior point in two units."""
+    first = {
+        track.variant.optimiser.units: track
+        for track in asked
+        if isinstance(track.variant, Optimised)
+        and (track.variant.reading, track.variant.start) == (Reading(), "neighbour")
+        and isinstance(track.variant.optimiser, Ipopt)
+        and not track.variant.optimiser.options
+    }
+    if len(first) < 2:
+        return []
+    said = " and ".join(f"{_between(track)} in {units.replace(',', ' and')}" for units, track in first.items())
+    return [
+        f"IPOPT from its neighbour, asked the same in two units, jumps from {said}: its first barrier of 0.1 is 0.1 "
+        "J for the one and a thousandth of that for the other, and pushes the beams apart at every station before it is "
+        "let down. That is the optimiser's doing."
+    ]
+
+
+def _nearest(found: Readings) -> str:
+    """What comes nearest to the paper's angles."""
+    known = [
+        (float(track.ends[0].alpha), f"the end of the branch under {_name(track)}")
+        for track in found.tracks
+        if track.way == "forwards" and track.ends
+    ]
+    known.extend(
+        (0.5 * (track.jumps[0].before + track.jumps[0].after), _name(track))
+        for track in found.tracks
+        if isinstance(track.variant, Optimised) and track.way == "forwards" and len(track.jumps) == 1
+    )
+    known.extend(
+        (each.alpha, f"a search for the lowest state, {each.limits}")
+        for each in found.crossings
+        if each.alpha is not None
+    )
+    if not known:
+        return ""
+    alpha, what = min(known, key=lambda each: abs(each[0] - 0.5 * sum(THEIRS)))
+    return f" Nearest comes {what}, at {_degrees(alpha, 1)}."
 
 
 def _lowest_words(found: Readings) -> list[str]:
