@@ -28,7 +28,7 @@ from comparisons.studies.readings_optimisers import Ipopt, Optimiser, Slsqp, Tru
 from comparisons.studies.readings_path import End, State, constraints, followed, settled
 from comparisons.studies.readings_problem import PAPER, Array, Mechanism, Problem, Reading
 
-JUMP = np.radians(30.0)
+JUMP = np.radians(15.0)
 """By this a link turns further than it may in an ordinary step."""
 ORDINARY = 1.6
 """So much a link may turn for the crank's turn; on the branches it is about 1.5 at most."""
@@ -36,7 +36,7 @@ THEIRS = (np.radians(35.0), np.radians(36.0))
 TOP = 90
 TOUCHING = 1e-7
 """m or rad: a joint this near is counted as touching, and a limit as acting."""
-SECONDS = 5.0
+SECONDS = 3.0
 """What an optimiser may take for one station."""
 
 Way = Literal["forwards", "backwards"]
@@ -106,7 +106,7 @@ class Track:
         stood: the stations with an answer, in their order.
         ends: of the branches that were followed.
         failed: stations without an answer, rad, and why.
-        timed_out: how many of those ran out of time.
+        timed_out: at how many stations the time was up.
     """
 
     variant: Variant
@@ -377,9 +377,9 @@ def _asked(
     last: Array | None = None
     for alpha in stations:
         answer = variant.optimiser(problem, alpha, start, SECONDS)
+        late += answer.timed_out
         if answer.why:
             failed.append((alpha, answer.why))
-            late += answer.timed_out
             continue
         stood.append(_stood(problem, alpha, answer.z, last, None))
         last = answer.z

@@ -26,7 +26,10 @@ _TOLERANCE = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class Answered:
-    """What an optimiser came to; ``why`` says why it is no answer, and is empty where it is one."""
+    """What an optimiser came to; ``why`` says why it is no answer, and is empty where it is one.
+
+    What is there when the time is up is taken where it keeps the constraints, as after a number of iterations.
+    """
 
     z: Array
     why: str
@@ -69,7 +72,7 @@ class Slsqp:
                 options={"maxiter": 1500, "ftol": self.stops_at},
             )
         except _TimeIsUpError as up:
-            return Answered(up.z, "out of time", clock.iterations, timed_out=True)
+            return Answered(up.z, _broken(problem, alpha, up.z), clock.iterations, timed_out=True)
         except np.linalg.LinAlgError:
             return Answered(start, "lost: no curve can be fitted", clock.iterations)
         return Answered(found.x, _broken(problem, alpha, found.x), int(found.nit))
@@ -108,7 +111,7 @@ class TrustConstr:
                     options={"maxiter": 1000},
                 )
         except _TimeIsUpError as up:
-            return Answered(up.z, "out of time", clock.iterations, timed_out=True)
+            return Answered(up.z, _broken(problem, alpha, up.z), clock.iterations, timed_out=True)
         except np.linalg.LinAlgError:
             return Answered(start, "lost: no curve can be fitted", clock.iterations)
         return Answered(found.x, _broken(problem, alpha, found.x), int(found.nit))
@@ -132,8 +135,8 @@ class Ipopt:
         found = solve(x0=start, p=problem.pins(alpha).ravel(), lbx=lower, ubx=upper, lbg=least, ubg=zeros)
         z, stats = np.array(found["x"]).ravel(), solve.stats()
         late = stats["return_status"] == "Maximum_WallTime_Exceeded"
-        why = _broken(problem, alpha, z) or ("" if stats["success"] else stats["return_status"].replace("_", " "))
-        return Answered(z, "out of time" if late else why, int(stats["iter_count"]), timed_out=late)
+        unfinished = "" if stats["success"] or late else stats["return_status"].replace("_", " ")
+        return Answered(z, _broken(problem, alpha, z) or unfinished, int(stats["iter_count"]), timed_out=late)
 
 
 def bounds(problem: Problem, alpha: float) -> tuple[Array, Array]:

@@ -97,7 +97,7 @@ def _asked(found: Readings) -> Sheet:
         (*headers, "no answer", "out of time", "35°–36°"),
         tuple(body),
         f"A jump: a link turns by {_degrees(JUMP, 0)} more than ordinary between neighbouring stations. Energies in J. "
-        f"{SECONDS:g} s for a station.",
+        f"{SECONDS:g} s for a station: out of time is what was taken as it then stood.",
     )
 
 
@@ -210,8 +210,8 @@ def _physics(found: Readings, true: Track) -> str:
         sentence += f" Beam 2 is then over, {held}, and it is still over when the crank is back at 0°."
     return sentence + (
         " This is the reading of the case: the crank turns counter-clockwise as Fig. 17's letters have it, so that it "
-        "is beam 2 that jumps; within 45° of the line to the other pin the beams can only bulge towards each other; and "
-        "contact acts wherever they meet."
+        "is beam 2 that jumps; within 45° of the line to the other pin the beams can only bulge towards each other; "
+        "and contact acts wherever they meet."
     )
 
 
@@ -264,8 +264,8 @@ def _barrier(asked: list[Track]) -> list[str]:
     said = " and ".join(f"{_between(track)} in {units.replace(',', ' and')}" for units, track in first.items())
     return [
         f"IPOPT from its neighbour, asked the same in two units, jumps from {said}: its first barrier of 0.1 is 0.1 "
-        "J for the one and a thousandth of that for the other, and pushes the beams apart at every station before it is "
-        "let down. That is the optimiser's doing."
+        "J for the one and a thousandth of that for the other, and pushes the beams apart at every station before it "
+        "is let down. That is the optimiser's doing."
     ]
 
 

@@ -176,7 +176,7 @@ class Planted:
         degrees = round(np.degrees(alpha))
         z = problem.straight + alpha
         z[problem.links :] += 1.5 * (degrees > self.over)
-        return Answered(z, "out of time" if degrees in self.silent else "", 1, timed_out=degrees in self.silent)
+        return Answered(z, "breaks the closure" if degrees in self.silent else "", 1, timed_out=degrees in self.silent)
 
 
 def found_of(*variants, **how):
