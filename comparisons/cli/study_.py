@@ -67,7 +67,7 @@ def calibration(
     from comparisons.pairing import crew_of, solvers_of, workers_for
     from comparisons.studies import calibration as study
     from comparisons.studies.calibration_told import told
-    from comparisons.verdict import Word
+    from comparisons.words import Word
 
     showing.room_for(json_file, out)
     solvers = solvers_of(planted)
