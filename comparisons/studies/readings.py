@@ -23,10 +23,12 @@ import numpy as np
 from frozendict import frozendict
 from scipy import optimize
 
+from comparisons import cases
 from comparisons.studies import readings_peers as peers
 from comparisons.studies.readings_optimisers import Ipopt, Optimiser, Slsqp, TrustConstr, Units, bounds
 from comparisons.studies.readings_path import End, State, constraints, followed, settled
 from comparisons.studies.readings_problem import PAPER, Array, Mechanism, Problem, Reading
+from scene import Line, Scene
 
 JUMP = np.radians(15.0)
 """By this a link turns further than it may in an ordinary step."""
@@ -249,10 +251,30 @@ VARIANTS: tuple[Variant, ...] = (
 Piece = Callable[[], tuple[Track, ...] | str]
 
 
+def mechanism_of(scene: Scene) -> Mechanism:
+    """The lengths of a scene that is built like the case ``prestressed``."""
+    beam, points = scene.beams["beam2"], scene.bodies["crank"].points
+    line = beam.curve
+    assert isinstance(line, Line), "the beams are straight"
+    along = np.array([0.5])
+    A, C = points["A"], points["C"]
+    return Mechanism(
+        beam=float(np.hypot(line.end[0] - line.start[0], line.end[1] - line.start[1])),
+        thickness=float(beam.thickness_at(along)[0]),
+        width=float(beam.width_at(along)[0]),
+        youngs_modulus=scene.materials[beam.material].youngs_modulus,
+        base=line.start[0],
+        OA=A[1],
+        AD=C[1] - A[1],
+        BD=C[0] - A[0],
+    )
+
+
 def pieces(
-    mechanism: Mechanism = PAPER, variants: tuple[Variant, ...] = VARIANTS, top: int = TOP, links: int = 40
+    mechanism: Mechanism | None = None, variants: tuple[Variant, ...] = VARIANTS, top: int = TOP, links: int = 40
 ) -> tuple[Piece, ...]:
-    """What is to be measured up to ``top`` degrees, each piece a function without arguments."""
+    """What is to be measured up to ``top`` degrees, each piece a function without arguments; by default on the case."""
+    mechanism = mechanism or mechanism_of(cases.opened("prestressed"))
     return tuple(partial(_measured, mechanism, variant, top, links) for variant in variants)
 
 

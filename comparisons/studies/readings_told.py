@@ -6,7 +6,7 @@ import numpy as np
 
 from comparisons.documents import Plain
 from comparisons.formats import number
-from comparisons.sheets import Sheet
+from comparisons.sheet import Sheet
 from comparisons.studies.readings import JUMP, NEAREST, SECONDS, THEIRS, Followed, Optimised, Readings, Track
 from comparisons.studies.readings_drawn import jumps_of_readings
 from comparisons.studies.readings_optimisers import Ipopt

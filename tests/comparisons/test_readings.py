@@ -1,12 +1,12 @@
 """The study's own writing of the paper's minimum of energy, beside differences, formulas and a second writing."""
 
 import json
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 
 import numpy as np
 import pytest
 
-from comparisons import documents
+from comparisons import cases, documents
 from comparisons.cli.main import run
 from comparisons.studies import readings
 from comparisons.studies.readings import NEAREST, Followed, Optimised, Readings, begun, bulging, pieces
@@ -63,6 +63,12 @@ def test_the_hessian_is_that_of_differences_of_the_slope(asked):
     H = hessian(asked, z, 0.3, multipliers)
     np.testing.assert_allclose(H, differences(slope, z), atol=1e-5 * np.max(np.abs(H)))
     np.testing.assert_allclose(H, H.T, atol=1e-12 * np.max(np.abs(H)))
+
+
+def test_the_case_is_the_mechanism_of_the_paper():
+    """Section 3.4, written down twice: in the case and in the study."""
+    case, paper = asdict(readings.mechanism_of(cases.opened("prestressed"))), asdict(PAPER)
+    assert case == pytest.approx(paper, rel=1e-14)
 
 
 def test_an_even_bend_has_the_energy_and_the_place_of_an_arc():
