@@ -8,11 +8,25 @@ from fea_reference.model import Model
 from fea_reference.state import State
 from fea_reference.touch import Contact, Pair, Penalty, Touch
 from fea_reference.zones import Zones
-from scene.statement import Scene
+from scene.mistakes import Mistake, SceneError
+from scene.statement import EdgeContact, Scene
 
 
 def contacts(scene: Scene, model: Model, penetration: float) -> tuple[Contact, ...]:
-    """What may touch, in the scene's order."""
+    """What may touch, in the scene's order.
+
+    Raises:
+        SceneError: a contact with a line, a half-plane or a function, or a pin between bodies.
+    """
+    allowed = "a kind that this method offers so far"
+    mistakes = [
+        Mistake(f"contacts.{name}.kind", repr(one.kind), allowed, scene.file)
+        for name, one in scene.contacts.items()
+        if isinstance(one, EdgeContact)
+    ]
+    mistakes += [Mistake(f"pins.{name}", "a pin between two bodies", allowed, scene.file) for name in scene.pins]
+    if mistakes:
+        raise SceneError(mistakes)
     every: tuple[Contact, ...] = (*contact.pairs(scene, model), *circle.circles(scene, model, penetration))
     found = {one.name: one for one in every}
     return tuple(found[name] for name in scene.contacts)
