@@ -50,6 +50,7 @@ _THINNEST, _STANDARD = 800.0, 1e-4
 _REACH = 2.0  # elements, from a corner to where what happens there is looked for
 _CROSSING_STEPS = 15
 _ARRIVED = 1e-10  # elements
+_AT_END = 1e-6  # elements
 _PARTS = 4  # of a way on which a beam must not have passed through
 
 
@@ -245,11 +246,14 @@ class _Seen:
         face, line = self.face, self.line
         even = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
         borders, kinks = self._borders(even)
+        for end in face.own:
+            borders = borders[np.abs(borders - end) > _AT_END]
         zeta = np.unique(np.concatenate([even, face.edge.knots, borders]))
         there = self._at(zeta, np.zeros_like(zeta))
-        if face.own:
-            own = np.isin(zeta, face.own)
-            there = Gap(np.where(own, 0.0, there.g), there.slope, there.curvature, there.zeta_m, there.found)
+        for end in face.own:
+            # where it is zero by a joint, what is nearest is a matter of round-off: it goes on as beside it
+            own, beside = (0, 1) if end == 0.0 else (-1, -2)
+            there.g[own], there.slope[own], there.curvature[own] = 0.0, there.slope[beside], there.curvature[beside]
         if not there.found.any():
             return none(float(np.abs(there.g).min())), {}
         neighbours = there.found[:-1] & there.found[1:]
