@@ -37,7 +37,7 @@ def certify(march: March) -> Certificate:
     floor = system.floor / system.scale
     violation = float(np.abs(system.residual[~free]).max())
     violation = max(violation, *(-stop.room(system.z)[0] for stop in model.stops), 0.0)
-    penetration = max((one.penetration / one.pair.scale for one in system.touches), default=0.0)
+    penetration = max((one.penetration / one.pair.measure for one in system.touches), default=0.0)
     force, moment = _balance(model, march.values, system)
     # What is left over all is the sum of what is left at every node; round-off adds up like a random walk.
     balance = max(_BALANCE, floor * float(np.sqrt(model.node_dofs.shape[1])))

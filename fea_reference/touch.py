@@ -23,7 +23,9 @@ class Pair:
         turned: whether the first is the scene's second.
         side: of the second on which the first lies.
         distance: T, of the neutral lines when they touch.
-        scale: what penetration is measured by: the mean thickness, or the longest beam for lines.
+        scale: what the penetration asked is a share of: the mean thickness, or a hundredth of the longest beam for
+            lines, which have none.
+        measure: what penetration is reported by: the same, but the longest beam for lines.
         loosest, stiffness, stiffest: the penalty with which to look for a zone that is far from where it was, to
             begin with, and to end with if the penetration asks for no more: each the softer beam's EI over the
             fourth power of a layer's width.  The widest is a share of the beam's length, so that finer elements make
@@ -37,6 +39,7 @@ class Pair:
     side: float
     distance: float
     scale: float
+    measure: float
     loosest: float
     stiffness: float
     stiffest: float
@@ -74,6 +77,11 @@ class Circle:
         """The penalty to begin with."""
         return self.loosest
 
+    @property
+    def measure(self) -> float:
+        """What penetration is reported by."""
+        return self.scale
+
 
 @dataclass(frozen=True, slots=True)
 class Face:
@@ -102,6 +110,11 @@ class Face:
     def stiffness(self) -> float:
         """The penalty to begin with."""
         return self.loosest
+
+    @property
+    def measure(self) -> float:
+        """What penetration is reported by."""
+        return self.scale
 
 
 Rigid = Circle | Face
