@@ -54,7 +54,7 @@ def certify(march: March) -> Certificate:
             failures.append(f"{stop.known_as} holds with {press * model.units.moment:.1e} N·m on the wrong side")
     for one in system.touches:
         allowed = settings.penetration if isinstance(one.pair, Pair) else max(settings.penetration, _RESOLVED)
-        overlap = one.penetration / one.pair.scale
+        overlap = one.penetration / (one.pair.scale if isinstance(one.pair, Pair) else one.pair.measure)
         if not overlap <= allowed:
             failures.append(f"what touches in {one.pair.name} overlaps by {overlap:.1e}; {allowed:.1e} was asked")
         elif one.closed and march.penalties[one.pair].stiffness < (1.0 - _SOFT) * one.pair.stiffest:

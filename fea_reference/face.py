@@ -22,6 +22,9 @@ Where n jumps, at a corner, intervals end, too: g is the same on both sides of s
 has no part of it; as the place moves with the beam, the second derivative has −ε g (Δδg)²/Δg', Δ being what is before
 less what is behind.
 
+A corner that presses on a beam's side, or a beam's end that presses on the edge, sinks in by the root of its force over
+ε, on however few elements: there the penalty goes by the penetration that is asked, as it does between beams.
+
 A beam's end that a joint holds on the edge is there whatever happens: it counts for no gap.  Where it is pinned, a stop
 keeps its tangent from turning into the edge (:mod:`fea_reference.own_pins`).  Along a straight edge an even beam's
 moment is constant: what presses it on acts at the ends of the zone, by a force where it lifts off, and at the pin by
@@ -43,6 +46,7 @@ from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, none
 from scene.answer import Array
 from scene.statement import EdgeContact, Scene
 
+_SLENDER = 0.01  # of the longest beam: what stands for the thickness of a beam that touches as a line
 _LAYERS = 32.0  # of the first penalty, in a beam's length
 _RESOLVED = 3.0  # layers in an element: what they leave is of second order in their width
 # as on a circle: what thinner layers in a beam's length would leave is below what makes them hard to find
@@ -79,6 +83,7 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
                 outline,
                 tuple(float(elements) if end == "end" else 0.0 for end in own),
                 edge,
+                2.0 * edge.nearest if contact.thick else _SLENDER,
                 2.0 * edge.nearest if contact.thick else 1.0,
                 beam.softest / layer**4,
                 beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
@@ -136,7 +141,7 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     e, xi = line.locate(zeta)
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
-    x, x1, _ = line.at(zeta)
+    x = line.at(zeta)[0]
     near = face.outline.near(seen.place(zeta))
     n = seen.turned(near.normal)
     tau = np.stack([n[1], -n[0]])
@@ -156,6 +161,8 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
         g_qq[9, :9] += turning
         g_qq[9, 9] -= (n * r).sum(axis=0)
 
+    ends = np.isin(zones.intervals, [end for end in (0.0, float(line.n)) if end not in face.own])
+    bent = _bent(seen, zones, kinks, penalty.stiffness, quadrature, moves=moves)
     alike = together(quadrature, e)
     weight = penalty.stiffness * ds
     return Touch(
@@ -173,7 +180,8 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
         x_m=x - near.distance * n,
         normal=n,
         missing=0.0,
-        bent=_bent(seen, zones, kinks, penalty.stiffness, quadrature, moves=moves),
+        bent=bent,
+        sharp=bool(ends.any()) or bent is not None,
     )
 
 

@@ -370,20 +370,20 @@ class March:
         """The factor from a penalty to the one that leaves the penetration aimed at, or to the least for a station.
 
         The penetration falls with the penalty to the power −1/``fall``: −2/3 in a point between sides, −1/2 at a tip,
-        −1 in an area.  On a circle a penalty stiffer than the elements can follow spoils more than the overlap that it
-        leaves: its penalty is always the same.
+        −1 in an area.  On what is rigid and not sharp a penalty stiffer than the elements can follow spoils more than
+        the overlap that it leaves: its penalty is always the same.
         """
         least = one.pair.stiffest / self.penalties[one.pair].stiffness
         if not one.closed:
             return 1.0
-        if isinstance(one.pair, Rigid):
+        if isinstance(one.pair, Rigid) and not one.sharp:
             return max(1.0, least)
         aim = _AIM * self.settings.penetration * one.pair.scale
         return max(float((one.penetration / aim) ** fall), least)
 
     def _will_do(self, one: Touch, factor: float, tries: int) -> bool:
         """Whether a penalty is as wanted; after some tries that of beams may be stiffer."""
-        if isinstance(one.pair, Rigid):
+        if isinstance(one.pair, Rigid) and not one.sharp:
             return factor <= 1.0 + _SAME
         if abs(factor - 1.0) <= _EVEN:
             return True

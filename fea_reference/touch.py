@@ -93,7 +93,8 @@ class Face:
         outline: the edge, in a frame about the body's reference centre.
         own: ends ζ of the beam that joints hold on the edge.
         edge: T, distance of the neutral line from the edge where they touch.
-        scale, loosest, stiffest: as of a circle.
+        scale, measure: as of a pair.
+        loosest, stiffest: as of a circle.
     """
 
     name: str
@@ -103,6 +104,7 @@ class Face:
     own: tuple[float, ...]
     edge: Edge
     scale: float
+    measure: float
     loosest: float
     stiffest: float
 
@@ -110,11 +112,6 @@ class Face:
     def stiffness(self) -> float:
         """The penalty to begin with."""
         return self.loosest
-
-    @property
-    def measure(self) -> float:
-        """What penetration is reported by."""
-        return self.scale
 
 
 Rigid = Circle | Face
@@ -147,7 +144,7 @@ class Touch:
     first beam's neutral line and ``x_m`` of the second's or of the rigid edge (2, k), the ``normal`` (2, k) away
     from what it touches.
     ``missing`` is the force that ends of the second beam leave out, ``bent`` (m, m, k) what else the energy's second
-    derivatives have, at some of the points.
+    derivatives have, at some of the points.  Where a contact is ``sharp``, something with an edge of its own presses.
     """
 
     pair: Contact
@@ -165,6 +162,7 @@ class Touch:
     normal: Array
     missing: float
     bent: Array | None = None
+    sharp: bool = False
 
     @property
     def pushes(self) -> Array:
