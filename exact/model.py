@@ -39,7 +39,7 @@ class Strip:
         name: the beam's.
         line: its stress-free neutral line.
         beam: its record, whose sizes are in metres.
-        knots: arc lengths strictly inside at which thickness or width have kinks.
+        knots: arc lengths strictly inside at which thickness, width or the stress-free curvature have kinks.
         stiffness: Young's modulus over Sℓ, 1/m⁴, so that E·I is without dimension.
         unit: ℓ, m.
     """
@@ -155,7 +155,7 @@ def modelled(scene: Scene) -> Model:
     strips = {}
     for name, beam in scene.beams.items():
         line = neutral_line(beam.curve, unit)
-        knots = tuple(float(u) * line.length for u in beam.knots[1:-1])
+        knots = tuple(sorted({*(float(u) * line.length for u in beam.knots[1:-1]), *line.kinks}))
         stiffness = scene.materials[beam.material].youngs_modulus / (moment * unit)
         strips[name] = Strip(name, line, beam, knots, stiffness, unit, _end(beam.start), _end(beam.end))
     moving = {

@@ -97,7 +97,32 @@ class Polynomial(Record):
         return (variable, value) if self.axis == "x" else (value, variable)
 
 
-Curve = Annotated[Line | Arc | Polynomial, Field(discriminator="kind")]
+class Spline(Record):
+    """A smooth neutral line through ``points`` (at least three), metres, from the first to the last.
+
+    x and y are cubic splines of t, which is zero at the first point and grows from each to the next by their distance:
+    cubic in between, with two continuous derivatives, so that tangent and curvature have no jumps.  At an end that has
+    a direction the derivative is its unit vector (in the sense in which the beam runs); at one that has none the
+    outer two pieces are one cubic.  Of three points without directions it is the parabola through them.
+    """
+
+    kind: Literal["spline"]
+    points: Annotated[tuple[Point, ...], Field(min_length=3)]
+    start_direction: Point | None = None
+    end_direction: Point | None = None
+
+    @property
+    def start(self) -> Point:
+        """Where the line begins, metres."""
+        return self.points[0]
+
+    @property
+    def end(self) -> Point:
+        """Where the line ends, metres."""
+        return self.points[-1]
+
+
+Curve = Annotated[Line | Arc | Polynomial | Spline, Field(discriminator="kind")]
 
 
 class WeldedEnd(Record):

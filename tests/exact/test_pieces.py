@@ -16,7 +16,7 @@ from exact.settings import Settings
 from exact.spectral import Law, UnsolvableError, piece, rule
 from exact.way import Way
 from scene.reading import scene_from
-from scene.statement import Arc, Line, Polynomial
+from scene.statement import Arc, Line, Polynomial, Spline
 from tests.exact import scenes
 from tests.references.hinge import PAPER
 
@@ -98,6 +98,9 @@ CURVES = {
         for axis in "xy"
         for way, span in (("+", (-0.01, 0.06)), ("-", (0.06, -0.01)))
     },
+    "spline": Spline(
+        kind="spline", points=((0.0, 0.0), (0.02, 0.011), (0.05, 0.01), (0.06, -0.01)), end_direction=(-1.0, -3.0)
+    ),
 }
 
 
