@@ -75,8 +75,14 @@ class Equations:
         self._loads(out, z, lam)
         for name, freedoms in self.model.moving.items():
             balance = out.on_body[name]
+            if freedoms == 3:
+                out.rows += list(balance)
+                continue
             along = self._along(name)
-            out.rows += list(balance) if freedoms == 3 else [along[0] * balance[0] + along[1] * balance[1]]
+            out.rows.append(along[0] * balance[0] + along[1] * balance[1])
+            if freedoms == 2:
+                x, y = out.turned(name, self._pin(name))
+                out.rows.append(balance[2] - (x * balance[1] - y * balance[0]))
         return out
 
     # ------------------------------------------------------------------------------------------ bodies
@@ -88,6 +94,12 @@ class Equations:
             if self.model.moving.get(name) == 1:
                 along = self._along(name)
                 out.placements[name] = np.outer([along[0], along[1], 0.0], z[bodies[name]][0])
+            elif self.model.moving.get(name) == 2:
+                # how far the pin is in its slot, and how the body turns about it
+                along, (far, phi), pin = self._along(name), z[bodies[name]], self._pin(name)
+                out.placements[name] = np.stack([0.0 * phi, 0.0 * phi, phi])
+                u, v = np.outer(along, far) + (pin - self.model.reference(name))[:, None] - out.turned(name, pin)
+                out.placements[name] = np.stack([u, v, phi])
             else:
                 out.placements[name] = z[bodies[name]] if name in bodies else nowhere
             out.on_body[name] = nowhere
@@ -99,6 +111,13 @@ class Equations:
         """The direction (2,) of a slide; of no meaning for others."""
         record = self.model.scene.bodies[body]
         return unit(record.along) if isinstance(record, SlidingBody) else np.zeros(2)
+
+    def _pin(self, body: str) -> Array:
+        """The point (2,) that stays in the slot, at rest; of no meaning for others."""
+        record = self.model.scene.bodies[body]
+        if not isinstance(record, SlidingBody) or record.pin is None:
+            return np.zeros(2)
+        return self.model.rest(record.pin)
 
     def _loads(self, out: Evaluation, z: Columns, lam: Columns) -> None:
         scene, nothing = self.model.scene, np.zeros((2, len(lam)), dtype=lam.dtype)

@@ -99,6 +99,12 @@ class Evaluation:
         less, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
         return np.stack([rest[0] + u + less * x - sin * y, rest[1] + v + sin * x + less * y])
 
+    def turned(self, body: str, rest: Array) -> Columns:
+        """The way (2, K) from a body's reference to its point that is at ``rest`` (2,)."""
+        phi = self.placements[body][2]
+        x, y = rest - self.model.reference(body)
+        return np.stack([np.cos(phi) * x - np.sin(phi) * y, np.sin(phi) * x + np.cos(phi) * y])
+
     def act(self, body: str, place: Columns, force: Columns, moment: Columns | float = 0.0) -> None:
         """Let a force (2, K) at a place (2, K) and a moment (K,) act on a body."""
         arm = place - self.moved(body, self.model.reference(body))

@@ -118,7 +118,7 @@ class Model:
         scene: the question.
         unit_length, unit_moment: ℓ, m, and S, N·m.
         strips: the beams by name.
-        moving: names of the bodies that move, with how many freedoms each has (3, or 1 for a slide).
+        moving: names of the bodies that move, with how many freedoms each has: 3, for a slide 1, a pin in a slot 2.
     """
 
     scene: Scene
@@ -159,7 +159,7 @@ def modelled(scene: Scene) -> Model:
         stiffness = scene.materials[beam.material].youngs_modulus / (moment * unit)
         strips[name] = Strip(name, line, beam, knots, stiffness, unit, _end(beam.start), _end(beam.end))
     moving = {
-        name: 1 if isinstance(body, SlidingBody) else 3
+        name: (1 if body.pin is None else 2) if isinstance(body, SlidingBody) else 3
         for name, body in scene.bodies.items()
         if not isinstance(body, FixedBody)
     }

@@ -5,7 +5,7 @@ moments over EI/length: the same scene in other units is the same problem to the
 
 The unknowns z are, in this order: the nodes' (x, y, θ) and the elements' axial forces N, numbered by
 scikit-fem; (X, Y, φ) of every body that moves, its displacement and rotation; one multiplier per row of a joint, of a
-guide (a sliding body has two: no motion across, no rotation) and of a drive.
+guide (a sliding body has two: no motion across, no rotation; with a pin in a slot the first alone) and of a drive.
 """
 
 from __future__ import annotations
@@ -317,10 +317,13 @@ def build(scene: Scene, settings: Settings) -> Model:
     guides: list[DrivePart] = []
     for name, body in scene.bodies.items():
         if isinstance(body, SlidingBody):
-            along = np.array(body.along) / np.hypot(*body.along)
-            guides.append(DrivePart(name, number[name], size, np.zeros(2), turned(along, np.pi / 2), units.length))
-            guides.append(DrivePart(name, number[name], size + 1, np.zeros(2), None, 1.0))
-            size += 2
+            along, i = np.array(body.along) / np.hypot(*body.along), number[name]
+            pin = np.zeros(2) if body.pin is None else bodies[i].points[body.pin] - bodies[i].centre
+            guides.append(DrivePart(name, i, size, pin, turned(along, np.pi / 2), units.length))
+            size += 1
+            if body.pin is None:
+                guides.append(DrivePart(name, i, size, np.zeros(2), None, 1.0))
+                size += 1
     drives: list[DrivePart] = []
     for name, drive in scene.drives.items():
         if isinstance(drive, DisplacementDrive):

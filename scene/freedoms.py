@@ -21,7 +21,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from scene.statement import Drive, Force, Load, Moment, Point, RotationDrive, Scene, SlidingBody, TurningBody
+from scene.statement import Body, Drive, Force, Load, Moment, Point, RotationDrive, Scene, SlidingBody, TurningBody
 
 Row = NDArray[np.float64]
 NEGLIGIBLE = 1e-9
@@ -52,12 +52,15 @@ def row_of(scene: Scene, acting: Load | Drive) -> Row:
 def guide_rows(scene: Scene, name: str) -> list[Row]:
     """The motions that a slide or a pivot prevents of the body of a ``name``; none where it has no guide.
 
-    A slide has a direction, and a pivot a point of the body.
+    A slide has a direction, and a pivot or a pin in a slot a point of the body.
     """
     body = scene.bodies[name]
     if isinstance(body, SlidingBody):
         e = unit(body.along)
-        return [np.array([-e[1], e[0], 0.0]), _TURN]
+        if body.pin is None:
+            return [np.array([-e[1], e[0], 0.0]), _TURN]
+        x, y = _offsets(scene)[name, body.pin]
+        return [np.array([-e[1], e[0], x * e[0] + y * e[1]])]
     if isinstance(body, TurningBody):
         x, y = _offsets(scene)[name, body.about]
         return [np.array([1.0, 0.0, -y]), np.array([0.0, 1.0, x])]
@@ -65,11 +68,18 @@ def guide_rows(scene: Scene, name: str) -> list[Row]:
 
 
 def has_guide(scene: Scene, name: str) -> bool:
-    """Whether a slide's direction or a pivot's point is stated, if the body of a ``name`` has one."""
+    """Whether a slide's direction and a pivot's or pin's point are stated, if the body of a ``name`` has them."""
     body = scene.bodies[name]
     if isinstance(body, TurningBody):
         return body.about in body.points
-    return not isinstance(body, SlidingBody) or body.along != (0.0, 0.0)
+    if isinstance(body, SlidingBody):
+        return body.along != (0.0, 0.0) and (body.pin is None or body.pin in body.points)
+    return True
+
+
+def can_turn(body: Body) -> bool:
+    """Whether nothing but beams and drives keeps a body from turning."""
+    return body.motion in ("free", "turns") or (isinstance(body, SlidingBody) and body.turns)
 
 
 def body_of(scene: Scene, acting: Load | Drive) -> str:

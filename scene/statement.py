@@ -242,12 +242,22 @@ class FreeBody(Record):
 class SlidingBody(Record):
     """A rigid body that the ground guides without friction: it moves ``along`` a direction and does not turn.
 
-    ``along`` is made a unit vector; ``points`` in metres, initial position.
+    Where it ``turns``, one of its points stays in the slot and it turns about that: ``about``, which a body with one
+    point need not say.  ``along`` is made a unit vector; ``points`` in metres, initial position.
     """
 
     motion: Literal["slides"]
     along: Point
+    turns: bool = False
+    about: Name | None = None
     points: Points
+
+    @property
+    def pin(self) -> Name | None:
+        """The point that stays in the slot as the body turns; None of a body that does not turn."""
+        if not self.turns:
+            return None
+        return next(iter(self.points)) if self.about is None else self.about
 
 
 class TurningBody(Record):
