@@ -9,6 +9,10 @@ S       C − Bᵀ Q⁻¹ B, the Schur complement
 ======  ========================================================
 
 A positive definite Q is factorised as LDLᵀ; an indefinite one by pivoted LU, at the same cost.
+
+Q may be singular where the whole is not: under end forces θ′ of a bent beam solves its linearised equation, and between
+an inflection and a place of even bending that is all that Q asks.  Unknowns that take part in what is nearly singular,
+*anchors*, are moved from Q to the border.
 """
 
 from __future__ import annotations
@@ -22,6 +26,46 @@ from scene.answer import Array, Ints
 
 REFINEMENTS = 3
 REFINED = 1e-14  # of the right-hand side
+
+
+SINGULAR = 1e-4  # EI/ℓ²: a curvature of Q alone below it costs digits
+ANCHORS = 8  # at most, beside the given ones
+ROUNDED = 1e-14  # of the largest entry
+
+
+def without(diagonal: Array, off: Array, held: Ints) -> tuple[Array, Array]:
+    """A tridiagonal matrix in which the unknowns ``held`` have an equation each to themselves."""
+    diagonal, off = diagonal.copy(), off.copy()
+    diagonal[held] = 1.0
+    off[held[held < len(off)]] = 0.0
+    off[held[held > 0] - 1] = 0.0
+    return diagonal, off
+
+
+def anchored(diagonal: Array, off: Array, metric: Array, given: Ints, held: Ints) -> Ints:
+    """The ``given`` anchors, and those without which what is left of Q would be nearly singular.
+
+    Args:
+        diagonal, off: of Q.
+        metric: diagonal of the matrix M by which curvatures are measured, Q x = κ M x.
+        given: anchors in any case; ``held``: unknowns that do not move.
+    """
+    anchors = given
+    for _ in range(ANCHORS):
+        gone = np.concatenate((anchors, held))
+        kept, beside = without(diagonal, off, gone)
+        factors = factorised(kept + ROUNDED * float(np.max(np.abs(kept))), beside)
+        # two steps of inverse iteration, from a start that no symmetry makes orthogonal to what is sought
+        vector = np.cos(0.7 * np.arange(len(kept))) + 1.5
+        for _ in range(2):
+            vector[gone] = 0.0
+            vector /= np.sqrt(metric @ vector**2)
+            vector = factors.solve((metric * vector)[:, None])[:, 0]
+        vector[gone] = 0.0
+        if float(np.sqrt(metric @ vector**2)) * SINGULAR < 1.0:
+            break
+        anchors = np.append(anchors, np.argmax(np.abs(vector)))
+    return anchors
 
 
 @dataclass(frozen=True, slots=True)

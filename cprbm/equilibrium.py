@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cprbm.bordered import Bordered, bordered
+from cprbm.bordered import Bordered, anchored, bordered, without
 from cprbm.closure import Closure, closure_forces, closure_rows, closure_second, closure_values
 from cprbm.complementarity import pressing
 from cprbm.contact import Formulation, Rows
@@ -283,7 +283,8 @@ def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System
         known.append(-rows.values[stiff])
     low_rank = np.concatenate(columns, axis=1) if columns else np.zeros((n + n_bodies, 0))
     sigma = np.concatenate(curvatures) if curvatures else np.zeros(0)
-    anchors = np.array([c.first_link for c in model.chains if c.first_link not in closure.fixed], dtype=np.intp)
+    free = [c.first_link for c in model.chains if c.first_link not in closure.fixed]
+    anchors = anchored(diagonal, off, model.lengths, np.array(free, dtype=np.intp), closure.fixed)
 
     m_E, m_I, r, k = closure.rows, rows.size, len(sigma), len(anchors)
     first = n_bodies + k
@@ -295,16 +296,15 @@ def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System
     corner[2:n_bodies:3, 2:n_bodies:3] = np.diag(over_phi)
     i = np.arange(r)
     corner[first + i, first + i] = -1.0 / sigma
-    off = off.copy()
     for place, link in enumerate(anchors, start=n_bodies):
         corner[place, place] = diagonal[link]
         corner[place, first:] = border[link, first:]
-        border[link + 1, place] = off[link]
+        border[link + 1 : link + 2, place] = off[link : link + 1]
+        border[max(link - 1, 0) : link, place] = off[max(link - 1, 0) : link]
     corner[first:, :first] = corner[:first, first:].T
     held = np.concatenate((anchors, closure.fixed))
     border[held] = 0.0
-    diagonal[held] = 1.0
-    off[held] = 0.0
+    diagonal, off = without(diagonal, off, held)
     return System(
         factors=bordered(diagonal, off, border, corner),
         base=np.arange(first + r + m_E),

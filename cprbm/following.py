@@ -1,7 +1,8 @@
 """Following a branch of minima by load steps that are cut where one fails and grow where they succeed.
 
 A step is refused where no certified minimum is found, where a link turns too far, where a beam goes across what it may
-touch, and where energy goes that no work accounts for (:mod:`cprbm.slope`): the state found is of another branch then.
+touch, and where the links went another way than their rates say (:mod:`cprbm.rate`), which leads to another branch.
+Where ends of branches are asked for, a step is no longer than a small turn of the links, so that none hides in it.
 After a step was refused, the way on is cut by what will soon be zero (:func:`cprbm.critical.foreseen`), so that a
 branch's end is closed in on from the side where it stands.
 """
@@ -17,14 +18,15 @@ from cprbm.certifying import certify
 from cprbm.critical import Minimum, foreseen
 from cprbm.equilibrium import Equilibrium, Point, equilibrium
 from cprbm.mechanism import Mechanism
+from cprbm.rate import rate, strayed
 from cprbm.settings import Settings
-from cprbm.slope import leapt
 from scene import Certificate, Ending
 
 GROWTH = 2.0
 SETTLE = 0.1  # of the way: in shorter steps steady rows may settle which places there are
-SHIFTED = 0.02  # rad: links turn by less where contact only comes to be carried by other rows
 CLOSER = 0.98  # of the way that is left to where something ends
+SHORT = 0.2  # rad: the most that a link may turn in a step that hides no end of a branch
+ISOLATED = 0.01  # rad: the most in which a contact or stop may close or open: what it catches did not fall far
 JUST = 2.0  # smallest steps, to see that there is nothing beyond
 TRAIL = 30  # minima that are kept
 
@@ -80,6 +82,7 @@ class Follower:
         point, values: the state, and the values (SI) of all loads and drives.
         trail: minima since it was cleared, the last ones.
         refused: the value at which the last step was refused.
+        careful: whether no end of a branch may be passed.
     """
 
     mechanism: Mechanism
@@ -88,12 +91,13 @@ class Follower:
     values: dict[str, float]
     trail: list[Minimum]
     refused: float = 0.0
+    careful: bool = False
 
     def go(self, way: Way, accept: Callable[[Point, dict[str, float]], None]) -> Reached:
         """Go all the way, directly or in steps; ``accept`` sees every next minimum before it is the present one."""
         done, step, iterations, refused = 0.0, 1.0, 0, False
         while True:
-            step = min(step, 1.0 - done)
+            step = min(step, 1.0 - done, self._longest(way))
             fraction = 1.0 if done + step >= 1.0 else done + step
             values = way.at(fraction)
             found = self._solved(values, settle=step <= SETTLE)
@@ -120,6 +124,14 @@ class Follower:
                 ending = ending if found.converged else Ending.STEP_TOO_SMALL
                 return Reached(ending, sentence, certificate=None)
 
+    def _longest(self, way: Way) -> float:
+        """The largest part of the way that may be taken at once."""
+        if not (self.careful and way.load):
+            return 1.0
+        whole = way.target[way.load] - way.begin[way.load]
+        turn = float(np.max(np.abs(whole * rate(self.mechanism.problem, self.point, way.load))))
+        return max(SHORT / turn, self.settings.smallest_step) if turn > SHORT else 1.0
+
     def _solved(self, values: dict[str, float], *, settle: bool) -> Equilibrium:
         problem, settings = self.mechanism.problem, self.settings
         return equilibrium(problem, values, self.point, settings.tolerance, settings.iterations, settle=settle)
@@ -131,10 +143,13 @@ class Follower:
             return Ending.STEP_TOO_SMALL, f"a link turned by {turned:.2f} rad in one load step"
         if crossed := self.mechanism.passed(self.point, found):
             return Ending.BEAMS_CROSSED, f"in contact '{crossed}' the beam went across what it may touch"
-        if way.load and turned > SHIFTED:
-            before, after = (self.values.get(way.load, 0.0), self.point), (values[way.load], found)
-            if leapt(self.mechanism.problem, way.load, before, after):
-                return Ending.STEP_TOO_SMALL, "energy went that no work accounts for: that is another branch"
+        if self.careful and turned > ISOLATED and _pressing(found) != _pressing(self.point):
+            return Ending.STEP_TOO_SMALL, "a contact or stop closes or opens on the way"
+        if way.load:
+            problem, step = self.mechanism.problem, values[way.load] - self.values.get(way.load, 0.0)
+            ways = (step * rate(problem, point, way.load) for point in (self.point, found))
+            if strayed(problem.model.lengths, found.state.theta - self.point.state.theta, *ways):
+                return Ending.STEP_TOO_SMALL, "the links went another way than their rates say, to another branch"
         return Ending.COMPLETED, ""
 
     def _cut(self, way: Way, done: float, step: float) -> float:
@@ -145,3 +160,8 @@ class Follower:
             return step
         smallest, left = self.settings.smallest_step, CLOSER * step * (zero - begin) / (ahead - begin)
         return left if left > smallest else min(step, JUST * smallest)
+
+
+def _pressing(point: Point) -> frozenset[str]:
+    """Names of the contacts and stops that press."""
+    return frozenset(name for lam, name in zip(point.lam, point.rows.contact, strict=True) if lam > 0.0)

@@ -22,50 +22,99 @@ to the same), and are constants while the next one is sought; how γ changes as 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cprbm.kinematics import State
 from cprbm.model import Chain, Kinks
+from cprbm.smooth import Points
 from scene.answer import Array, Flags, Ints
 
 SLIGHT = 1e-3  # of h² and the largest slope: γ is at most an eighth
 SPRINGS = 2  # on either side of the pressed element
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Missed:
-    """Of the tangent at some places (k,): γ, its derivative over s, and its integral over s."""
+    """What is missed at some places (k,) of a chain.
 
-    angle: Array
-    bend: Array
-    integral: Array
+    Attributes:
+        active: whether a place lies in the element of a kink or in one beside it; nothing is missed elsewhere.
+        before, behind: p and q of the nearest kink.
+        u, h: of the element of the place.
+        place, size: u and h of the kink.
+        side: +1 where the place's element is behind the kink's, −1 before it, 0 where it is the same.
+    """
+
+    active: Flags
+    before: Array
+    behind: Array
+    u: Array
+    h: Array
+    place: Array
+    size: Array
+    side: Array
+
+    @property
+    def angle(self) -> Array:
+        """γ (k,)."""
+        u, h, p, q = self.u, self.h, self.before, self.behind
+        v = h - u
+        return np.where(self.active, -u * v / (2.0 * h) * (p * u + q * v), 0.0)
+
+    @property
+    def bend(self) -> Array:
+        """dγ/ds (k,)."""
+        u, h, p, q = self.u, self.h, self.before, self.behind
+        v = h - u
+        return np.where(self.active, -(p * u * (2.0 * v - u) + q * v * (v - 2.0 * u)) / (2.0 * h), 0.0)
+
+    @property
+    def integral(self) -> Array:
+        """∫ γ ds from the kink (k,), units of length."""
+        p, q, size = self.before, self.behind, self.size
+        start = _integral(self.place, size, p, q)
+        # over the whole element between this one and the kink's border
+        behind, ahead = _integral(size, size, p, q), -_integral(self.h, self.h, p, q)
+        between = np.where(self.side > 0.0, behind, np.where(self.side < 0.0, ahead, 0.0))
+        return np.where(self.active, between + _integral(self.u, self.h, p, q) - start, 0.0)
 
 
 def missed(chain: Chain, kinks: Kinks, s: Array) -> Missed:
-    """γ at arc lengths ``s`` (k,): nought but in the elements that hold a kink and in those beside them.
-
-    The integral is from the kink, units of length.
-    """
-    if not kinks.places.size or not s.size:
-        nothing = np.zeros(len(s))
-        return Missed(nothing, nothing, nothing)
-    nearest = np.argmin(np.abs(s[:, None] - kinks.places), axis=1)
-    p, q, place = kinks.before[nearest], kinks.behind[nearest], kinks.places[nearest]
-    here, home = _element(chain, s), _element(chain, place)
-    active = np.abs(here - home) <= 1
+    """What is missed at arc lengths ``s`` (k,) of a ``chain``."""
+    here = _element(chain, s)
     u, h = s - chain.borders[here], chain.sizes[here]
-    v = h - u
-    size = chain.sizes[home]
-    start = _integral(place - chain.borders[home], size, p, q)
-    # over the whole element between this one and the kink's border
-    between = np.where(here > home, _integral(size, size, p, q), np.where(here < home, -_integral(h, h, p, q), 0.0))
+    if not kinks.places.size:
+        nothing = np.zeros(len(s))
+        return Missed(np.zeros(len(s), dtype=bool), nothing, nothing, u, h, u, h, nothing)
+    nearest = np.argmin(np.abs(s[:, None] - kinks.places), axis=1)
+    place = kinks.places[nearest]
+    home = _element(chain, place)
     return Missed(
-        np.where(active, -u * v / (2.0 * h) * (p * u + q * v), 0.0),
-        np.where(active, -(p * u * (2.0 * v - u) + q * v * (v - 2.0 * u)) / (2.0 * h), 0.0),
-        np.where(active, between + _integral(u, h, p, q) - start, 0.0),
+        active=np.abs(here - home) <= 1,
+        before=kinks.before[nearest],
+        behind=kinks.behind[nearest],
+        u=u,
+        h=h,
+        place=place - chain.borders[home],
+        size=chain.sizes[home],
+        side=np.sign(here - home).astype(float),
     )
+
+
+def kinked(chain: Chain, kinks: Kinks, points: Points) -> Points:
+    """Points of the smooth line with the true tangents; where they lie is not changed."""
+    near = np.zeros(len(points.s), dtype=bool)
+    for home in _element(chain, kinks.places):
+        near |= (points.s > chain.borders[max(home - 1, 0)]) & (points.s < chain.borders[min(home + 2, chain.n)])
+    if not np.any(near):
+        return points
+    more = missed(chain, kinks, points.s[near])
+    psi, bend = points.psi.copy(), points.bend.copy()
+    psi[near] += more.angle
+    bend[near] += more.bend
+    return replace(points, psi=psi, bend=bend)
 
 
 def _integral(u: Array, h: Array, p: Array, q: Array) -> Array:

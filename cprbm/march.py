@@ -22,6 +22,7 @@ from cprbm.following import Follower, Reached, Way, to
 from cprbm.forces import contact_imbalance
 from cprbm.kinematics import rest_state
 from cprbm.leap import Landed, leap
+from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.probing import probed, shapes, touching
 from cprbm.refining import all_zones, carried_over, fits, fitted, long_ones
@@ -31,6 +32,7 @@ from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAns
 AGAIN = 12  # iterations on a mesh that fits a little better
 FITS = 6  # of the mesh to where contact is, at most
 BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is no doubt that it has ended
+ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all branches are near
 FURTHER = 30.0  # times as far before it, a finer mesh is on the branch still
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
 
@@ -65,7 +67,7 @@ class March:
         for stage in self.scene.stages:
             here = self.on.values.get(stage.steps, 0.0), self.on.point
             self.opened = {name: [here] for name in self.asked_events if name not in self.closed_at}
-            self.on.trail = []
+            self.on.trail, self.on.careful = [], stage.beyond is not None
             for target in stage.stations:
                 reached = self._reach(stage, target)
                 if reached.certificate is None:
@@ -109,8 +111,8 @@ class March:
             # beyond the end on this mesh and on the one that was asked
             ends = (end.value, on.refused)
             furthest = max(ends) if target > on.trail[-1].value else min(ends)
-            value = furthest + BEYOND * (on.refused - on.trail[-1].value)
-            value = min(value, target) if target > furthest else max(value, target)
+            step = max(BEYOND * abs(on.refused - on.trail[-1].value), ONWARD * abs(target - furthest))
+            value = furthest + np.copysign(min(step, abs(target - furthest)), target - furthest)
             values = {**on.values, stage.steps: value}
             landed = leap(on.mechanism, on.settings, values, on.point, end.direction)
             reached = Reached(Ending.STEP_TOO_SMALL, f"no minimum found to which {of} leads", certificate=None)
@@ -150,7 +152,7 @@ class March:
             if mechanism is on.mechanism:
                 return end
             stood = Minimum(start.value, point, certificate)
-            finer = Follower(mechanism, asked, point, values, [stood])
+            finer = Follower(mechanism, asked, point, values, [stood], careful=on.careful)
             finer.go(to(load, values, end.value + ahead), _unseen)
             sharper = branch_end(mechanism, finer.trail, finer.refused)
             if sharper is not None and (sharper.loss, sharper.what) == (end.loss, end.what):
@@ -212,6 +214,9 @@ class March:
                 solved = equilibrium(target.problem, values, start, settings.tolerance, most, settle=settle)
                 iterations += solved.iterations
                 if solved.converged:
+                    break
+                if fit.kinks and (level := levelled(self.scene, settings, mechanism, point, fit, values)) is not None:
+                    target, solved = level
                     break
             turned = float(np.max(np.abs(solved.point.state.theta - start.state.theta)))
             if not solved.converged or turned > FOLLOWED:

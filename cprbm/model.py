@@ -207,11 +207,13 @@ class Fit:
         borders: for beams whose elements are not even, where they end, (N+1,) from 0 to 1 of the length.
         ends: for contacts on them, where they begin and end within the first beam, (k,) shares of its length.
         kinks: for contacts in points, those of each of their beams.
+        fixed: contacts whose places do not move with the distance's minimum.
     """
 
     borders: Mapping[str, Array]
     ends: Mapping[str, Array]
     kinks: Mapping[str, tuple[Kinks, ...]] = frozendict()
+    fixed: frozenset[str] = frozenset()
 
 
 EVEN = Fit(frozendict(), frozendict())

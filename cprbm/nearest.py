@@ -47,7 +47,7 @@ from cprbm.contact import Group
 from cprbm.crossing import cross
 from cprbm.gathering import Touches, gathered
 from cprbm.kinematics import Positions, State, positions, rest_state
-from cprbm.kinks import missed
+from cprbm.kinks import kinked, missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
 from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
@@ -65,6 +65,8 @@ PLACE_TOLERANCE = 1e-13  # of a minimum's place, units of length
 SETTLED = 1e-9  # slope of D at a minimum
 BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces A leaves its place to that
 
+DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even
+
 STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
 ON_IT = 1e-9  # gap and slope of two clamped ends, and how far they lie apart along the beams, where they touch
 STRAIGHT = 0.1  # of an element: by less a line is off the chords between its samples
@@ -79,7 +81,8 @@ class Places:
 
     Attributes:
         s, sigma: arc lengths on the one beam and on the other (k,).
-        keys: of the rows (k,): a joint's number on A, beyond those the ends of B; negative where s moves.
+        keys: of the rows (k,): a joint's number on A, beyond those the ends of B, clamps, and places that are fixed;
+            negative where s moves.
     """
 
     s: Array
@@ -105,6 +108,7 @@ class Pair:
         clamps: for the start and the end of A and of B, whether it is clamped together with an end of the other.
         own_places: whether minima of D have rows of their own.
         kinks: of A and of B where the contact is in points.
+        fixed: whether rows stand there, and no minimum has one of its own.
     """
 
     name: str
@@ -117,6 +121,7 @@ class Pair:
     clamps: tuple[tuple[bool, bool], tuple[bool, bool]] = ((False, False), (False, False))
     own_places: bool = True
     kinks: tuple[Kinks, ...] = (NO_KINKS, NO_KINKS)
+    fixed: bool = False
 
     def lines(self, state: State, at: Positions) -> Lines:
         """The smooth lines of A and B in a state."""
@@ -124,6 +129,14 @@ class Pair:
             smooth.smooth_line(self.a, self.unit_length, state, at),
             smooth.smooth_line(self.b, self.unit_length, state, at),
         )
+
+    def on_a(self, lines: Lines, s: Array) -> smooth.Points:
+        """Points of A at arc lengths ``s`` (k,), bent as its kinks say."""
+        return kinked(self.a, self.kinks[0], lines[0].at(s))
+
+    def on_b(self, lines: Lines, sigma: Array) -> smooth.Points:
+        """Points of B at arc lengths ``sigma`` (k,), bent as its kinks say."""
+        return kinked(self.b, self.kinks[1], lines[1].at(sigma))
 
     def exchanged(self) -> Pair:
         """The same contact with the parts of A and B exchanged."""
@@ -160,7 +173,7 @@ class Pair:
 
     def parting_at(self, lines: Lines, s: Array, sigma: Array, D: Array) -> Array:
         """D″ at arc lengths ``s`` of A whose feet are at ``sigma``; between springs the curvature goes evenly."""
-        facing = np.sign(np.cos(lines[0].at(s).psi - lines[1].at(sigma).psi))
+        facing = np.sign(np.cos(self.on_a(lines, s).psi - self.on_b(lines, sigma).psi))
         bend_A, bend_B = (
             np.interp(places, line.chain.s[1:-1], line.sampled.bend[2:-2:2])
             for line, places in zip(lines, (s, sigma), strict=True)
@@ -197,18 +210,24 @@ class Pair:
     def touching(self, state: State, at: Positions, s: Array) -> Array:
         """Where the edges touch that touch at arc lengths ``s`` of A, (k, 2), units of length."""
         lines = self.lines(state, at)
-        A, B = lines[0].at(s), lines[1].at(distance_along(self, lines, s)[1])
+        A, B = self.on_a(lines, s), self.on_b(lines, distance_along(self, lines, s)[1])
         share = self.a.thickness / (self.a.thickness + self.b.thickness)
         return np.stack((A.x + share * (B.x - A.x), A.y + share * (B.y - A.y)), axis=1)
+
+    def slopes(self, state: State, at: Positions, s: Array) -> Array:
+        """dD/ds at arc lengths ``s``."""
+        lines = self.lines(state, at)
+        sigma = distance_along(self, lines, s)[1]
+        return np.asarray(self.side * np.sin(self.on_a(lines, s).psi - self.on_b(lines, sigma).psi))
 
     def pressed(self, state: State, at: Positions, chain: Chain, s: Array) -> tuple[float, Array, Array] | None:
         """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s`` of A."""
         lines = self.lines(state, at)
         if chain is self.a:
-            return 1.0, s, lines[0].at(s).psi
+            return 1.0, s, self.on_a(lines, s).psi
         if chain is self.b:
             sigma = distance_along(self, lines, s)[1]
-            return -1.0, sigma, lines[1].at(sigma).psi
+            return -1.0, sigma, self.on_b(lines, sigma).psi
         return None
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
@@ -225,7 +244,9 @@ class Pair:
         inner = (along.keys > 0) & (along.keys <= self.a.n)
         found = []
         if np.any(inner):
-            found += self._mean_rows(lines, at, along.only(inner))
+            eased = self._eased()
+            means = self._mean_rows(lines, at, along.only(inner))
+            found += [(replace(rows, values=rows.values - eased), sigma) for rows, sigma in means]
         if not np.all(inner):
             places = along.only(~inner)
             found.append((self._rows_at(lines, at, places), places.sigma))
@@ -233,6 +254,16 @@ class Pair:
             rows = self.exchanged()._rows_at(lines[::-1], at, across)
             found.append((replace(rows, arc=across.sigma), across.s))
         return found
+
+    def _eased(self) -> float:
+        """By how much joints may dip where rows are fixed to places.
+
+        Even curvature in the element of a place moves the line beside it, against the place, by up to V·h³/(64·E·I).
+        """
+        if not self.fixed:
+            return 0.0
+        jumps = (np.abs(kinks.behind - kinks.before).max(initial=0.0) for kinks in self.kinks)
+        return sum(DIP * float(jump) * chain.h**3 for jump, chain in zip(jumps, self.chains, strict=True))
 
     def _rows_at(self, lines: Lines, at: Positions, places: Places) -> Group:
         """Rows at single places."""
@@ -265,7 +296,7 @@ class Pair:
         Gauss's points on either side of the border of B's elements that lies within, where the curvature steps.
         """
         s, sigma = joints.s, joints.sigma
-        A, B = lines[0].at(s), lines[1].at(sigma)
+        A, B = self.on_a(lines, s), self.on_b(lines, sigma)
         ratio = (B.speed - B.bend * _seen_from(B, A)[1]) / (np.cos(A.psi - B.psi) * A.speed)  # ds/dσ
         borders = self.b.borders
         after = np.clip(np.searchsorted(borders, sigma), 1, self.b.n)
@@ -278,7 +309,7 @@ class Pair:
         off = np.concatenate((-half + (cut + half) * x, cut + (half - cut) * x), axis=1)
         weights = 0.5 * np.concatenate(((1.0 + cut / half) * w, (1.0 - cut / half) * w), axis=1)
         at_A = s[:, None] + off
-        _, feet, _ = _feet(self, lines[1], lines[0].at(at_A.ravel()), (sigma[:, None] + off / ratio[:, None]).ravel())
+        _, feet, _ = _feet(self, lines, self.on_a(lines, at_A.ravel()), (sigma[:, None] + off / ratio[:, None]).ravel())
         at_B = feet.reshape(at_A.shape)
         # beside an end of B, where it faces no element of B, the joint alone
         alone = ~np.all((at_B > 0.0) & (at_B < self.b.s[-1]), axis=1)[:, None]
@@ -298,7 +329,7 @@ class Pair:
 
     def _touches(self, lines: Lines, s: Array, sigma: Array, free: Flags) -> Touches:
         """The constraint at feet (s, σ); where ``free`` (k,) the place moves with the minimum."""
-        A, B = lines[0].at(s), lines[1].at(sigma)
+        A, B = self.on_a(lines, s), self.on_b(lines, sigma)
         m, k = len(s), smooth.LOCALS
         tangent = np.stack((np.cos(B.psi), np.sin(B.psi)), axis=1)
         normal = np.stack((-tangent[:, 1], tangent[:, 0]), axis=1)
@@ -316,9 +347,8 @@ class Pair:
         of_foot = -B.speed + distance * B.bend
         one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
         more_A, more_B = missed(self.a, self.kinks[0], s), missed(self.b, self.kinks[1], sigma)
-        bend_A, bend_B = A.bend + more_A.bend, B.bend + more_B.bend
-        determinant = np.where(free, bend_A * of_foot + bend_B * facing * A.speed, 1.0)
-        s_z = np.where(free[:, None], of_foot[:, None] * one + bend_B[:, None] * two, 0.0) / determinant[:, None]
+        determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.speed, 1.0)
+        s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
         # what D gains over s by the tangents' γ, the foot going along
         gained = np.sign(facing) * (more_A.integral + of_foot / (facing * A.speed) * more_B.integral)
         sigma_z = (two - (facing * A.speed)[:, None] * s_z) / of_foot[:, None]
@@ -342,15 +372,15 @@ class Pair:
 
 def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Flags]:
     """Signed distance D of A from B at arc lengths ``s``: D, σ (k,), and whether a foot exists (k,)."""
-    A, G = lines[0].at(s), lines[1].sampled
+    A, G = pair.on_a(lines, s), lines[1].sampled
     _, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(np.stack((A.x, A.y), axis=1))
-    return _feet(pair, lines[1], A, G.s[nearest])
+    return _feet(pair, lines, A, G.s[nearest])
 
 
-def _feet(pair: Pair, line: smooth.SmoothLine, A: smooth.Points, sigma: Array) -> tuple[Array, Array, Flags]:
+def _feet(pair: Pair, lines: Lines, A: smooth.Points, sigma: Array) -> tuple[Array, Array, Flags]:
     """D, σ and whether there is a foot, by Newton's method on (i) from the guess ``sigma``."""
     for _ in range(FOOT_ITERATIONS):
-        B = line.at(sigma)
+        B = pair.on_b(lines, sigma)
         along, across = _seen_from(B, A)
         step = along / (B.speed * np.maximum(1.0 - B.bend * across, 0.2))
         ahead = np.minimum(np.maximum(sigma + np.minimum(np.maximum(step, -pair.b.h), pair.b.h), 0.0), pair.b.s[-1])
@@ -372,11 +402,15 @@ def closest_places(pair: Pair, lines: Lines) -> tuple[Places, Places]:
     """Where rows stand on A, and on B with the beams' parts exchanged."""
     a, b, reach = pair.a, pair.b, pair.offset + REACH
     D, sigma = _sampled(pair, lines)
-    s, turned = _minima(pair, lines, D, sigma)
+    if pair.fixed:
+        s = pair.kinks[0].places
+        turned = distance_along(pair, lines, s)[1]
+    else:
+        s, turned = _minima(pair, lines, D, sigma)
     ends = _facing_ends(pair, lines)
 
     # D and feet at the joints are every other sample
-    bends = np.abs(lines[0].at(a.s).bend) + np.abs(lines[1].at(sigma[::2]).bend)
+    bends = np.abs(pair.on_a(lines, a.s).bend) + np.abs(pair.on_b(lines, sigma[::2]).bend)
     near = D[::2] - pair.offset < JOINT_REACH * a.h**2 * (1.0 + bends)
     for places, apart in ((s, wells.BESIDE), (ends.sigma, BESIDE_END)):
         for place in places:
@@ -388,7 +422,7 @@ def closest_places(pair: Pair, lines: Lines) -> tuple[Places, Places]:
         Places(
             np.concatenate((a.s[joints], s)),
             np.concatenate((sigma[::2][joints], turned)),
-            np.concatenate((joints, np.full(len(s), -1))),
+            np.concatenate((joints, a.n + 6 + np.arange(len(s)) if pair.fixed else np.full(len(s), -1))),
         ),
         ends,
     )
@@ -397,7 +431,7 @@ def closest_places(pair: Pair, lines: Lines) -> tuple[Places, Places]:
 def _facing_ends(pair: Pair, lines: Lines) -> Places:
     """The ends of B that face A within reach, and their feet on A; the keys follow A's joints."""
     a, b, reach = pair.a, pair.b, pair.offset + REACH
-    A, ends = lines[0].sampled, lines[1].at(b.s[[0, -1]])
+    A, ends = lines[0].sampled, pair.on_b(lines, b.s[[0, -1]])
     away = np.array([np.min(np.hypot(A.x - x, A.y - y)) for x, y in zip(ends.x, ends.y, strict=True)])
     near = np.flatnonzero(away < reach + a.h)
     if not near.size:
@@ -435,7 +469,7 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     close = np.flatnonzero(np.isfinite(rough))
     D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
     if close.size:
-        distance, sigma[close], foot = _feet(pair, lines[1], lines[0].at(A.s[close]), G.s[nearest[close]])
+        distance, sigma[close], foot = _feet(pair, lines, pair.on_a(lines, A.s[close]), G.s[nearest[close]])
         D[close] = np.where(foot, distance, np.inf)
     return _not_gone_round(pair, lines, D), sigma
 
@@ -468,16 +502,14 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
         return np.zeros(0), np.zeros(0)
     low, high, s, sigma = (of[found.samples + step] for of, step in ((s, -1), (s, 1), (s, 0), (sigma, 0)))
     for _ in range(CLOSEST_ITERATIONS):
-        A, B = lines[0].at(s), lines[1].at(sigma)
+        A, B = pair.on_a(lines, s), pair.on_b(lines, sigma)
         along, across = _seen_from(B, A)
         facing, shortened = np.cos(A.psi - B.psi), B.speed - B.bend * across
         # what is left to the foot, and the slope there
         left = along / shortened
-        more_A, more_B = missed(pair.a, pair.kinks[0], s), missed(pair.b, pair.kinks[1], sigma)
-        bend_B, ahead_of = B.bend + more_B.bend, more_A.angle - more_B.angle
-        slope = pair.side * (np.sin(A.psi - B.psi + ahead_of) - facing * bend_B * left)
+        slope = pair.side * (np.sin(A.psi - B.psi) - facing * B.bend * left)
         towards = facing * A.speed / shortened  # dσ/ds
-        convex = pair.side * facing * (A.bend + more_A.bend - bend_B * towards)
+        convex = pair.side * facing * (A.bend - B.bend * towards)
         low, high = np.where(slope < 0.0, s, low), np.where(slope < 0.0, high, s)
         ahead = s - slope / np.where(convex > LEAST_CURVATURE, convex, np.inf)
         newton = (convex > LEAST_CURVATURE) & (ahead >= low) & (ahead <= high)
@@ -502,14 +534,14 @@ def pair_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Pair:
     lines = pair.lines(state, at)
     pair = replace(pair, side=_side(pair, lines), across=_side(pair.exchanged(), lines[::-1]))
     clamps = _clamped(pair, lines), _clamped(pair.exchanged(), lines[::-1])
-    return replace(pair, clamps=clamps, kinks=fit.kinks.get(name, pair.kinks))
+    return replace(pair, clamps=clamps, kinks=fit.kinks.get(name, pair.kinks), fixed=name in fit.fixed)
 
 
 def _clamped(pair: Pair, lines: Lines) -> tuple[bool, bool]:
     """For the start and the end of A, whether it is clamped beside an end of B, touching and parallel."""
     ends = pair.a.s[[0, -1]]
     D, sigma, foot = distance_along(pair, lines, ends)
-    turn = np.sin(lines[0].at(ends).psi - lines[1].at(sigma).psi)
+    turn = np.sin(pair.on_a(lines, ends).psi - pair.on_b(lines, sigma).psi)
     at_end = np.minimum(sigma, pair.b.s[-1] - sigma)
     touching = foot & (np.abs(D - pair.offset) <= ON_IT) & (np.abs(turn) <= ON_IT) & (at_end <= ON_IT)
     start, end = (

@@ -113,7 +113,8 @@ def _extreme(inverse: Callable[[Array], Array], n: int, *, lowest: bool | None) 
 def _ritz(inverse: Callable[[Array], Array], n: int) -> tuple[Array, Array]:
     """Eigenvalues and vectors, the outer of them good, by Lanczos' method from a start with no symmetry.
 
-    With full reorthogonalisation.  The compliances of a beam fall with the fourth power of their number, so that a few steps settle the ends.
+    With full reorthogonalisation.  The compliances of a beam fall with the fourth power of their number, so that a few
+    steps settle the ends.
     """
     vector = np.cos(0.7 * np.arange(n)) + 1.5
     basis = np.zeros((n, LANCZOS))

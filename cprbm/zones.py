@@ -57,7 +57,18 @@ def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     apart = np.diff(arcs) > CLOSE * np.maximum(h[1:], h[:-1]) + reach[1:] + reach[:-1]
     breaks = np.concatenate(([0], np.cumsum(apart | arched[1:] | arched[:-1])))
     runs = np.split(arcs[pressed], np.flatnonzero(np.diff(breaks[pressed])) + 1)
+    runs = [_without_idle_clamp(chain, run, clamped) for run in runs]
     return tuple(_zone(pair, point, chain, run) for run in runs if len(run) > 1 or run[0] not in clamped)
+
+
+def _without_idle_clamp(chain: Chain, run: Array, clamped: Array) -> Array:
+    """A run without the clamp from which the beam lies along the other up to one place that alone is pressed."""
+    inner = run[~np.isin(run, clamped)]
+    if not inner.size or inner.size == run.size:
+        return run
+    h = float(chain.size_at(inner).max())
+    beside = min(inner[0] - run[0], run[-1] - inner[-1]) == 0.0 and np.ptp(run) - np.ptp(inner) > SHORTEST * h
+    return inner if beside and np.ptp(inner) < SHORTEST * h else run
 
 
 def _zone(pair: Touching, point: Point, chain: Chain, run: Array) -> Zone:

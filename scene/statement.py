@@ -407,14 +407,16 @@ class Stage(Record):
     Loads and drives that no stage has stepped yet are zero (such a drive holds what it drives where it is);
     each keeps its last value in later stages.
 
-    ``beyond`` is what happens where the branch that is followed ends because it is no minimum of the potential
-    energy any more: ``stop`` there, or ``jump`` to the state that the decrease of the energy leads to.
+    ``beyond`` asks where the branch that is followed ends because it is no minimum of the potential energy any more,
+    and says what happens there: ``stop``, or ``jump`` to the state that the decrease of the energy leads to.  Then
+    steps are so short that no end is passed.  Without it they are as long as they can be, and an end is told of only
+    where a step finds no way past it.
     """
 
     name: Name
     steps: Name
     stations: Annotated[tuple[float, ...], Field(min_length=1)]
-    beyond: Literal["stop", "jump"] = "stop"
+    beyond: Literal["stop", "jump"] | None = None
 
 
 Quantity = Literal[

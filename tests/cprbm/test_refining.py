@@ -9,11 +9,11 @@ import cprbm
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import point_at
 from cprbm.kinematics import State, rest_state
+from cprbm.march import March
 from cprbm.mechanism import mechanism_of
 from cprbm.model import Fit, build
 from cprbm.refining import BEYOND, SHARE, all_zones, carried_over, coarser, ends_of, fits, fitted, long_ones
 from cprbm.settings import Settings
-from cprbm.solver import _March
 from cprbm.zones import Zone
 from tests.cprbm.scenes import hinge
 from tests.cprbm.test_circle import BEAM, RADIUS, scene_of
@@ -21,7 +21,7 @@ from tests.references.wrapped import Wrapped
 
 
 def marched(links, load=97.0):
-    march = _March(scene_of([load]), (Settings(links=links),))
+    march = March(scene_of([load]), (Settings(links=links),))
     assert march.run()[0].name == "COMPLETED"
     return march
 
@@ -42,10 +42,10 @@ def test_beams_with_few_links_keep_some_and_the_papers_meshes_are_not_coarsened(
 
 def test_borders_stand_where_zones_end_and_elements_are_even_between():
     march = marched(40)
-    mechanism, point = march.mechanism, march.point
+    mechanism, point = march.on.mechanism, march.on.point
     zones = all_zones(mechanism, point)
     ends = ends_of(mechanism, zones)
-    fit = fitted(mechanism, point, zones, march.settings)
+    fit = fitted(mechanism, point, zones, march.on.settings)
     (end,), borders = ends["circle"], fit.borders["beam"]
     # reference: tests.references.wrapped
     assert end == pytest.approx(Wrapped(**BEAM, radius=RADIUS, force=97.0).wrap_length / BEAM["length"], abs=2e-4)
@@ -53,22 +53,24 @@ def test_borders_stand_where_zones_end_and_elements_are_even_between():
     assert borders[k] == pytest.approx(end, abs=1e-15)
     assert np.diff(borders[: k + 1]) == pytest.approx(end / k)
     assert np.diff(borders[k:]) == pytest.approx((1.0 - end) / (40 - k))
-    model = build(march.scene, march.settings, fit)
+    model = build(march.scene, march.on.settings, fit)
     assert model.chains[0].sizes.sum() == pytest.approx(1.0)
     assert not fits(mechanism, fit)
-    assert fits(mechanism_of(march.scene, march.settings, fit), fit)
+    assert fits(mechanism_of(march.scene, march.on.settings, fit), fit)
 
 
 def test_ends_much_closer_than_an_element_leave_the_elements_even():
     march = marched(40)
     near = {"circle": (Zone(0.5, 0.5001, long=True),)}
-    assert fitted(march.mechanism, march.point, near, march.settings) == Fit({}, {})
+    assert fitted(march.on.mechanism, march.on.point, near, march.on.settings) == Fit({}, {})
 
 
 @pytest.mark.parametrize("links", [20, 40, 46, 80])
 def test_a_place_close_to_a_held_end_has_its_share_of_the_elements(links):
     march = marched(links)
-    borders = fitted(march.mechanism, march.point, {"circle": (Zone(0.03, 0.03, long=False),)}, march.settings).borders
+    borders = fitted(
+        march.on.mechanism, march.on.point, {"circle": (Zone(0.03, 0.03, long=False),)}, march.on.settings
+    ).borders
     sizes, share, beyond = np.diff(borders["beam"]), links / SHARE, links / BEYOND
     # the place has elements of one size on either side
     fine = 0.03 / share
@@ -77,39 +79,39 @@ def test_a_place_close_to_a_held_end_has_its_share_of_the_elements(links):
     assert sizes[before + 1 :] == pytest.approx((0.97 - beyond * fine) / (links - share - beyond))
     # the mesh goes evenly with the place
     near = {"circle": (Zone(0.03 + 1e-6, 0.03 + 1e-6, long=False),)}
-    moved = fitted(march.mechanism, march.point, near, march.settings).borders["beam"]
+    moved = fitted(march.on.mechanism, march.on.point, near, march.on.settings).borders["beam"]
     assert np.all(np.abs(moved - borders["beam"]) <= 1.001e-6 * (share + beyond) / share)
 
 
 def test_a_place_far_from_everything_leaves_the_elements_even():
     march = marched(40)
     far = {"circle": (Zone(0.4, 0.4, long=False),)}
-    assert fitted(march.mechanism, march.point, far, march.settings) == Fit({}, {})
+    assert fitted(march.on.mechanism, march.on.point, far, march.on.settings) == Fit({}, {})
 
 
 def test_a_state_carried_to_its_own_mesh_is_itself():
     march = marched(40)
-    point = carried_over(march.mechanism, march.point, march.mechanism, march.values)
-    assert point.state.theta == pytest.approx(march.point.state.theta, abs=1e-14)
-    assert point.rows.keys == march.point.rows.keys
+    point = carried_over(march.on.mechanism, march.on.point, march.on.mechanism, march.on.values)
+    assert point.state.theta == pytest.approx(march.on.point.state.theta, abs=1e-14)
+    assert point.rows.keys == march.on.point.rows.keys
 
 
 def test_a_state_carried_to_a_finer_mesh_and_back_turns_no_link_by_more_than_the_coarse_mesh_resolves():
     march = marched(40)
     finer = mechanism_of(march.scene, Settings(links=160))
-    there = carried_over(march.mechanism, march.point, finer, march.values)
-    back = carried_over(finer, there, march.mechanism, march.values)
-    assert back.state.theta == pytest.approx(march.point.state.theta, abs=1e-12)
+    there = carried_over(march.on.mechanism, march.on.point, finer, march.on.values)
+    back = carried_over(finer, there, march.on.mechanism, march.on.values)
+    assert back.state.theta == pytest.approx(march.on.point.state.theta, abs=1e-12)
     # what presses lies in the zone
     pressing = there.rows.arc[there.lam > 0.0]
-    (zone,) = all_zones(march.mechanism, march.point)["circle"]
+    (zone,) = all_zones(march.on.mechanism, march.on.point)["circle"]
     assert np.all(pressing < zone.end + 1.0 / 160)
 
 
 def test_a_place_is_no_long_zone():
-    march = _March(hinge(), (Settings(links=40),))
+    march = March(hinge(), (Settings(links=40),))
     march.run()
-    zones = all_zones(march.mechanism, march.point)
+    zones = all_zones(march.on.mechanism, march.on.point)
     assert [len(found) for found in zones.values()] == [1]
     assert long_ones(zones) == {}
 
@@ -135,7 +137,7 @@ def test_the_fitted_mesh_is_that_of_the_same_beam():
 def test_an_answer_at_many_links_is_that_of_the_plain_march():
     scene = scene_of([97.0])
     nested = cprbm.answer(scene, Settings(links=320)).stations[0]
-    plain = _March(scene, (Settings(links=320),))
+    plain = March(scene, (Settings(links=320),))
     assert plain.run()[0].name == "COMPLETED"
     for name, value in plain.reached[0].values.items():
         assert nested.values[name] == pytest.approx(value, rel=1e-6, abs=1e-6 * np.max(np.abs(value))), name

@@ -1,0 +1,78 @@
+"""How an equilibrium moves with what is stepped, and whether two of them are on one branch.
+
+======  ==============================================================================
+v, θ    value of the stepped load or drive, SI; link angles
+r       dθ/dv on the branch, from Newton's system with the contacts that press
+f       part of a step that lies before a contact closes or opens
+======  ==============================================================================
+
+On one branch the angles go from one equilibrium to the next as their rates say at both ends:
+
+    θ_1 − θ_0 ≈ (f r_0 + (1 − f) r_1)(v_1 − v_0)    with one f between 0 and 1.
+
+What a leap to another branch adds to this is in no proportion to the step.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cprbm.energy import load_work
+from cprbm.equilibrium import Point, Problem, local_system_at, many, system
+from scene.answer import Array
+
+APART = 0.5  # of the mean way that the rates make: curvature of the way, and more than one contact
+SHIFTED = 0.002  # rad: links turn by less where contact only comes to be carried by other rows
+
+
+def rate(problem: Problem, point: Point, name: str) -> Array:
+    """r (n_links,), rad per unit of the load or drive of a ``name``; nought where the system is singular."""
+    model, closure = problem.model, problem.closure
+    f = np.zeros(model.n_unknowns)
+    if name in problem.loads:
+        f = load_work(model, {name: problem.loads[name]}, {name: 1.0}, point.state).gradient
+        f[closure.fixed] = 0.0
+    driven = np.zeros(closure.rows)
+    driven[closure.first_hold :] = [hold.unit if hold.drive == name else 0.0 for hold in closure.holds]
+    try:
+        return _local(problem, point, f, driven) if many(point.rows) else _bordered(problem, point, f, driven)
+    except (np.linalg.LinAlgError, RuntimeError):
+        return np.zeros(model.n_links)
+
+
+def _bordered(problem: Problem, point: Point, f: Array, driven: Array) -> Array:
+    n = problem.model.n_links
+    found = system(problem, point, np.zeros(point.rows.size, dtype=bool), 0.0)
+    keep = np.concatenate((found.base, found.contacts[point.lam > 0.0]))
+    right = np.zeros(len(keep))
+    right[: len(f) - n] = f[n:]
+    right[len(f) - n : len(f) - n + len(found.anchors)] = f[found.anchors]
+    right[found.equalities] = driven
+    return found.step(keep, right, f)[0][:n]
+
+
+def _local(problem: Problem, point: Point, f: Array, driven: Array) -> Array:
+    found, active = local_system_at(problem, point), point.lam > 0.0
+    n, first = found.n_links, found.n_links + 2 * found.n_joints
+    right = np.zeros(found.size + int(np.sum(active)))
+    right[:n], right[first : first + found.n_bodies] = f[:n], f[n:]
+    right[found.first_mu : found.size] = driven
+    return np.asarray(found.factorised(active).solve(right)[:n])
+
+
+def strayed(lengths: Array, change: Array, start: Array, end: Array) -> bool:
+    """Whether a ``change`` of the angles is not made of the ways that the rates at its ``start`` and ``end`` make.
+
+    Args:
+        lengths: of the links, the metric; (n_links,) as all others.
+        change: θ_1 − θ_0.
+        start, end: r_0 (v_1 − v_0) and r_1 (v_1 − v_0).
+    """
+    if float(np.max(np.abs(change))) <= SHIFTED:
+        return False
+    turn = start - end
+    size = float(lengths @ turn**2)
+    f = min(max(float(lengths @ (turn * (change - end))) / size, 0.0), 1.0) if size > 0.0 else 0.0
+    left = change - end - f * turn
+    ways = [float(np.sqrt(lengths @ way**2)) for way in (start, end)]
+    return float(np.sqrt(lengths @ left**2)) > max(APART * 0.5 * sum(ways), SHIFTED * float(np.sqrt(np.sum(lengths))))

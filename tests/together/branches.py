@@ -1,0 +1,198 @@
+"""Scenes whose branches end, as data in SI units, each beside the module of ``tests.references`` that knows where.
+
+Forces are given over EI/L², moments over EI/L, with L the beam's length (of an arch its radius).
+"""
+
+from __future__ import annotations
+
+from math import cos, sin, sqrt
+from typing import Any
+
+from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH
+from tests.references.arch import Arch
+from tests.references.let_go import Held
+from tests.references.snap import Snap
+from tests.references.toggle import Toggle
+
+FORCE, MOMENT = RIGIDITY / LENGTH**2, RIGIDITY / LENGTH
+
+# one of each kind, with numbers that nothing else has
+PINNED_ARCH, CLAMPED_ARCH = Arch(1.23, "pinned"), Arch(0.79, "clamped")
+SNAP, STOPPED_AT = Snap(0.9), 0.66
+HELD = Held(load=3.21, center=(0.62, 0.15), radius=0.13)
+TOGGLE = Toggle(arc=0.6, base=1.3, arm=0.45)
+
+_STRIP = {"thickness": THICKNESS, "width": WIDTH, "material": "m"}
+
+
+def _weld(point: str) -> dict[str, str]:
+    return {"joint": "weld", "point": point}
+
+
+def _pin(point: str) -> dict[str, str]:
+    return {"joint": "pin", "point": point}
+
+
+def _line(start: list[float], end: list[float]) -> dict[str, Any]:
+    return {"kind": "line", "start": start, "end": end}
+
+
+def _stage(name: str, steps: str, stations: list[float], beyond: str) -> dict[str, Any]:
+    return {"name": name, "steps": steps, "stations": stations, "beyond": beyond}
+
+
+def _scene(name: str, **parts: Any) -> dict[str, Any]:
+    return {"name": name, "materials": {"m": {"youngs_modulus": MODULUS, "poisson_ratio": 0.31}}, **parts}
+
+
+def arch(half_angle: float, left: str, right: str, stations: list[float], *, beyond: str = "stop") -> dict[str, Any]:
+    """An arch about the origin, ``left`` and ``right`` its joints, with a dead force P down at its crown C."""
+    x, y = LENGTH * sin(half_angle), LENGTH * cos(half_angle)
+    ends = {"weld": _weld, "pin": _pin}
+
+    def half(start: list[float], end: list[float]) -> dict[str, Any]:
+        return {"kind": "arc", "center": [0.0, 0.0], "start": start, "end": end, "direction": "clockwise"}
+
+    return _scene(
+        "arch",
+        bodies={
+            "ground": {"motion": "fixed", "points": {"A": [-x, y], "B": [x, y]}},
+            "crown": {"motion": "free", "points": {"C": [0.0, LENGTH]}},
+        },
+        beams={
+            "left": {**_STRIP, "curve": half([-x, y], [0.0, LENGTH]), "start": ends[left]("A"), "end": _weld("C")},
+            "right": {**_STRIP, "curve": half([0.0, LENGTH], [x, y]), "start": _weld("C"), "end": ends[right]("B")},
+        },
+        loads={"P": {"kind": "force", "point": "C", "direction": [0.0, -1.0]}},
+        stages=[_stage("load", "P", [force * FORCE for force in stations], beyond)],
+        probes=[
+            {"of": "C", "quantity": "displacement"},
+            {"of": "crown", "quantity": "rotation"},
+            {"of": "A", "quantity": "reaction"},
+            {"of": "A", "quantity": "reaction_moment"},
+        ],
+    )
+
+
+def driven_arch(half_angle: float, left: str, right: str, ways: list[float], *, beyond: str = "stop") -> dict[str, Any]:
+    """The same with its crown moved down by ``ways`` over R, free to move across and to turn."""
+    data = arch(half_angle, left, right, [], beyond=beyond)
+    del data["loads"]
+    data["drives"] = {"w": {"kind": "displacement", "point": "C", "direction": [0.0, -1.0]}}
+    data["stages"] = [_stage("lower", "w", [way * LENGTH for way in ways], beyond)]
+    data["probes"].append({"of": "C", "quantity": "reaction"})
+    return data
+
+
+def cantilever_column(loads: list[float], *, beyond: str = "jump") -> dict[str, Any]:
+    """Clamped at the origin, along x, with P against x at its tip T."""
+    return _scene(
+        "cantilever-column",
+        bodies={
+            "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
+            "tip": {"motion": "free", "points": {"T": [LENGTH, 0.0]}},
+        },
+        beams={"beam": {**_STRIP, "curve": _line([0.0, 0.0], [LENGTH, 0.0]), "start": _weld("R"), "end": _weld("T")}},
+        loads={"P": {"kind": "force", "point": "T", "direction": [-1.0, 0.0]}},
+        stages=[_stage("press", "P", [load * FORCE for load in loads], beyond)],
+        probes=[{"of": "T", "quantity": "displacement"}, {"of": "tip", "quantity": "rotation"}],
+    )
+
+
+def pinned_column(loads: list[float], *, beyond: str = "jump") -> dict[str, Any]:
+    """Pinned at the origin and at a slide along x, in two halves whose joint is M."""
+    half = 0.5 * LENGTH
+    return _scene(
+        "pinned-column",
+        bodies={
+            "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
+            "middle": {"motion": "free", "points": {"M": [half, 0.0]}},
+            "slide": {"motion": "slides", "along": [1.0, 0.0], "points": {"E": [LENGTH, 0.0]}},
+        },
+        beams={
+            "first": {**_STRIP, "curve": _line([0.0, 0.0], [half, 0.0]), "start": _pin("R"), "end": _weld("M")},
+            "second": {**_STRIP, "curve": _line([half, 0.0], [LENGTH, 0.0]), "start": _weld("M"), "end": _pin("E")},
+        },
+        loads={"P": {"kind": "force", "point": "E", "direction": [-1.0, 0.0]}},
+        stages=[_stage("press", "P", [load * FORCE for load in loads], beyond)],
+        probes=[{"of": "M", "quantity": "displacement"}, {"of": "E", "quantity": "displacement"}],
+    )
+
+
+def snap(ways: list[list[float]], *, stopped_at: float | None = None, beyond: str = "jump") -> dict[str, Any]:
+    """The beam of SNAP, hanging below, its clamp turned through one stage of angles (rad) after the other.
+
+    The moment on its end, counter-clockwise, makes it hang: without, it could as well stand above.
+    ``stopped_at`` is the least β that a stop allows.
+    """
+    d = SNAP.distance * LENGTH
+    data = _scene(
+        "snap",
+        bodies={
+            "hub": {"motion": "turns", "about": "O", "points": {"O": [0.0, 0.0]}},
+            # W lies towards the clamp: from there β is counted, as the beam leaves its end with β + π
+            "ground": {"motion": "fixed", "points": {"Q": [d, 0.0], "W": [0.3 * d, 0.0]}},
+        },
+        beams={"beam": {**_STRIP, "curve": _line([0.0, 0.0], [LENGTH, 0.0]), "start": _weld("O"), "end": _pin("Q")}},
+        drives={"turn": {"kind": "rotation", "body": "hub"}},
+        assembly={"moments": {"beam": MOMENT}},
+        stages=[_stage(f"way{k}", "turn", way, beyond) for k, way in enumerate(ways)],
+        probes=[
+            {"of": "hub", "quantity": "rotation"},
+            {"of": "hub", "quantity": "reaction_moment"},
+            {"of": "Q", "quantity": "reaction"},
+            {"of": "scene", "quantity": "potential_energy"},
+        ],
+    )
+    if stopped_at is not None:
+        data["stops"] = {"stop": {"beam": "beam", "end": "end", "towards": "W", "least": stopped_at}}
+        data["probes"] += [{"of": "stop", "quantity": quantity} for quantity in ("angle", "moment")]
+    return data
+
+
+def held(releases: list[float], *, beyond: str = "jump") -> dict[str, Any]:
+    """The column of HELD: leant on the circle by Q, pressed by P, and Q let down through ``releases``."""
+    data = cantilever_column([])
+    x, y = HELD.center
+    data["name"] = "held-column"
+    data["loads"]["Q"] = {"kind": "force", "point": "T", "direction": [0.0, 1.0]}
+    data["contacts"] = {
+        "touch": {
+            "kind": "beam-circle",
+            "beam": "beam",
+            "body": "wall",
+            "center": [x * LENGTH, y * LENGTH],
+            "radius": HELD.radius * LENGTH - 0.5 * THICKNESS,
+        }
+    }
+    data["stages"] = [
+        _stage("lean", "Q", [0.5 * FORCE], "stop"),
+        _stage("press", "P", [HELD.load * FORCE], "stop"),
+        _stage("release", "Q", [force * FORCE for force in releases], beyond),
+    ]
+    data["probes"] += [{"of": "touch", "quantity": quantity} for quantity in ("force", "centre")]
+    data["probes"] += [{"of": "R", "quantity": "reaction_moment"}, {"of": "scene", "quantity": "potential_energy"}]
+    return data
+
+
+def toggle(moments: list[float], *, beyond: str = "jump") -> dict[str, Any]:
+    """The lever of TOGGLE, its pin A below the line from the pivot to the ground's pin; the moment lifts it."""
+    psi = TOGGLE.under(0.0).lever
+    b, arm, radius = TOGGLE.base * LENGTH, TOGGLE.arm * LENGTH, LENGTH / TOGGLE.arc
+    A, G = (arm * cos(psi), -arm * sin(psi)), (b, 0.0)
+    chord = (G[0] - A[0], G[1] - A[1])
+    d = sqrt(chord[0] ** 2 + chord[1] ** 2)
+    off = sqrt(radius**2 - 0.25 * d**2) / d  # of the center from the chord, on the right: the beam bows to the left
+    center = [0.5 * (A[0] + G[0]) + off * chord[1], 0.5 * (A[1] + G[1]) - off * chord[0]]
+    curve = {"kind": "arc", "center": center, "start": list(A), "end": list(G), "direction": "clockwise"}
+    return _scene(
+        "toggle",
+        bodies={
+            "lever": {"motion": "turns", "about": "O", "points": {"O": [0.0, 0.0], "A": list(A)}},
+            "ground": {"motion": "fixed", "points": {"G": list(G)}},
+        },
+        beams={"beam": {**_STRIP, "curve": curve, "start": _pin("A"), "end": _pin("G")}},
+        loads={"M": {"kind": "moment", "body": "lever"}},
+        stages=[_stage("push", "M", [moment * MOMENT for moment in moments], beyond)],
+        probes=[{"of": "lever", "quantity": "rotation"}, {"of": "G", "quantity": "reaction"}],
+    )
