@@ -94,7 +94,14 @@ UNITS: Mapping[Quantity, str] = {
     "potential_energy": "J",
 }
 
-LOAD_UNITS = {"moment": "N·m", "force": "N", "displacement": "m", "rotation": "rad"}
+LOAD_UNITS = {
+    "moment": "N·m",
+    "force": "N",
+    "beam_force": "N",
+    "distributed": "N/m",
+    "displacement": "m",
+    "rotation": "rad",
+}
 
 
 @dataclass(frozen=True, slots=True)

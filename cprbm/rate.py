@@ -30,7 +30,7 @@ def rate(problem: Problem, point: Point, name: str) -> Array:
     model, closure = problem.model, problem.closure
     f = np.zeros(model.n_unknowns)
     if name in problem.loads:
-        f = load_work(model, {name: problem.loads[name]}, {name: 1.0}, point.state).gradient
+        f = load_work(model, {name: problem.loads[name]}, {name: 1.0}, point.state, point.at).gradient
         f[closure.fixed] = 0.0
     driven = np.zeros(closure.rows)
     driven[closure.first_hold :] = [hold.unit if hold.drive == name else 0.0 for hold in closure.holds]

@@ -8,8 +8,8 @@ z           unknowns, see :mod:`exact.layout`
 ==========  ================================================================================================
 
 Source: S. S. Antman, Nonlinear Problems of Elasticity, chapter 4 (balance laws of planar rods), without stretch and
-shear.  At a knot everything is continuous; contacts are :mod:`exact.touching` and :mod:`exact.wrapping`; the forces
-and moments on every body that moves vanish together.
+shear.  At a knot everything is continuous, but the force where a load acts; contacts are :mod:`exact.touching` and
+:mod:`exact.wrapping`; the forces and moments on every body that moves vanish together.
 
 Derivatives are taken by the complex step, all columns at once: unknowns have the shape (n, K), with one real part
 in all columns.  A piece's end follows from its start by its own exact derivatives.
@@ -32,7 +32,7 @@ from exact.touching import touch_points
 from exact.wrapping import lie_between, lie_from_clamp
 from scene import CircleContact
 from scene.answer import Array
-from scene.statement import DisplacementDrive, Force, SlidingBody
+from scene.statement import BeamForce, DisplacementDrive, Force, Moment, SlidingBody
 
 Guess = Callable[[str, Array], Array]
 """θ (n,) of a beam at arc lengths (n,)."""
@@ -69,9 +69,10 @@ class Equations:
         """
         out = Evaluation(self.model)
         self._place_bodies(out, z)
+        inside, at_ends = self._forces_on_beams(lam)
         for strip in self.model.strips.values():
-            self._beam(out, strip, z, guess)
-        touch_points(out, self.structure, self.layout, z)
+            self._beam(out, strip, z, guess, inside)
+        touch_points(out, self.structure, self.layout, z, at_ends)
         self._loads(out, z, lam)
         for name, freedoms in self.model.moving.items():
             balance = out.on_body[name]
@@ -122,14 +123,14 @@ class Equations:
     def _loads(self, out: Evaluation, z: Columns, lam: Columns) -> None:
         scene, nothing = self.model.scene, np.zeros((2, len(lam)), dtype=lam.dtype)
         for name, load in scene.loads.items():
-            value = lam if name == self.stepped else np.full_like(lam, self.others.get(name, 0.0))
+            value = self._value(name, lam)
             if isinstance(load, Force):
                 body = scene.body_of(load.point)
                 out.act(body, out.moved(body, self.model.rest(load.point)), np.outer(unit(load.direction), value))
-            else:
+            elif isinstance(load, Moment):
                 out.act(load.body, nothing, nothing, value)
         for name, drive in scene.drives.items():
-            value = lam if name == self.stepped else np.full_like(lam, self.others.get(name, 0.0))
+            value = self._value(name, lam)
             reaction = z[self.layout.drives[name]]
             if isinstance(drive, DisplacementDrive):
                 body, rest = scene.body_of(drive.point), self.model.rest(drive.point)
@@ -140,9 +141,31 @@ class Equations:
                 out.act(drive.body, nothing, nothing, reaction)
                 out.rows.append(out.placements[drive.body][2] - value)
 
+    def _value(self, name: str, lam: Columns) -> Columns:
+        """Of a load or drive (K,)."""
+        return lam if name == self.stepped else np.full_like(lam, self.others.get(name, 0.0))
+
+    def _forces_on_beams(self, lam: Columns) -> tuple[dict[tuple[str, float], Columns], dict[tuple[str, str], Columns]]:
+        """Forces (2, K) by beam and knot, and by beam and end."""
+        inside: dict[tuple[str, float], Columns] = {}
+        at_ends: dict[tuple[str, str], Columns] = {}
+        for name, load in self.model.scene.loads.items():
+            if not isinstance(load, BeamForce):
+                continue
+            force = np.outer(unit(load.direction), self._value(name, lam))
+            if load.at in (0.0, 1.0):
+                end = load.beam, "start" if load.at == 0.0 else "end"
+                at_ends[end] = at_ends[end] + force if end in at_ends else force
+            else:
+                knot = load.beam, load.at * self.model.strips[load.beam].length
+                inside[knot] = inside[knot] + force if knot in inside else force
+        return inside, at_ends
+
     # ------------------------------------------------------------------------------------------- beams
 
-    def _beam(self, out: Evaluation, strip: Strip, z: Columns, guess: Guess) -> None:
+    def _beam(
+        self, out: Evaluation, strip: Strip, z: Columns, guess: Guess, forces: Mapping[tuple[str, float], Columns]
+    ) -> None:
         """A beam's pieces, with the rows at its ends and knots and along circles."""
         name, order = strip.name, self.structure.order[strip.name]
         wraps = {wrap.contact: wrap for wrap in self.structure.wraps(name)}
@@ -170,7 +193,8 @@ class Equations:
                 out.turnings[name, item] = (self.layout.pieces[name][k].start + 2, len(out.rows) + 3)
             out.rows += list(after.start[:4] - before.end)
             if not isinstance(item, str):
-                out.rows += list(after.force - before.force)
+                jump = after.force - before.force
+                out.rows += list(jump + forces[name, item] if (name, item) in forces else jump)
 
     def _borders(self, strip: Strip, z: Columns) -> tuple[list[Columns], list[Columns]]:
         """Where a beam's pieces begin and where they stop."""

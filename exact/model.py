@@ -20,7 +20,7 @@ from exact.curves import NeutralLine, neutral_line
 from exact.spectral import Law
 from scene import Scene
 from scene.answer import Array
-from scene.statement import Beam, BeamEnd, FixedBody, FreeEnd, SlidingBody, WeldedEnd
+from scene.statement import Beam, BeamEnd, BeamForce, FixedBody, FreeEnd, SlidingBody, WeldedEnd
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,8 @@ class Strip:
         name: the beam's.
         line: its stress-free neutral line.
         beam: its record, whose sizes are in metres.
-        knots: arc lengths strictly inside at which thickness, width or the stress-free curvature have kinks.
+        knots: arc lengths strictly inside at which thickness, width or the stress-free curvature have kinks, or a
+            force acts.
         stiffness: Young's modulus over Sℓ, 1/m⁴, so that E·I is without dimension.
         unit: ℓ, m.
     """
@@ -155,7 +156,9 @@ def modelled(scene: Scene) -> Model:
     strips = {}
     for name, beam in scene.beams.items():
         line = neutral_line(beam.curve, unit)
-        knots = tuple(sorted({*(float(u) * line.length for u in beam.knots[1:-1]), *line.kinks}))
+        loaded = [load.at for load in scene.loads.values() if isinstance(load, BeamForce) and load.beam == name]
+        shares = {*map(float, beam.knots), *loaded} - {0.0, 1.0}
+        knots = tuple(sorted({*(u * line.length for u in shares), *line.kinks}))
         stiffness = scene.materials[beam.material].youngs_modulus / (moment * unit)
         strips[name] = Strip(name, line, beam, knots, stiffness, unit, _end(beam.start), _end(beam.end))
     moving = {

@@ -39,7 +39,9 @@ def structured(model: Model, touches: Mapping[str, Touch], places: Places) -> St
                 if strip.beam.tapered and model.scene.contacts[name].thick:
                     raise NotCoveredError(f"{beam} lies along the circle of {name} with an edge that is not round")
                 if any(begin <= knot <= end for knot in strip.knots):
-                    raise NotCoveredError(f"{beam} lies along the circle of {name} where its section has a kink")
+                    raise NotCoveredError(
+                        f"{beam} lies along the circle of {name} where its section has a kink or a force acts"
+                    )
                 items.append((begin, name))
             elif (name, beam) in places:
                 items.append((places[name, beam], name))

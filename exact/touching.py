@@ -23,6 +23,8 @@ force there.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from exact.evaluation import Columns, Evaluation, Held
@@ -31,9 +33,14 @@ from exact.structure import Meeting, Resting, Structure, Wrap
 from scene import CircleContact
 
 
-def touch_points(out: Evaluation, structure: Structure, where: Layout, z: Columns) -> None:
-    """Add the rows of all contacts at places, and of all beams' ends as far as they are about forces."""
-    pushed: dict[tuple[str, str], Columns] = {}
+def touch_points(
+    out: Evaluation, structure: Structure, where: Layout, z: Columns, at_ends: Mapping[tuple[str, str], Columns]
+) -> None:
+    """Add the rows of all contacts at places, and of all beams' ends as far as they are about forces.
+
+    Loads act on some of the ends, by beam and ``start`` or ``end``, (2, K).
+    """
+    pushed = dict(at_ends)
     for name, touch in structure.touches.items():
         if isinstance(touch, Wrap):
             continue

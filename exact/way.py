@@ -77,6 +77,7 @@ class Way:
         units = {
             "moment": self.model.unit_moment,
             "force": self.model.unit_force,
+            "beam_force": self.model.unit_force,
             "displacement": self.model.unit_length,
             "rotation": 1.0,
         }

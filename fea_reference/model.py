@@ -27,7 +27,9 @@ from scene.answer import Array
 from scene.statement import (
     Beam,
     BeamEnd,
+    BeamForce,
     DisplacementDrive,
+    DistributedLoad,
     Force,
     FreeEnd,
     Material,
@@ -36,6 +38,8 @@ from scene.statement import (
     SlidingBody,
     WeldedEnd,
 )
+
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # within an element: the neutral line is a cubic there
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,6 +134,28 @@ class LoadPart:
 
 
 @dataclass(frozen=True, slots=True)
+class BeamLoadPart:
+    """A load on a beam, by its number, of value one: ``forces`` (2, k) at places ``zeta`` (k,), element number plus ξ.
+
+    It acts from ``begin`` to ``end`` (places), the same for a force; ``density`` (2,) is the force or that per length.
+    """
+
+    name: str
+    beam: int
+    zeta: Array
+    forces: Array
+    begin: float
+    end: float
+    density: Array
+    unit: float
+
+    @property
+    def distributed(self) -> bool:
+        """Whether it is, or else a force."""
+        return self.begin < self.end
+
+
+@dataclass(frozen=True, slots=True)
 class DrivePart:
     """A row that prescribes a body's motion: direction·(X + R(φ) r − r) = value, or φ = value without a direction.
 
@@ -172,7 +198,7 @@ class Model:
     beams: tuple[BeamPart, ...]
     bodies: tuple[BodyPart, ...]
     joints: tuple[JointPart, ...]
-    loads: tuple[LoadPart, ...]
+    loads: tuple[LoadPart | BeamLoadPart, ...]
     guides: tuple[DrivePart, ...]
     drives: tuple[DrivePart, ...]
     elements: Elements
@@ -183,7 +209,7 @@ class Model:
     start: State
 
     @property
-    def stepped(self) -> tuple[LoadPart | DrivePart, ...]:
+    def stepped(self) -> tuple[LoadPart | BeamLoadPart | DrivePart, ...]:
         """What has a value that stages step, in the order of the values: loads, then drives."""
         return (*self.loads, *self.drives)
 
@@ -303,7 +329,7 @@ def build(scene: Scene, settings: Settings) -> Model:
             joints.append(_joint(end, number[scene.body_of(end.point)], bodies, node_dofs[:, at], angles[at], size))
             size += joints[-1].rows.size
 
-    loads: list[LoadPart] = []
+    loads: list[LoadPart | BeamLoadPart] = []
     for name, load in scene.loads.items():
         match load:
             case Moment():
@@ -313,6 +339,8 @@ def build(scene: Scene, settings: Settings) -> Model:
                 arm = bodies[i].points[load.point] - bodies[i].centre
                 direction = np.array(load.direction) / np.hypot(*load.direction)
                 loads.append(LoadPart(name, i, arm, direction, units.force))
+            case BeamForce() | DistributedLoad():
+                loads.append(_on_beam(name, load, [part.name for part in beams].index(load.beam), beams, units))
 
     guides: list[DrivePart] = []
     for name, body in scene.bodies.items():
@@ -351,6 +379,25 @@ def build(scene: Scene, settings: Settings) -> Model:
         size,
         State.of(start),
     )
+
+
+def _on_beam(
+    name: str, load: BeamForce | DistributedLoad, number: int, beams: Sequence[BeamPart], units: Units
+) -> BeamLoadPart:
+    """A load on the beam of a ``number``."""
+    beam = beams[number]
+    n = beam.nodes.stop - 1 - beam.nodes.start
+    direction = np.array(load.direction) / np.hypot(*load.direction)
+    if isinstance(load, BeamForce):
+        at = load.at * n
+        return BeamLoadPart(name, number, np.array([at]), direction[:, None], at, at, direction, units.force)
+    begin, end = (share * n for share in load.along)
+    fence = np.unique(np.clip(np.arange(n + 1), begin, end))
+    half = 0.5 * np.diff(fence)
+    zeta = (fence[:-1] + half + half * _POINTS[:, None]).ravel()
+    weights = (half * _WEIGHTS[:, None]).ravel() * beam.length / n
+    forces = direction[:, None] * weights
+    return BeamLoadPart(name, number, zeta, forces, begin, end, direction, units.force / units.length)
 
 
 def _joint(end: BeamEnd, body: int, bodies: list[BodyPart], dofs: Index, angle: float, row: int) -> JointPart:

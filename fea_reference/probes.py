@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from fea_reference.beam_loads import beam_load
 from fea_reference.ends import ends
 from fea_reference.march import March
+from fea_reference.model import BeamLoadPart
 from fea_reference.projection import project
 from fea_reference.recovery import bending_moment
 from fea_reference.supports import held, support
@@ -143,6 +145,9 @@ def _potential_energy(march: March) -> float:
     model, z = march.model, march.system.z
     energy = float(march.system.elements.energy.sum())
     for part, load in zip(model.loads, march.values[: len(model.loads)], strict=True):
+        if isinstance(part, BeamLoadPart):
+            energy -= beam_load(model, part, float(load), z).work
+            continue
         body = model.bodies[part.body]
         if part.direction is None:
             energy -= load * model.body_state(body, z)[2]

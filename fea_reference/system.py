@@ -14,10 +14,11 @@ from frozendict import frozendict
 from scipy.sparse import csc_matrix
 from skfem.assembly.form.coo_data import COOData
 
+from fea_reference.beam_loads import BeamLoad, beam_load, load_forces
 from fea_reference.contacts import touch
 from fea_reference.element import ElementForces, forces
 from fea_reference.hermite import Index
-from fea_reference.model import DrivePart, Model, turned
+from fea_reference.model import BeamLoadPart, DrivePart, Model, turned
 from fea_reference.state import State
 from fea_reference.touch import Contact, Pair, Penalty, Touch
 from scene.answer import Array
@@ -47,6 +48,7 @@ class System:
     tangent: csc_matrix
     elements: ElementForces
     touches: tuple[Touch, ...]
+    loads: tuple[BeamLoad, ...]
     scale: float
     floor: float
 
@@ -80,6 +82,14 @@ def assemble(
         if one.closed:
             vectors.append(_vector(one.dofs, one.gradient, model.size))
             matrices.append(_matrix(one.dofs, one.hessian(_pushes(one, foreseen.get(one.pair))), model.size))
+    loads = tuple(
+        beam_load(model, part, float(value), z)
+        for part, value in zip(model.loads, values[: len(model.loads)], strict=True)
+        if isinstance(part, BeamLoadPart)
+    )
+    for load in loads:
+        vectors.append(_vector(load.dofs, -load.gradient, model.size))
+        matrices.append(_matrix(load.dofs, -load.hessian, model.size))
     rigid, rows, columns, entries = _rigid(model, values, z)
     matrices.append(COOData(np.array([rows, columns]), np.array(entries), (model.size, model.size), local_shape=None))
     residual = sum(vectors).toarray() + rigid
@@ -92,7 +102,7 @@ def assemble(
     floor = _ROUND_OFF * stiffest * float(np.spacing(angle))
     floor += sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
     scale = largest if largest > _NOTHING * floor else 1.0
-    return System(z, residual, tangent, elements, touches, scale, floor)
+    return System(z, residual, tangent, elements, touches, loads, scale, floor)
 
 
 def _pushes(one: Touch, foreseen: Array | None) -> Array:
@@ -130,8 +140,10 @@ def load_direction(model: Model, load: int, z: State) -> Array:
     Of a load its generalised force, of a drive one in its row.
     """
     part = model.stepped[load]
-    body = model.bodies[part.body]
     f = np.zeros(model.size)
+    if isinstance(part, BeamLoadPart):
+        return load_forces(model, part, z)
+    body = model.bodies[part.body]
     if isinstance(part, DrivePart):
         f[part.row] = 1.0
         return f
@@ -199,6 +211,8 @@ def _rigid(model: Model, values: Array, z: State) -> tuple[Array, list[int], lis
         columns.append(int(dofs[2]))
         entries.append(multiplier * hold.second(phi))
     for i, (part, value) in enumerate(zip(model.loads, acting, strict=True)):
+        if isinstance(part, BeamLoadPart):
+            continue
         residual -= value * load_direction(model, i, z)
         dofs = model.bodies[part.body].dofs
         if part.direction is not None and dofs is not None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from scene.freedoms import Row, body_of, can_turn, guide_rows, has_guide, held, is_stated, row_of, same_point
 from scene.mistakes import Mistake, unknown_name
-from scene.statement import Drive, RotationDrive, Scene, SlidingBody, TurningBody
+from scene.statement import BodyLoad, Drive, RotationDrive, Scene, SlidingBody, TurningBody
 
 
 def wrong_guides(scene: Scene) -> Iterator[Mistake]:
@@ -62,7 +62,7 @@ def wrong_drives(scene: Scene) -> Iterator[Mistake]:
 def _loads_on_driven(scene: Scene, taken: dict[str, dict[str, Row]]) -> Iterator[Mistake]:
     """Loads on freedoms that drives prescribe: they would do nothing but change the drive's reaction."""
     for name, load in scene.loads.items():
-        if not is_stated(scene, load) or body_of(scene, load) not in taken:
+        if not isinstance(load, BodyLoad) or not is_stated(scene, load) or body_of(scene, load) not in taken:
             continue
         owner = body_of(scene, load)
         drives = taken[owner]

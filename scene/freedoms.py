@@ -21,7 +21,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from scene.statement import Body, Drive, Force, Load, Moment, Point, RotationDrive, Scene, SlidingBody, TurningBody
+from scene.statement import Body, BodyLoad, Drive, Force, Moment, Point, RotationDrive, Scene, SlidingBody, TurningBody
 
 Row = NDArray[np.float64]
 NEGLIGIBLE = 1e-9
@@ -36,7 +36,7 @@ def unit(direction: Point) -> Row:
     return np.asarray(e / np.hypot(e[0], e[1]))
 
 
-def row_of(scene: Scene, acting: Load | Drive) -> Row:
+def row_of(scene: Scene, acting: BodyLoad | Drive) -> Row:
     """The motion (3,) that a drive prescribes or that a load does work in, its direction not zero.
 
     Raises:
@@ -82,7 +82,7 @@ def can_turn(body: Body) -> bool:
     return body.motion in ("free", "turns") or (isinstance(body, SlidingBody) and body.turns)
 
 
-def body_of(scene: Scene, acting: Load | Drive) -> str:
+def body_of(scene: Scene, acting: BodyLoad | Drive) -> str:
     """Name of the body that a load or drive acts on.
 
     Raises:
@@ -101,19 +101,19 @@ def held(row: Row, rows: Sequence[Row]) -> bool:
     return rank([*rows, row / np.linalg.norm(row)]) == rank(rows)
 
 
-def is_stated(scene: Scene, acting: Load | Drive) -> bool:
+def is_stated(scene: Scene, acting: BodyLoad | Drive) -> bool:
     """Whether a load or drive names what exists and has a direction: nothing else can be said of it otherwise."""
     return is_named(scene, acting) and (isinstance(acting, Moment | RotationDrive) or acting.direction != (0.0, 0.0))
 
 
-def is_named(scene: Scene, acting: Load | Drive) -> bool:
+def is_named(scene: Scene, acting: BodyLoad | Drive) -> bool:
     """Whether the body or point that a load or drive acts on exists."""
     if isinstance(acting, Moment | RotationDrive):
         return acting.body in scene.bodies
     return any(acting.point in body.points for body in scene.bodies.values())
 
 
-def same_point(scene: Scene, load: Load, drive: Drive) -> bool:
+def same_point(scene: Scene, load: BodyLoad, drive: Drive) -> bool:
     """Whether a force acts where a displacement is driven, and along it in part."""
     if not isinstance(load, Force) or isinstance(drive, RotationDrive):
         return False

@@ -317,7 +317,35 @@ class Force(Record):
     direction: Point
 
 
-Load = Annotated[Moment | Force, Field(discriminator="kind")]
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+class BeamForce(Record):
+    """A dead force on a ``beam``, N, ``at`` a fraction of its arc length from the start.
+
+    Its ``direction`` (made a unit vector) stays as the beam turns.
+    """
+
+    kind: Literal["beam_force"]
+    beam: Name
+    at: Share
+    direction: Point
+
+
+class DistributedLoad(Record):
+    """A dead load on a ``beam``, N per metre of its arc length, the same ``along`` it from one fraction to another.
+
+    Its ``direction`` (made a unit vector) stays as the beam turns: a weight, not a pressure.
+    """
+
+    kind: Literal["distributed"]
+    beam: Name
+    direction: Point
+    along: tuple[Share, Share] = (0.0, 1.0)
+
+
+Load = Annotated[Moment | Force | BeamForce | DistributedLoad, Field(discriminator="kind")]
+BodyLoad = Moment | Force
 
 
 class DisplacementDrive(Record):
