@@ -10,7 +10,7 @@ import numpy as np
 from frozendict import frozendict
 
 from comparisons.documents import Plain, plain
-from scene import Answer, Certificate, Ending, Event, Shape, StationAnswer
+from scene import Answer, Certificate, Critical, Ending, Event, Loss, Shape, StationAnswer
 from scene.answer import Array, frozen_array
 
 
@@ -26,10 +26,12 @@ def packed(answer: Answer) -> Plain:
             "seconds": answer.seconds,
             "notes": answer.notes,
             "events": [_fields(event) for event in answer.events],
+            "critical": [{**_fields(critical), "loss": critical.loss.name} for critical in answer.critical],
             "stations": [
                 {
                     "stage": station.stage,
                     "value": station.value,
+                    "branch": station.branch,
                     "values": station.values,
                     "shapes": {name: _fields(shape) for name, shape in station.shapes.items()},
                     "touching": station.touching,
@@ -42,7 +44,7 @@ def packed(answer: Answer) -> Plain:
     return found
 
 
-def _fields(record: Event | Shape | Certificate) -> Plain:
+def _fields(record: Critical | Event | Shape | Certificate) -> Plain:
     return {field.name: getattr(record, field.name) for field in fields(record)}
 
 
@@ -60,9 +62,17 @@ def unpacked(data: Plain) -> Answer:
         sentence=data["sentence"],
         stations=tuple(_unpacked_station(station) for station in data["stations"]),
         events=tuple(Event(**event) for event in data["events"]),
+        critical=tuple(_unpacked_critical(critical) for critical in data["critical"]),
         seconds=data["seconds"],
         notes=tuple(data["notes"]),
     )
+
+
+def _unpacked_critical(data: Plain) -> Critical:
+    found: dict[str, Any] = {
+        name: math.nan if value is None and name != "after" else value for name, value in data.items()
+    }
+    return Critical(**{**found, "loss": Loss[data["loss"]]})
 
 
 def _unpacked_station(data: Plain) -> StationAnswer:
@@ -84,6 +94,7 @@ def _unpacked_station(data: Plain) -> StationAnswer:
             {name: frozen_array(np.reshape(_array(places), (-1, 2))) for name, places in data["touching"].items()}
         ),
         certificate=Certificate(**certificate),
+        branch=data["branch"],
     )
 
 

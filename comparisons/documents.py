@@ -10,12 +10,14 @@ from typing import Any
 import numpy as np
 
 from comparisons.benchmark import Benchmark, trend
-from comparisons.claims import claim_difference, claim_met, claim_of
+from comparisons.claims import claim_met, claim_of, claim_of_critical, claimed_difference, critical_difference
+from comparisons.criticals import CriticalRow, released
 from comparisons.measures import Row, arc_lengths, unit_of
+from comparisons.per_branch import critical_word
 from comparisons.tolerances.search import Tolerance
 from comparisons.verdict import Comparison
 from comparisons.work_energy import Reaction
-from scene import Answer, Certificate, Probe, Scene
+from scene import Answer, Certificate, Critical, Probe, Scene
 from scene.answer import Array
 
 Plain = dict[str, Any]
@@ -45,6 +47,19 @@ def comparison(compared: Comparison) -> Plain:
             {**_row(compared.scene, row), "verdict": None if word is None else word.value}
             for row, word in zip(compared.rows, compared.verdict.words, strict=True)
         ],
+        "critical": [_critical_row(compared.scene, each) for each in compared.criticals],
+        "branches": [
+            {
+                "stage": each.stage,
+                "branch": each.number,
+                "from": each.first,
+                "to": each.last,
+                "stations": each.stations,
+                "near_critical": each.near,
+                "verdict": None if each.word is None else each.word.value,
+            }
+            for each in compared.verdict.branches
+        ],
         "work_energy": [_reaction(each) for each in compared.reactions],
     }
 
@@ -60,6 +75,7 @@ def solution(scene: Scene, answer: Answer, tolerances: tuple[Tolerance, ...] = (
                 "probe": probe.name,
                 "stage": station.stage,
                 "station": station.value,
+                "branch": station.branch,
                 "unit": unit_of(scene, probe, stages[station.stage]),
                 answer.solver: values(probe, station.values[probe.name]),
                 **_places(scene, probe),
@@ -83,7 +99,24 @@ def solver(answer: Answer) -> Plain:
             {"stage": event.stage, "contact": event.contact, "kind": event.kind, "value": plain(event.value)}
             for event in answer.events
         ],
+        "critical": [critical(each) for each in answer.critical],
         "notes": list(answer.notes),
+    }
+
+
+def critical(found: Critical) -> Plain:
+    """Where a branch ends in one answer."""
+    return {
+        "stage": found.stage,
+        "value": plain(found.value),
+        "uncertainty": plain(found.uncertainty),
+        "loss": found.loss.value,
+        "what": found.what or None,
+        "curvature": plain(found.curvature),
+        "left": plain(found.left),
+        "energy": plain(found.energy),
+        "after": plain(found.after),
+        "released": plain(released(found)),
     }
 
 
@@ -192,7 +225,7 @@ def plain(value: object) -> Any:  # noqa: ANN401 - whatever JSON holds
             return plain(value.tolist())
         case bool() | int() | str() | None:
             return value
-        case float():
+        case float() | np.floating():
             return float(value) if math.isfinite(value) else None
         case _:
             return str(value)
@@ -207,6 +240,8 @@ def _row(scene: Scene, row: Row) -> Plain:
         "probe": row.probe.name,
         "stage": row.stage,
         "station": row.station,
+        "branch": row.branch,
+        "place": row.place.value,
         "unit": row.unit,
         "cprbm": values(row.probe, row.cprbm),
         "fea": values(row.probe, row.fea),
@@ -219,8 +254,9 @@ def _row(scene: Scene, row: Row) -> Plain:
             "round_off": None if bounds is None else row.fraction(bounds.round_off),
         },
         "claim": None if claim is None else claim.bound,
+        "claim_value": None if claim is None else claim.value,
         "claim_met": claim_met(claim, row),
-        "claim_difference": None if claim is None else claim_difference(row),
+        "claim_difference": None if claim is None else claimed_difference(claim, row),
         "difference_same_theory": row.fraction(row.same_theory),
         "steps": None
         if steps is None
@@ -243,10 +279,44 @@ def _row(scene: Scene, row: Row) -> Plain:
     }
 
 
+def _critical_row(scene: Scene, row: CriticalRow) -> Plain:
+    bounds = row.bounds
+    claim = claim_of_critical(scene, row)
+    off = None if claim is None else critical_difference(claim, row)
+    both = {"cprbm": row.cprbm, "fea": row.fea}
+    return {
+        "probe": "critical",
+        "stage": row.stage,
+        "place": row.place,
+        "unit": row.unit,
+        **{name: None if found is None else plain(found.value) for name, found in both.items()},
+        "loss": {name: None if found is None else found.loss.value for name, found in both.items()},
+        "what": {name: None if found is None else found.what or None for name, found in both.items()},
+        "released": {name: None if found is None else plain(released(found)) for name, found in both.items()},
+        "difference": plain(row.difference),
+        "difference_same_theory": plain(row.same_theory),
+        "uncertainty": {
+            "cprbm": None if bounds is None else plain(bounds.cprbm),
+            "fea": None if bounds is None else plain(bounds.fea),
+            "theory": None if bounds is None else plain(bounds.theory),
+            "fea_bending": None if bounds is None else plain(bounds.bending),
+            "round_off": None if bounds is None else plain(bounds.round_off),
+        },
+        "claim": None if claim is None else claim.bound,
+        "claim_value": None if claim is None else claim.value,
+        "claim_met": None if claim is None or off is None else off <= claim.bound,
+        "claim_difference": off,
+        "allowed": row.allowed,
+        "span": row.span,
+        "verdict": critical_word(row).value,
+    }
+
+
 def _reaction(found: Reaction) -> Plain:
     return {
         "stage": found.stage,
         "station": found.station,
+        "branch": found.branch,
         "drive": found.drive,
         "unit": found.unit,
         "multiplier": found.multiplier,

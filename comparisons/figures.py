@@ -6,6 +6,7 @@ The same answers give the same bytes: no dates, and identifiers from a fixed sal
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -14,15 +15,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from comparisons.formats import scaled_unit
+from comparisons.bodies_drawn import draw_bodies, draw_names, draw_stops, joined_ends, places_at
+from comparisons.formats import number, scaled_unit
 from comparisons.geometry import length, points
 from comparisons.measures import Row, load_unit
 from comparisons.pairing import Runs
 from comparisons.scales import norm
-from comparisons.sheets import last_rows
+from comparisons.sheets import last_rows, shown_rows
+from comparisons.stations import station_of
 from comparisons.verdict import Comparison
-from scene import CircleContact, Scene, StationAnswer
-from scene.statement import FixedBody, FreeEnd
+from scene import CircleContact, Scene
+from scene.statement import FreeEnd
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,7 +60,10 @@ def of_comparison(compared: Comparison) -> tuple[Picture, ...]:
     """All figures of a comparison; none where a run gave no whole answer."""
     if not compared.rows:
         return ()
-    pictures = [_shapes(compared.scene, compared.runs)]
+    stations = [(rows[0].stage, rows[0].station) for rows in shown_rows(compared)]
+    pictures = [_shapes(compared.scene, compared.runs, *stations[-1])]
+    if len(stations) > 1:
+        pictures.append(_stations(compared.scene, compared.runs, stations))
     stresses = [row for row in last_rows(compared) if row.probe.quantity == "bending_stress"]
     if stresses:
         pictures.append(_stresses(stresses))
@@ -68,79 +74,92 @@ def of_comparison(compared: Comparison) -> tuple[Picture, ...]:
     return tuple(pictures)
 
 
-def _shapes(scene: Scene, runs: Runs) -> Picture:
+def _shapes(scene: Scene, runs: Runs, stage: str, value: float) -> Picture:
     """The mechanism before and after, in the manner of the paper's Fig. 8."""
-    from matplotlib.patches import Circle
-
     with canvas(6.4, 6.0) as figure:
         axes = figure.add_subplot()
-        for contact in scene.contacts.values():
-            if isinstance(contact, CircleContact):
-                (x, y), stands = contact.center, scene.bodies[contact.body].motion == "fixed"
-                style = "-" if stands else "--"  # one that moves is shown where it began
-                # an artist, no patch: a large circle must not make the beams small
-                axes.add_artist(
-                    Circle((1e3 * x, 1e3 * y), 1e3 * contact.radius, fill=False, edgecolor=GREY, linestyle=style)
-                )
-        cprbm, fea = runs.cprbm[0].stations[-1], runs.reference.stations[-1]
-        ends: dict[str, list[tuple[float, float]]] = {}
-        for place, beam in enumerate(scene.beams.values()):
-            x, y = 1e3 * points(beam.curve, np.linspace(0.0, length(beam.curve), 200)).T
-            axes.plot(x, y, "--", color=GREY, linewidth=1.0, label="undeformed" if place == 0 else None)
-            for end, point in ((beam.start, 0), (beam.end, -1)):
-                if not isinstance(end, FreeEnd):
-                    ends.setdefault(scene.body_of(end.point), []).append((x[point], y[point]))
-        _links(axes, scene, ends, "--", GREY)
-        _links(axes, scene, _ends(scene, fea), "-", "black")
-        for place, beam_name in enumerate(scene.beams):
-            shape = fea.shapes[beam_name]
-            label = f"FEA ({runs.kinematics})" if place == 0 else None
-            axes.plot(1e3 * shape.x, 1e3 * shape.y, "-", color=RED, linewidth=2.2, label=label)
-            shape = cprbm.shapes[beam_name]
-            label = "CPRBM" if place == 0 else None
-            axes.plot(1e3 * shape.x, 1e3 * shape.y, ".", color=BLUE, markersize=3.5, label=label)
-        for name, station, marker, colour in (("FEA", fea, "x", RED), ("CPRBM", cprbm, "o", BLUE)):
-            for place, spots in enumerate(station.touching.values()):
-                label = f"contact, {name}" if place == 0 else None
-                x, y = 1e3 * spots.T
-                # the many places of a zone would hide the beam behind them
-                size = 9.0 if len(spots) <= FEW_PLACES else 2.5
-                axes.plot(
-                    x, y, marker, color=colour, markersize=size, markerfacecolor="none", linestyle="", label=label
-                )
-        for body in scene.bodies.values():
-            for name, (x, y) in body.points.items():
-                axes.annotate(name, (1e3 * x, 1e3 * y), textcoords="offset points", xytext=(-4, 7), ha="right")
-        axes.set_aspect("equal", adjustable="datalim")
+        _as_drawn(axes, scene)
+        _mechanism(axes, scene, runs, stage, value)
+        draw_names(axes, scene)
         axes.set_xlabel("x, mm")
         axes.set_ylabel("y, mm")
-        axes.margins(0.08)
         figure.legend(loc="outside lower center", ncols=3)
+        apart = " Dotted: the way of an end that is drawn apart from its pin." if scene.assembly is not None else ""
         return picture(
             figure,
             "shapes",
-            f"Neutral lines before and at {cprbm.stage} {cprbm.value:g}, with the places of contact.",
+            f"Neutral lines before and at {stage} {value:g}, with the places of contact.{apart}",
         )
 
 
-def _ends(scene: Scene, station: StationAnswer) -> dict[str, list[tuple[float, float]]]:
-    """By body, the deformed ends of the beams that are joined to it, mm."""
-    ends: dict[str, list[tuple[float, float]]] = {}
-    for name, beam in scene.beams.items():
-        shape = station.shapes[name]
+def _stations(scene: Scene, runs: Runs, stations: list[tuple[str, float]]) -> Picture:
+    """The mechanism at several stations, in the manner of the paper's Fig. 17."""
+    columns = min(2, len(stations))
+    lines = -(-len(stations) // columns)
+    stages = {stage.name: stage for stage in scene.stages}
+    with canvas(3.6 * columns, 0.6 + 3.4 * lines) as figure:
+        for place, (name, value) in enumerate(stations):
+            axes = figure.add_subplot(lines, columns, place + 1)
+            _mechanism(axes, scene, runs, name, value)
+            factor, unit = along_axis(load_unit(scene, stages[name]), value)
+            shown = f"{number(value / factor, 4)}{'' if unit == '°' else ' '}{unit}"
+            axes.set_title(f"{name}, {stages[name].steps} = {shown}", loc="left", fontsize=9)
+            axes.tick_params(labelsize=8)
+        handles, labels = figure.axes[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=3)
+        return picture(figure, "stations", "Neutral lines, mm, at several stations, with the places of contact.")
+
+
+def along_axis(unit: str, size: float) -> tuple[float, str]:
+    """By what a load or drive of about a ``size`` is divided on an axis, and the unit there; of a rotation degrees."""
+    return (math.radians(1.0), "°") if unit == "rad" else scaled_unit(unit, abs(size))
+
+
+def _as_drawn(axes: Axes, scene: Scene) -> None:
+    """The mechanism before anything happens, and the way of the ends that are apart from their points."""
+    for place, beam in enumerate(scene.beams.values()):
+        x, y = 1e3 * points(beam.curve, np.linspace(0.0, length(beam.curve), 200)).T
+        axes.plot(x, y, "--", color=GREY, linewidth=1.0, label="undeformed" if place == 0 else None)
         for end, point in ((beam.start, 0), (beam.end, -1)):
             if not isinstance(end, FreeEnd):
-                place = (1e3 * float(shape.x[point]), 1e3 * float(shape.y[point]))
-                ends.setdefault(scene.body_of(end.point), []).append(place)
-    return ends
+                to_x, to_y = scene.place_of(end.point)
+                axes.plot([x[point], 1e3 * to_x], [y[point], 1e3 * to_y], ":", color=GREY, linewidth=0.9)
+    drawn = {end.point: scene.place_of(end.point) for _, end, _ in joined_ends(scene)}
+    draw_bodies(axes, scene, drawn, "--", GREY)
 
 
-def _links(axes: Axes, scene: Scene, ends: dict[str, list[tuple[float, float]]], style: str, colour: str) -> None:
-    """Bodies as lines from end to end; of the ground, which is everywhere, the ends alone."""
-    for name, places in ends.items():
-        x, y = np.array(places).T
-        line = "none" if isinstance(scene.bodies[name], FixedBody) else style
-        axes.plot(x, y, linestyle=line, color=colour, linewidth=1.2, marker="s", markersize=4)
+def _mechanism(axes: Axes, scene: Scene, runs: Runs, stage: str, value: float) -> None:
+    """Both answers at a station."""
+    from matplotlib.patches import Circle
+
+    for contact in scene.contacts.values():
+        if isinstance(contact, CircleContact):
+            (x, y), stands = contact.center, scene.bodies[contact.body].motion == "fixed"
+            style = "-" if stands else "--"  # one that moves is shown where it began
+            # an artist, no patch: a large circle must not make the beams small
+            axes.add_artist(
+                Circle((1e3 * x, 1e3 * y), 1e3 * contact.radius, fill=False, edgecolor=GREY, linestyle=style)
+            )
+    cprbm, fea = (station_of(answer, stage, value) for answer in (runs.cprbm[0], runs.reference))
+    places = places_at(scene, fea)
+    draw_bodies(axes, scene, places, "-", "black")
+    draw_stops(axes, scene, places)
+    for place, beam_name in enumerate(scene.beams):
+        shape = fea.shapes[beam_name]
+        label = f"FEA ({runs.kinematics})" if place == 0 else None
+        axes.plot(1e3 * shape.x, 1e3 * shape.y, "-", color=RED, linewidth=2.2, label=label)
+        shape = cprbm.shapes[beam_name]
+        label = "CPRBM" if place == 0 else None
+        axes.plot(1e3 * shape.x, 1e3 * shape.y, ".", color=BLUE, markersize=3.5, label=label)
+    for name, station, marker, colour in (("FEA", fea, "x", RED), ("CPRBM", cprbm, "o", BLUE)):
+        for place, spots in enumerate(station.touching.values()):
+            label = f"contact, {name}" if place == 0 else None
+            x, y = 1e3 * spots.T
+            # the many places of a zone would hide the beam behind them
+            size = 9.0 if len(spots) <= FEW_PLACES else 2.5
+            axes.plot(x, y, marker, color=colour, markersize=size, markerfacecolor="none", linestyle="", label=label)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(0.08)
 
 
 def _stresses(rows: list[Row]) -> Picture:
@@ -171,23 +190,36 @@ def _against_load(scene: Scene, rows: list[Row], quantity: str, what: str) -> Pi
         axes = figure.add_subplot()
         factor, unit = scaled_unit(rows[0].unit, max(row.scale for row in rows))
         last = scene.stages[-1]
+        step, step_unit = along_axis(load_unit(scene, last), 1.0)
         names = list(dict.fromkeys(row.probe.name for row in rows))
         for name, (line, marker) in zip(names, islice(cycle(LOOKS), len(names)), strict=True):
             for stage in scene.stages:
                 if stage.steps != last.steps:  # another load or drive has another axis
                     continue
-                mine = [row for row in rows if row.probe.name == name and row.stage == stage.name]
-                load = [row.station for row in mine]
-                axes.plot(load, [row.fea[0] / factor for row in mine], line, color=RED, label=f"{name}, FEA")
-                axes.plot(
-                    load,
-                    [row.cprbm[0] / factor for row in mine],
-                    marker,
-                    color=BLUE,
-                    markersize=4,
-                    label=f"{name}, CPRBM",
-                )
-        axes.set_xlabel(f"{last.steps}, {load_unit(scene, last)}")
+                here = [row for row in rows if row.probe.name == name and row.stage == stage.name]
+                for branch in dict.fromkeys(row.branch for row in here):
+                    mine = [row for row in here if row.branch == branch]
+                    load = [row.station / step for row in mine]
+                    # where the answers are not on one branch there is none to draw a line of
+                    style = line if branch is not None else "none"
+                    first = mine[0] is next(row for row in rows if row.probe.name == name)
+                    axes.plot(
+                        load,
+                        [row.fea[0] / factor for row in mine],
+                        linestyle=style,
+                        marker="" if branch is not None else "x",
+                        color=RED,
+                        label=f"{name}, FEA" if first else None,
+                    )
+                    axes.plot(
+                        load,
+                        [row.cprbm[0] / factor for row in mine],
+                        marker,
+                        color=BLUE,
+                        markersize=4,
+                        label=f"{name}, CPRBM" if first else None,
+                    )
+        axes.set_xlabel(f"{last.steps}, {step_unit}")
         axes.set_ylabel(f"{what.lower()}, {unit}")
         axes.legend(loc="best")
         return picture(figure, quantity, f"{what} against {last.steps}.")

@@ -49,3 +49,8 @@ def vector(values: Array, factor: float) -> str:
         return f"max {number(float(np.max(np.abs(values))) / factor, 5)}"
     texts = [number(float(value) / factor, 5) for value in values]
     return texts[0] if len(texts) == 1 else f"({', '.join(texts)})"
+
+
+def along(value: float, unit: str) -> str:
+    """A value of a load or drive as titles show it; of a rotation also in degrees."""
+    return f"{value:g} ({number(math.degrees(value), 4)}°)" if unit == "rad" else f"{value:g}"

@@ -14,8 +14,8 @@ S           safety factor of the error estimate, 1.25
 w           the CPRBM's value at N + N/7 links, where there is contact or a section has a kink
 d           v_c − v_f, the difference
 u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (or n), and no less than F times the
-            probe's largest in the stage
-F           share of the largest uncertainty that none in the stage falls below, S − 1
+            probe's largest in the stage on the same branch
+F           share of that largest uncertainty that none falls below, S − 1
 r           round-off allowance
 x           the exact value in ``bending``, where one is known
 q           what an exact value may itself be off by
@@ -61,17 +61,19 @@ themselves.  A contact that is open in every run has no force, and nothing is le
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
+from comparisons.branches import Place, Spot, spots_of
 from comparisons.geometry import length
 from comparisons.order import order_of, richardson
 from comparisons.pairing import Runs
 from comparisons.scales import denominator, family_size, natural_scale, norm, probe_scale
 from comparisons.spots import clear_of_spots
+from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, Stage, StationAnswer
 from scene.answer import Array
 from scene.statement import Quantity
@@ -81,6 +83,9 @@ SHARE_OF_LARGEST = SAFETY - 1.0
 ROUND_OFF = 1e-12
 EXACT_TO = 1e-9
 """Share of a probe's scale below which a distance from the exact value says nothing."""
+
+OPEN_AT_ZERO: frozenset[Quantity] = frozenset({"force", "moment"})
+"""Quantities that are exactly zero while a contact is open, or no limit of a stop is reached."""
 
 UNITS: Mapping[Quantity, str] = {
     "displacement": "m",
@@ -92,6 +97,8 @@ UNITS: Mapping[Quantity, str] = {
     "reaction": "N",
     "reaction_moment": "N·m",
     "potential_energy": "J",
+    "angle": "rad",
+    "moment": "N·m",
 }
 
 LOAD_UNITS = {
@@ -174,6 +181,10 @@ class Row:
     ends and to where contacts end take no part in ``difference``, nor in ``true_errors``.  ``exact`` (k,) is x,
     absent where none is known and empty where the contact is then open; ``true_errors`` is absent where ``bounds`` or
     ``exact`` is, and where x is not of the two values' shape.
+
+    ``branch`` is the number of the branch that all answers are on at the station, None where there is no such one, and
+    ``place`` what that makes of it (:mod:`comparisons.branches`).  Only where it is compared there are ``bounds``; near
+    a critical value there are differences alone, and elsewhere the values.
     """
 
     probe: Probe
@@ -193,6 +204,8 @@ class Row:
     contact_model: float | None = None
     exact: Array | None = None
     true_errors: TrueErrors | None = None
+    place: Place = Place.COMPARED
+    branch: int | None = 0
 
     def fraction(self, value: float) -> float | None:
         """``value`` as a fraction of the denominator; None where that says nothing."""
@@ -211,29 +224,27 @@ def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
     Raises:
         KeyError: an answer lacks a station or a probe.
     """
-    everyone = tuple(answer for _, answer in runs.everything())
+    everyone = dict(runs.everything())
     compared = (runs.cprbm[0], runs.reference)
-    unsettled = {probe.name: round_off(scene, probe, everyone, compared) for probe in scene.probes}
+    scales = probe_scales(scene, compared)
+    unsettled = {probe.name: round_off(scene, probe, tuple(everyone.values()), compared) for probe in scene.probes}
+    stages = {stage.name: stage for stage in scene.stages}
     return _none_small_by_accident(
         tuple(
-            _row(scene, runs, probe, stage, value, unsettled[probe.name])
-            for stage in scene.stages
-            for value in stage.stations
+            _row(scene, runs, probe, stages[spot.stage], spot, unsettled[probe.name], scales[spot.stage, probe.name])
+            for spot in spots_of(scene, everyone, compared)
             for probe in scene.probes
         )
     )
 
 
-def station_of(answer: Answer, stage: str, value: float) -> StationAnswer:
-    """An answer's station of a stage at a value of its load or drive.
-
-    Raises:
-        KeyError: the answer has none.
-    """
-    for station in answer.stations:
-        if station.stage == stage and math.isclose(station.value, value, rel_tol=1e-12, abs_tol=0.0):
-            return station
-    raise KeyError(f"{answer.solver} has no station {stage} {value:g}")
+def probe_scales(scene: Scene, answers: tuple[Answer, ...]) -> dict[tuple[str, str], float]:
+    """By stage and probe the probe's scale in the stage, in its unit."""
+    return {
+        (stage.name, probe.name): probe_scale(scene, probe, stage, answers)
+        for stage in scene.stages
+        for probe in scene.probes
+    }
 
 
 def round_off(scene: Scene, probe: Probe, everyone: tuple[Answer, ...], compared: tuple[Answer, ...]) -> float:
@@ -265,13 +276,22 @@ def _family_size(scene: Scene, probe: Probe, stage: Stage, value: float, answers
     return family_size(scene, probe.quantity, here, alone, contact=probe.of)
 
 
-def bare_row(scene: Scene, compared: tuple[Answer, Answer], probe: Probe, stage: Stage, value: float) -> Row:
+def bare_row(
+    scene: Scene, compared: tuple[Answer, Answer], probe: Probe, stage: Stage, value: float, scale: float
+) -> Row:
     """The values of the CPRBM and of the finite elements that are compared, and no difference yet.
+
+    Args:
+        scene: the question.
+        compared: the CPRBM's answer and the finite elements'.
+        probe: the probe.
+        stage: the stage.
+        value: the station.
+        scale: the probe's in the stage, :func:`probe_scales`.
 
     Raises:
         KeyError: an answer lacks the station or the probe.
     """
-    scale = probe_scale(scene, probe, stage, compared)
     v_c, v_f = (station_of(answer, stage.name, value).values[probe.name] for answer in compared)
     return Row(
         probe=probe,
@@ -286,16 +306,20 @@ def bare_row(scene: Scene, compared: tuple[Answer, Answer], probe: Probe, stage:
     )
 
 
-def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, unsettled: float) -> Row:
+def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, spot: Spot, unsettled: float, scale: float) -> Row:
     compared = (runs.cprbm[0], runs.reference)
+    value = spot.value
     stations = {name: station_of(answer, stage.name, value) for name, answer in runs.everything()}
     values = {name: station.values[probe.name] for name, station in stations.items()}
     chosen = f"fea {runs.kinematics}"
     v_c, v_f, v_b = values["cprbm"], values[chosen], values["fea bending"]
     is_stress = probe.quantity == "bending_stress"
-    exact = _exact_station(runs, stage.name, value)
+    exact = _exact_station(runs, stage.name, spot)
+    row = replace(bare_row(scene, compared, probe, stage, value, scale), place=spot.place, branch=spot.branch)
+    if spot.branch is None:
+        return row
     row = replace(
-        bare_row(scene, compared, probe, stage, value),
+        row,
         largest=abs(norm(probe.quantity, v_c) - norm(probe.quantity, v_f)) if is_stress else None,
         exact=None if exact is None else exact.values[probe.name],
     )
@@ -310,23 +334,14 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
     def size(difference: Array) -> float:
         return norm(probe.quantity, difference[counts])
 
-    open_everywhere = probe.quantity == "force" and not any(found.any() for found in values.values())
-    order = order_of(scene, probe)
-    factor = SAFETY * richardson(order)
-    even = values.get("cprbm auto", v_c)
-    own = size(v_c - even) + factor * size(even - values["cprbm finer"])
-    if "cprbm beside" in values:
-        own += SAFETY * size(_unforeseen(even, values["cprbm finer"], values["cprbm beside"], runs.ratio, order))
-    bending = factor * size(v_b - values["fea bending finer"])
-    bounds = Bounds(
-        cprbm=own,
-        fea=max(factor * size(v_f - values[f"{chosen} finer"]), bending),
-        bending=bending,
-        theory=size(v_b - v_f),
-        round_off=0.0 if open_everywhere else unsettled,
-    )
-    ladder = [v_c, even, *(values[f"fea {kinematics}"] for kinematics in runs.fea)]
-    formulations = _formulations(runs, probe, stage.name, value)
+    row = replace(row, difference=size(v_c - v_f), same_theory=size(v_c - v_b))
+    if spot.place is not Place.COMPARED:
+        return row
+    open_everywhere = probe.quantity in OPEN_AT_ZERO and not any(found.any() for found in values.values())
+    allowance = 0.0 if open_everywhere else unsettled
+    bounds = bounds_of(runs, values, order_of(scene, probe), size, allowance)
+    ladder = [v_c, values.get("cprbm auto", v_c), *(values[f"fea {kinematics}"] for kinematics in runs.fea)]
+    formulations = _formulations(runs, probe, stage.name, spot)
     true_errors = None
     if exact is not None and row.exact is not None and row.exact.shape == v_f.shape:
         open_end = max(exact.certificate.residual, exact.certificate.residual_floor)
@@ -337,8 +352,6 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
         )
     return replace(
         row,
-        difference=size(v_c - v_f),
-        same_theory=size(v_c - v_b),
         bounds=bounds,
         steps=_steps(probe.quantity, [step[counts] for step in ladder]),
         contact_model=None if formulations is None else size(formulations[0] - formulations[1]),
@@ -346,14 +359,44 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, value: float, uns
     )
 
 
-def _exact_station(runs: Runs, stage: str, value: float) -> StationAnswer | None:
-    """The exact answer's station; None where it has none."""
+def bounds_of(
+    runs: Runs, values: Mapping[str, Array], order: int, size: Callable[[Array], float], allowance: float
+) -> Bounds:
+    """What may lie between the compared values of a number, from those of all runs.
+
+    Args:
+        runs: who answered.
+        values: (k,) by the name of the run, as :meth:`comparisons.pairing.Runs.everything` names them.
+        order: p of the values.
+        size: the norm of a difference (k,).
+        allowance: r.
+    """
+    chosen = f"fea {runs.kinematics}"
+    v_c, v_f, v_b = values["cprbm"], values[chosen], values["fea bending"]
+    factor = SAFETY * richardson(order)
+    even = values.get("cprbm auto", v_c)
+    own = size(v_c - even) + factor * size(even - values["cprbm finer"])
+    if "cprbm beside" in values:
+        own += SAFETY * size(_unforeseen(even, values["cprbm finer"], values["cprbm beside"], runs.ratio, order))
+    bending = factor * size(v_b - values["fea bending finer"])
+    return Bounds(
+        cprbm=own,
+        fea=max(factor * size(v_f - values[f"{chosen} finer"]), bending),
+        bending=bending,
+        theory=size(v_b - v_f),
+        round_off=allowance,
+    )
+
+
+def _exact_station(runs: Runs, stage: str, spot: Spot) -> StationAnswer | None:
+    """The exact answer's station; None where it has none, or one of another branch."""
     if runs.exact is None:
         return None
     try:
-        return station_of(runs.exact, stage, value)
+        found = station_of(runs.exact, stage, spot.value)
     except KeyError:
         return None
+    return found if found.branch == spot.branch else None
 
 
 def _unforeseen(v: Array, V: Array, beside: Array, ratio: float, order: int) -> Array:
@@ -364,14 +407,14 @@ def _unforeseen(v: Array, V: Array, beside: Array, ratio: float, order: int) -> 
 
 
 def _none_small_by_accident(rows: tuple[Row, ...]) -> tuple[Row, ...]:
-    """The rows with each uncertainty at least F times the largest of its probe in its stage.
+    """The rows with each uncertainty at least F times the largest of its probe in its stage, on its branch.
 
     A contact that is open in every run has no force, and no uncertainty of it.
     """
-    largest: dict[tuple[str, str], tuple[float, float, float]] = {}
+    largest: dict[tuple[str, str, int | None], tuple[float, float, float]] = {}
     for row in rows:
         if row.bounds is not None:
-            key = (row.probe.name, row.stage)
+            key = (row.probe.name, row.stage, row.branch)
             cprbm, fea, bending = largest.get(key, (0.0, 0.0, 0.0))
             largest[key] = (
                 max(cprbm, row.bounds.cprbm),
@@ -381,7 +424,7 @@ def _none_small_by_accident(rows: tuple[Row, ...]) -> tuple[Row, ...]:
     found = []
     for row in rows:
         if row.bounds is not None and row.bounds.total > 0.0:
-            cprbm, fea, bending = (SHARE_OF_LARGEST * size for size in largest[row.probe.name, row.stage])
+            cprbm, fea, bending = (SHARE_OF_LARGEST * size for size in largest[row.probe.name, row.stage, row.branch])
             bounds = replace(
                 row.bounds,
                 cprbm=max(row.bounds.cprbm, cprbm),
@@ -394,12 +437,14 @@ def _none_small_by_accident(rows: tuple[Row, ...]) -> tuple[Row, ...]:
     return tuple(found)
 
 
-def _formulations(runs: Runs, probe: Probe, stage: str, value: float) -> tuple[Array, Array] | None:
-    """A probe's values in ``paper`` and in ``auto``; None where one of them is missing."""
+def _formulations(runs: Runs, probe: Probe, stage: str, spot: Spot) -> tuple[Array, Array] | None:
+    """A probe's values in ``paper`` and in ``auto``; None where one of them is missing or on another branch."""
     if runs.formulations is None:
         return None
-    paper, auto = (station_of(answer, stage, value).values[probe.name] for answer in runs.formulations)
-    return (paper, auto) if paper.shape == auto.shape else None
+    stations = [station_of(answer, stage, spot.value) for answer in runs.formulations]
+    paper, auto = (station.values[probe.name] for station in stations)
+    alike = paper.shape == auto.shape and all(station.branch == spot.branch for station in stations)
+    return (paper, auto) if alike else None
 
 
 def unit_of(scene: Scene, probe: Probe, stage: Stage) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from comparisons.documents import Plain, plain
 from comparisons.formats import percent
 from comparisons.offset_verdict import OffsetComparison, OffsetRow, claim_of_offset
-from comparisons.sheets import Sheet
+from comparisons.sheet import Sheet
 
 T = TypeVar("T")
 

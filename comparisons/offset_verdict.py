@@ -25,7 +25,8 @@ from comparisons.formats import percent
 from comparisons.measures import SAFETY, SHARE_OF_LARGEST
 from comparisons.offset_exact import ordinates
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
-from comparisons.verdict import Verdict, Word
+from comparisons.verdict import Verdict
+from comparisons.words import Word
 from scene import OffsetClaim, OffsetQuestion
 from scene.answer import Array
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from comparisons.figures import BLUE, GREY, RED, Picture, canvas, picture
+from comparisons.figures import BLUE, GREY, RED, Picture, along_axis, canvas, picture
 from comparisons.formats import scaled_unit
 from comparisons.measures import LOAD_UNITS
 from comparisons.verdict import Comparison
@@ -24,12 +24,12 @@ def of_comparison(compared: Comparison) -> tuple[Picture, ...]:
 def _drawn(scene: Scene, drive: str, reactions: Sequence[Reaction]) -> Picture:
     factor, unit = scaled_unit(reactions[0].unit, max(abs(each.multiplier) for each in reactions))
     along = LOAD_UNITS[scene.drives[drive].kind]
-    step, step_unit = scaled_unit(along, max(abs(each.station) for each in reactions))
+    step, step_unit = along_axis(along, max(abs(each.station) for each in reactions))
     what = "moment" if along == "rad" else "force"
     with canvas(6.4, 6.0) as figure:
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-        for place, stage in enumerate(dict.fromkeys(each.stage for each in reactions)):
-            mine = [each for each in reactions if each.stage == stage]
+        for place, branch in enumerate(dict.fromkeys((each.stage, each.branch) for each in reactions)):
+            mine = [each for each in reactions if (each.stage, each.branch) == branch]
             _reactions(above, mine, step, factor, first=place == 0)
             _differences(below, mine, step, first=place == 0)
         above.set_ylabel(f"reaction {what}, {unit}")

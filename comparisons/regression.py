@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.choices import Choices
+from comparisons.criticals import mechanism
 from comparisons.documents import Plain, plain, text
 from comparisons.pairing import Solvers
 from comparisons.soundness import complaints
@@ -98,7 +99,7 @@ def accept(file: Path, found: Plain, *, date: str, reason: str) -> None:
 
 
 def _kept(scene: Scene, answer: Answer) -> dict[str, dict[str, list[float]]]:
-    """By probe and station the values of the middle and the last station of every stage."""
+    """By probe and station the values of the middle and the last station of every stage, and the critical values."""
     kept: dict[str, dict[str, list[float]]] = {probe.name: {} for probe in scene.probes}
     for stage in scene.stages:
         mine = [station for station in answer.stations if station.stage == stage.name]
@@ -106,6 +107,8 @@ def _kept(scene: Scene, answer: Answer) -> dict[str, dict[str, list[float]]]:
             place = f"{stage.name} {mine[station].value:g}"
             for probe in scene.probes:
                 kept[probe.name][place] = _thinned(probe, mine[station].values[probe.name]).tolist()
+    for number, critical in enumerate(answer.critical):
+        kept.setdefault("critical", {})[f"{number} {critical.stage} {mechanism(critical)}"] = [critical.value]
     return kept
 
 

@@ -9,12 +9,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from comparisons import archive, documents, figures, offset_drawn, offset_pages, reactions_drawn, sheets
+from comparisons import archive, documents, figures, offset_drawn, offset_pages, paths_drawn, reactions_drawn, sheets
 from comparisons.offset_verdict import OffsetComparison
 from comparisons.rendering import Embedded, embedded, rendered
+from comparisons.sheet import Sheet
 from comparisons.verdict import Comparison, Verdict
 from comparisons.writing import write
 from scene import Question
+
+_DRAWN = (figures, paths_drawn, reactions_drawn)
+"""The modules that draw a comparison, in the order of the page."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +30,7 @@ class Chapter:
     source: str
     word: str
     sentence: str
-    sheets: tuple[sheets.Sheet, ...]
+    sheets: tuple[Sheet, ...]
     explanation: tuple[str, ...]
     pictures: tuple[Embedded, ...]
     files: tuple[str, ...]
@@ -52,7 +56,7 @@ def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison | Offse
         chapters = (*earlier, offset_chapter(compared, pictures))
     else:
         own = folder / compared.scene.name
-        pictures = (*figures.of_comparison(compared), *reactions_drawn.of_comparison(compared))
+        pictures = tuple(picture for drawn in _DRAWN for picture in drawn.of_comparison(compared))
         _archive(own, compared)
         chapters = (*earlier, chapter(compared, pictures))
     for picture in pictures:
@@ -92,7 +96,7 @@ def offset_chapter(compared: OffsetComparison, pictures: tuple[figures.Picture, 
 def _chapter(
     asked: Question,
     verdict: Verdict,
-    tables: tuple[sheets.Sheet, ...],
+    tables: tuple[Sheet, ...],
     explanation: tuple[str, ...],
     pictures: tuple[figures.Picture, ...],
     files: tuple[str, ...],

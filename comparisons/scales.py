@@ -9,8 +9,9 @@ quantity                               the family's scale in a stage
 =====================================  ==============================================================
 displacement                           largest displacement of any point, driven ones too, or rotation times length
 rotation                               largest rotation of any body, driven ones too, or displacement over length
+angle                                  largest angle of any stop
 force, reaction                        largest of them, of the force loads' resultants, and of the moments over length
-reaction_moment                        largest of them, of the moment loads, and of the forces times length
+reaction_moment, moment                largest of them, of the moment loads, and of the forces times length
 bending_stress                         largest stress in any beam
 potential_energy                       largest energy
 closing_load                           largest value that the stage steps to
@@ -91,7 +92,7 @@ def natural_scale(scene: Scene, quantity: Quantity, stage: Stage, *, contact: st
     match quantity:
         case "displacement":
             return lever
-        case "rotation":
+        case "rotation" | "angle":
             return 1.0
         case "force" | "reaction":
             return S / lever
@@ -131,12 +132,12 @@ def family_size(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[A
             return max(
                 largest("force", "reaction"),
                 _stepped_force(scene, stage),
-                largest("reaction_moment") / lever,
+                largest("reaction_moment", "moment") / lever,
                 _stepped(scene, stage, "moment") / lever,
             )
-        case "reaction_moment":
+        case "reaction_moment" | "moment":
             return max(
-                largest("reaction_moment"),
+                largest("reaction_moment", "moment"),
                 _stepped(scene, stage, "moment"),
                 largest("force", "reaction") * lever,
                 _stepped_force(scene, stage) * lever,

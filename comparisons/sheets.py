@@ -3,39 +3,37 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 from comparisons.benchmark import FIT_FROM, Benchmark, trend
+from comparisons.branch_sheets import of_branches, of_criticals, of_ends
+from comparisons.branches import Place
 from comparisons.calibration import FAR, JUDGED, Held, every, held, tally
-from comparisons.claims import as_claimed, claim_difference, standings
+from comparisons.claims import as_claimed, standings
 from comparisons.documents import worst
-from comparisons.formats import number, percent, scaled_unit, vector
+from comparisons.formats import along, number, percent, scaled_unit, vector
 from comparisons.geometry import bentness
-from comparisons.measures import Row, Steps, unit_of
+from comparisons.measures import Row, Steps, load_unit, unit_of
 from comparisons.scales import norm
+from comparisons.sheet import Sheet
+from comparisons.stations import station_of
 from comparisons.tolerances.extrapolation import told
 from comparisons.tolerances.search import Tolerance
 from comparisons.verdict import Comparison
-from comparisons.work_energy import by_drive, sentence
-from scene import Answer, Scene
+from comparisons.words import Word
+from comparisons.work_energy import Reaction, by_drive, sentence
+from scene import Answer, Scene, StationAnswer
 
-
-@dataclass(frozen=True, slots=True)
-class Sheet:
-    """A table of texts: ``rows`` have as many cells as ``headers``; ``note`` says how to read it."""
-
-    title: str
-    headers: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    note: str = ""
+MANY = 40
+"""Most stations of a drive that a table has a line for."""
 
 
 def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
-    """All tables of a comparison."""
+    """All tables of a comparison: values at every station that is shown, all else at the last one."""
     rows = last_rows(compared)
-    found = [of_tolerances(compared.tolerances), _values(compared, rows), _verdicts(compared, rows)]
-    found.append(_true_errors(compared, rows))
-    found.append(_claims(compared))
+    found = [of_tolerances(compared.tolerances), of_criticals(compared), of_branches(compared)]
+    found.extend(_values(compared, each) for each in shown_rows(compared))
+    found.extend((_verdicts(compared, rows), _true_errors(compared, rows), _claims(compared)))
     found.extend(_reactions(compared))
     found.append(_stresses(compared.scene, rows))
     found.append(_steps(compared, rows))
@@ -45,7 +43,9 @@ def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
 
 def of_answer(scene: Scene, answer: Answer, tolerances: tuple[Tolerance, ...] = ()) -> tuple[Sheet, ...]:
     """All tables of one solver's answer, and how its N was found."""
-    found = (of_tolerances(tolerances), _answered(scene, answer), _events(answer))
+    stations = shown_stations(scene, tuple((station.stage, station.value) for station in answer.stations))
+    answered = (_answered(scene, answer, station_of(answer, *station)) for station in stations)
+    found = (of_tolerances(tolerances), *answered, of_ends(scene, answer), _events(answer))
     return tuple(sheet for sheet in found if sheet.rows)
 
 
@@ -127,19 +127,35 @@ def _trends(measured: Benchmark) -> Sheet:
     )
 
 
+def shown_stations(scene: Scene, reached: Sequence[tuple[str, float]]) -> tuple[tuple[str, float], ...]:
+    """Of the stages and stations that were ``reached`` those to show, in order: what the scene names, and the last."""
+    named = {(stage.name, value) for stage in scene.stages for value in stage.shown}
+    return tuple(station for place, station in enumerate(reached) if station in named or place == len(reached) - 1)
+
+
+def shown_rows(compared: Comparison) -> tuple[tuple[Row, ...], ...]:
+    """The rows of every station that is shown."""
+    reached = tuple(dict.fromkeys((row.stage, row.station) for row in compared.rows))
+    return tuple(
+        tuple(row for row in compared.rows if (row.stage, row.station) == station)
+        for station in shown_stations(compared.scene, reached)
+    )
+
+
 def last_rows(compared: Comparison) -> tuple[Row, ...]:
-    """The rows of the last station of the last stage."""
-    stage = compared.scene.stages[-1]
-    return tuple(row for row in compared.rows if row.stage == stage.name and row.station == stage.stations[-1])
+    """The rows of the last station that has any."""
+    return (shown_rows(compared) or ((),))[-1]
 
 
 def explanation(compared: Comparison) -> tuple[str, ...]:
     """For each claim a sentence that says what our difference is made of, at its worst station."""
     sentences = []
     for standing in standings(compared.scene, compared.rows):
-        claim, row = standing.claim, as_claimed(standing.worst)
-        if row.steps is None:
+        claim = standing.claim
+        if not isinstance(standing.worst, Row) or claim.value is not None or standing.worst.steps is None:
             continue
+        row = as_claimed(standing.worst)
+        assert row.steps is not None
         sentences.append(
             f"{row.probe.name} at {row.station:g}: our difference of {_of(row, row.difference)} is the "
             f"finite elements' own step of theory, {_of(row, row.steps.stretch)} from bending to stretch and "
@@ -185,7 +201,10 @@ def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
                 ),
             )
         )
-    where = f"{rows[0].stage} {rows[0].station:g}" if rows else "no station"
+    where = "no station"
+    if rows:
+        stage = next(stage for stage in compared.scene.stages if stage.name == rows[0].stage)
+        where = f"{stage.name} {along(rows[0].station, load_unit(compared.scene, stage))}"
     return Sheet(
         f"{compared.scene.title or compared.scene.name}: {where}",
         (
@@ -218,7 +237,9 @@ def _verdicts(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
                 _of(row, row.same_theory),
                 _of(row, row.bounds.same_theory) if row.bounds else "–",
                 _of(row, row.bounds.round_off) if row.bounds else "–",
-                "takes no part" if word is None else word.value,
+                (row.place.value if row.place is not Place.COMPARED else "takes no part")
+                if word is None
+                else word.value,
             )
         )
     return Sheet(
@@ -227,6 +248,13 @@ def _verdicts(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
         tuple(body),
         "Both differences must stay within what may be; within bending the FEA shares the CPRBM's theory.",
     )
+
+
+def _said(row: Row, word: Word | None) -> str:
+    """What a row says, or why it says nothing."""
+    if word is not None:
+        return word.value
+    return "takes no part" if row.place is Place.COMPARED else row.place.value
 
 
 def _true_errors(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
@@ -260,20 +288,21 @@ def _claims(compared: Comparison) -> Sheet:
     body = tuple(
         (
             standing.claim.text or standing.claim.probe,
-            percent(standing.claim.bound),
-            percent(claim_difference(standing.worst)),
+            ("" if standing.claim.value is None else f"{number(standing.claim.value)} ± ")
+            + percent(standing.claim.bound),
+            percent(standing.difference),
             f"{standing.worst.stage} {standing.worst.station:g}",
             f"{standing.met} of {standing.stations}",
             "met" if standing.holds else "not met",
         )
-        for standing in standings(compared.scene, compared.rows)
+        for standing in standings(compared.scene, compared.rows, compared.criticals)
     )
     return Sheet(
         "Claims of the source",
         ("claim", "theirs", "ours at worst", "at", "met at", ""),
         body,
         "They stand beside our figures and have no part in the verdict. Of a force or a moment the difference is "
-        "here a fraction of the value at its station.",
+        "here a fraction of the value at its station; of a value that is claimed, the CPRBM's distance from it.",
     )
 
 
@@ -290,19 +319,28 @@ def _reactions(compared: Comparison) -> tuple[Sheet, ...]:
                 percent(each.difference),
                 number(each.fea / factor, 5),
                 percent(each.from_fea),
-                ", ".join(each.changes),
+                ", ".join(("jumps", *each.changes) if each.jumped else each.changes),
             )
-            for each in reactions
+            for each in _few(compared.scene, reactions)
         )
         found.append(
             Sheet(
                 f"Reaction at the drive {drive}, {unit}",
                 ("station", "multiplier", "work–energy", "from it", "FEA", "multiplier from it", "closes or opens"),
                 body,
-                sentence(reactions),
+                sentence(reactions)
+                + ("" if len(body) == len(reactions) else f" {len(reactions) - len(body)} stations are left out here."),
             )
         )
     return tuple(found)
+
+
+def _few(scene: Scene, reactions: Sequence[Reaction]) -> tuple[Reaction, ...]:
+    """All reactions, or of many those at the stations to show, next to a jump, or further apart than they may be."""
+    if len(reactions) <= MANY:
+        return tuple(reactions)
+    shown = shown_stations(scene, tuple((each.stage, each.station) for each in reactions))
+    return tuple(each for each in reactions if each.apart or each.jumped or (each.stage, each.station) in shown)
 
 
 def _stresses(scene: Scene, rows: tuple[Row, ...]) -> Sheet:
@@ -404,22 +442,18 @@ def _certificates(compared: Comparison) -> Sheet:
     )
 
 
-def _answered(scene: Scene, answer: Answer) -> Sheet:
+def _answered(scene: Scene, answer: Answer, station: StationAnswer) -> Sheet:
+    stage = next(stage for stage in scene.stages if stage.name == station.stage)
     body = []
-    where = "no station reached"
-    if answer.stations:
-        station = answer.stations[-1]
-        stage = next(stage for stage in scene.stages if stage.name == station.stage)
-        where = f"{station.stage} {station.value:g}"
-        for probe in scene.probes:
-            found = station.values[probe.name]
-            factor, unit = scaled_unit(unit_of(scene, probe, stage), norm(probe.quantity, found))
-            body.append((probe.name, unit, vector(found, factor)))
+    for probe in scene.probes:
+        found = station.values[probe.name]
+        factor, unit = scaled_unit(unit_of(scene, probe, stage), norm(probe.quantity, found))
+        body.append((probe.name, unit, vector(found, factor)))
     return Sheet(
-        f"{scene.title or scene.name}: {where}",
+        f"{scene.title or scene.name}: {stage.name} {along(station.value, load_unit(scene, stage))}",
         ("probe", "unit", answer.solver),
         tuple(body),
-        f"{answer.ending.name}: {answer.sentence or answer.ending.value}",
+        f"{answer.ending.name}: {answer.sentence or answer.ending.value}" if station is answer.stations[-1] else "",
     )
 
 

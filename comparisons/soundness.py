@@ -6,19 +6,23 @@ from dataclasses import replace
 
 import numpy as np
 
-from comparisons.measures import station_of
+from comparisons.branches import begins_at, span_of
+from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, StationAnswer
 
 _COMPONENTS = {"displacement": 2, "reaction": 2, "ends": 2}
 ABSENT_WHILE_OPEN = frozenset({"centre", "ends", "closing_load"})
 """Quantities of a contact that have no value while it is open."""
 
+_ROUNDED = 1e-9  # of a stage's span, by which a critical value may be beyond the stations beside it
+
 
 def complaints(scene: Scene, answer: Answer) -> tuple[str, ...]:
     """Why an answer is no whole answer to a scene; empty if it is one.
 
     An answer is whole if it says that it completed, has every station of every stage and none besides, every
-    certificate in it holds, and every number in it is finite and of the shape that its probe has.
+    certificate in it holds, every number in it is finite and of the shape that its probe has, and its branches end
+    at its critical values.
     """
     found: list[str] = []
     if not answer.completed:
@@ -33,7 +37,34 @@ def complaints(scene: Scene, answer: Answer) -> tuple[str, ...]:
         found.extend(f"at {stage} {value:g} {what}" for what in _station_complaints(scene, station))
     if len(answer.stations) > len(asked):
         found.append(f"it has {len(answer.stations)} stations where {len(asked)} were asked")
-    return tuple(found)
+    return (*found, *_branch_complaints(scene, answer))
+
+
+def _branch_complaints(scene: Scene, answer: Answer) -> list[str]:
+    """Critical values that are no numbers, and branches that end where there is none."""
+    found = [
+        f"its critical value in {one.stage} is not finite"
+        for one in answer.critical
+        if not np.all(np.isfinite((one.value, one.uncertainty, one.energy)))
+    ]
+    values = {stage.name: begins_at(scene, stage) for stage in scene.stages}
+    slack = {stage.name: _ROUNDED * span_of(scene, stage) for stage in scene.stages}
+    branch = 0
+    for station in answer.stations:
+        if station.stage not in values:
+            continue
+        least, most = sorted((values[station.stage], station.value))
+        least, most = least - slack[station.stage], most + slack[station.stage]
+        ends = answer.critical[branch : station.branch]
+        if len(ends) != station.branch - branch or not all(
+            one.stage == station.stage and least <= one.value <= most for one in ends
+        ):
+            found.append(
+                f"at {station.stage} {station.value:g} it is on branch {station.branch} after branch {branch}, and its "
+                "critical values say otherwise"
+            )
+        values[station.stage], branch = station.value, station.branch
+    return found
 
 
 def sound_part(scene: Scene, answer: Answer) -> Answer:

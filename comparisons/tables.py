@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from comparisons.sheets import Sheet
+from comparisons.sheet import Sheet
 
 _COLOURS = {
     "AGREE": "green",

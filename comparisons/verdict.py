@@ -16,33 +16,33 @@ The second condition makes the first one tight.  By the triangle inequality
 |v_c − v_f| ≤ |v_c − v_b| + |v_b − v_f|, so with the first alone a wrong CPRBM could hide in a large step
 between the theories; within one theory it has only the two discretisations to hide behind.
 
-A case differs if any row does, is undecided if a solver did not complete or any row is undecided, and agrees
-only if every row does.  The centre and the ends of a contact and its closing load are absent while it is open; where
-one answer has such a value and another does not, the contact's force at that station (zero in one, not in the
-other) decides, and the row itself is undecided only if the scene does not ask for that force.
+Rows at which the answers are not on one branch, or near where one ends, say what their place makes them say
+(:mod:`comparisons.branches`); a critical value says what :mod:`comparisons.criticals` makes of it.
+
+A case differs if any row or critical value does, is undecided if a solver did not complete or any of them is
+undecided, and agrees only if every one does.  The centre and the ends of a contact and its closing load are absent
+while it is open; where one answer has such a value and another does not, the contact's force at that station (zero in
+one, not in the other) decides, and the row itself is undecided only if the scene does not ask for that force.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from enum import Enum
 
+from comparisons.branches import Place
 from comparisons.calibration import FAR, JUDGED, every, held, tally
+from comparisons.criticals import CriticalRow, critical_rows
 from comparisons.formats import number, percent
 from comparisons.measures import Bounds, Row, rows_of
 from comparisons.pairing import Runs
+from comparisons.per_branch import BranchVerdict, branch_verdicts, critical_word, told
+from comparisons.reach import within_reach
 from comparisons.soundness import ABSENT_WHILE_OPEN, complaints, sound_part
 from comparisons.tolerances.search import Tolerance
+from comparisons.words import Word, worst_of
 from comparisons.work_energy import Reaction, reactions
 from scene import Scene
-
-
-class Word(Enum):
-    """What a verdict says."""
-
-    AGREE = "AGREE"
-    DIFFER = "DIFFER"
-    UNDECIDED = "UNDECIDED"
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,22 +54,25 @@ class Verdict:
         sentence: which row decided, or why nothing could be decided.
         words: one per row, in the order of the rows; None for a row that takes no part.
         completed: whether every run gave a whole answer.
+        branches: what the rows of each branch say.
     """
 
     word: Word
     sentence: str
     words: tuple[Word | None, ...]
     completed: bool
+    branches: tuple[BranchVerdict, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A scene, all answers to it, the rows, the verdict, the drives' reactions by two ways, and how N was found."""
+    """A scene, all answers to it, the rows and critical values, the verdict, reactions by two ways, how N was found."""
 
     scene: Scene
     runs: Runs
     rows: tuple[Row, ...]
     verdict: Verdict
+    criticals: tuple[CriticalRow, ...] = ()
     reactions: tuple[Reaction, ...] = ()
     tolerances: tuple[Tolerance, ...] = ()
 
@@ -77,23 +80,37 @@ class Comparison:
 def compared(scene: Scene, runs: Runs) -> Comparison:
     """Put the answers beside each other and judge them.
 
-    Rows stand only if every run gave a whole answer, the drives' reactions if those at N and n did.
+    Rows stand only if every run gave a whole answer, or one that is whole up to where its branch ends; the drives'
+    reactions if those at N and n did.
     """
+    reach = within_reach(scene, runs)
+    within, cut = (scene, runs) if reach is None else reach
     found: dict[str, list[str]] = {}
-    for name, answer in runs.everything():
-        what = complaints(scene, answer)
+    for name, answer in cut.everything():
+        what = complaints(within, answer)
         if what:
             more = f" (and {len(what) - 1} more)" if len(what) > 1 else ""
             found.setdefault(f"{what[0]}{more}", []).append(name)
     if found:
         sentence = "; ".join(f"{', '.join(names)} gave no whole answer: {what}" for what, names in found.items())
         verdict = Verdict(Word.UNDECIDED, sentence + ".", (), completed=False)
-        return Comparison(scene, runs, (), verdict, _reactions(scene, runs))
+        return Comparison(scene, runs, (), verdict, critical_rows(scene, runs), _reactions(scene, runs))
     # nothing rests on the formulation that stands beside, so that its failure leaves no more than a gap
-    beside = runs.paper is not None and not complaints(scene, runs.paper)
-    exact = None if runs.exact is None else sound_part(scene, runs.exact)
-    rows = rows_of(scene, replace(runs, paper=runs.paper if beside else None, exact=exact))
-    return Comparison(scene, runs, rows, judged(scene, rows), _reactions(scene, runs))
+    beside = cut.paper is not None and not complaints(within, cut.paper)
+    exact = None if cut.exact is None else sound_part(within, cut.exact)
+    rows = rows_of(within, replace(cut, paper=cut.paper if beside else None, exact=exact))
+    criticals = critical_rows(scene, runs)
+    verdict = judged(within, rows, criticals)
+    if reach is not None:
+        verdict = _up_to_there(verdict, rows[-1])
+    return Comparison(scene, runs, rows, verdict, criticals, _reactions(scene, runs))
+
+
+def _up_to_there(verdict: Verdict, last: Row) -> Verdict:
+    """The verdict on what comes before a branch ends: the stations behind it have no answer to agree on."""
+    word = verdict.word if verdict.word is Word.DIFFER else Word.UNDECIDED
+    said = f"The branch ends before the last station; up to {last.stage} {last.station:g}: {verdict.word.value}. "
+    return replace(verdict, word=word, sentence=said + verdict.sentence, completed=False)
 
 
 def _reactions(scene: Scene, runs: Runs) -> tuple[Reaction, ...]:
@@ -103,28 +120,36 @@ def _reactions(scene: Scene, runs: Runs) -> tuple[Reaction, ...]:
     return reactions(scene, runs.cprbm[0], runs.reference, runs.nearby)
 
 
-def judged(scene: Scene, rows: tuple[Row, ...]) -> Verdict:
-    """The verdict on the rows of whole answers."""
+def judged(scene: Scene, rows: tuple[Row, ...], criticals: tuple[CriticalRow, ...] = ()) -> Verdict:
+    """The verdict on the rows and the critical values of whole answers."""
     words = tuple(_word(scene, row) for row in rows)
+    of_rows, sentence = _judged_rows(scene, rows, words)
+    branches = branch_verdicts(rows, words)
+    of_criticals = worst_of(critical_word(each) for each in criticals)
+    word = worst_of((of_rows, of_criticals)) or of_rows
+    more = told(rows, branches, criticals)
+    # what decides comes first
+    sentences = (sentence, *more) if word is of_rows else (*more, sentence)
+    return Verdict(word, " ".join(sentences), words, completed=True, branches=branches)
+
+
+def _judged_rows(scene: Scene, rows: tuple[Row, ...], words: tuple[Word | None, ...]) -> tuple[Word, str]:
+    """The word of all rows, and a sentence that names the one which decided."""
     judged_rows = [(row, word) for row, word in zip(rows, words, strict=True) if word is not None]
     for word in (Word.DIFFER, Word.UNDECIDED):
         worst = [row for row, said in judged_rows if said is word]
         if worst:
             row = max(worst, key=lambda row: _pressure(scene, row, word))
-            sentence = _sentence(scene, row, word, len(worst), len(judged_rows)) + _exactly(rows)
-            return Verdict(word, sentence, words, completed=True)
+            return word, _sentence(scene, row, word, len(worst), len(judged_rows)) + _exactly(rows)
     if not judged_rows:
-        return Verdict(Word.UNDECIDED, "There is no row that could be compared.", words, completed=True)
+        return Word.UNDECIDED, "There is no row that could be compared."
     row = max((row for row, _ in judged_rows), key=lambda row: max(_between(row)))
-    return Verdict(
-        Word.AGREE,
-        _sentence(scene, row, Word.AGREE, len(judged_rows), len(judged_rows)) + _exactly(rows),
-        words,
-        completed=True,
-    )
+    return Word.AGREE, _sentence(scene, row, Word.AGREE, len(judged_rows), len(judged_rows)) + _exactly(rows)
 
 
 def _word(scene: Scene, row: Row) -> Word | None:
+    if row.place in _OF_PLACE:
+        return _OF_PLACE[row.place]
     if _lacking(row) and not _spoken_for(scene, row):
         return Word.UNDECIDED
     if row.bounds is None:
@@ -134,6 +159,15 @@ def _word(scene: Scene, row: Row) -> Word | None:
         return Word.DIFFER
     tellable = max(row.bounds.total, row.bounds.same_theory) <= scene.limit(row.probe) * row.scale
     return Word.AGREE if tellable else Word.UNDECIDED
+
+
+_OF_PLACE: Mapping[Place, Word | None] = {
+    Place.NEAR: None,
+    Place.BETWEEN: None,
+    Place.APART: Word.DIFFER,
+    Place.UNSETTLED: Word.UNDECIDED,
+}
+"""What rows say by their place alone."""
 
 
 def _lacking(row: Row) -> bool:
@@ -173,6 +207,12 @@ def _between(row: Row) -> tuple[float, float]:
 
 def _sentence(scene: Scene, row: Row, word: Word, count: int, rows: int) -> str:
     place = f"{row.probe.name} at {row.stage} {row.station:g}"
+    if row.place is Place.APART:
+        return f"{count} of {rows} rows differ, first of all {place}: the two solvers are on different branches."
+    if row.place is Place.UNSETTLED:
+        return (
+            f"{count} of {rows} rows cannot be told, first of all {place}: one solver's runs are on different branches."
+        )
     if row.bounds is None or (word is Word.UNDECIDED and _lacking(row)):
         return f"{place} has no value in one of the runs, and no force of that contact is asked."
     chosen, within = _between(row)

@@ -12,7 +12,8 @@ n_j         unit directions of the drives of one point
     F = (PE2 − PE1)/(2ρd)                                                                         (14), (15)
 
 A drive's work is in the strain energy alone and the dead loads' work is taken off, so that F is the derivative of
-the potential energy with respect to d, other drives and loads kept.  The central difference leaves ρ²d²F″/6, a few
+the potential energy with respect to d, other drives and loads kept, along one branch: where a jump lies between the
+stations, or between them and d, there is no such derivative.  The central difference leaves ρ²d²F″/6, a few
 millionths of F where F is smooth; where a contact opens or closes F has a kink, and nothing is said of it there.
 
 The energies nearly cancel.  What round-off leaves of their difference is at most the floor of the certificates'
@@ -30,9 +31,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.formats import percent
-from comparisons.measures import UNITS, station_of
+from comparisons.measures import UNITS
 from comparisons.nearby import ENERGY, RHO, is_asked, reaction_of, visited
 from comparisons.scales import VANISHING
+from comparisons.stations import station_of
 from scene import Answer, Scene, Stage, StationAnswer
 from scene.freedoms import unit
 from scene.statement import DisplacementDrive
@@ -51,7 +53,10 @@ class Reaction:
         fea: the finite elements'.
         scale: what differences are divided by: the multiplier's magnitude, or the stage's largest where that vanishes.
         floor: what round-off may leave of ``work_energy``, in ``unit``.
-        changes: contacts that open or close between the two stations next to this one.
+        changes: contacts that open or close, and stops that take hold or let go, between the two stations next to this
+            one.
+        branch: the branch that the CPRBM is on here.
+        jumped: whether one of the runs beside the station is on another branch; there is no ``work_energy`` then.
     """
 
     stage: str
@@ -64,6 +69,8 @@ class Reaction:
     scale: float
     floor: float
     changes: tuple[str, ...]
+    branch: int = 0
+    jumped: bool = False
 
     @property
     def difference(self) -> float | None:
@@ -102,7 +109,7 @@ def reactions(scene: Scene, cprbm: Answer, fea: Answer, near: Answer) -> tuple[R
     for stage in scene.stages:
         asked = is_asked(scene, stage)
         largest = (
-            max(abs(_along(scene, stage, station_of(cprbm, stage.name, d))) for d in stage.stations) if asked else 0.0
+            max(abs(along(scene, stage, station_of(cprbm, stage.name, d))) for d in stage.stations) if asked else 0.0
         )
         for d in stage.stations:
             values = visited(d) if asked else (d,)
@@ -110,7 +117,9 @@ def reactions(scene: Scene, cprbm: Answer, fea: Answer, near: Answer) -> tuple[R
             place += len(values)
             if not asked or d == 0.0:
                 continue
-            F = _along(scene, stage, station_of(cprbm, stage.name, d))
+            here = station_of(cprbm, stage.name, d)
+            F = along(scene, stage, here)
+            jumped = any(station.branch != here.branch for station in beside)
             found.append(
                 Reaction(
                     stage=stage.name,
@@ -118,14 +127,35 @@ def reactions(scene: Scene, cprbm: Answer, fea: Answer, near: Answer) -> tuple[R
                     drive=stage.steps,
                     unit=UNITS[reaction_of(scene.drives[stage.steps]).quantity],
                     multiplier=F,
-                    work_energy=_work_energy(d, values, beside),
-                    fea=_along(scene, stage, station_of(fea, stage.name, d)),
+                    work_energy=None if jumped else _work_energy(d, values, beside),
+                    fea=along(scene, stage, station_of(fea, stage.name, d)),
                     scale=abs(F) if abs(F) >= VANISHING * largest else largest,
                     floor=_floor(d, beside),
                     changes=_changes(closed, (stage.name, d), beside),
+                    branch=here.branch,
+                    jumped=jumped,
                 )
             )
     return tuple(found)
+
+
+def along(scene: Scene, stage: Stage, station: StationAnswer) -> float:
+    """The multiplier F of the drive that a stage steps: along its direction in N, or its moment in N·m.
+
+    Raises:
+        KeyError: the station lacks the drive's reaction.
+    """
+    drive = scene.drives[stage.steps]
+    values = station.values[reaction_of(drive).name]
+    if not isinstance(drive, DisplacementDrive):
+        return float(values[0])
+    others = {
+        name: unit(each.direction)
+        for name, each in scene.drives.items()
+        if isinstance(each, DisplacementDrive) and each.point == drive.point
+    }
+    F = np.linalg.lstsq(np.stack(list(others.values()), axis=1), values)[0]
+    return float(F[list(others).index(stage.steps)])
 
 
 def by_drive(found: tuple[Reaction, ...]) -> dict[str, tuple[Reaction, ...]]:
@@ -146,8 +176,22 @@ def sentence(found: tuple[Reaction, ...]) -> str:
         said += f" Further apart: {', '.join(apart)}."
     floor = max((each.floor / each.scale for each in known if each.scale > 0.0), default=0.0)
     said += f" Round-off of the energies leaves at most {percent(floor)}."
-    missing = len(found) - len(known)
+    said += "".join(_on_branch(branch, known) for branch in dict.fromkeys((each.stage, each.branch) for each in known))
+    jumped = sum(each.jumped for each in found)
+    missing = len(found) - len(known) - jumped
+    if jumped:
+        said += f" At {jumped} stations the run beside is on another branch, and no derivative is taken across a jump."
     return said + (f" {missing} stations were not reached by the run beside them." if missing else "")
+
+
+def _on_branch(branch: tuple[str, int], known: list[Reaction]) -> str:
+    """The largest difference on one branch, away from contacts that change; nothing where all are beside one."""
+    mine = [each for each in known if (each.stage, each.branch) == branch and not each.changes]
+    if not mine:
+        return ""
+    worst = max(mine, key=lambda each: abs(each.difference or 0.0))
+    where = branch[0] if branch[1] == 0 else f"{branch[0]}, branch {branch[1]}"
+    return f" Largest in {where}: {percent(abs(worst.difference or 0.0))} at {worst.station:g}."
 
 
 def _work_energy(d: float, values: tuple[float, ...], beside: tuple[StationAnswer, ...]) -> float | None:
@@ -172,39 +216,36 @@ def _energy(station: StationAnswer) -> float:
     return float(station.values[ENERGY.name][0])
 
 
-def _along(scene: Scene, stage: Stage, station: StationAnswer) -> float:
-    """The multiplier F of the drive that a stage steps: along its direction, or its moment."""
-    drive = scene.drives[stage.steps]
-    values = station.values[reaction_of(drive).name]
-    if not isinstance(drive, DisplacementDrive):
-        return float(values[0])
-    others = {
-        name: unit(each.direction)
-        for name, each in scene.drives.items()
-        if isinstance(each, DisplacementDrive) and each.point == drive.point
-    }
-    F = np.linalg.lstsq(np.stack(list(others.values()), axis=1), values)[0]
-    return float(F[list(others).index(stage.steps)])
+@dataclass(frozen=True, slots=True)
+class _Held:
+    """Which contacts are closed at a station and, of those that are asked for, which stops hold."""
+
+    at: tuple[str, float]
+    contacts: frozenset[str]
+    stops: frozenset[str]
 
 
-def _closed(scene: Scene, answer: Answer) -> list[tuple[tuple[str, float], frozenset[str]]]:
-    """Every station in order, and which contacts are closed there."""
-    return [
-        ((stage.name, d), frozenset(station_of(answer, stage.name, d).touching))
-        for stage in scene.stages
-        for d in stage.stations
-    ]
+def _closed(scene: Scene, answer: Answer) -> list[_Held]:
+    """Every station in order."""
+    moments = {probe.of: probe.name for probe in scene.probes if probe.quantity == "moment"}
+    found = []
+    for stage in scene.stages:
+        for d in stage.stations:
+            station = station_of(answer, stage.name, d)
+            stops = frozenset(stop for stop, moment in moments.items() if station.values[moment].any())
+            found.append(_Held((stage.name, d), frozenset(station.touching), stops))
+    return found
 
 
-def _changes(
-    closed: list[tuple[tuple[str, float], frozenset[str]]], at: tuple[str, float], beside: tuple[StationAnswer, ...]
-) -> tuple[str, ...]:
-    """Contacts that are not in one state from the station before to the station after, and close round this one.
+def _changes(closed: list[_Held], at: tuple[str, float], beside: tuple[StationAnswer, ...]) -> tuple[str, ...]:
+    """Contacts and stops that are not in one state from the station before to the one after, and close round this one.
 
     Before the first station nothing is loaded, and no contact presses.
     """
-    here = next(place for place, (station, _) in enumerate(closed) if station == at)
-    before = [closed[here - 1][1]] if here > 0 else [frozenset[str]()]
-    states = [*before, *(state for _, state in closed[here : here + 2])]
-    states += [frozenset(station.touching) for station in beside]
-    return tuple(sorted(frozenset.union(*states) - frozenset.intersection(*states)))
+    here = next(place for place, each in enumerate(closed) if each.at == at)
+    nothing = frozenset[str]()
+    around = [closed[here - 1] if here > 0 else _Held(at, nothing, nothing), *closed[here : here + 2]]
+    contacts = [*(each.contacts for each in around), *(frozenset(station.touching) for station in beside)]
+    stops = [each.stops for each in around]
+    changing = [frozenset.union(*states) - frozenset.intersection(*states) for states in (contacts, stops)]
+    return tuple(sorted(frozenset.union(*changing)))

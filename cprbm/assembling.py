@@ -1,7 +1,8 @@
 """Bringing beams' ends to the points they are pinned to, before anything is loaded or driven.
 
 Three parts, each with an equilibrium at its end: the auxiliary moments grow while the ends are free; the ends go
-straight to their points; the moments go away, and from here on stops act.
+straight to their points; the moments go away, and from here on stops act.  Until then the beams touch where they are
+closest, whatever the formulation: the paper's boundary is that of the assembled mechanism, and the last part's.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ class Part:
 
 def freed(scene: Scene, mechanism: Mechanism, point: Point) -> Part:
     """The first part: ends that are drawn apart are free, and moments grow on them."""
-    moments = _moments(scene)
+    moments, mechanism = _moments(scene), replace(mechanism, boundaries={})
     names = frozenset(_apart(scene, mechanism, point))
     problem = mechanism.without(*mechanism.stops)
     free = replace(problem, closure=closure_of(problem.model, problem.closure.holds, names))
@@ -57,7 +58,8 @@ def freed(scene: Scene, mechanism: Mechanism, point: Point) -> Part:
 
 def brought(scene: Scene, mechanism: Mechanism, point: Point) -> Part:
     """The second part: from where they are the ends go straight to their points."""
-    moments, problem = _moments(scene), mechanism.without(*mechanism.stops)
+    moments, mechanism = _moments(scene), replace(mechanism, boundaries={})
+    problem = mechanism.without(*mechanism.stops)
     gaps: dict[str, float] = {}
     for beam, gap in _apart(scene, mechanism, point).items():
         gaps |= dict(zip(apart_by(beam), gap, strict=True))
@@ -80,12 +82,25 @@ def released(scene: Scene, mechanism: Mechanism, point: Point) -> Part:
     moments, mistakes = _moments(scene), list(_forbidden(scene, mechanism, point))
     if mistakes:
         raise SceneError(mistakes)
+    mechanism = replace(mechanism, boundaries={})
+    problem = mechanism.without()
     return Part(
-        mechanism=mechanism,
-        start=point_at(mechanism.problem, moments, point.state, point.mu, point.lam, point.rows),
+        mechanism=replace(mechanism, problem=problem),
+        start=point_at(problem, moments, point.state, point.mu, point.lam, point.rows),
         begin=moments,
         target=dict.fromkeys(moments, 0.0),
         sentence="the moments of the assembly go away",
+    )
+
+
+def formulated(scene: Scene, mechanism: Mechanism, point: Point) -> Part:
+    """What ends the assembly: the mechanism itself, by the formulation that was asked."""
+    return Part(
+        mechanism=mechanism,
+        start=point_at(mechanism.problem, {}, point.state, point.mu, point.lam, point.rows),
+        begin={},
+        target={},
+        sentence=f"{scene.name} stands assembled",
     )
 
 

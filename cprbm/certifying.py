@@ -17,6 +17,7 @@ COMPLEMENTARITY = 1e-8  # gap times force, over the largest generalised force
 # Of the mean thickness. Where rows stand nothing overlaps (the violation says so); between the joints of a zone
 # the line dips by a part of h², which is an error of the discretisation and not a failure.
 OVERLAP_AUTO = 0.05
+BEYOND = 0.5  # elements behind the fitted boundary's ends: it is continued there
 OVERLAP_PAPER = 0.5  # joints of 'paper' may dip between each other; beyond this the beams have crossed
 
 
@@ -63,7 +64,7 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
         pressing = np.array([lam > 0.0 for lam, c in zip(point.lam, point.rows.contact, strict=True) if c == name])
         beyond = boundary.range_left(point.state, point.at)
         ask(
-            not np.any(pressing & (beyond > 0.0)),
+            not np.any(pressing & (beyond > BEYOND * max(chain.h for chain in problem.model.chains))),
             Ending.LEFT_BOUNDARY,
             f"in contact '{name}'",
         )

@@ -14,6 +14,7 @@ F           resultant of a contact, moment of a stop: sum of its multipliers
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +24,8 @@ from cprbm.mechanism import Mechanism
 from cprbm.stability import Softest, released, softest
 from scene import Certificate, Loss
 from scene.answer import Array
+
+Key = tuple[str, int]  # of a row: its contact or stop, and what it is there
 
 LEAST = 2  # minima from which the end of a branch can be told
 TURNED = 0.5  # part of τ in φ: a fold has all of it, a bifurcation nothing
@@ -85,23 +88,36 @@ def branch_end(mechanism: Mechanism, trail: list[Minimum], beyond: float) -> Bra
     before = next((one for one in reversed(trail) if abs(one.value - beyond) >= SPREAD * abs(width)), trail[0])
     if before is last:
         return None
-    for name in dict.fromkeys(last.point.rows.contact):
-        force, earlier = _force(last.point, name), _force(before.point, name)
-        zero = _continued(last.value, force, before.value, earlier)
-        if force <= 0.0 or zero is None or not 0.0 <= (zero - last.value) / width <= NEAR:
-            continue
-        soft = softest(mechanism.problem, released(last.point, name))
-        if soft.curvature <= 0.0:
-            loss = Loss.STOP if name in mechanism.stops else Loss.CONTACT
-            return BranchEnd(zero, abs(width), loss, name, last.curvature, soft.curvature, soft.direction)
+    whole = [frozenset(key for key in last.point.rows.keys if key[0] == name) for name in _names(last.point)]
+    let_go = _let_go(mechanism, last, before, width, whole)
+    if let_go is not None:
+        return let_go
     soft = softest(mechanism.problem, last.point)
     fold = _part_in(mechanism, last, before, soft) > TURNED
     power = 2.0 if fold else 1.0
     zero = _continued(last.value, last.curvature**power, before.value, before.curvature**power)
-    if zero is None or not -1.0 <= (zero - last.value) / width <= NEAR:
-        return None
-    loss = Loss.FOLD if fold else Loss.BIFURCATION
-    return BranchEnd(zero, abs(width), loss, "", last.curvature, last.curvature, soft.direction)
+    if zero is not None and -1.0 <= (zero - last.value) / width <= NEAR:
+        loss = Loss.FOLD if fold else Loss.BIFURCATION
+        return BranchEnd(zero, abs(width), loss, "", last.curvature, last.curvature, soft.direction)
+    # one place of several that a contact has: in a zone others take over, and κ falls little by little
+    return _let_go(mechanism, last, before, width, [frozenset({key}) for key in last.point.rows.keys])
+
+
+def _let_go(
+    mechanism: Mechanism, last: Minimum, before: Minimum, width: float, holders: Iterable[frozenset[Key]]
+) -> BranchEnd | None:
+    """The end at which one of the ``holders``, rows that press together, has no force left and κ < 0 without it."""
+    for rows in holders:
+        force, earlier = _force(last.point, rows), _force(before.point, rows)
+        zero = _continued(last.value, force, before.value, earlier)
+        if force <= 0.0 or zero is None or not 0.0 <= (zero - last.value) / width <= NEAR:
+            continue
+        soft = softest(mechanism.problem, released(last.point, rows))
+        if soft.curvature <= 0.0:
+            (name,) = {contact for contact, _ in rows}
+            loss = Loss.STOP if name in mechanism.stops else Loss.CONTACT
+            return BranchEnd(zero, abs(width), loss, name, last.curvature, soft.curvature, soft.direction)
+    return None
 
 
 def foreseen(trail: list[Minimum], ahead: float) -> float | None:
@@ -109,16 +125,20 @@ def foreseen(trail: list[Minimum], ahead: float) -> float | None:
     if len(trail) < LEAST:
         return None
     before, last = trail[-2:]
-    names = dict.fromkeys(last.point.rows.contact)
-    falling = [(_force(last.point, name), _force(before.point, name)) for name in names]
+    whole = [frozenset(key for key in last.point.rows.keys if key[0] == name) for name in _names(last.point)]
+    falling = [(_force(last.point, rows), _force(before.point, rows)) for rows in whole]
     falling += [(last.curvature**power, before.curvature**power) for power in (1.0, 2.0)]
     zeros = [_continued(last.value, now, before.value, earlier) for now, earlier in falling if now > 0.0]
     reached = [zero for zero in zeros if zero is not None and 0.0 < (zero - last.value) / (ahead - last.value) < 1.0]
     return min(reached, key=lambda zero: abs(zero - last.value), default=None)
 
 
-def _force(point: Point, name: str) -> float:
-    return float(sum(lam for lam, each in zip(point.lam, point.rows.contact, strict=True) if each == name))
+def _names(point: Point) -> dict[str, None]:
+    return dict.fromkeys(point.rows.contact)
+
+
+def _force(point: Point, rows: frozenset[Key]) -> float:
+    return float(sum(lam for lam, key in zip(point.lam, point.rows.keys, strict=True) if key in rows))
 
 
 def _continued(value: float, amount: float, before: float, earlier: float) -> float | None:

@@ -53,6 +53,11 @@ class Way:
         return self.at(fraction)[self.load] if self.load else fraction
 
     @property
+    def change(self) -> dict[str, float]:
+        """What the values change by on the whole way."""
+        return {name: end - self.begin[name] for name, end in self.target.items()}
+
+    @property
     def aim(self) -> str:
         """Where it leads, for people."""
         return f"{self.load} = {self.target[self.load]:.6g}" if self.load else "the end of this part"
@@ -96,6 +101,7 @@ class Follower:
     def go(self, way: Way, accept: Callable[[Point, dict[str, float]], None]) -> Reached:
         """Go all the way, directly or in steps; ``accept`` sees every next minimum before it is the present one."""
         done, step, iterations, refused = 0.0, 1.0, 0, False
+        self.values = dict(way.begin)
         while True:
             step = min(step, 1.0 - done, self._longest(way))
             fraction = 1.0 if done + step >= 1.0 else done + step
@@ -126,10 +132,9 @@ class Follower:
 
     def _longest(self, way: Way) -> float:
         """The largest part of the way that may be taken at once."""
-        if not (self.careful and way.load):
+        if not self.careful:
             return 1.0
-        whole = way.target[way.load] - way.begin[way.load]
-        turn = float(np.max(np.abs(whole * rate(self.mechanism.problem, self.point, way.load))))
+        turn = float(np.max(np.abs(rate(self.mechanism.problem, self.point, way.change))))
         return max(SHORT / turn, self.settings.smallest_step) if turn > SHORT else 1.0
 
     def _solved(self, values: dict[str, float], *, settle: bool) -> Equilibrium:
@@ -145,11 +150,10 @@ class Follower:
             return Ending.BEAMS_CROSSED, f"in contact '{crossed}' the beam went across what it may touch"
         if self.careful and turned > ISOLATED and _pressing(found) != _pressing(self.point):
             return Ending.STEP_TOO_SMALL, "a contact or stop closes or opens on the way"
-        if way.load:
-            problem, step = self.mechanism.problem, values[way.load] - self.values.get(way.load, 0.0)
-            ways = (step * rate(problem, point, way.load) for point in (self.point, found))
-            if strayed(problem.model.lengths, found.state.theta - self.point.state.theta, *ways):
-                return Ending.STEP_TOO_SMALL, "the links went another way than their rates say, to another branch"
+        problem, change = self.mechanism.problem, {name: value - self.values[name] for name, value in values.items()}
+        ways = (rate(problem, point, change) for point in (self.point, found))
+        if strayed(problem.model.lengths, found.state.theta - self.point.state.theta, *ways):
+            return Ending.STEP_TOO_SMALL, "the links went another way than their rates say, to another branch"
         return Ending.COMPLETED, ""
 
     def _cut(self, way: Way, done: float, step: float) -> float:

@@ -16,6 +16,7 @@ import numpy as np
 from cprbm.closure import closure_forces
 from cprbm.equilibrium import NOTHING, Point, Problem, contact_gradient
 from cprbm.holding import Held, held
+from cprbm.kinematics import place
 from cprbm.model import Chain
 from scene.answer import Array
 
@@ -105,6 +106,21 @@ def contact_imbalance(problem: Problem, point: Point, contact_name: str) -> floa
     return abs(float(own)) / largest if largest > 0.0 else 0.0
 
 
+def _across_gaps(problem: Problem, point: Point) -> list[float]:
+    """Moments by which ends that are on their way to points of bodies are held apart from these."""
+    model, closure = problem.model, problem.closure
+    found = []
+    for r, (c, joint) in enumerate(zip(closure.ends, closure.end_joints, strict=True)):
+        end = model.chains[c].end
+        assert end is not None
+        if end.body < 0:
+            continue  # what the ground does is at the end itself
+        px, py = place(model, end, point.state.bodies)
+        fx, fy = point.mu[2 * r : 2 * r + 2]
+        found.append(float((point.at.y[joint] - py) * fx - (point.at.x[joint] - px) * fy))
+    return found
+
+
 def balances(problem: Problem, point: Point) -> tuple[float, float]:
     """ΣF and ΣM about the origin of supports, slides, drives, loads and contacts, without units.
 
@@ -124,6 +140,8 @@ def balances(problem: Problem, point: Point) -> tuple[float, float]:
         parts.append((place, work[b, :2], float(work[b, 2] + stops[b, 2])))
     # of loads on beams that is the moment about the beam's start; where the ground holds that, the force is no body's
     parts.append((np.zeros(2), np.zeros(2), float(np.sum(point.work.gradient[: model.n_links]))))
+    # ends that are apart from their points pass forces on across the gap
+    parts += [(np.zeros(2), np.zeros(2), moment) for moment in _across_gaps(problem, point)]
     for chain in model.chains:
         j = chain.joints
         if chain.start.body < 0:

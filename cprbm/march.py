@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from cprbm.assembling import brought, freed, released
+from cprbm.assembling import brought, formulated, freed, released
 from cprbm.boundary import FittedBoundary
 from cprbm.certifying import certify
 from cprbm.closing import Closings, Stood
@@ -162,12 +162,15 @@ class March:
     def _assemble(self) -> tuple[Ending, str]:
         """Bring the beams' ends to their points; the Ending and its sentence."""
         on, whole = self.on, self.on.mechanism
-        for begun in (freed, brought, released):
+        for begun in (freed, brought, released, formulated):
             part = begun(self.scene, whole, on.point)
-            on.mechanism, on.point, on.trail = part.mechanism, part.start, []
+            on.mechanism, on.point, on.trail, on.careful = part.mechanism, part.start, [], True
             reached = on.go(Way("", part.begin, part.target), _unseen)
             if reached.certificate is None:
-                return reached.ending, f"{reached.ending.value}: as {part.sentence}, {reached.sentence}"
+                end = branch_end(on.mechanism, on.trail, on.refused)
+                ending = reached.ending if end is None else Ending.BRANCH_ENDS
+                sentence = reached.sentence if end is None else told(end.loss, end.what)
+                return ending, f"{ending.value}: as {part.sentence}, {sentence}"
         on.mechanism, on.values = whole, {}
         self.closed_at |= {name: 0.0 for name in self.asked_events if _presses(on.point, name)}
         return Ending.COMPLETED, ""

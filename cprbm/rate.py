@@ -1,7 +1,7 @@
 """How an equilibrium moves with what is stepped, and whether two of them are on one branch.
 
 ======  ==============================================================================
-v, θ    value of the stepped load or drive, SI; link angles
+v, θ    part of the way on which loads, drives or ends go evenly; link angles
 r       dθ/dv on the branch, from Newton's system with the contacts that press
 f       part of a step that lies before a contact closes or opens
 ======  ==============================================================================
@@ -15,8 +15,11 @@ What a leap to another branch adds to this is in no proportion to the step.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
+from cprbm.closure import apart_by
 from cprbm.energy import load_work
 from cprbm.equilibrium import Point, Problem, local_system_at, many, system
 from scene.answer import Array
@@ -25,17 +28,20 @@ APART = 0.5  # of the mean way that the rates make: curvature of the way, and mo
 SHIFTED = 0.002  # rad: links turn by less where contact only comes to be carried by other rows
 
 
-def rate(problem: Problem, point: Point, name: str) -> Array:
-    """r (n_links,), rad per unit of the load or drive of a ``name``; nought where the system is singular."""
+def rate(problem: Problem, point: Point, change: Mapping[str, float]) -> Array:
+    """r (n_links,), rad per unit of a way on which named values (SI) ``change``; nought in a singular system."""
     model, closure = problem.model, problem.closure
-    f = np.zeros(model.n_unknowns)
-    if name in problem.loads:
-        f = load_work(model, {name: problem.loads[name]}, {name: 1.0}, point.state, point.at).gradient
-        f[closure.fixed] = 0.0
-    driven = np.zeros(closure.rows)
-    driven[closure.first_hold :] = [hold.unit if hold.drive == name else 0.0 for hold in closure.holds]
+    moved = {name: load for name, load in problem.loads.items() if change.get(name, 0.0)}
+    f = load_work(model, moved, dict(change), point.state, point.at).gradient
+    f[closure.fixed] = 0.0
+    driven = [
+        change.get(name, 0.0) / model.unit_length for c in closure.ends for name in apart_by(model.chains[c].name)
+    ]
+    driven += [0.0 for _ in closure.welds]
+    driven += [hold.unit * change.get(hold.drive, 0.0) for hold in closure.holds]
     try:
-        return _local(problem, point, f, driven) if many(point.rows) else _bordered(problem, point, f, driven)
+        solve = _local if many(point.rows) else _bordered
+        return solve(problem, point, f, np.array(driven))
     except (np.linalg.LinAlgError, RuntimeError):
         return np.zeros(model.n_links)
 

@@ -55,9 +55,9 @@ def smallest_curvature(problem: Problem, point: Point) -> float:
     return softest(problem, point).curvature
 
 
-def released(point: Point, name: str) -> Point:
-    """A state in which the contact or stop of a ``name`` holds nothing any more."""
-    others = np.array([each != name for each in point.rows.contact], dtype=bool)
+def released(point: Point, rows: frozenset[tuple[str, int]]) -> Point:
+    """A state in which some ``rows``, named by their keys, hold nothing any more."""
+    others = np.array([key not in rows for key in point.rows.keys], dtype=bool)
     return replace(point, lam=np.where(others, point.lam, 0.0))
 
 

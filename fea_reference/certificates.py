@@ -7,6 +7,7 @@ import numpy as np
 from fea_reference.curvature import smallest_curvature
 from fea_reference.march import March
 from fea_reference.model import BeamLoadPart, Model
+from fea_reference.stops import acting_stops
 from fea_reference.supports import held, support
 from fea_reference.system import System, assemble
 from fea_reference.touch import Circle, Pair
@@ -17,6 +18,7 @@ _BALANCE = 1e-8
 _RESOLVED = 0.05  # of the thickness: overlap with a circle, whose penalty is as stiff as the elements can follow
 _SOFT = 0.05  # by which a penalty may fall short of the stiffness that its elements ask for
 _NOTHING = 10.0  # floors: forces below this are round-off themselves
+_PULLS = 1e-8  # of the largest force or of EI/length: what a stop may pull with
 _MISSING = 1e-3  # of a contact's resultant
 
 
@@ -27,13 +29,14 @@ def certify(march: March) -> Certificate:
     thickness times the largest pressure, is the penetration again.
     """
     model, settings = march.model, march.settings
-    system = assemble(model, march.penalties, settings.quadrature, march.values, march.system.z)
+    system = assemble(model, march.penalties, settings.quadrature, march.values, march.system.z, march.acting)
     free = np.ones(model.size, dtype=bool)
     free[model.multipliers] = False
     free[model.element_dofs[6]] = False
     residual = float(np.abs(system.residual[free]).max()) / system.scale
     floor = system.floor / system.scale
     violation = float(np.abs(system.residual[~free]).max())
+    violation = max(violation, *(-stop.room(system.z)[0] for stop in model.stops), 0.0)
     penetration = max((one.penetration / one.pair.scale for one in system.touches), default=0.0)
     force, moment = _balance(model, march.values, system)
     # What is left over all is the sum of what is left at every node; round-off adds up like a random walk.
@@ -44,7 +47,11 @@ def certify(march: March) -> Certificate:
     if not residual <= max(settings.residual, floor):
         failures.append(f"the unbalanced force is {residual:.1e} of the largest")
     if not violation <= max(_VIOLATION, system.floor):
-        failures.append(f"a joint or an element's length is violated by {violation:.1e} of the longest beam")
+        failures.append(f"a joint, a stop or an element's length is violated by {violation:.1e} of the longest beam")
+    for stop, limit in acting_stops(model.stops, march.acting):
+        press = stop.press(system.z, limit)
+        if not press >= -_PULLS * max(1.0, system.scale):
+            failures.append(f"the stop {stop.name} holds with {press * model.units.moment:.1e} N·m on the wrong side")
     for one in system.touches:
         allowed = settings.penetration if isinstance(one.pair, Pair) else max(settings.penetration, _RESOLVED)
         overlap = one.penetration / one.pair.scale
@@ -101,6 +108,9 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float]
         forces.append(force)
         at = model.carried(model.bodies[hold.body], hold.arm, z)
         moments += [moment, float(at[0] * force[1] - at[1] * force[0])]
+    for stop, _ in acting_stops(model.stops, system.acting):
+        if stop.phi is None:
+            moments.append(stop.moment(z))
     for part, value in zip(model.loads, values[: len(model.loads)], strict=True):
         if isinstance(part, BeamLoadPart):
             continue

@@ -1,43 +1,48 @@
-"""From station to station: load steps that are cut and grow, contacts that close, penalties that tighten."""
+"""Where the march stands, and one step of it: contacts and stops that close, penalties that tighten."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
+from fea_reference.acting import Acting
 from fea_reference.advance import advance
 from fea_reference.contacts import passed_through, resting_pressure, zones_of
+from fea_reference.curvature import smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.settings import Settings
 from fea_reference.state import State
+from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
-from scene.answer import Array, Ending
+from scene.answer import Array, Critical, Ending
 
-_PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
 _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
-_CUTS = 10  # in a row, each to a quarter
-_EASY = 6  # iterations: a step that took more is not followed by a longer one
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _TIGHTENINGS = 25
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
 _NEARBY = (1e-3, 1e-2, 1e-1)  # of a step: where to look for a closing under tighter penalties
 _DEEPER = 1e-3  # of the shortest element: by how much a contact sinks that is about to be passed
 _CLOSED = 1e-9  # of the thickness, a gap that is none
+_AT_LIMIT = 1e-10  # rad: by which an angle may be beyond its limit before its stop closes
+_PULLS = 1e-9  # of the largest force or of EI/length: with which a stop may pull before it lets go
+_SWITCHED = 1e-8  # rad, or of these: how near to its change a stop is found
 _AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
 _EVEN = 0.03  # by which a penalty may differ from the one wanted
 _SAME = 1e-9  # by which the one of a circle may
 _POLISHINGS = 8  # tries after which a penetration below the one asked will do
 _IN_A_POINT = 1.5  # the power of one over the penetration with which the penalty of a contact in a point goes
 _FALLS = (1.0, 2.0)  # in an area, and at a tip
-_FAR = 4.0  # elements: a zone that goes farther from station to station is sought with loose penalties, if it had to
 _POINT = 1.0  # elements: a zone no wider is a point
+
+
+Trouble = tuple[Ending, str]
 
 
 class StoppedError(Exception):
@@ -52,10 +57,13 @@ class StoppedError(Exception):
 class March:
     """Where the march stands: the state of the one loop that is allowed one.
 
-    ``values`` are the loads' and then the drives' without units; ``penalties`` the contacts that have closed so
-    far, with their stiffness; ``closing`` the value of the stepped load or drive at which each did; ``iterations``
-    are counted since the last station; ``far`` is whether zones have been too far from one station to the last for
-    tight penalties and have not come nearer since, so that the way to the next one begins with loose ones on circles.
+    ``values`` are those of all that is stepped, without units; ``acting`` which pins and stops do; ``penalties`` the
+    contacts that have closed so far, with their stiffness; ``closing`` the value of the stepped load or drive at which
+    each did, and each stop first; ``switched`` that at which each stop last closed or let go; ``critical`` are the ends
+    of branches that have been passed; ``iterations`` are counted since the last station; ``far`` is whether zones have
+    been too far from one station to the last for tight penalties and have not come nearer since, so that the way to
+    the next one begins with loose ones on circles; ``loose`` whether penalties were loosened since they were tightened;
+    ``known`` is the last system whose smallest curvature was asked for, with that.
     """
 
     model: Model
@@ -63,123 +71,156 @@ class March:
     open: list[Contact]
     values: Array
     system: System
+    acting: Acting
     penalties: dict[Contact, Penalty] = field(default_factory=dict)
     closing: dict[str, float] = field(default_factory=dict)
+    switched: dict[str, float] = field(default_factory=dict)
+    critical: list[Critical] = field(default_factory=list)
     iterations: int = 0
     far: bool = False
-
-    def reach(self, load: int, target: float) -> None:
-        """March one load or drive to ``target`` and land on it exactly.
-
-        Raises:
-            StoppedError: it cannot be reached.
-        """
-        self.iterations = 0
-        self._watch_what_touches(load)
-        before = self._zones()
-        if self.far and self.values[load] != target:
-            self._loosen(Circle)
-        stride, cuts, searching = np.inf, 0, False
-        reason = (Ending.STEP_TOO_SMALL, "")
-        while self.values[load] != target:
-            if cuts > _CUTS:
-                raise StoppedError(*reason)
-            if self.iterations > self.settings.iteration_limit:
-                raise StoppedError(
-                    Ending.STEP_TOO_SMALL,
-                    f"{self.iterations} iterations only led to {self._shown(load, self.values[load])}",
-                )
-            rate = self._rate(load)
-            speed = float(np.abs(rate[self._moving]).max())
-            way = target - self.values[load]
-            size = min(abs(way), stride, _PREDICTED / max(speed, 1e-300))
-            value = target if size >= abs(way) else self.values[load] + np.copysign(size, way)
-            if value == self.values[load]:
-                raise StoppedError(*reason)
-            spent, closed = self.iterations, len(self.penalties)
-            trouble = self._step(load, value, rate)
-            if trouble is None:
-                easy = self.iterations - spent <= _EASY
-                stride, cuts = 2.0 * size if easy else size, 0
-                searching = searching and len(self.penalties) == closed
-            elif not searching and self._loosen(Circle, Pair):
-                searching = self.far = True
-            else:
-                stride, cuts, reason = 0.25 * size, cuts + 1, trouble
-        self._tighten()
-        after = self._zones()
-        self.far = self.far and any(np.abs(after[one] - before[one]).max() > _FAR for one in before if one in after)
+    loose: bool = False
+    known: tuple[System, float] | None = None
 
     @property
-    def _moving(self) -> Array:
-        bodies = [body.dofs for body in self.model.bodies if body.dofs is not None]
-        return np.concatenate([self.model.node_dofs.ravel(), *bodies])
+    def curvature(self) -> float:
+        """The smallest curvature of the potential energy on the feasible directions, found once for every system."""
+        if self.known is None or self.known[0] is not self.system:
+            self.known = self.system, smallest_curvature(self.model, self.system)
+        return self.known[1]
 
-    def _rate(self, load: int) -> Array:
+    def saved(self) -> March:
+        """A copy to come back to."""
+        return replace(
+            self,
+            open=list(self.open),
+            values=self.values.copy(),
+            penalties=dict(self.penalties),
+            closing=dict(self.closing),
+            switched=dict(self.switched),
+            critical=list(self.critical),
+        )
+
+    def restore(self, saved: March) -> None:
+        """Go back to where a copy was taken, but for the iterations that have been spent."""
+        self.open, self.values, self.system, self.acting = saved.open, saved.values, saved.system, saved.acting
+        self.penalties, self.closing, self.switched = saved.penalties, saved.closing, saved.switched
+        self.far, self.loose = saved.far, saved.loose
+
+    def rate(self, load: int) -> Array:
         """dz/dvalue along the branch; zero where the tangent is singular."""
         try:
-            rate = splu(self.system.tangent).solve(load_direction(self.model, load, self.system.z))
+            rate = splu(self.system.tangent).solve(load_direction(self.model, load, self.system.z, self.acting))
         except RuntimeError:
             return np.zeros(self.model.size)
         return rate if np.isfinite(rate).all() else np.zeros(self.model.size)
 
-    def _solve(self, load: int, value: float, z: State) -> System | None:
+    def solve(self, load: int, value: float, z: State) -> System | None:
         """Equilibrium at ``value`` near ``z``; None if there is none to be found."""
         values = self.values.copy()
         values[load] = value
-        solved = equilibrium(self.model, self.settings, self.penalties, values, z, self._depths(), self._pushes())
+        solved = equilibrium(
+            self.model, self.settings, self.penalties, values, z, self.acting, self.depths(), self.pushes()
+        )
         self.iterations += solved.iterations
         return solved.system if solved.converged else None
 
-    def _step(self, load: int, value: float, rate: Array) -> tuple[Ending, str] | None:
-        """Try to step to ``value``, or to where a contact closes before; the trouble if neither can be."""
+    def step(self, load: int, value: float, rate: Array) -> Trouble | None:
+        """Try to step to ``value``, or to where a contact or stop changes before; the trouble if neither can be."""
         before, start = self.system.z, float(self.values[load])
         predicted = advance(self.model, before, (value - start) * rate)
-        system = self._solve(load, value, predicted)
+        system = self.solve(load, value, predicted)
         if system is None:
             return (
                 Ending.STEP_TOO_SMALL,
-                f"Newton's method finds no equilibrium beyond {self._shown(load, start)}",
+                f"Newton's method finds no equilibrium beyond {self.shown(load, start)}",
             )
-        if self._moved(system, predicted) > _CORRECTED:
+        if self.moved(system, predicted) > _CORRECTED:
             return (
                 Ending.STEP_TOO_SMALL,
-                f"beyond {self._shown(load, start)} the nearest equilibrium is on another branch",
+                f"beyond {self.shown(load, start)} the nearest equilibrium is on another branch",
             )
-        touched = bool(self.open) and self._least_gap(system) < 0.0
+        touched = self.least_gap(system) < 0.0
+        changing = [stop for stop in self.model.stops if self.room(stop, system) < 0.0]
         if touched:
             found = self._first_touch(load, {start: self.system, value: system})
             if found is None:
                 return (
                     Ending.STEP_TOO_SMALL,
-                    f"no closing of a contact found beyond {self._shown(load, start)}",
+                    f"no closing of a contact or stop found beyond {self.shown(load, start)}",
                 )
             value, system = found
+            again = [stop.name for stop in changing if self.switched.get(stop.name) == value]
+            if again:
+                return (
+                    Ending.STEP_TOO_SMALL,
+                    f"beyond {self.shown(load, start)} the stop {again[0]} neither holds nor lets go",
+                )
+        trouble = self.passed(before, system, f"beyond {self.shown(load, start)}")
+        if trouble is not None:
+            return trouble
+        self.values[load], self.system = value, system
+        if touched:
+            self._close_tightly(load, value - start)
+            self.watch_what_touches(load)
+            self.switch(load, changing)
+        return None
+
+    def passed(self, before: State, system: System, where: str) -> Trouble | None:
+        """What must not have happened on the way from the state ``before`` to a system; a sentence says ``where``."""
         pressing = {one.pair for one in system.touches if one.closed}
         for pair in (*self.open, *self.penalties):
             closing = zones_of(self.model, pair, system.z).least <= _CLOSED * pair.scale
             if not closing and pair not in pressing and self._overlapped_between(pair, before, system.z):
-                return (
-                    Ending.BEAMS_CROSSED,
-                    f"beyond {self._shown(load, start)} what may touch in {pair.name} passes through each other",
-                )
+                return Ending.BEAMS_CROSSED, f"{where} what may touch in {pair.name} passes through each other"
         turned = float(np.abs(system.elements.rotation).max())
         if turned > _TURNED:
-            return (
-                Ending.TURNED_TOO_FAR,
-                f"beyond {self._shown(load, start)} an element turns by {turned:.2f} rad: take more elements",
-            )
+            return Ending.TURNED_TOO_FAR, f"{where} an element turns by {turned:.2f} rad: take more elements"
         for pair in (*self.open, *self.penalties):
             if passed_through(self.model, pair, before, system.z):
-                return (
-                    Ending.BEAMS_CROSSED,
-                    f"beyond {self._shown(load, start)} what touches in {pair.name} passes through each other",
-                )
-        self.values[load], self.system = value, system
-        if touched:
-            self._close_tightly(load, value - start)
-            self._watch_what_touches(load)
+                return Ending.BEAMS_CROSSED, f"{where} what touches in {pair.name} passes through each other"
         return None
+
+    def room(self, stop: StopPart, system: System) -> float:
+        """How far a stop is from closing (rad), or one that holds from letting go, without units."""
+        if not self.acting.stopping:
+            return np.inf
+        limit = self.acting.limits.get(stop.name)
+        if limit is None:
+            return stop.room(system.z)[0] + _AT_LIMIT
+        # the largest force may be the stop's own, which is of no size where it lets go
+        return stop.press(system.z, limit) / max(1.0, system.scale) + _PULLS
+
+    def switch(self, load: int, changing: Iterable[StopPart]) -> None:
+        """Let those stops act, or act no more, that have arrived where they change."""
+        for stop in changing:
+            if self.room(stop, self.system) > _SWITCHED:
+                continue
+            self.switched[stop.name] = float(self.values[load])
+            self.turn(stop, load, self.system)
+        self.renew()
+
+    def turn(self, stop: StopPart, load: int, system: System) -> None:
+        """Let a stop act no more if it does, and otherwise at the limit that it is nearest to in a system."""
+        if stop.name in self.acting.limits:
+            self.acting = self.acting.released(stop.name)
+        else:
+            self.acting = self.acting.stopped(stop.name, stop.room(system.z)[1])
+            self.closing.setdefault(stop.name, self.value(load))
+
+    def act(self, acting: Acting) -> None:
+        """Let other pins and stops act, without moving."""
+        self.acting = acting
+        self.renew()
+
+    def renew(self) -> None:
+        """The system of what acts and presses now, in the same state."""
+        self.system = assemble(
+            self.model, self.penalties, self.settings.quadrature, self.values, self.system.z, self.acting
+        )
+
+    def value(self, load: int) -> float:
+        """Of what is stepped, SI."""
+        return float(self.values[load]) * self.model.stepped[load].unit
 
     def _overlapped_between(self, pair: Contact, before: State, after: State) -> bool:
         """Whether a contact that is open after a step overlaps on the straight way there, deeper than before.
@@ -188,7 +229,7 @@ class March:
         past the end of another in one step may lie open behind it.
         """
         way = after.values - before.values
-        moved = float(np.abs(way[self._moving]).max())
+        moved = float(np.abs(way[self.model.moving]).max())
         least = zones_of(self.model, pair, before).least
         if least > 2.0 * moved:
             return False
@@ -202,7 +243,7 @@ class March:
         return min(float(self.model.line(beam, self.model.start).lengths.min()) for beam in self.model.beams)
 
     def _first_touch(self, load: int, known: dict[float, System]) -> tuple[float, System] | None:
-        """The value at which the least gap of the open contacts is zero, on the equilibria without them.
+        """The value at which the least gap of what may change is zero, on the equilibria where it has not.
 
         ``known`` are two equilibria by their values, before and beyond it.
         """
@@ -212,11 +253,11 @@ class March:
                 low, high = max(v for v in known if v < value), min(v for v in known if v > value)
                 between = known[high].z.values - known[low].z.values
                 guess = advance(self.model, known[low].z, (value - low) / (high - low) * between)
-                system = self._solve(load, value, guess)
+                system = self.solve(load, value, guess)
                 if system is None:
                     raise ArithmeticError
                 known[value] = system
-            return self._least_gap(known[value])
+            return self.least_gap(known[value])
 
         one, other = known
         try:
@@ -227,42 +268,43 @@ class March:
         return root, known[root]
 
     def _close_tightly(self, load: int, way: float) -> None:
-        """Where a contact has closed, tighten the others and find again where it does.
+        """Where a contact or stop has closed, tighten the others and find again where it does.
 
         What sinks into loose penalties closes elsewhere.  ``way`` is that of the step.  If nothing is found, an open
         contact stays open.
         """
         loose = dict(self.penalties)
-        self._tighten()
+        self.tighten()
         if self.penalties == loose:
             return
-        value, gap = float(self.values[load]), self._least_gap(self.system)
+        value, gap = float(self.values[load]), self.least_gap(self.system)
         for share in _NEARBY:
             other = value + np.copysign(share, gap) * way
-            guess = advance(self.model, self.system.z, (other - value) * self._rate(load))
-            beyond = self._solve(load, other, guess)
+            guess = advance(self.model, self.system.z, (other - value) * self.rate(load))
+            beyond = self.solve(load, other, guess)
             if beyond is None:
                 return
-            if self._least_gap(beyond) * gap <= 0.0:
+            if self.least_gap(beyond) * gap <= 0.0:
                 found = self._first_touch(load, {value: self.system, other: beyond})
                 if found is not None:
                     self.values[load], self.system = found
                 return
 
-    def _least_gap(self, system: System) -> float:
-        """Of the open contacts."""
-        return min(zones_of(self.model, pair, system.z).least for pair in self.open)
+    def least_gap(self, system: System) -> float:
+        """Of the open contacts, and how far stops are from changing."""
+        gaps = [zones_of(self.model, pair, system.z).least for pair in self.open]
+        return min((*gaps, *(self.room(stop, system) for stop in self.model.stops)), default=np.inf)
 
-    def _watch_what_touches(self, load: int) -> None:
+    def watch_what_touches(self, load: int) -> None:
         """Give a penalty to every open contact whose gap has vanished."""
         for pair in list(self.open):
             if zones_of(self.model, pair, self.system.z).least <= _CLOSED * pair.scale:
                 self.open.remove(pair)
                 self.penalties[pair] = Penalty(pair.stiffness)
-                self.closing[pair.name] = float(self.values[load]) * self.model.stepped[load].unit
-        self.system = assemble(self.model, self.penalties, self.settings.quadrature, self.values, self.system.z)
+                self.closing[pair.name] = self.value(load)
+        self.renew()
 
-    def _loosen(self, *kinds: type[Circle | Pair]) -> bool:
+    def loosen(self, *kinds: type[Circle | Pair]) -> bool:
         """Go back to the loosest penalties: the ends of a zone move by a layer's width per iteration.
 
         Returns whether it could be done.  Most pairs of beams touch in a point, whose zone is found all the same.
@@ -274,15 +316,15 @@ class March:
         if looser == self.penalties:
             return False
         solved = equilibrium(
-            self.model, self.settings, looser, self.values, self.system.z, self._depths(), self._pushes()
+            self.model, self.settings, looser, self.values, self.system.z, self.acting, self.depths(), self.pushes()
         )
         self.iterations += solved.iterations
-        if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
-            self.system, self.penalties = solved.system, looser
+        if solved.converged and self.moved(solved.system, self.system.z) <= _CORRECTED:
+            self.system, self.penalties, self.loose = solved.system, looser, True
             return True
         return False
 
-    def _zones(self) -> dict[Contact, Array]:
+    def zones(self) -> dict[Contact, Array]:
         """Where the zones on circles begin and end, (2,) each."""
         return {
             one.pair: np.array([one.zones.intervals.min(), one.zones.intervals.max()])
@@ -290,12 +332,13 @@ class March:
             if isinstance(one.pair, Circle) and one.closed
         }
 
-    def _tighten(self) -> None:
+    def tighten(self) -> None:
         """Change penalties, each time from the last equilibrium, until each leaves the penetration that it aims at.
 
         Contacts in a point are held meanwhile, at the depth foreseen: another one that moves by more than they are
         deep would open them, or make of the overlap a force thousands of times their own.
         """
+        self.loose = False
         most = _TIGHTEN
         falls: dict[Contact, float] = {}
         for tries in range(_TIGHTENINGS):
@@ -312,9 +355,11 @@ class March:
                 tighter[one.pair] = Penalty(stiffness, pressures[one.pair] / stiffness)
                 if isinstance(one.pair, Pair) and one.closed and np.ptp(one.zones.intervals) < _POINT:
                     depths[one.pair] = one.penetration * factor ** (-1.0 / falls.get(one.pair, _IN_A_POINT))
-            solved = equilibrium(self.model, self.settings, tighter, self.values, self.system.z, depths, self._pushes())
+            solved = equilibrium(
+                self.model, self.settings, tighter, self.values, self.system.z, self.acting, depths, self.pushes()
+            )
             self.iterations += solved.iterations
-            if solved.converged and self._moved(solved.system, self.system.z) <= _CORRECTED:
+            if solved.converged and self.moved(solved.system, self.system.z) <= _CORRECTED:
                 falls = self._falls(solved.system, tighter)
                 self.system, self.penalties = solved.system, tighter
                 most = min(most**1.5, _TIGHTEN)
@@ -364,7 +409,7 @@ class March:
             for pair, pressure in pressures.items()
         )
 
-    def _depths(self) -> dict[Contact, float]:
+    def depths(self) -> dict[Contact, float]:
         """The penetrations of the closed contacts of beams; of those just closed, what they will be allowed.
 
         A contact in search of its zone is none of them: its penalty is soft enough to be let go.
@@ -378,15 +423,16 @@ class March:
             and self.penalties[one.pair].stiffness >= one.pair.stiffness
         }
 
-    def _pushes(self) -> dict[Contact, Array]:
+    def pushes(self) -> dict[Contact, Array]:
         """What the points of the closed contacts push with."""
         return {one.pair: one.pushes for one in self.system.touches if one.closed}
 
-    def _moved(self, system: System, z: State) -> float:
+    def moved(self, system: System, z: State) -> float:
         """The most by which anything differs."""
-        return float(np.abs((system.z.values - z.values)[self._moving]).max())
+        return float(np.abs((system.z.values - z.values)[self.model.moving]).max())
 
-    def _shown(self, load: int, value: float) -> str:
+    def shown(self, load: int, value: float) -> str:
+        """What is stepped, and a value of it in SI."""
         part = self.model.stepped[load]
         return f"{part.name} = {value * part.unit:.6g}"
 
@@ -394,5 +440,5 @@ class March:
 def begin(model: Model, settings: Settings, contacts: tuple[Contact, ...]) -> March:
     """The undeformed mechanism, unloaded."""
     values = np.zeros(len(model.stepped))
-    system = assemble(model, {}, settings.quadrature, values, model.start)
-    return March(model, settings, list(contacts), values, system)
+    system = assemble(model, {}, settings.quadrature, values, model.start, model.drawn)
+    return March(model, settings, list(contacts), values, system, model.drawn)

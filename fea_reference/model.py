@@ -5,7 +5,8 @@ moments over EI/length: the same scene in other units is the same problem to the
 
 The unknowns z are, in this order: the nodes' (x, y, θ) and the elements' axial forces N, numbered by
 scikit-fem; (X, Y, φ) of every body that moves, its displacement and rotation; one multiplier per row of a joint, of a
-guide (a sliding body has two: no motion across, no rotation; with a pin in a slot the first alone) and of a drive.
+guide (a sliding body has two: no motion across, no rotation; with a pin in a slot the first alone; a turning one two:
+its pivot stays), of a drive and of a stop.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLine
 
+from fea_reference.acting import Acting
 from fea_reference.curves import length, sample
 from fea_reference.element import Elements, reference
 from fea_reference.hermite import Index, NeutralLine
@@ -23,7 +25,9 @@ from fea_reference.leaning import Chain, Span, chain, tangent_angles
 from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
 from fea_reference.settings import Settings
 from fea_reference.state import State
+from fea_reference.stops import StopPart, stops_of
 from scene.answer import Array
+from scene.check_shapes import is_apart
 from scene.statement import (
     Beam,
     BeamEnd,
@@ -36,6 +40,7 @@ from scene.statement import (
     Moment,
     Scene,
     SlidingBody,
+    TurningBody,
     WeldedEnd,
 )
 
@@ -188,10 +193,30 @@ class DrivePart:
 
 
 @dataclass(frozen=True, slots=True)
+class ApartPart:
+    """An end that is drawn apart from its point: its ``joint``, and the auxiliary ``moment`` without units."""
+
+    joint: JointPart
+    moment: float
+
+
+@dataclass(frozen=True, slots=True)
+class SharePart:
+    """A share of the assembly: of its moments, or of the way of its ends to their points."""
+
+    name: str
+    unit: float = 1.0
+
+
+MOMENTS = SharePart("share of the assembly's moments")
+WAY = SharePart("share of the ends' way to their points")
+
+
+@dataclass(frozen=True, slots=True)
 class Model:
     """Everything the mechanics needs to know of a scene; ``start`` is the undeformed state.
 
-    ``guides`` are rows like a drive's whose value stays zero.
+    ``guides`` are rows like a drive's whose value stays zero; ``apart`` are the ends to be assembled.
     """
 
     units: Units
@@ -201,6 +226,8 @@ class Model:
     loads: tuple[LoadPart | BeamLoadPart, ...]
     guides: tuple[DrivePart, ...]
     drives: tuple[DrivePart, ...]
+    stops: tuple[StopPart, ...]
+    apart: tuple[ApartPart, ...]
     elements: Elements
     node_dofs: Index
     element_dofs: Index
@@ -209,9 +236,24 @@ class Model:
     start: State
 
     @property
-    def stepped(self) -> tuple[LoadPart | BeamLoadPart | DrivePart, ...]:
-        """What has a value that stages step, in the order of the values: loads, then drives."""
-        return (*self.loads, *self.drives)
+    def stepped(self) -> tuple[LoadPart | BeamLoadPart | DrivePart | SharePart, ...]:
+        """What has a value that is stepped, in the order of the values: loads, drives, the assembly's two shares."""
+        return (*self.loads, *self.drives, *((MOMENTS, WAY) if self.apart else ()))
+
+    @property
+    def moving(self) -> Index:
+        """The motions among the unknowns: of all nodes and bodies."""
+        bodies = [body.dofs for body in self.bodies if body.dofs is not None]
+        return np.concatenate([self.node_dofs.ravel(), *bodies])
+
+    @property
+    def drawn(self) -> Acting:
+        """What acts while the ends that are drawn apart are free."""
+        return Acting(None if self.apart else np.zeros((0, 2)), stopping=not self.apart)
+
+    def free(self, joint: JointPart, acting: Acting) -> bool:
+        """Whether a joint does not act because its end is not assembled yet."""
+        return acting.ways is None and any(one.joint is joint for one in self.apart)
 
     def beam(self, name: str) -> BeamPart:
         """The beam of that name."""
@@ -321,13 +363,18 @@ def build(scene: Scene, settings: Settings) -> Model:
 
     first_row = size
     joints: list[JointPart] = []
+    apart: list[ApartPart] = []
+    at_ends: dict[tuple[str, str], tuple[int, float]] = {}
     for part in beams:
         ends = scene.beams[part.name]
-        for end, at in ((ends.start, part.nodes.start), (ends.end, part.nodes.stop - 1)):
+        for which, end, at in (("start", ends.start, part.nodes.start), ("end", ends.end, part.nodes.stop - 1)):
+            at_ends[part.name, which] = (int(node_dofs[2, at]), float(angles[at]))
             if isinstance(end, FreeEnd):
                 continue
             joints.append(_joint(end, number[scene.body_of(end.point)], bodies, node_dofs[:, at], angles[at], size))
             size += joints[-1].rows.size
+            if which == "end" and scene.assembly is not None and is_apart(scene, ends):
+                apart.append(ApartPart(joints[-1], scene.assembly.moments.get(part.name, 0.0) / units.moment))
 
     loads: list[LoadPart | BeamLoadPart] = []
     for name, load in scene.loads.items():
@@ -352,6 +399,12 @@ def build(scene: Scene, settings: Settings) -> Model:
             if body.pin is None:
                 guides.append(DrivePart(name, i, size, np.zeros(2), None, 1.0))
                 size += 1
+        elif isinstance(body, TurningBody):
+            i = number[name]
+            arm = bodies[i].points[body.about] - bodies[i].centre
+            for direction in np.eye(2):
+                guides.append(DrivePart(name, i, size, arm, direction, units.length))
+                size += 1
     drives: list[DrivePart] = []
     for name, drive in scene.drives.items():
         if isinstance(drive, DisplacementDrive):
@@ -361,6 +414,8 @@ def build(scene: Scene, settings: Settings) -> Model:
         else:
             drives.append(DrivePart(name, number[drive.body], size, np.zeros(2), None, 1.0))
         size += 1
+    stops = stops_of(scene, {body.name: (i, body.dofs) for i, body in enumerate(bodies)}, at_ends, size)
+    size += len(stops)
 
     start = np.zeros(size)
     start[node_dofs] = np.stack([nodes[:, 0], nodes[:, 1], angles])
@@ -372,6 +427,8 @@ def build(scene: Scene, settings: Settings) -> Model:
         tuple(loads),
         tuple(guides),
         tuple(drives),
+        stops,
+        tuple(apart),
         elements,
         node_dofs,
         np.asarray(basis.element_dofs, dtype=np.int64),

@@ -23,13 +23,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.linalg import splu
 
+from fea_reference.acting import Acting
 from fea_reference.advance import advance
 from fea_reference.hermite import Index
 from fea_reference.linesearch import searched
 from fea_reference.model import Model
 from fea_reference.settings import Settings
 from fea_reference.state import State
-from fea_reference.system import System, assemble
+from fea_reference.system import Drag, System, assemble
 from fea_reference.touch import Contact, Penalty
 from scene.answer import Array
 
@@ -55,19 +56,21 @@ def equilibrium(
     penalties: Mapping[Contact, Penalty],
     values: Array,
     z: State,
+    acting: Acting,
     depths: Mapping[Contact, float],
     before: Mapping[Contact, Array],
+    drag: Drag | None = None,
 ) -> Solved:
-    """Seek the equilibrium near ``z`` under load ``values``.
+    """Seek the equilibrium near ``z`` under load ``values``, with those stops ``acting`` that do, whatever their sign.
 
     ``depths`` are the penetrations of the contacts that were closed in the equilibrium before: these are held
     until their penetration is near that again, or until they pull.  ``before`` is what the points of the contacts
-    pushed with there, (k,) each.
+    pushed with there, (k,) each.  A ``drag`` resists the motions.
     """
-    moving = np.concatenate([model.node_dofs.ravel(), *(b.dofs for b in model.bodies if b.dofs is not None)])
+    moving = model.moving
     correction, last, iteration = np.inf, np.inf, 0
     held, foreseen = dict(depths), dict(before)
-    system = assemble(model, penalties, settings.quadrature, values, z, held, foreseen)
+    system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
     while True:
         unbalanced = float(np.abs(system.residual).max())
         accepted = max(settings.residual * system.scale, system.floor)
@@ -86,11 +89,11 @@ def equilibrium(
         step *= min(1.0, _TURN / max(correction, _TURN))
         foreseen = {one.pair: one.foreseen(step) for one in system.touches}
         if penalties and not held and unbalanced > accepted:
-            system = _along(model, settings, penalties, values, system, step, moving, foreseen)
+            system = _along(model, settings, penalties, values, system, step, moving, foreseen, drag)
             z = system.z
         else:
             z = advance(model, z, step)
-            system = assemble(model, penalties, settings.quadrature, values, z, held, foreseen)
+            system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
         if held:
             for one in system.touches:
                 depth = held.get(one.pair)
@@ -100,7 +103,7 @@ def equilibrium(
                 settled = iteration >= _HELD or correction < _SETTLED
                 if near or settled or (iteration > 0 and foreseen[one.pair].sum() < 0.0):
                     del held[one.pair]
-            system = assemble(model, penalties, settings.quadrature, values, z, held, foreseen)
+            system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
         iteration += 1
 
 
@@ -113,6 +116,7 @@ def _along(
     step: Array,
     moving: Index,
     foreseen: Mapping[Contact, Array],
+    drag: Drag | None,
 ) -> System:
     """The system after as much of ``step`` as lowers the energy; forces take all of theirs."""
     forces = step.copy()
@@ -121,7 +125,7 @@ def _along(
 
     def after(fraction: float) -> System:
         z = advance(model, system.z, forces + fraction * motions)
-        return assemble(model, penalties, settings.quadrature, values, z, {}, foreseen)
+        return assemble(model, penalties, settings.quadrature, values, z, system.acting, {}, foreseen, drag)
 
     def slope(there: System) -> float:
         return float(motions @ there.residual)

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea_reference.beam_loads import beam_load
 from fea_reference.ends import ends
+from fea_reference.energy import potential_energy
 from fea_reference.march import March
-from fea_reference.model import BeamLoadPart
+from fea_reference.model import Model
 from fea_reference.projection import project
 from fea_reference.recovery import bending_moment
+from fea_reference.stops import StopPart
 from fea_reference.supports import held, support
 from fea_reference.touch import Pair, Touch
 from scene.answer import Array, Shape, frozen_array
-from scene.statement import DisplacementDrive, Probe, Scene
+from scene.statement import DisplacementDrive, Probe, Scene, TurningBody
 
 _NOTHING = 1e-9  # of the largest force
 
@@ -40,10 +41,14 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
             # M t/(2I), with I of the rectangle that is there
             return frozen_array(moment * units.moment * 6.0 / (beam.width_at(u) * beam.thickness_at(u) ** 2))
         case "potential_energy":
-            return frozen_array(_potential_energy(march) * units.moment)
+            return frozen_array(potential_energy(model, march.system, march.values) * units.moment)
         case "closing_load":
             touch = _touch(march, probe.of)
             return frozen_array([] if touch is None else march.closing[probe.of])
+        case "angle":
+            return frozen_array(_stop(model, probe.of).angle(z))
+        case "moment":
+            return frozen_array(abs(_stop(model, probe.of).moment(z)) * units.moment)
         case "force":
             touch = _touch(march, probe.of)
             return frozen_array(0.0 if touch is None else np.hypot(*touch.force.sum(axis=1)) * units.force)
@@ -83,12 +88,19 @@ def touching(march: March) -> dict[str, Array]:
     return places
 
 
+def _stop(model: Model, name: str) -> StopPart:
+    return next(stop for stop in model.stops if stop.name == name)
+
+
 def _holding(scene: Scene, march: March, name: str) -> list[tuple[Array, float]]:
-    """Forces and moments of the ground at a point, or of the drives of a point or body."""
+    """Forces and moments of the ground at a point, with its pivots and stops, or of the drives of a point or body."""
     model, z = march.model, march.system.z
+    turning = {key for key, body in scene.bodies.items() if isinstance(body, TurningBody) and body.about == name}
     grounded = [joint for joint in model.joints if model.bodies[joint.body].dofs is None]
     return [
         *(support(joint, z) for joint in grounded if joint.point == name),
+        *(held(part, z) for part in model.guides if part.name in turning),
+        *((np.zeros(2), stop.moment(z)) for stop in model.stops if stop.phi is None and stop.point == name),
         *(held(part, z) for part in model.drives if _driven(scene, part.name) == name),
     ]
 
@@ -138,20 +150,3 @@ def _arc_lengths(march: March, touch: Touch, zeta: Array) -> Array:
     e, xi = line.locate(zeta)
     start = np.concatenate([[0.0], np.cumsum(line.lengths)])
     return np.asarray(start[e] + xi * line.lengths[e])
-
-
-def _potential_energy(march: March) -> float:
-    """Strain energy less the work of the dead loads; what drives put in is in the strain energy."""
-    model, z = march.model, march.system.z
-    energy = float(march.system.elements.energy.sum())
-    for part, load in zip(model.loads, march.values[: len(model.loads)], strict=True):
-        if isinstance(part, BeamLoadPart):
-            energy -= beam_load(model, part, float(load), z).work
-            continue
-        body = model.bodies[part.body]
-        if part.direction is None:
-            energy -= load * model.body_state(body, z)[2]
-        else:
-            moved = model.carried(body, part.arm, z) - (body.centre + part.arm)
-            energy -= load * float(part.direction @ moved)
-    return energy

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import time
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
+from fea_reference.assembly import assemble_ends
 from fea_reference.certificates import certify
 from fea_reference.contacts import contacts
 from fea_reference.march import March, StoppedError, begin
 from fea_reference.model import build
 from fea_reference.probes import probed, shapes, touching
 from fea_reference.settings import Settings
+from fea_reference.travel import Course, reach
 from scene.answer import Answer, Ending, Event, StationAnswer
 from scene.statement import Scene, Stage
 
@@ -26,7 +29,7 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     smaller than what they add to bending.  An answer that ends early holds the stations reached before.
 
     Raises:
-        SceneError: the settings do not fit the scene.
+        SceneError: the settings do not fit the scene, or a stop forbids the assembly.
     """
     began = time.perf_counter()
     model = build(scene, settings)
@@ -37,16 +40,18 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     # small blocks: more than one thread of BLAS costs more than it brings
     with threadpool_limits(limits=1, user_api="blas"):
         try:
+            known: set[str] = set()
+            assemble_ends(scene, march)
             for stage in scene.stages:
-                load = [part.name for part in model.stepped].index(stage.steps)
+                course = _course(march, stage)
                 for station in stage.stations:
-                    known = set(march.closing)
-                    march.reach(load, station / model.stepped[load].unit)
+                    reach(march, course, station / model.stepped[course.load].unit)
                     events += [
                         Event(stage.name, name, "closes", closing)
                         for name, closing in march.closing.items()
                         if name not in known
                     ]
+                    known = set(march.closing)
                     stations.append(_certified(scene, march, stage, station))
         except StoppedError as stopped:
             ending, sentence = stopped.ending, stopped.sentence
@@ -60,6 +65,7 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
         sentence=sentence,
         stations=tuple(stations),
         events=tuple(events),
+        critical=tuple(march.critical),
         seconds=time.perf_counter() - began,
         notes=tuple(tested),
     )
@@ -85,4 +91,12 @@ def _certified(scene: Scene, march: March, stage: Stage, station: float) -> Stat
         shapes=shapes(march),
         touching=touching(march),
         certificate=certificate,
+        branch=len(march.critical),
     )
+
+
+def _course(march: March, stage: Stage) -> Course:
+    """What a stage steps, and over which span: from where it is, through all stations."""
+    load = [part.name for part in march.model.stepped].index(stage.steps)
+    ways = [march.values[load], *(station / march.model.stepped[load].unit for station in stage.stations)]
+    return Course(load, float(np.ptp(ways)) or 1.0, stage.name, stage.beyond == "jump")

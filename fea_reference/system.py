@@ -1,4 +1,4 @@
-"""The whole mechanism's unbalanced forces and their tangent: elements, joints, drives, loads and contacts summed.
+"""The whole mechanism's unbalanced forces and their tangent: elements, joints, drives, stops, loads, contacts summed.
 
 The residual is the derivative of the Lagrangian Π(z) − Σ loads + λᵀ c(z) by all unknowns, the multipliers
 included, and the tangent its second derivative: symmetric and indefinite.
@@ -7,19 +7,21 @@ included, and the tangent its second derivative: symmetric and indefinite.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from frozendict import frozendict
 from scipy.sparse import csc_matrix
 from skfem.assembly.form.coo_data import COOData
 
+from fea_reference.acting import Acting
 from fea_reference.beam_loads import BeamLoad, beam_load, load_forces
 from fea_reference.contacts import touch
 from fea_reference.element import ElementForces, forces
 from fea_reference.hermite import Index
-from fea_reference.model import BeamLoadPart, DrivePart, Model, turned
+from fea_reference.model import MOMENTS, WAY, BeamLoadPart, DrivePart, Model, SharePart, turned
 from fea_reference.state import State
+from fea_reference.stops import acting_stops
 from fea_reference.touch import Contact, Pair, Penalty, Touch
 from scene.answer import Array
 
@@ -44,6 +46,7 @@ class System:
     """
 
     z: State
+    acting: Acting
     residual: Array
     tangent: csc_matrix
     elements: ElementForces
@@ -53,14 +56,31 @@ class System:
     floor: float
 
 
+@dataclass(frozen=True, slots=True)
+class Drag:
+    """Springs of stiffness ``weights`` (size,) from every motion to where it was in the state ``anchor``."""
+
+    anchor: State
+    weights: Array
+
+
+def stiffened(model: Model, system: System, one: Touch, factor: float) -> System:
+    """The same state, one of its contacts ``factor`` times as stiff and pushing as before; the tangent only."""
+    stiffer = replace(one, stiffness=factor * one.stiffness)
+    more = stiffer.hessian(one.pushes) - one.hessian(one.pushes)
+    return replace(system, tangent=(system.tangent + _matrix(one.dofs, more, model.size).tocsr()).tocsc())
+
+
 def assemble(
     model: Model,
     penalties: Mapping[Contact, Penalty],
     quadrature: int,
     values: Array,
     z: State,
+    acting: Acting,
     held: Mapping[Contact, float] = _NONE_HELD,
     foreseen: Mapping[Contact, Array] = _NOTHING_FORESEEN,
+    drag: Drag | None = None,
 ) -> System:
     """Sum everything up in state ``z``.
 
@@ -68,11 +88,13 @@ def assemble(
         model: the mechanism.
         penalties: the contacts that are watched, with what presses them apart.
         quadrature: Gauss points per interval of a contact zone.
-        values: of the loads and then of the drives (number of both,), without units.
+        values: of all that is stepped, in the model's order, without units.
         z: the unknowns.
+        acting: the rows that act of those that come and go.
         held: the contacts that are held at a depth, see :func:`~fea_reference.contact.touch`.
         foreseen: what the points of contacts (k,) were foreseen to push with; the tangent takes it for what they do
             push with, see :mod:`fea_reference.newton`.
+        drag: what resists motions besides.
     """
     elements = forces(model.elements, model.element_dofs, z)
     touches = tuple(touch(model, pair, penalty, quadrature, z, held.get(pair)) for pair, penalty in penalties.items())
@@ -90,19 +112,24 @@ def assemble(
     for load in loads:
         vectors.append(_vector(load.dofs, -load.gradient, model.size))
         matrices.append(_matrix(load.dofs, -load.hessian, model.size))
-    rigid, rows, columns, entries = _rigid(model, values, z)
+    rigid, rows, columns, entries = _rigid(model, values, z, acting)
     matrices.append(COOData(np.array([rows, columns]), np.array(entries), (model.size, model.size), local_shape=None))
     residual = sum(vectors).toarray() + rigid
+    if drag is not None:
+        residual += drag.weights * (z.values - drag.anchor.values + (z.rest - drag.anchor.rest))
+        every = np.arange(model.size)
+        matrices.append(COOData(np.array([every, every]), drag.weights, (model.size, model.size), local_shape=None))
     tangent = sum(matrices).tocsr().tocsc()
     balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values[: len(model.loads)]).max(initial=0.0)]
     balanced += [np.abs(one.gradient).max(initial=0.0) for one in touches]
+    balanced += [abs(values[model.stepped.index(MOMENTS)] * one.moment) for one in model.apart]
     largest = float(max(balanced))
     angle = max(1.0, float(np.abs(z[model.node_dofs[2]]).max()))
     stiffest = max(12.0 * beam.stiffest / model.elements.length[beam.elements.start] ** 2 for beam in model.beams)
     floor = _ROUND_OFF * stiffest * float(np.spacing(angle))
     floor += sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
     scale = largest if largest > _NOTHING * floor else 1.0
-    return System(z, residual, tangent, elements, touches, loads, scale, floor)
+    return System(z, acting, residual, tangent, elements, touches, loads, scale, floor)
 
 
 def _pushes(one: Touch, foreseen: Array | None) -> Array:
@@ -134,15 +161,22 @@ def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
     return float(np.finfo(float).eps) * stiffness * widest * lengths
 
 
-def load_direction(model: Model, load: int, z: State) -> Array:
-    """What one load or drive of unit value adds to the right-hand side, (size,).
+def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
+    """What one load, drive or share of unit value adds to the right-hand side, (size,).
 
-    Of a load its generalised force, of a drive one in its row.
+    Of a load or moments their generalised forces, of a drive one in its row, of a way what it is less in its rows.
     """
     part = model.stepped[load]
     f = np.zeros(model.size)
     if isinstance(part, BeamLoadPart):
         return load_forces(model, part, z)
+    if isinstance(part, SharePart):
+        for i, one in enumerate(model.apart):
+            if part is MOMENTS:
+                f[one.joint.dofs[2]] = one.moment
+            elif acting.ways is not None:
+                f[one.joint.rows] = -acting.ways[i]
+        return f
     body = model.bodies[part.body]
     if isinstance(part, DrivePart):
         f[part.row] = 1.0
@@ -157,9 +191,14 @@ def load_direction(model: Model, load: int, z: State) -> Array:
     return f
 
 
-def _rigid(model: Model, values: Array, z: State) -> tuple[Array, list[int], list[int], list[float]]:
-    """Joints, guides, drives and loads: few, so one after the other."""
+def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array, list[int], list[int], list[float]]:
+    """Joints, guides, drives, stops and loads: few, so one after the other."""
     residual = np.zeros(model.size)
+    ways: dict[int, Array] = {}
+    if acting.ways is not None:
+        share = values[model.stepped.index(WAY)] if model.apart else 1.0
+        for one, way in zip(model.apart, acting.ways, strict=True):
+            ways[int(one.joint.rows[0])] = (1.0 - share) * way
     rows: list[int] = []
     columns: list[int] = []
     entries: list[float] = []
@@ -169,11 +208,22 @@ def _rigid(model: Model, values: Array, z: State) -> tuple[Array, list[int], lis
         columns.extend((j, i))
         entries.extend((value, value))
 
+    def vanish(row: int) -> None:
+        residual[row] = z.values[row]
+        rows.append(row)
+        columns.append(row)
+        entries.append(1.0)
+
     for joint in model.joints:
+        if model.free(joint, acting):
+            for row in joint.rows:
+                vanish(int(row))
+            continue
         body = model.bodies[joint.body]
         X, Y, phi = model.body_state(body, z)
         arm = turned(joint.arm, phi)
         gap = z[joint.dofs[:2]] - body.centre - (X, Y) - arm + z.rest[joint.dofs[:2]]
+        gap -= ways.get(int(joint.rows[0]), np.zeros(2))
         across = (-arm[1], arm[0])  # ∂(R r)/∂φ
         for i in range(2):
             row, multiplier = int(joint.rows[i]), z[joint.rows[i]]
@@ -196,7 +246,7 @@ def _rigid(model: Model, values: Array, z: State) -> tuple[Array, list[int], lis
             if body.dofs is not None:
                 residual[body.dofs[2]] -= multiplier
                 couple(row, int(body.dofs[2]), -1.0)
-    acting, prescribed = np.split(values, [len(model.loads)])
+    acting_loads, prescribed, _ = np.split(values, np.cumsum([len(model.loads), len(model.drives)]))
     rests = np.zeros(len(model.guides))
     for hold, value in zip((*model.guides, *model.drives), (*rests, *prescribed), strict=True):
         dofs, multiplier = model.bodies[hold.body].dofs, float(z.values[hold.row])
@@ -210,10 +260,24 @@ def _rigid(model: Model, values: Array, z: State) -> tuple[Array, list[int], lis
         rows.append(int(dofs[2]))
         columns.append(int(dofs[2]))
         entries.append(multiplier * hold.second(phi))
-    for i, (part, value) in enumerate(zip(model.loads, acting, strict=True)):
+    if model.apart:
+        moments = model.stepped.index(MOMENTS)
+        residual -= values[moments] * load_direction(model, moments, z, acting)
+    for stop, limit in acting_stops(model.stops, acting):
+        multiplier = float(z.values[stop.row])
+        residual[stop.row] += stop.angle(z) - limit
+        residual[stop.theta] += multiplier
+        couple(stop.row, stop.theta, 1.0)
+        if stop.phi is not None:
+            residual[stop.phi] -= multiplier
+            couple(stop.row, stop.phi, -1.0)
+    for stop in model.stops:
+        if stop.name not in acting.limits:
+            vanish(stop.row)
+    for i, (part, value) in enumerate(zip(model.loads, acting_loads, strict=True)):
         if isinstance(part, BeamLoadPart):
             continue
-        residual -= value * load_direction(model, i, z)
+        residual -= value * load_direction(model, i, z, acting)
         dofs = model.bodies[part.body].dofs
         if part.direction is not None and dofs is not None:
             rows.append(int(dofs[2]))

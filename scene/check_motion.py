@@ -74,7 +74,10 @@ def wrong_loads(scene: Scene) -> Iterator[Mistake]:
 
 
 def wrong_stages(scene: Scene) -> Iterator[Mistake]:
-    """Stages with one name, and stations of one stage with one value: answers are told apart by these two."""
+    """Stages with one name, and stations of one stage with one value: answers are told apart by these two.
+
+    What a stage is to show is one of its stations.
+    """
     seen: set[str] = set()
     for i, stage in enumerate(scene.stages):
         if stage.name in seen:
@@ -84,6 +87,9 @@ def wrong_stages(scene: Scene) -> Iterator[Mistake]:
             if any(isclose(value, before, rel_tol=1e-9) for before in stage.stations[:j]):
                 allowed = "each value once in a stage; a further stage may go back to it"
                 yield Mistake(f"stages[{i}].stations[{j}]", f"{value:g} again", allowed)
+        for j, value in enumerate(stage.shown):
+            if value not in stage.stations:
+                yield Mistake(f"stages[{i}].shown[{j}]", f"{value:g}", "one of the stage's stations")
 
 
 def _rows_stated(scene: Scene) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from scene.check_names import RESERVED, point_names
 from scene.mistakes import Mistake, unknown_name
-from scene.statement import DisplacementDrive, FreeEnd, Quantity, RotationDrive, Scene, TurningBody
+from scene.statement import CRITICAL, DisplacementDrive, FreeEnd, Quantity, RotationDrive, Scene, TurningBody
 
 # what a quantity may be asked of
 _OF: dict[Quantity, str] = {
@@ -34,6 +34,9 @@ _SAID = {
     RESERVED: f"{RESERVED!r}, the scene itself",
 }
 
+_SEVERAL = frozenset({"displacement", "reaction", "ends", "bending_stress"})
+"""Quantities of more than one number."""
+
 
 def wrong_probes(scene: Scene) -> Iterator[Mistake]:
     """Probes of nothing, of the wrong thing, or named twice."""
@@ -57,15 +60,28 @@ def wrong_probes(scene: Scene) -> Iterator[Mistake]:
 
 
 def wrong_claims(scene: Scene) -> Iterator[Mistake]:
-    """Claims about probes or stations that the scene does not have."""
-    probes = [probe.name for probe in scene.probes]
-    stations = [value for stage in scene.stages for value in stage.stations]
+    """Claims about probes, stages or stations that the scene does not have, and values of what has several."""
+    probes = {probe.name: probe for probe in scene.probes}
+    stages = [stage.name for stage in scene.stages]
     for i, claim in enumerate(scene.claims):
-        if claim.probe not in probes:
-            yield unknown_name(f"claims[{i}].probe", claim.probe, "probe", probes)
-        if claim.station is not None and not any(map(claim.speaks_of, stations)):
-            listed = ", ".join(f"{value:g}" for value in stations)
-            yield Mistake(f"claims[{i}].station", f"{claim.station:g}", f"a station of a stage: {listed}")
+        key = f"claims[{i}]"
+        if claim.probe not in probes and claim.probe != CRITICAL:
+            yield unknown_name(f"{key}.probe", claim.probe, "probe", [*probes, CRITICAL])
+        elif claim.value is not None and claim.probe != CRITICAL and probes[claim.probe].quantity in _SEVERAL:
+            yield Mistake(f"{key}.value", f"a value of {claim.probe!r}, which has several", "a probe of one number")
+        if claim.stage is not None and claim.stage not in stages:
+            yield unknown_name(f"{key}.stage", claim.stage, "stage", stages)
+            continue
+        if claim.station is None:
+            continue
+        if claim.probe == CRITICAL:
+            allowed = f"none: of {CRITICAL!r} the first of a stage is meant"
+            yield Mistake(f"{key}.station", f"{claim.station:g}", allowed)
+            continue
+        stations = [(stage.name, value) for stage in scene.stages for value in stage.stations]
+        if not any(claim.speaks_of(*station) for station in stations):
+            listed = ", ".join(f"{value:g}" for stage, value in stations if claim.in_stage(stage))
+            yield Mistake(f"{key}.station", f"{claim.station:g}", f"a station of a stage: {listed}")
 
 
 def _bearers(scene: Scene) -> dict[str, list[str]]:

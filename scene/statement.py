@@ -438,12 +438,16 @@ class Stage(Record):
     ``beyond`` asks where the branch that is followed ends because it is no minimum of the potential energy any more,
     and says what happens there: ``stop``, or ``jump`` to the state that the decrease of the energy leads to.  Then
     steps are so short that no end is passed.  Without it they are as long as they can be, and an end is told of only
-    where a step finds no way past it.
+    where a step finds no way past it.  ``shown`` are the stations that tables and pictures are to show beside the last
+    of all.  ``critical_limit`` (in the unit of the stations) is how far apart and how uncertain critical values may be
+    with which the stage still wants to hear AGREE; without it what is usual.
     """
 
     name: Name
     steps: Name
     stations: Annotated[tuple[float, ...], Field(min_length=1)]
+    shown: tuple[float, ...] = ()
+    critical_limit: Positive | None = None
     beyond: Literal["stop", "jump"] | None = None
 
 
@@ -482,20 +486,34 @@ class Probe(Record):
         return f"{self.of}.{self.quantity}"
 
 
+CRITICAL = "critical"
+"""What a claim of a critical value has in the place of a probe's name."""
+
+
 class Claim(Record):
     """What a publication says of one probe: its relative difference stays below ``bound``.
 
-    Without a ``station`` it says so of every station at which the probe has a value.
+    Without a ``station`` it says so of every station at which the probe has a value, without a ``stage`` of every
+    stage.  With a ``value`` (SI) it says what the probe's is: ours then stays within ``bound`` of it, a share of the
+    value, or of the probe's scale where the value is zero.
+
+    Of the probe ``critical`` it speaks of the first critical value of the ``stage``, without one of every stage.
     """
 
     probe: str
+    stage: Name | None = None
     station: float | None = None
+    value: float | None = None
     bound: Positive
     text: str = ""
 
-    def speaks_of(self, station: float) -> bool:
+    def speaks_of(self, stage: str, station: float) -> bool:
         """Whether the claim is made at a station: at its own, whose digits may be written in another way, or at all."""
-        return self.station is None or isclose(self.station, station, rel_tol=1e-9)
+        return self.in_stage(stage) and (self.station is None or isclose(self.station, station, rel_tol=1e-9))
+
+    def in_stage(self, stage: str) -> bool:
+        """Whether the claim is made in a stage: in its own, or in all."""
+        return self.stage is None or self.stage == stage
 
 
 class Scene(Record):

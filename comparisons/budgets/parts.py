@@ -41,10 +41,11 @@ from comparisons.budgets.curved_beam import inner_edge_factor
 from comparisons.budgets.runs import DEEPER, ELEMENTS, LEVELS, TIGHTNESS, BudgetRuns
 from comparisons.converging.limits import limit
 from comparisons.geometry import bentness_on, length
-from comparisons.measures import Row, bare_row, components, direction, station_of
+from comparisons.measures import Row, bare_row, components, direction, probe_scales
 from comparisons.order import order_of
 from comparisons.scales import norm
 from comparisons.spots import clear_of_spots
+from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, Stage
 from scene.answer import Array
 
@@ -108,15 +109,17 @@ class Budget:
 
 
 def budgets_of(scene: Scene, runs: BudgetRuns) -> tuple[Budget, ...]:
-    """All budgets in the order of stages, stations and probes; none where a contact is open.
+    """All budgets in the order of stages, stations and probes; none where a contact is open, or where the
+    answers are on different branches.
 
     Every answer of :meth:`BudgetRuns.everything` must be complete, as :func:`comparisons.soundness.complaints` finds.
 
     Raises:
         KeyError: an answer lacks a station or a probe.
     """
+    scales = probe_scales(scene, (runs.cprbm, runs.reference))
     found = (
-        _budget(scene, runs, probe, stage, value)
+        _budget(scene, runs, probe, stage, value, scales[stage.name, probe.name])
         for stage in scene.stages
         for value in stage.stations
         for probe in scene.probes
@@ -124,12 +127,14 @@ def budgets_of(scene: Scene, runs: BudgetRuns) -> tuple[Budget, ...]:
     return tuple(each for each in found if each is not None)
 
 
-def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: float) -> Budget | None:
+def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: float, scale: float) -> Budget | None:
     stations = tuple(station_of(answer, stage.name, value) for _, answer in runs.everything())
+    if len({station.branch for station in stations}) > 1:
+        return None
     every = [station.values[probe.name] for station in stations]
     if every[0].size == 0 or any(v.shape != every[0].shape for v in every) or not any(v.any() for v in every):
         return None
-    row = bare_row(scene, (runs.cprbm, runs.reference), probe, stage, value)
+    row = bare_row(scene, (runs.cprbm, runs.reference), probe, stage, value, scale)
     counts = np.ones(row.cprbm.shape, dtype=bool)
     if row.arc_length is not None:
         counts = clear_of_spots(scene, probe.of, row.arc_length, stations)
@@ -174,7 +179,10 @@ def _in_paper(runs: BudgetRuns, row: Row) -> Array | None:
     """The value in ``paper`` at N; None where there is none, or one of a contact that is open there alone."""
     if runs.paper is None or not runs.paper.completed:
         return None
-    found = station_of(runs.paper, row.stage, row.station).values[row.probe.name]
+    station, found_on = station_of(runs.paper, row.stage, row.station), station_of(runs.cprbm, row.stage, row.station)
+    if station.branch != found_on.branch:
+        return None
+    found = station.values[row.probe.name]
     return found if found.shape == row.cprbm.shape else None
 
 

@@ -29,8 +29,9 @@ from scipy.optimize import brentq
 from comparisons.budgets.parts import Budget
 from comparisons.budgets.runs import BudgetRuns
 from comparisons.claims import claim_difference, claim_of
-from comparisons.measures import Row, station_of
+from comparisons.measures import Row
 from comparisons.scales import denominator, norm
+from comparisons.stations import station_of
 from scene import Answer, Claim, Scene
 from scene.answer import Array
 
@@ -93,7 +94,7 @@ def rerun(found: ClaimedRatio, answers: Sequence[Answer]) -> ClaimedRatio:
 def _claimed(scene: Scene, runs: BudgetRuns, budget: Budget, own: float) -> ClaimedRatio | None:
     row = budget.row
     claim = claim_of(scene, row)
-    if claim is None or row.probe.quantity == "bending_stress":
+    if claim is None or claim.value is not None or row.probe.quantity == "bending_stress":
         return None
     tightest = (runs.fea[theory][0] for theory in ("shear", "stretch"))
     shear, stretch = (station_of(each, row.stage, row.station).values[row.probe.name] for each in tightest)

@@ -9,7 +9,7 @@ from comparisons.choices import Count
 from comparisons.claims import claim_difference
 from comparisons.documents import Plain, plain
 from comparisons.formats import number, percent
-from comparisons.sheets import Sheet
+from comparisons.sheet import Sheet
 
 _HEADERS = {
     "contact": "contact",

@@ -105,7 +105,7 @@ def exit_code(finished: Sequence[Comparison | OffsetComparison]) -> int:
 
     An uncertainty that is not within the tolerance asked is as undecided as a verdict can be.
     """
-    from comparisons.verdict import Word
+    from comparisons.words import Word
 
     verdicts = [comparison.verdict for comparison in finished]
     if any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts):

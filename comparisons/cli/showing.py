@@ -12,7 +12,7 @@ from typing import TypeVar
 import click
 
 from comparisons.documents import Plain, text
-from comparisons.sheets import Sheet
+from comparisons.sheet import Sheet
 
 T = TypeVar("T")
 

@@ -67,7 +67,7 @@ def calibration(
     from comparisons.pairing import crew_of, solvers_of, workers_for
     from comparisons.studies import calibration as study
     from comparisons.studies.calibration_told import told
-    from comparisons.verdict import Word
+    from comparisons.words import Word
 
     showing.room_for(json_file, out)
     solvers = solvers_of(planted)
@@ -82,6 +82,26 @@ def calibration(
             show,
         )
     return 1 if any(trial.verdict.word is Word.DIFFER or not trial.verdict.completed for trial in found.trials) else 0
+
+
+@command.command("readings")
+@output
+@folder("Folder for the page, the numbers and the figure.")
+def readings(
+    json_file: Path | None,
+    quiet: bool,  # noqa: FBT001 - click hands it over by name
+    out: Path | None,
+) -> int:
+    """Where the prestressed mechanism jumps, by what is read into the paper's words and by who solves it."""
+    from comparisons.cli import showing
+    from comparisons.studies import readings as study
+    from comparisons.studies.readings_told import told
+
+    showing.room_for(json_file, out)
+    show = partial(_show, json_file=json_file, out=out, quiet=quiet)
+    pieces = showing.progress(study.pieces(), shown=not quiet)
+    _answered(study.Readings(), pieces, lambda found, piece: found.with_piece(piece()), told, show)
+    return 0
 
 
 @command.command("table1")

@@ -11,9 +11,9 @@ N = 160 a few ten-millionths.  Below that round-off in the positions becomes a s
 penetration falls with the square of N only: enough for the order that :mod:`comparisons.converging.limits` tries
 beside the fourth, so that what is left shows in the limit's uncertainty.
 
-Of a probe at a station a size counts if its run gave a whole answer and the contact that the probe speaks of is as
-closed there as at the finest size; of the sizes that do not, the coarser ones do not count either, since a contact
-that closes between two sizes is no matter of convergence.
+Of a probe at a station a size counts if its run gave a whole answer, is on the branch of the finest size there, and the
+contact (or the stop) that the probe speaks of is as closed as at the finest size; of the sizes that do not, the coarser
+ones do not count either, since a contact that closes between two sizes is no matter of convergence.
 """
 
 from __future__ import annotations
@@ -27,12 +27,13 @@ import numpy as np
 
 from comparisons.choices import Choices, Kinematics
 from comparisons.converging.limits import COMMON, Limit, limit, observed, orders
-from comparisons.measures import arc_lengths, round_off, station_of, unit_of
+from comparisons.measures import OPEN_AT_ZERO, arc_lengths, probe_scales, round_off, unit_of
 from comparisons.order import OWN, order_of
 from comparisons.pairing import Crew, Job, Solvers
-from comparisons.scales import norm, probe_scale
+from comparisons.scales import norm
 from comparisons.soundness import complaints
 from comparisons.spots import clear_of_spots
+from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, Stage
 from scene.answer import Array
 
@@ -233,8 +234,19 @@ def _families(scene: Scene, series: Sequence[Series], exact: Answer | None) -> t
         for one, best in zip(present, finest, strict=True)
         for probe in scene.probes
     }
+    scales = probe_scales(scene, finest)
     return tuple(
-        _family(scene, one, probe, stage, value, places, floors[id(one), probe.name], finest, exact)
+        _family(
+            scene,
+            one,
+            probe,
+            stage,
+            value,
+            places,
+            floors[id(one), probe.name],
+            scales[stage.name, probe.name],
+            exact,
+        )
         for stage in scene.stages
         for value in stage.stations
         for probe in scene.probes
@@ -274,14 +286,19 @@ def _family(
     value: float,
     places: slice,
     floor: float,
-    finest: tuple[Answer, ...],
+    scale: float,
     exact: Answer | None,
 ) -> Family:
-    values = {n: station_of(answer, stage.name, value).values[probe.name][places] for n, answer in series.whole.items()}
+    stations = {n: station_of(answer, stage.name, value) for n, answer in series.whole.items()}
+    values = {n: station.values[probe.name][places] for n, station in stations.items()}
     ns = sorted(values)
     last = values[ns[-1]]
-    is_force = probe.quantity == "force"
-    alike = [values[n].shape == last.shape and not (is_force and values[n].any() != last.any()) for n in ns]
+    is_force = probe.quantity in OPEN_AT_ZERO
+    branched = [stations[n].branch != stations[ns[-1]].branch for n in ns]
+    alike = [
+        values[n].shape == last.shape and not (is_force and values[n].any() != last.any()) and not other
+        for n, other in zip(ns, branched, strict=True)
+    ]
     first = max((place + 1 for place, same in enumerate(alike) if not same), default=0)
     is_open = last.size == 0 or (is_force and not last.any())
     used = () if last.size == 0 else tuple(ns[first:])
@@ -293,14 +310,17 @@ def _family(
     if is_open:
         why = "the contact is open"
     elif found is None:
-        why = f"the contact is open at N = {ns[first - 1]}" if first else "one size alone gave a whole answer"
+        why = "one size alone gave a whole answer"
+        if first:
+            what = "another branch is followed" if branched[first - 1] else "the contact is open"
+            why = f"{what} at N = {ns[first - 1]}"
     return Family(
         series=series,
         probe=probe,
         stage=stage.name,
         station=value,
         unit=unit_of(scene, probe, stage),
-        scale=probe_scale(scene, probe, stage, finest),
+        scale=scale,
         components=_components(scene, probe, places),
         values=values,
         used=used,

@@ -16,7 +16,7 @@ from comparisons.figures import LOOKS, Picture, canvas, picture
 from comparisons.formats import number, percent
 from comparisons.offset_verdict import OffsetRow, compared_offset
 from comparisons.pairing import OffsetConstruction
-from comparisons.sheets import Sheet
+from comparisons.sheet import Sheet
 from scene import OffsetQuestion
 from scene.offset import FEWEST, MOST
 

@@ -9,7 +9,7 @@ from comparisons import documents
 from comparisons.documents import Plain
 from comparisons.figures import Picture
 from comparisons.rendering import Embedded, embedded, rendered
-from comparisons.sheets import Sheet
+from comparisons.sheet import Sheet
 from comparisons.writing import write
 from scene import Question
 

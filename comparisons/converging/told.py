@@ -6,10 +6,12 @@ from collections.abc import Iterable
 from statistics import median
 
 from comparisons import documents
+from comparisons.converging import critical_told
+from comparisons.converging.critical import critical_families
 from comparisons.converging.families import STANDARD_AT, Convergence, Family
 from comparisons.documents import Plain, plain
 from comparisons.formats import number, percent, scaled_unit, vector
-from comparisons.sheets import Sheet
+from comparisons.sheet import Sheet
 
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA"}
 
@@ -18,7 +20,10 @@ def document(found: Convergence) -> Plain:
     """One case of ``converge``: ``families`` has one entry per solver, probe, component, stage and station."""
     return {
         "case": found.scene.name,
-        "families": [entry for family in found.families for entry in _entries(found, family)],
+        "families": [
+            *(entry for family in found.families for entry in _entries(found, family)),
+            *(critical_told.entry(found.sizes, family) for family in critical_families(found.scene, found.series)),
+        ],
         "runs": [
             {"n": n, **documents.solver(answer), "complaint": series.why.get(n)}
             for series in found.series
@@ -58,19 +63,21 @@ def _entries(found: Convergence, family: Family) -> Iterable[Plain]:
 
 
 def sheets_of(found: Convergence) -> tuple[Sheet, ...]:
-    """The limits at the last station, and over all stations orders and how far the limits are apart."""
-    if not found.families:
-        return ()
-    return (_limits(found), _orders(found))
+    """Critical values, the limits at the last station, and over all stations orders and how far limits are apart."""
+    title = found.scene.title or found.scene.name
+    critical = critical_told.sheet_of(title, found.sizes, critical_families(found.scene, found.series))
+    of_probes = (_limits(found), _orders(found)) if found.families else ()
+    return (*((critical,) if critical.rows else ()), *of_probes)
 
 
 def sentences_of(found: Convergence) -> tuple[str, ...]:
-    """What did not complete."""
-    return tuple(
+    """What did not complete, and how critical values compare."""
+    ended = (
         f"{_label(series.method, series.variant)} at N = {n} gave no whole answer: {why}."
         for series in found.series
         for n, why in series.why.items()
     )
+    return (*ended, *critical_told.sentences_of(critical_families(found.scene, found.series)))
 
 
 def shown_size(found: Convergence) -> int:

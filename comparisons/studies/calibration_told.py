@@ -5,11 +5,11 @@ from __future__ import annotations
 from comparisons.calibration import JUDGED, MOST_OVER, SHARE_WITHIN, Held, Tally
 from comparisons.documents import Plain
 from comparisons.formats import number, percent
-from comparisons.sheets import Sheet
+from comparisons.sheet import Sheet
 from comparisons.studies.calibration import Calibration, Trial, tallies
 from comparisons.studies.calibration_drawn import stated_against_true
 from comparisons.studies.told import Told
-from comparisons.verdict import Word
+from comparisons.words import Word
 
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA in bending"}
 

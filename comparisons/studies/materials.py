@@ -26,10 +26,10 @@ from frozendict import frozendict
 from comparisons import cases
 from comparisons.budgets.poisson import with_ratio
 from comparisons.choices import Choices, Count, Kinematics
-from comparisons.measures import station_of
 from comparisons.pairing import Solvers, paired
 from comparisons.scales import norm
 from comparisons.soundness import complaints
+from comparisons.stations import station_of
 from comparisons.studies.last_loads import at_last_loads
 from comparisons.verdict import Comparison, compared
 from scene import Answer, Claim, Material, Probe, Scene

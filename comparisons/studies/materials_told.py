@@ -6,7 +6,7 @@ from comparisons.claims import claim_met, claim_of
 from comparisons.documents import Plain, plain, values
 from comparisons.formats import percent, scaled_unit, vector
 from comparisons.measures import Row
-from comparisons.sheets import Sheet
+from comparisons.sheet import Sheet
 from comparisons.studies.drawn import error_against_ratio
 from comparisons.studies.materials import MATERIALS, WITHOUT_SHEAR, Materials, Sweep, Tested
 from comparisons.studies.told import Told

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from comparisons.documents import Plain, plain
 from comparisons.formats import number
-from comparisons.sheets import Sheet
+from comparisons.sheet import Sheet
 from comparisons.studies.drawn import run_times
 from comparisons.studies.table1 import THEIR_MACHINE, Cell, Table, Times
 from comparisons.studies.told import Told

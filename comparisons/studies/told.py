@@ -8,7 +8,7 @@ from pathlib import Path
 from comparisons.documents import Plain, text
 from comparisons.figures import Picture
 from comparisons.rendering import embedded, rendered
-from comparisons.sheets import Sheet
+from comparisons.sheet import Sheet
 from comparisons.writing import write
 
 

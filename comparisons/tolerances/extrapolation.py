@@ -18,8 +18,9 @@ value comes with the answer to hold it against:
 * *extrapolated*: V_2 beside V_2 + (V_1 − V_2)/ρ, so that S·|V_2 − V_1| is stated.  V_1's error is larger than V_2's:
   two successive extrapolations differ by more than the last one errs.
 
-Shapes, places of contact, events and certificates are the finest answer's.  Where a contact is open at one size and
-closed at another, values are not of one law, and are kept; so are the ends of a zone that would change places, which
+Shapes, places of contact, events and certificates are the finest answer's, critical values and branches of what it is
+held against those at N.  Where a contact is open at one size and closed at another, or branches are different, values
+are not of one law, and are kept; so are the ends of a zone that would change places, which
 then is no longer than they are uncertain.
 """
 
@@ -32,9 +33,9 @@ import numpy as np
 from frozendict import frozendict
 
 from comparisons.converging.limits import limit
-from comparisons.measures import station_of
 from comparisons.order import order_of, richardson
 from comparisons.scales import norm
+from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, StationAnswer
 from scene.answer import Array, frozen_array
 
@@ -59,6 +60,7 @@ def settled(scene: Scene, sizes: Sizes, answers: Three, probes: Collection[str])
     both = [_station(scene, sizes, answers, station, probes, orders) for station in answers[-1].stations]
     seconds = sum(answer.seconds for answer in answers)
     value, beside = (replace(answers[-1], stations=stations, seconds=seconds) for stations in zip(*both, strict=True))
+    beside = replace(beside, critical=answers[1].critical)
     if not probes:
         return value, beside
     settings = frozendict({**value.settings, "extrapolated_from": list(sizes[1:])})
@@ -79,6 +81,7 @@ def _station(
 ) -> tuple[StationAnswer, StationAnswer]:
     first, coarse = (station_of(answer, fine.stage, fine.value) for answer in answers[:2])
     one_law = first.touching.keys() == coarse.touching.keys() == fine.touching.keys()
+    one_law = one_law and first.branch == coarse.branch == fine.branch
     values, beside = {}, {}
     for probe in scene.probes:
         three = [station.values[probe.name] for station in (first, coarse, fine)]
@@ -88,7 +91,7 @@ def _station(
         if found is None:
             found = _kept(scene, probe, three[1], three[2], orders[fine.stage, probe.name])
         values[probe.name], beside[probe.name] = map(frozen_array, found)
-    return replace(fine, values=frozendict(values)), replace(fine, values=frozendict(beside))
+    return replace(fine, values=frozendict(values)), replace(fine, values=frozendict(beside), branch=coarse.branch)
 
 
 def _orders(scene: Scene, answers: Three) -> Orders:
@@ -109,7 +112,7 @@ def _orders(scene: Scene, answers: Three) -> Orders:
 
 def _change(probe: Probe, one: StationAnswer, other: StationAnswer) -> float:
     a, b = one.values[probe.name], other.values[probe.name]
-    return norm(probe.quantity, b - a) if a.shape == b.shape else 0.0
+    return norm(probe.quantity, b - a) if a.shape == b.shape and one.branch == other.branch else 0.0
 
 
 def _kept(scene: Scene, probe: Probe, coarse: Array, fine: Array, q: float) -> tuple[Array, Array]:

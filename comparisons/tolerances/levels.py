@@ -10,6 +10,7 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 
+from comparisons.branches import Place
 from comparisons.choices import Choices, Kinematics
 from comparisons.measures import Row, rows_of
 from comparisons.memory import Remembering
@@ -150,7 +151,9 @@ def stated(scene: Scene, runs: Runs, variant: str) -> Estimate:
 
 
 def _fraction(row: Row, runs: Runs) -> float | None:
-    """f; None where there is no value; infinite where there is one at one size and not at another."""
+    """f; None without a value or where a branch ends; infinite where there is one at one size and not at another."""
+    if row.place in (Place.NEAR, Place.BETWEEN):
+        return None
     if row.bounds is not None:
         return row.fraction(row.bounds.cprbm)
     values = [
@@ -160,7 +163,8 @@ def _fraction(row: Row, runs: Runs) -> float | None:
         for station in answer.stations
         if (station.stage, station.value) == (row.stage, row.station)
     ]
-    return None if len({value.shape for value in values}) == 1 else math.inf
+    one_branch = row.place not in (Place.APART, Place.UNSETTLED)
+    return None if one_branch and len({value.shape for value in values}) == 1 else math.inf
 
 
 def _joined(estimates: list[Estimate]) -> Estimate:

@@ -79,6 +79,8 @@ class MadeUp:
             "reaction": np.array([3.0 * load, 1.0 * load + 5.0 * push]),
             "reaction_moment": np.array([0.3 * load + 0.02 * push]),
             "potential_energy": np.array([-0.4 * load * reach]),
+            "angle": np.array([0.5 * reach]),
+            "moment": np.array([0.3 * abs(push)]),
         }
         values = {}
         for probe in scene.probes:

@@ -16,7 +16,8 @@ from comparisons.cli.main import run
 from comparisons.pairing import Solvers, paired, solvers_of
 from comparisons.studies import calibration as study
 from comparisons.studies.calibration_told import told
-from comparisons.verdict import Word, compared
+from comparisons.verdict import compared
+from comparisons.words import Word
 from scene import Ending
 from tests.comparisons.made_up import MadeUp, with_value
 

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -16,6 +17,7 @@ from comparisons import cases
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
 from scene import Ending
+from tests.comparisons.jumping import FORWARD, Jumping
 from tests.comparisons.made_up import MadeUp
 
 HINGE = Path(cases.__file__).parent / "hinge.toml"
@@ -412,3 +414,75 @@ def test_an_unknown_command_is_refused_with_those_that_there_are(capsys):
     assert (
         "found 'compar', which is no command of 'cprbm'; allowed: list, solve, compare, converge, bench, study" in said
     )
+
+
+PRESTRESSED = (Path(cases.__file__).parent / "prestressed.toml").read_text("utf-8")
+FEW = re.sub(r"shown = .*\n", "", PRESTRESSED)
+FEW = re.sub(r"stations = \[\n    0\.0,.*?\]", "stations = [0.0, 0.5, 1.0, 1.5]", FEW, flags=re.DOTALL)
+FEW = re.sub(r"stations = \[\n    1\.55.*?\]", "stations = [1.0, 0.5, 0.0]", FEW, flags=re.DOTALL)
+
+
+def asked_of(tmp_path, source):
+    file = tmp_path / "prestressed.toml"
+    file.write_text(source, "utf-8")
+    return str(file)
+
+
+WRONG_ASSEMBLIES = {
+    "too short": (PRESTRESSED.replace("0.06]", "0.05]", 1), "a beam too short to reach 'B'"),
+    "no stations": (re.sub(r"stations = \[.*?\]", "stations = []", PRESTRESSED, flags=re.DOTALL), "stages[0].stations"),
+    "a stop in the way as drawn": (
+        PRESTRESSED.replace("[-0.0005, 0.06]", "[-0.02, 0.05]")
+        .replace("beam1 = 4.0, ", "")
+        .replace("most = 0.785398163397448", "most = -1.3", 1)
+        .replace("least = -0.785398163397448", "least = -1.4", 1),
+        "stops.stopB",
+    ),
+    "a limit above the other": (PRESTRESSED.replace("least = -0.78", "least = 0.79", 1), "less than the most"),
+}
+
+
+@pytest.mark.parametrize("wrong", WRONG_ASSEMBLIES)
+@pytest.mark.parametrize("command", ["solve", "compare", "converge"])
+def test_a_wrong_assembly_ends_with_2(tmp_path, capsys, command, wrong):
+    source, words = WRONG_ASSEMBLIES[wrong]
+    assert run([command, asked_of(tmp_path, source), "--quiet"]) == 2
+    captured = capsys.readouterr()
+    assert words in captured.err
+    assert captured.out == ""
+
+
+@pytest.mark.parametrize("command", ["solve", "compare"])
+def test_an_assembly_that_a_stop_forbids_is_found_while_solving_and_ends_with_2(tmp_path, capsys, command):
+    """Both solvers refuse it, in processes of their own where there are some; the angle is known once assembled."""
+    source = FEW.replace("most = 0.785398163397448", "most = -0.7", 1)
+    assert run([command, asked_of(tmp_path, source), "--quiet", "-n", "10", "--elements", "10"]) == 2
+    assert "a stop that forbids the assembly" in capsys.readouterr().err
+
+
+def test_critical_values_are_printed_and_in_the_json(tmp_path, capsys):
+    solvers = Solvers(Jumping("cprbm"), Jumping("fea"))
+    assert run(["compare", "prestressed"], solvers) == 0
+    said = capsys.readouterr().out
+    assert said.count("Critical values: where a branch ends") == 1
+    assert "1.2288 rad (70.41°)" in said
+    assert "Branch by branch" in said
+    assert len(said.splitlines()) < 300  # of 181 stations those that the scene names, and the last
+    assert run(["solve", "prestressed", "--json", "-"], solvers) == 0
+    case = json.loads(capsys.readouterr().out)["cases"][0]
+    assert [each["stage"] for each in case["solvers"]["cprbm"]["critical"]] == ["forward", "back"]
+    assert run(["solve", "prestressed"], solvers) == 0
+    assert "Critical values" in capsys.readouterr().out
+
+
+def test_critical_values_go_with_n(tmp_path, capsys):
+    """1e-4 rad at 40 links, falling with the square of N: the limit is where the made-up branch ends."""
+    solvers = Solvers(Jumping("cprbm"), Jumping("fea"))
+    assert run(["converge", asked_of(tmp_path, FEW), "--sizes", "40,80,160", "--json", "-"], solvers) == 0
+    families = json.loads(capsys.readouterr().out)["families"]
+    forward, *_ = (each for each in families if (each["probe"], each["solver"]) == ("critical", "cprbm"))
+    assert forward["values"] == pytest.approx([FORWARD + 1e-4 / 4**k for k in range(3)])
+    assert forward["order"] == pytest.approx(2.0, abs=1e-3)
+    assert forward["limit"] == pytest.approx(FORWARD, abs=1e-9)
+    assert forward["errors"][0] == pytest.approx(1e-4 + forward["limit_uncertainty"], rel=1e-4)
+    assert (forward["component"], forward["station"], forward["loss"]) == ("forward", None, "fold")

@@ -8,11 +8,13 @@ import pytest
 from frozendict import frozendict
 
 from comparisons.choices import Choices
-from comparisons.measures import rows_of, station_of
+from comparisons.measures import rows_of
 from comparisons.pairing import Runs, Solvers, paired
 from comparisons.scales import SMALLEST_SHARE, probe_scale
 from comparisons.spots import clear_of_spots
-from comparisons.verdict import Word, judged
+from comparisons.stations import station_of
+from comparisons.verdict import judged
+from comparisons.words import Word
 from scene import Probe, Stage
 from scene.answer import frozen_array
 from tests.comparisons.made_up import CLOSES, MadeUp, with_value

@@ -19,7 +19,8 @@ from comparisons.pairing import ALONE, Solvers
 from comparisons.tolerances.extrapolation import settled
 from comparisons.tolerances.search import FIRST, Estimate, Stated, search
 from comparisons.tolerances.tolerated import paired_within, solved
-from comparisons.verdict import Word, compared
+from comparisons.verdict import compared
+from comparisons.words import Word
 from scene import Ending, Mistake, Probe, SceneError
 from scene.answer import frozen_array
 from tests.comparisons.made_up import MadeUp

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from comparisons.choices import Choices
 from comparisons.measures import Bounds, Row
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict import Word, compared, judged
+from comparisons.verdict import compared, judged
+from comparisons.words import Word
 from scene import Ending, Probe, Stage
 from scene.answer import frozen_array
 from tests.comparisons.made_up import MadeUp, with_value

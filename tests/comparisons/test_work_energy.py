@@ -2,12 +2,13 @@
 
 import json
 from dataclasses import replace
+from math import radians
 
 import numpy as np
 import pytest
 from frozendict import frozendict
 
-from comparisons import documents, reactions_drawn, sheets
+from comparisons import cases, documents, reactions_drawn, sheets
 from comparisons.choices import Choices
 from comparisons.nearby import RHO, nearby
 from comparisons.pairing import Solvers, paired
@@ -17,6 +18,7 @@ from scene import Stage
 from scene.answer import frozen_array
 from scene.freedoms import unit
 from scene.statement import DisplacementDrive
+from tests.comparisons.jumping import Jumping
 from tests.comparisons.made_up import MadeUp
 from tests.together.driven import gripper_like, snapping
 
@@ -215,3 +217,41 @@ def test_the_verdict_does_not_hang_on_it():
     without = compared(scene, replace(comparison.runs, nearby=None))
     assert without.verdict == comparison.verdict
     assert without.reactions == ()
+
+
+def jumping():
+    """Two stages of the crank that jumps at 70.4° and back at 25.3°, with a station 0.14 % before the jump."""
+    scene = cases.opened("prestressed")
+    degrees = {"forward": (10.0, 70.3, 75.0, 90.0), "back": (40.0, 30.0, 20.0)}
+    stages = tuple(
+        stage.model_copy(update={"stations": tuple(map(radians, degrees[stage.name])), "shown": ()})
+        for stage in scene.stages
+    )
+    scene = scene.model_copy(update={"stages": stages, "claims": ()})
+    return compared(scene, paired(scene, Choices(), Solvers(Jumping("cprbm"), Jumping("fea"))))
+
+
+def test_no_derivative_is_taken_across_a_jump():
+    """At 70.3° the run beside goes on to 70.44° and has jumped; everywhere else M is the derivative on its branch."""
+    comparison = jumping()
+    near = comparison.runs.nearby
+    assert [station.branch for station in near.stations[3:6]] == [0, 1, 1]
+    assert [each.jumped for each in comparison.reactions] == [False, True, False, False, False, False, False]
+    assert [each.branch for each in comparison.reactions] == [0, 0, 1, 1, 1, 1, 2]
+    for each in comparison.reactions:
+        assert (each.work_energy is None) is each.jumped
+        assert each.jumped or abs(each.difference) < 1e-4
+    said = sentence(comparison.reactions)
+    assert "At 1 stations the run beside is on another branch" in said
+    assert "not reached" not in said
+    assert "Largest in forward, branch 1: " in said
+    assert [row["branch"] for row in documents.comparison(comparison)["work_energy"]] == [0, 0, 1, 1, 1, 1, 2]
+
+
+def test_a_stop_that_takes_hold_is_a_change_nearby():
+    """The made-up stops hold on the second branch."""
+    changes = [each.changes for each in jumping().reactions]
+    stops = ("stopB", "stopC")
+    assert changes[0] == ("contact",)  # before the first station nothing touches
+    assert changes[1:4] == [stops, stops, ()]
+    assert changes[4:] == [(), stops, stops]

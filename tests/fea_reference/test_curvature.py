@@ -13,6 +13,7 @@ from fea_reference.march import begin
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.system import assemble
+from fea_reference.travel import Course, reach
 from scene import read
 from tests.fea_reference.cantilever import cantilever, force
 
@@ -43,7 +44,7 @@ def test_of_the_hinge(station):
     settings = Settings(elements=12, kinematics="bending", penetration=1e-2)
     model = build(scene, settings)
     march = begin(model, settings, contacts(scene, model, settings.penetration))
-    march.reach(0, station / model.loads[0].unit)
+    reach(march, Course(0, 1.0), station / model.loads[0].unit)
     assert smallest_curvature(model, march.system) == pytest.approx(dense(model, march.system), rel=1e-3)
 
 
@@ -56,7 +57,7 @@ def test_a_column_beyond_eulers_loads(times, unstable, elements):
     z = model.start.values.copy()
     z[model.element_dofs[6]] = -pushed
     z[[joint.rows[0] for joint in model.joints]] = -pushed, pushed
-    system = assemble(model, {}, 6, np.array([pushed]), State.of(z))
+    system = assemble(model, {}, 6, np.array([pushed]), State.of(z), model.drawn)
     assert np.abs(system.residual).max() < 1e-9 * pushed
     got = smallest_curvature(model, system)
     assert (got < 0.0) == unstable

@@ -199,7 +199,7 @@ def test_a_load_far_beyond_ends_by_name(scene, far):
         Ending.STEP_TOO_SMALL,
         Ending.TURNED_TOO_FAR,
         Ending.BEAMS_CROSSED,
-        Ending.NOT_A_MINIMUM,
+        Ending.BRANCH_ENDS,
         Ending.NOT_CERTIFIED,
     )
     assert len(got.sentence) > 20

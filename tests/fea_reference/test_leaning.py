@@ -6,6 +6,7 @@ import pytest
 from fea_reference import Settings
 from fea_reference.march import begin
 from fea_reference.model import build
+from fea_reference.travel import Course, reach
 from tests.fea_reference.cantilever import LENGTH, POISSON, THICKNESS, WIDTH, YOUNG, cantilever, force
 
 
@@ -17,7 +18,7 @@ def test_the_line_leans_by_the_angle_of_shear_wherever_in_an_element(elements):
     settings = Settings(elements=elements, kinematics="shear")
     model = build(scene, settings)
     march = begin(model, settings, ())
-    march.reach(0, F / model.units.force)
+    reach(march, Course(0, 1.0), F / model.units.force)
 
     # beyond the first element, whose tangent at the clamp is the section's, and up to the welded tip's
     zeta = np.linspace(2.0, elements - 2.0, 371)

@@ -122,6 +122,10 @@ TIES = [
     ("probes/1/of", "B", "probes[1]", "'B.displacement' again"),
     ("claims/0/probe", "B.displacment", "claims[0].probe", "is 'B.displacement' meant"),
     ("claims/0/station", 0.68, "claims[0].station", "0.603, 0.67"),
+    ("claims/0/stage", "lod", "claims[0].stage", "is 'load' meant"),
+    ("claims/0/value", 0.01, "claims[0].value", "which has several"),
+    ("claims/0/probe", "critical", "claims[0].station", "the first of a stage is meant"),
+    ("stages/0/shown", [0.67, 0.5], "stages[0].shown[1]", "one of the stage's stations"),
 ]
 
 

@@ -22,7 +22,7 @@ from comparisons.measures import rows_of
 from comparisons.pairing import Solvers, paired
 from comparisons.studies.calibration import Calibration, Trial, tallies, tried
 from comparisons.studies.calibration_told import told
-from comparisons.verdict import Word
+from comparisons.words import Word
 from scene.reading import scene_from
 from tests.cprbm.scenes import HINGE
 from tests.together import truths

@@ -10,7 +10,8 @@ from comparisons.choices import Choices
 from comparisons.measures import load_unit
 from comparisons.pairing import Solvers, cprbm_answer, paired
 from comparisons.scales import natural_scale
-from comparisons.verdict import Word, compared
+from comparisons.verdict import compared
+from comparisons.words import Word
 from tests.cprbm.driven import driven_hinge
 from tests.together.driven import GAP, gripper_like, punched, snapping
 

@@ -36,7 +36,8 @@ from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.geometry import length, points
 from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer, paired
-from comparisons.verdict import Word, compared
+from comparisons.verdict import compared
+from comparisons.words import Word
 from scene import Answer, Ending, Probe, Scene, StationAnswer
 from scene.answer import Array, frozen_array
 from scene.statement import Arc, CircleContact, Polynomial

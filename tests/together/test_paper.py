@@ -10,7 +10,8 @@ import pytest
 from comparisons.choices import Choices
 from comparisons.measures import rows_of
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict import Word, compared
+from comparisons.verdict import compared
+from comparisons.words import Word
 from tests.cprbm.scenes import hinge
 from tests.references import hinge as exact
 

@@ -14,11 +14,12 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.measures import arc_lengths, station_of
+from comparisons.measures import arc_lengths
 from comparisons.memory import Remembering
 from comparisons.pairing import Solvers
 from comparisons.scales import denominator, norm, probe_scale
 from comparisons.spots import clear_of_spots
+from comparisons.stations import station_of
 from comparisons.tolerances.levels import SceneLevels
 from comparisons.tolerances.tolerated import solved
 from scene import Answer, Scene

@@ -6,7 +6,8 @@ import pytest
 from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict import Word, compared
+from comparisons.verdict import compared
+from comparisons.words import Word
 from tests.references.wrapped import Wrapped
 
 

@@ -27,7 +27,8 @@ import cprbm.section
 from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer, paired
-from comparisons.verdict import Verdict, Word, compared
+from comparisons.verdict import Verdict, compared
+from comparisons.words import Word
 from scene import Answer, Scene
 from scene.answer import Array, frozen_array
 from tests.together.planted import COARSE, asked_of, remembered, stiffer, without_contact

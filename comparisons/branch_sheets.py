@@ -1,0 +1,119 @@
+"""What the tables say of branches and of where they end."""
+
+from __future__ import annotations
+
+from comparisons.branches import Place
+from comparisons.criticals import mechanism, released
+from comparisons.formats import number, scaled_unit
+from comparisons.measures import load_unit
+from comparisons.per_branch import critical_word, distance, value_and_unit
+from comparisons.sheet import Sheet
+from comparisons.verdict import Comparison
+from scene import Answer, Critical, Scene
+
+
+def of_criticals(compared: Comparison) -> Sheet:
+    """Where branches end in both answers."""
+    body = []
+    for row in compared.criticals:
+        bounds = row.bounds
+        body.append(
+            (
+                row.stage if row.place == 0 else f"{row.stage}, {row.place + 1}",
+                *(_ends(found, row.unit) for found in (row.cprbm, row.fea)),
+                distance(row.difference, row.unit),
+                *(
+                    ("–", "–", "–")
+                    if bounds is None
+                    else (distance(size, row.unit) for size in (bounds.cprbm, bounds.fea, bounds.theory))
+                ),
+                distance(row.allowed, row.unit),
+                *(_released(found) for found in (row.cprbm, row.fea)),
+                critical_word(row).value,
+            )
+        )
+    return Sheet(
+        "Critical values: where a branch ends",
+        (
+            "stage",
+            "CPRBM",
+            "FEA",
+            "apart",
+            "u CPRBM",
+            "u FEA",
+            "theory",
+            "allowed",
+            "releases CPRBM",
+            "FEA",
+            "says",
+        ),
+        tuple(body),
+        "Of the load or drive that the stage steps, and how stability is lost; uncertainties from further "
+        "discretisations of each solver. Released: what the potential energy falls by in the jump.",
+    )
+
+
+def of_branches(compared: Comparison) -> Sheet:
+    """The verdict branch by branch; nothing where no branch ends."""
+    told = compared.verdict.branches if compared.criticals or len(compared.verdict.branches) > 1 else ()
+    body = [
+        (
+            f"{each.stage}, branch {each.number}",
+            f"{each.first:g} to {each.last:g}",
+            str(each.stations - each.near),
+            str(each.near),
+            "takes no part" if each.word is None else each.word.value,
+        )
+        for each in told
+    ]
+    for place in (Place.BETWEEN, Place.APART, Place.UNSETTLED):
+        stations = dict.fromkeys((row.stage, row.station) for row in compared.rows if row.place is place)
+        for stage in dict.fromkeys(stage for stage, _ in stations):
+            mine = [value for name, value in stations if name == stage]
+            word = {Place.APART: "DIFFER", Place.UNSETTLED: "UNDECIDED"}.get(place, "takes no part")
+            body.append(
+                (f"{stage}, {place.value}", ", ".join(f"{value:g}" for value in mine), str(len(mine)), "–", word)
+            )
+    return Sheet(
+        "Branch by branch",
+        ("branch", "stations", "compared", "near a critical value", "says"),
+        tuple(body),
+        "A branch is compared with the same branch. Stations between the critical values of two answers, and near one, "
+        "are listed and have no part in AGREE.",
+    )
+
+
+def _ends(critical: Critical | None, unit: str) -> str:
+    return "–" if critical is None else f"{value_and_unit(critical.value, unit)}, {mechanism(critical)}"
+
+
+def _released(critical: Critical | None) -> str:
+    energy = None if critical is None else released(critical)
+    if energy is None:
+        return "–"
+    factor, unit = scaled_unit("J", abs(energy))
+    return f"{number(energy / factor, 4)} {unit}"
+
+
+def of_ends(scene: Scene, answer: Answer) -> Sheet:
+    """Where the branches of an answer end."""
+    units = {stage.name: load_unit(scene, stage) for stage in scene.stages}
+    body = tuple(
+        (
+            each.stage,
+            value_and_unit(each.value, units[each.stage]),
+            distance(each.uncertainty, units[each.stage]),
+            mechanism(each),
+            number(each.curvature),
+            number(each.left),
+            _released(each),
+        )
+        for each in answer.critical
+    )
+    return Sheet(
+        "Critical values: where a branch ends",
+        ("stage", "at", "±", "how", "smallest curvature", "left", "releases"),
+        body,
+        "The smallest curvature of the energy on the feasible directions as the branch comes to its end, and what is "
+        "left of it once something lets go. ±: on this discretisation.",
+    )

@@ -1,0 +1,56 @@
+"""What of a scene can be compared where the branch ends before the last station and nothing follows it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from frozendict import frozendict
+
+from comparisons.pairing import Runs
+from scene import Answer, Ending, Scene
+
+
+def within_reach(scene: Scene, runs: Runs) -> tuple[Scene, Runs] | None:
+    """The scene and all answers up to the last station that every run reached; None where no run's branch ends, or
+    one has ended before the last station for another reason.
+
+    The answers say that they are complete, which they are for such a scene; what was found beyond is left out.
+    None as well where not a single station was reached.
+    """
+    every = [answer for _, answer in runs.everything()]
+    asked = sum(len(stage.stations) for stage in scene.stages)
+    if not any(map(ends_at_critical, every)) or any(
+        len(answer.stations) < asked for answer in every if not ends_at_critical(answer)
+    ):
+        return None
+    count = min(len(answer.stations) for answer in every)
+    if count == 0:
+        return None
+    stages, left = [], count
+    for stage in scene.stages:
+        stations = stage.stations[:left]
+        left -= len(stations)
+        if stations:
+            stages.append(stage.model_copy(update={"stations": stations}))
+
+    def cut(answer: Answer) -> Answer:
+        ending = Ending.COMPLETED if ends_at_critical(answer) else answer.ending
+        return replace(answer, stations=answer.stations[:count], ending=ending)
+
+    def maybe(answer: Answer | None) -> Answer | None:
+        return None if answer is None else cut(answer)
+
+    return scene.model_copy(update={"stages": tuple(stages)}), replace(
+        runs,
+        cprbm=(cut(runs.cprbm[0]), cut(runs.cprbm[1])),
+        fea=frozendict({theory: tuple(map(cut, answers)) for theory, answers in runs.fea.items()}),
+        auto=maybe(runs.auto),
+        beside=maybe(runs.beside),
+        paper=None,
+    )
+
+
+def ends_at_critical(answer: Answer) -> bool:
+    """Whether an answer says that its branch ends, and where."""
+    last = answer.stations[-1].branch if answer.stations else 0
+    return answer.ending is Ending.BRANCH_ENDS and len(answer.critical) == last + 1

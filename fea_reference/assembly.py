@@ -1,0 +1,70 @@
+"""Before the first stage: ends that are drawn apart are brought to their points.
+
+Auxiliary moments grow on the ends while they are free; the ends are caught where they are and go straight to their
+points; the moments go away.  Stops act as soon as the ends have arrived.
+"""
+
+from __future__ import annotations
+
+from math import degrees
+
+import numpy as np
+
+from fea_reference.acting import Acting
+from fea_reference.march import March, StoppedError
+from fea_reference.model import MOMENTS, WAY
+from fea_reference.stops import StopPart
+from fea_reference.travel import Course, reach
+from scene.answer import Array
+from scene.mistakes import Mistake, SceneError
+from scene.statement import Scene
+
+_BEYOND = 1e-9  # rad
+
+
+def assemble_ends(scene: Scene, march: March) -> None:
+    """Assemble what there is to assemble.
+
+    Raises:
+        SceneError: a stop forbids it.
+        StoppedError: it cannot be carried out.
+    """
+    model = march.model
+    if not model.apart:
+        return
+    moments, way = (model.stepped.index(share) for share in (MOMENTS, WAY))
+    try:
+        reach(march, Course(moments, 1.0), 1.0)
+        ways = np.array([_way(march, i) for i in range(len(model.apart))])
+        march.act(Acting(ways, stopping=False))
+        reach(march, Course(way, 1.0), 1.0)
+        forbidden = [mistake for stop in model.stops for mistake in _forbidden(march, stop, scene.file)]
+        if forbidden:
+            raise SceneError(forbidden)
+        march.act(Acting(ways, stopping=True))
+        reach(march, Course(moments, 1.0), 0.0)
+    except StoppedError as stopped:
+        raise StoppedError(stopped.ending, f"during the assembly: {stopped.sentence}") from stopped
+    # what closed meanwhile is closed before anything of the scene is loaded or driven
+    march.closing = dict.fromkeys(march.closing, 0.0)
+
+
+def _way(march: March, number: int) -> Array:
+    """From its point to where an end is, (2,)."""
+    joint = march.model.apart[number].joint
+    body = march.model.bodies[joint.body]
+    return np.asarray(march.system.z[joint.dofs[:2]] - march.model.carried(body, joint.arm, march.system.z))
+
+
+def _forbidden(march: March, stop: StopPart, file: str) -> list[Mistake]:
+    """That an assembled end is beyond its stop's limits, if it is."""
+    room, _ = stop.room(march.system.z)
+    if room >= -_BEYOND:
+        return []
+    angle = stop.angle(march.system.z)
+    low, high = (
+        "any" if limit is None else f"{limit:.6g} rad ({degrees(limit):.4g} degrees)"
+        for limit in (stop.least, stop.most)
+    )
+    found = f"an angle of {angle:.6g} rad ({degrees(angle):.4g} degrees) when the ends are at their points"
+    return [Mistake(f"stops.{stop.name}", found, f"from {low} to {high}: a stop forbids the assembly", file)]

@@ -1,0 +1,149 @@
+"""From the end of a branch down to a minimum of the potential energy.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+Π       potential energy with what penalties store
+M       lumped mass
+σ       drag: EI per length to the fourth
+z_k     states on the way
+φ       motions along which the end of the branch has no positive curvature
+======  =====================================================================================
+
+At a value just beyond the end, and from a state a little aside of it along φ, each state is the minimum of
+
+    Π(z) + ½ σ (z − z_k)ᵀ M (z − z_k)
+
+near the one before: one step, backwards in time, of a motion that only a drag resists, which cannot raise Π (the
+proximal point method; Rockafellar, SIAM J. Control Optim. 14 (1976) 877).  Contacts act all the way, stops as
+inequalities.  σ falls as long as the steps are short, until none is needed.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea_reference.advance import advance
+from fea_reference.contacts import zones_of
+from fea_reference.energy import penalised_energy, potential_energy
+from fea_reference.following import Lost
+from fea_reference.march import March
+from fea_reference.mass import lumped_mass
+from fea_reference.newton import equilibrium
+from fea_reference.state import State
+from fea_reference.system import Drag, System
+from fea_reference.touch import Penalty
+from scene.answer import Loss
+
+_BEYOND = 1e-6  # of the span
+_ASIDE = 1e-4  # the same where another branch goes off: both are as good as one nearer by
+_KICKS = (3e-3, 1e-2)  # rad (and lengths)
+_FARTHEST = 0.05  # rad (and lengths): the most that one step may move anything
+_AIM = 0.03  # the same that is aimed at; after a step no longer, none but that to the minimum is tried
+_CONVEX = 2.0  # times a negative curvature: the least drag
+_STEPS = 400
+_CHANGES = 8  # of contacts and stops in one step
+_ROUNDED = 1e-9  # of the energy
+_STRONGEST = 1e12
+
+
+def descended(march: March, load: int, target: float, span: float, lost: Lost) -> float | None:
+    """Let the march fall from the end of a branch; the energy where it comes to rest, without units, or None."""
+    onward = float(np.sign(target - lost.value))
+    beyond = _ASIDE if lost.loss is Loss.BIFURCATION else _BEYOND
+    march.values[load] = lost.value + onward * min(beyond * span, abs(target - lost.value))
+    march.penalties = {pair: Penalty(pair.stiffness) for pair in march.penalties}
+    march.system = lost.system
+    march.renew()
+    size = float(np.abs(lost.direction[march.model.moving]).max())
+    if not size > 0.0:
+        return None
+    iterations = march.iterations
+    for kick in _KICKS:
+        ways: list[tuple[float, int, March, float]] = []
+        for sense in (1.0, -1.0):
+            trial = march.saved()
+            start = advance(march.model, lost.system.z, sense * kick / size * lost.direction)
+            drag = 10.0 * abs(lost.left) + 1.0
+            while drag < _STRONGEST and not _step(trial, load, start, drag, start):
+                drag *= 10.0
+            if drag < _STRONGEST:
+                ways.append((penalised_energy(trial.model, trial.system, trial.values), -len(ways), trial, drag))
+        for _, _, trial, drag in sorted(ways, key=lambda way: way[:2]):
+            if _fallen(trial, load, drag):
+                march.iterations += trial.iterations - iterations
+                march.restore(trial)
+                march.tighten()
+                return potential_energy(march.model, march.system, march.values)
+    return None
+
+
+def _fallen(march: March, load: int, drag: float) -> bool:
+    """Fall to a minimum, if there is one to be found."""
+    march.renew()  # without the drag
+    for _ in range(_STEPS):
+        if drag > _STRONGEST:
+            return False
+        before, saved = march.system, march.saved()
+        energy = penalised_energy(march.model, before, march.values)
+        # with less drag than this the next state would be no minimum
+        drag = max(drag, -_CONVEX * march.curvature)
+        if not _step(march, load, before.z, drag, before.z) or _risen(march, energy):
+            march.restore(saved)
+            drag *= 4.0
+            continue
+        march.renew()
+        moved = march.moved(march.system, before.z)
+        drag *= min(max(moved / _AIM, 0.1), 4.0)
+        if moved > _AIM or not march.curvature > 0.0:
+            continue
+        saved, energy = march.saved(), penalised_energy(march.model, march.system, march.values)
+        at_rest = _step(march, load, march.system.z, 0.0, march.system.z)
+        if at_rest and not _risen(march, energy) and march.curvature > 0.0:
+            return True
+        march.restore(saved)
+    return False
+
+
+def _risen(march: March, energy: float) -> bool:
+    """Whether the energy is more than it was."""
+    return penalised_energy(march.model, march.system, march.values) > energy + _ROUNDED * abs(energy)
+
+
+def _step(march: March, load: int, anchor: State, drag: float, start: State) -> bool:
+    """One step from ``anchor``, sought from ``start``; whether it could be made."""
+    held = Drag(anchor, drag * lumped_mass(march.model))
+    for _ in range(_CHANGES):
+        solved = equilibrium(
+            march.model,
+            march.settings,
+            march.penalties,
+            march.values,
+            start,
+            march.acting,
+            march.depths(),
+            march.pushes(),
+            held if drag > 0.0 else None,
+        )
+        march.iterations += solved.iterations
+        if not solved.converged or march.moved(solved.system, anchor) > _FARTHEST:
+            return False
+        if not _changes(march, load, solved.system):
+            if march.passed(anchor, solved.system, "") is not None:
+                return False
+            march.system = solved.system
+            return True
+    return False
+
+
+def _changes(march: March, load: int, system: System) -> bool:
+    """Let contacts close that overlap, and stops close or let go that must; whether any had to."""
+    closing = [pair for pair in march.open if zones_of(march.model, pair, system.z).least < 0.0]
+    changing = [stop for stop in march.model.stops if march.room(stop, system) < 0.0]
+    for pair in closing:
+        march.open.remove(pair)
+        march.penalties[pair] = Penalty(pair.stiffness)
+        march.closing[pair.name] = march.value(load)
+    for stop in changing:
+        march.turn(stop, load, system)
+    return bool(closing or changing)

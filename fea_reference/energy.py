@@ -1,0 +1,34 @@
+"""The potential energy of a state, without units."""
+
+from __future__ import annotations
+
+from fea_reference.beam_loads import beam_load
+from fea_reference.model import BeamLoadPart, Model
+from fea_reference.system import System
+from scene.answer import Array
+
+
+def potential_energy(model: Model, system: System, values: Array) -> float:
+    """Strain energy less the work of the dead loads; what drives put in is in the strain energy.
+
+    What the penalties of contacts store is left out.
+    """
+    z = system.z
+    energy = float(system.elements.energy.sum())
+    for part, load in zip(model.loads, values[: len(model.loads)], strict=True):
+        if isinstance(part, BeamLoadPart):
+            energy -= beam_load(model, part, float(load), z).work
+            continue
+        body = model.bodies[part.body]
+        if part.direction is None:
+            energy -= float(load * model.body_state(body, z)[2])
+        else:
+            moved = model.carried(body, part.arm, z) - (body.centre + part.arm)
+            energy -= float(load * (part.direction @ moved))
+    return energy
+
+
+def penalised_energy(model: Model, system: System, values: Array) -> float:
+    """The potential energy with what penalties store: what an equilibrium has least of."""
+    stored = sum(0.5 * float((one.stiffness * one.gap**2).sum()) for one in system.touches)
+    return potential_energy(model, system, values) + stored

@@ -1,0 +1,297 @@
+"""Where a branch of minima ends, and why.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+μ, φ    smallest curvature of the potential energy on the feasible directions, and its motions
+s, τ    arc length of the branch, and dλ/ds by it
+P       force of a contact
+======  =====================================================================================
+
+The branch is followed by its arc length to where μ(s) changes its sign, and the zero is found between.  It is a fold
+if λ turns back there, and the branch goes there along φ; otherwise it is a bifurcation.
+
+A contact without friction holds with a force that may go to zero while μ, of what it holds, is positive; what is left
+without it may have a negative curvature.  Its penalty's stiffness goes to zero with P, too, so that the equilibria
+with the penalty have a fold at some P of the third power of the penetration, and beyond it lead back without contact
+by a sharp turn.  Here P(λ) is followed to its zero.  A fold at which μ would be positive, were the penalty many times
+as stiff, is none of the mechanism's own either.
+
+A stop's moment is an unknown; it is zero to the last digits where it lets go.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea_reference.branch import Branch, Place, onwards, place
+from fea_reference.curvature import softest
+from fea_reference.energy import potential_energy
+from fea_reference.march import March
+from fea_reference.mass import lumped_mass
+from fea_reference.system import System, assemble, stiffened
+from fea_reference.touch import Touch
+from scene.answer import Array, Loss
+
+_FIRST = 0.01  # arc length of the first step
+_MOST = 0.03  # rad (and lengths): the most that one may move anything
+_LEAST = 1e-9
+_STEPS = 400
+_STRAIGHT = 0.9  # cosine between the directions at both ends of a step
+_SHARP = 1e-6  # arc length below which a turn is one
+_GROWN = 1.2  # of the least curvature on the way: it has come past
+_PAST = 5  # steps
+_ROOTS = 60
+_FINE = 1e-8  # of the span
+_SHORT = 1e-4  # of a step
+_ALONG = 0.5  # cosine between branch and φ at a fold
+_TURNING = 0.1  # of dλ/ds at the beginning: what is left of it at a fold
+_APPROACHED = 1e-8  # of the span: from where a contact's force is zero
+_SHARE = 0.9  # of the way there, at a time
+_RIGID = 1e4  # times as stiff
+_HELD = 1e-2  # of the curvature at the beginning: that of what is held
+_NOTHING = 1e-2  # of a contact's force at the beginning
+
+
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """The end of a branch at ``value``: the ``system`` there, and φ as ``direction`` (size,) to leave it in.
+
+    All without units; ``curvature``, ``left`` and ``what`` are :class:`scene.answer.Critical`'s.
+    """
+
+    value: float
+    uncertainty: float
+    loss: Loss
+    what: str
+    curvature: float
+    left: float
+    energy: float
+    system: System
+    direction: Array
+
+
+def followed(march: March, load: int, target: float, span: float) -> Lost | None:
+    """Follow the branch towards ``target``; how it is lost, or None where it is not before that.
+
+    Then the march has gone some way along it, or none.
+    """
+    if march.loose:
+        march.tighten()
+    lost = _letting_go(march, load, target, span)
+    if lost is not None:
+        return lost
+    onward = float(np.sign(target - march.values[load]))
+    branch = _branch(march, load, span)
+    here = place(branch, float(march.values[load]), march.system, (np.zeros(march.model.size), onward))
+    if here is None or not here.curvature > 0.0:
+        return None
+    first, least, past = here, here.curvature, 0
+    length = _FIRST
+    for _ in range(_STEPS):
+        length = min(length, _MOST / max(float(np.abs(here.way[march.model.moving]).max()), _MOST))
+        there = onwards(branch, here, length)
+        if there is None or (_cosine(branch, here, there) < _STRAIGHT and length > _SHARP):
+            length *= 0.25
+            if length < _LEAST:
+                return None
+            continue
+        if march.least_gap(there.system) < 0.0:
+            event = _event(march, branch, here, length)
+            if event is None:
+                return None
+            lost = _changed(march, load, event)
+            if lost is not None:
+                return lost
+            branch = _branch(march, load, span)
+            again = place(branch, float(march.values[load]), march.system, (event.way, event.rate))
+            if again is None or not again.curvature > 0.0:
+                return None
+            here = again
+            continue
+        if there.curvature <= 0.0:
+            return _lost(march, branch, first, here, there, length)
+        if (there.value - target) * onward >= 0.0:
+            return None
+        if march.passed(here.system.z, there.system, "") is not None:
+            return None
+        march.values, march.system = branch.at(there.value), there.system
+        past = past + 1 if there.curvature > _GROWN * least else 0
+        least = min(least, there.curvature)
+        if past >= _PAST:
+            return None
+        here, length = there, 1.5 * length
+    return None
+
+
+def _branch(march: March, load: int, span: float) -> Branch:
+    return Branch(march.model, march.settings, dict(march.penalties), march.acting, march.values.copy(), load, span)
+
+
+def _cosine(branch: Branch, here: Place, there: Place) -> float:
+    return float(here.way @ (branch.weights * there.way)) + branch.weight * here.rate * there.rate
+
+
+def _event(march: March, branch: Branch, here: Place, length: float) -> Place | None:
+    """The place, before ``length``, at which a contact or stop changes."""
+    low, high = 0.0, length
+    found = here
+    for _ in range(_ROOTS):
+        middle = 0.5 * (low + high)
+        there = onwards(branch, here, middle)
+        if there is None:
+            return None
+        if march.least_gap(there.system) < 0.0:
+            high, found = middle, there
+        else:
+            low = middle
+        if high - low <= _LEAST * length:
+            break
+    return found
+
+
+def _changed(march: March, load: int, event: Place) -> Lost | None:
+    """Let contacts and stops change where they do; what is lost if one lets go of what cannot stand."""
+    changing = [stop for stop in march.model.stops if march.room(stop, event.system) < 0.0]
+    march.values[load], march.system = event.value, event.system
+    march.watch_what_touches(load)
+    march.switch(load, changing)
+    return stop_lost(march, load, event.curvature, event.system)
+
+
+def stop_lost(march: March, load: int, held: float, system: System) -> Lost | None:
+    """What is lost by stops that have just let go of a ``system`` of curvature ``held``; None if it stands."""
+    gone = [name for name in system.acting.limits if name not in march.acting.limits]
+    left = softest(march.model, march.system)
+    if not gone or left.curvature > 0.0:
+        return None
+    value = float(march.values[load])
+    energy = potential_energy(march.model, march.system, march.values)
+    uncertainty = float(np.spacing(abs(value)))
+    return Lost(value, uncertainty, Loss.STOP, gone[0], held, left.curvature, energy, march.system, left.direction)
+
+
+def about_to_go(march: March, load: int, value: float) -> bool:
+    """Whether the force of a contact will vanish before ``value``, at the rate of now, that nothing stands without."""
+    way = value - float(march.values[load])
+    going = _next_to_go(march, load, float(np.sign(way)))
+    return (
+        going is not None
+        and abs(going[1]) < abs(way)
+        and not softest(march.model, _without(march, going[0])).curvature > 0.0
+    )
+
+
+def _letting_go(march: March, load: int, target: float, span: float) -> Lost | None:
+    """A contact that lets go of what cannot stand without it, if one is about to."""
+    onward = float(np.sign(target - march.values[load]))
+    saved = march.saved()
+    while True:
+        going = _next_to_go(march, load, onward)
+        if going is None or going[1] * onward > (target - march.values[load]) * onward:
+            break
+        one, way = going
+        left = softest(march.model, _without(march, one))
+        if left.curvature > 0.0:
+            break
+        if abs(way) <= _APPROACHED * span:
+            held = softest(march.model, stiffened(march.model, march.system, one, _RIGID))
+            if not held.curvature > 0.0:
+                break
+            value = float(march.values[load] + way)
+            energy = potential_energy(march.model, march.system, march.values)
+            return Lost(
+                value,
+                abs(way),
+                Loss.CONTACT,
+                one.pair.name,
+                held.curvature,
+                left.curvature,
+                energy,
+                march.system,
+                left.direction,
+            )
+        rate = march.rate(load)
+        size = min(_SHARE * abs(way), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
+        trouble = march.step(load, float(march.values[load]) + np.copysign(size, way), rate)
+        if trouble is not None or not softest(march.model, march.system).curvature > 0.0:
+            break
+    march.restore(saved)
+    return None
+
+
+def _next_to_go(march: March, load: int, onward: float) -> tuple[Touch, float] | None:
+    """The contact whose force is first to vanish at the rate of now, and how far it is there."""
+    rate = march.rate(load)
+    found: tuple[Touch, float] | None = None
+    for one in march.system.touches:
+        if not one.closed:
+            continue
+        change = float(one.foreseen(onward * rate).sum()) - one.push
+        if change >= 0.0:
+            continue
+        way = float(-one.push / change)
+        if found is None or way < abs(found[1]):
+            found = one, onward * way
+    return found
+
+
+def _without(march: March, one: Touch) -> System:
+    """The state of now without one contact."""
+    others = {pair: penalty for pair, penalty in march.penalties.items() if pair is not one.pair}
+    return assemble(march.model, others, march.settings.quadrature, march.values, march.system.z, march.acting)
+
+
+def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place, length: float) -> Lost:
+    """What happens between two places, the one with a positive and the other without."""
+    low, high = (0.0, here), (length, there)
+    weights = [1.0, 1.0]
+    for _ in range(_ROOTS):
+        (s, before), (t, behind) = low, high
+        if abs(behind.value - before.value) <= _FINE * branch.span and t - s <= _SHORT * length:
+            break
+        # regula falsi, with the weight halved of the end that stays (the Illinois variant)
+        above, below = weights[0] * before.curvature, weights[1] * behind.curvature
+        share = min(max(above / (above - below), 0.02), 0.98)
+        # where the tangent is as good as singular there may be no place to be found
+        tried = ((part, onwards(branch, here, s + part * (t - s))) for part in (share, 0.5 * share, 0.5 + 0.5 * share))
+        share, middle = next(((part, found) for part, found in tried if found is not None), (share, None))
+        if middle is None:
+            break
+        if middle.curvature > 0.0:
+            low, weights = (s + share * (t - s), middle), [1.0, 0.5 * weights[1]]
+        else:
+            high, weights = (s + share * (t - s), middle), [0.5 * weights[0], 1.0]
+    before, behind = low[1], high[1]
+    share = before.curvature / (before.curvature - behind.curvature)
+    value = float(before.value + share * (behind.value - before.value))
+    uncertainty = float(abs(behind.value - before.value) + np.spacing(abs(value)))
+    march.values, march.system = branch.at(before.value), before.system
+    energy = potential_energy(march.model, march.system, march.values)
+    for one in before.system.touches:
+        held = softest(march.model, stiffened(march.model, before.system, one, _RIGID)) if one.closed else None
+        began = next((old.push for old in first.system.touches if old.pair is one.pair), 0.0)
+        if held is not None and held.curvature > _HELD * first.curvature and one.push < _NOTHING * began:
+            left = softest(march.model, _without(march, one))
+            return Lost(
+                value,
+                uncertainty,
+                Loss.CONTACT,
+                one.pair.name,
+                held.curvature,
+                left.curvature,
+                energy,
+                before.system,
+                left.direction,
+            )
+    mass = lumped_mass(march.model)
+    along = float(before.mode.direction @ (mass * before.way))
+    size = float(np.sqrt(before.way @ (mass * before.way)))
+    # τ goes to zero with μ, or not at all
+    fold = abs(before.rate) < _TURNING * abs(first.rate) and abs(along) > _ALONG * size
+    direction = before.mode.direction * (-1.0 if fold and along < 0.0 else 1.0)
+    loss = Loss.FOLD if fold else Loss.BIFURCATION
+    zero = before.curvature if before.curvature < -behind.curvature else behind.curvature
+    return Lost(value, uncertainty, loss, "", zero, zero, energy, before.system, direction)

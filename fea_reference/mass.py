@@ -1,0 +1,24 @@
+"""What motions are measured by: a lumped mass, arc length for the nodes and one for the bodies."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea_reference.model import Model
+from scene.answer import Array
+
+
+def lumped_mass(model: Model) -> Array:
+    """The diagonal of M, (size,); zero for what is no motion."""
+    h = model.elements.length
+    lumped = np.zeros(model.node_dofs.shape[1])
+    for beam in model.beams:
+        own = lumped[beam.nodes]
+        own[:-1] += 0.5 * h[beam.elements]
+        own[1:] += 0.5 * h[beam.elements]
+    mass = np.zeros(model.size)
+    mass[model.node_dofs] = lumped
+    for body in model.bodies:
+        if body.dofs is not None:
+            mass[body.dofs] = 1.0
+    return mass

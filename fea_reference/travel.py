@@ -1,0 +1,228 @@
+"""From station to station along a branch: load steps that are cut and grow, and a look at the smallest curvature.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+μ       smallest curvature of the potential energy on the feasible directions
+λ       value of the stepped load or drive
+r       dz/dλ along the branch
+======  =====================================================================================
+
+A branch of minima ends where μ is zero.  Towards a fold μ² goes evenly with λ, towards a bifurcation μ does; the zero
+of μ² by the last two steps is the nearer one, and no step goes more than half of the way to it.  Close to it, and
+wherever an equilibrium that was found is no minimum, no step can be made or a contact is about to lose its force, the
+branch is followed by :mod:`fea_reference.following`.
+
+A step that stays on its branch moves by the mean of r at both ends, but for its third power, or where a contact
+changes in between by something between both; one that does not is on another branch, however near.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea_reference.descent import descended
+from fea_reference.following import Lost, about_to_go, followed
+from fea_reference.march import March, StoppedError, Trouble
+from fea_reference.touch import Circle, Pair
+from scene.answer import Array, Critical, Ending, Loss
+
+_PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
+_CUTS = 10  # in a row, each to a quarter
+_EASY = 6  # iterations: a step that took more is not followed by a longer one
+_FAR = 4.0  # elements: a zone that goes farther from station to station is sought with loose penalties, if it had to
+_ASIDE = 0.15  # of a step's own way: by which it may end aside of the mean of its rates
+_UNEVEN = 0.6  # of the way by which its rates differ
+_NOWHERE = 1e-6  # rad (and lengths): a way that is none
+_HALF = 0.5  # of the way to where the curvature is foreseen to vanish
+_NEAR = 1e-2  # of the span: a step shorter than this is left to following the branch
+_TIRED = 3  # cuts in a row after which that is tried
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """What is stepped: number ``load``, over a ``span`` without units, in a ``stage``; whether to ``jump`` at its end.
+
+    The assembly is no stage, and has no name.
+    """
+
+    load: int
+    span: float
+    stage: str = ""
+    jump: bool = False
+
+
+def reach(march: March, course: Course, target: float) -> None:
+    """March to the value ``target`` and land on it exactly.
+
+    Raises:
+        StoppedError: it cannot be reached.
+    """
+    load = course.load
+    march.iterations = 0
+    march.switched = {}
+    march.watch_what_touches(load)
+    origin, before = march.saved(), march.zones()
+    if march.far and march.values[load] != target:
+        march.loosen(Circle)
+    _arrive(march, course, target)
+    march.tighten()
+    same = len(march.critical) == len(origin.critical) and march.values[load] != origin.values[load]
+    if same and not march.curvature > 0.0:
+        # with the penalties of the way it was a minimum: the branch ends before, with those of its beginning
+        there = march.saved()
+        march.restore(origin)
+        lost = followed(march, load, target, course.span)
+        if lost is None:
+            march.restore(there)
+        else:
+            _beyond(march, course, target, lost)
+            march.iterations = 0
+            _arrive(march, course, target)
+            march.tighten()
+    after = march.zones()
+    march.far = march.far and any(np.abs(after[one] - before[one]).max() > _FAR for one in before if one in after)
+
+
+def _arrive(march: March, course: Course, target: float) -> None:
+    """March to the value ``target``, with penalties as they are.
+
+    Raises:
+        StoppedError: it cannot be reached.
+    """
+    load = course.load
+    stride, cuts, searching, follow = np.inf, 0, False, True
+    reason: Trouble = (Ending.STEP_TOO_SMALL, "")
+    known: list[tuple[float, float]] = []
+    limit = march.settings.iteration_limit
+    rate: Array | None = None
+    while march.values[load] != target:
+        if cuts > _CUTS:
+            raise StoppedError(*reason)
+        if march.iterations > limit:
+            raise StoppedError(
+                Ending.STEP_TOO_SMALL,
+                f"{march.iterations} iterations only led to {march.shown(load, march.values[load])}",
+            )
+        if not known:
+            known = [(float(march.values[load]), march.curvature)]
+        rate = march.rate(load) if rate is None else rate
+        speed = float(np.abs(rate[march.model.moving]).max())
+        way = target - march.values[load]
+        foreseen = _HALF * _vanishing(known)
+        size = min(abs(way), stride, _PREDICTED / max(speed, 1e-300))
+        minimum = known[-1][1] > 0.0
+        close = minimum and foreseen < size and foreseen < _NEAR * course.span
+        size = min(size, foreseen)
+        value = target if size >= abs(way) else march.values[load] + np.copysign(size, way)
+        if value == march.values[load]:
+            raise StoppedError(*reason)
+        close = close or (minimum and follow and about_to_go(march, load, float(value)))
+        saved, spent = march.saved(), march.iterations
+        trouble: Trouble | None = None
+        unstable = False
+        if not (follow and close):
+            trouble = march.step(load, value, rate)
+            if trouble is None:
+                ahead = march.rate(load)
+                if _aside(saved, march, load, rate, ahead):
+                    trouble = (
+                        Ending.STEP_TOO_SMALL,
+                        f"beyond {saved.shown(load, saved.values[load])} the nearest equilibrium is on another branch",
+                    )
+                else:
+                    curvature = march.curvature
+                    unstable = minimum and curvature <= 0.0
+        tired = trouble is not None and cuts >= _TIRED
+        if minimum and follow and (close or unstable or tired):
+            march.restore(saved)
+            lost = followed(march, load, target, course.span)
+            if lost is not None:
+                _beyond(march, course, target, lost)
+                stride, cuts, searching = np.inf, 0, False
+                limit = march.iterations + march.settings.iteration_limit
+            elif tired:
+                march.restore(saved)
+                stride, cuts, reason = 0.25 * size, cuts + 1, trouble or reason
+                follow = False
+            else:
+                follow = False
+            known, rate = [], None
+        elif trouble is None:
+            same = len(march.penalties) == len(saved.penalties) and march.acting is saved.acting
+            known = [*known[-1:], (float(march.values[load]), curvature)] if same else []
+            rate = ahead
+            easy = march.iterations - spent <= _EASY
+            stride, cuts, follow = 2.0 * size if easy else size, 0, True
+            searching = searching and len(march.penalties) == len(saved.penalties)
+        else:
+            march.restore(saved)
+            rate = None
+            if not searching and march.loosen(Circle, Pair):
+                searching, march.far, known = True, True, []
+            else:
+                stride, cuts, reason = 0.25 * size, cuts + 1, trouble
+
+
+def _vanishing(known: list[tuple[float, float]]) -> float:
+    """How far from the last of two values the square of the curvature is zero, on a straight line through both."""
+    if len(known) < 2:
+        return np.inf
+    (one, before), (other, now) = known
+    if not 0.0 < now < before:
+        return np.inf
+    return abs(other - one) * now**2 / (before**2 - now**2)
+
+
+def _aside(saved: March, march: March, load: int, rate: Array, ahead: Array) -> bool:
+    """Whether a step has not ended where the rates at its beginning and its end lead."""
+    moving = march.model.moving
+    step = march.values[load] - saved.values[load]
+    first, last = step * rate[moving], step * ahead[moving]
+    if not (first.any() and last.any()):
+        return False  # one of the tangents is singular, and says nothing
+    gone = (march.system.z.values - saved.system.z.values)[moving]
+    aside = float(np.abs(gone - 0.5 * (first + last)).max())
+    way, uneven = max(np.abs(first).max(), np.abs(last).max()), np.abs(last - first).max()
+    return bool(aside > _UNEVEN * uneven + _ASIDE * way + _NOWHERE)
+
+
+def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
+    """Record where a branch ends, and go on from there or not.
+
+    Raises:
+        StoppedError: not.
+    """
+    model, load = march.model, course.load
+    unit = model.stepped[load].unit
+    why = {
+        Loss.FOLD: "it folds back",
+        Loss.BIFURCATION: "another one branches off",
+        Loss.CONTACT: f"the contact {lost.what} lets go",
+        Loss.STOP: f"the stop {lost.what} lets go",
+    }[lost.loss]
+    sentence = (
+        f"at {march.shown(load, lost.value)} the branch of minima ends, {why}: the smallest curvature comes to "
+        f"{lost.curvature:.3g} there, and what is left has {lost.left:.3g}"
+    )
+    after = descended(march, load, target, course.span, lost) if course.jump else None
+    if course.stage:
+        march.critical.append(
+            Critical(
+                stage=course.stage,
+                value=lost.value * unit,
+                uncertainty=lost.uncertainty * unit,
+                loss=lost.loss,
+                what=lost.what,
+                curvature=lost.curvature,
+                left=lost.left,
+                energy=lost.energy * model.units.moment,
+                after=None if after is None else after * model.units.moment,
+            )
+        )
+    if after is None:
+        if course.jump:
+            sentence += "; the decrease of the energy from there leads to no minimum that was found"
+        raise StoppedError(Ending.BRANCH_ENDS, sentence)
