@@ -12,7 +12,8 @@ A distributed load is summed by Gauss's rule between joints and borders, where C
 :mod:`cprbm.kinematics` knows, and a part with tridiagonal second derivatives over θ.
 
 The turning of an element is the mean of the true one.  What its evenness leaves out of C at a force is of third order
-in the element's length, wherever in it that acts: energy and shape keep their second order.
+in the element's length, wherever in it that acts: energy and shape keep their second order.  Beside a held end it is a
+part of what the force does there, so that the span between has elements enough (:mod:`cprbm.refining`).
 """
 
 from __future__ import annotations

@@ -23,7 +23,7 @@ def test_the_whole_tangent(kinematics, bowed):
     z, values = bent(model), np.array([7.0, 5.0, -3.0, 11.0])
 
     def at(z):
-        return assemble(model, {}, 6, values, State.of(z))
+        return assemble(model, {}, 6, values, State.of(z), model.drawn)
 
     tangent = at(z).tangent.toarray()
     for i in range(model.size):

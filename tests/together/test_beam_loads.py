@@ -119,6 +119,22 @@ def test_the_finite_elements_fourth_order(case, bowed):
     assert found[-1][4] < 3e-7
 
 
+@pytest.mark.parametrize(("at", "load"), [(0.011, 27.0), (0.043, 7.0)])
+def test_a_force_beside_the_clamp(at, load):
+    """It bends a short span, whose energy is all there is."""
+    data, true = acting([point(at, 0.0, load)]), loaded(forces=[(at, 0.0, load)])
+    for solve, counts, order in ((cprbm_answer, (20, 80), 2.0), (fea_answer, (20, 80), 4.0)):
+        gaps = []
+        for n in counts:
+            found = solve(scene_from(data), n).stations[-1].values
+            tip = found["T.displacement"] / LENGTH + [1.0, 0.0] - true.tip
+            energy = found["scene.potential_energy"][0] * LENGTH / RIGIDITY
+            gaps.append([abs(energy / true.energy - 1.0), hypot(*tip) / true.tip[1]])
+        assert np.all(np.array(gaps[-1]) < [1e-3, 1e-4])
+        if order == 2.0:
+            assert np.log2(np.array(gaps[0]) / gaps[-1]) / 2.0 == pytest.approx([order, order], abs=0.1)
+
+
 @pytest.mark.parametrize("case", ["within", "two"])
 @pytest.mark.parametrize("bowed", [False, True])
 def test_the_third_solver(case, bowed):
