@@ -27,7 +27,7 @@ from cprbm.beam_loads import BeamLoad
 from cprbm.contact import Rows
 from cprbm.equilibrium import Point, point_at
 from cprbm.kinematics import State, positions
-from cprbm.kinks import kinks_at, slight, within
+from cprbm.kinks import kinks_at, within
 from cprbm.mechanism import Mechanism
 from cprbm.model import Chain, Fit, Kinks
 from cprbm.settings import Settings
@@ -144,11 +144,6 @@ def _kinks(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
                 kinks_at(chain, point.state, arc[inner]) for chain, arc in zip(pair.chains, places, strict=True)
             )
             made = mechanism.fit.kinks.get(name)
-            # two joints that share the force of a place are told that it is one
-            shared = any(zone.begin < zone.end for zone in mine)
-            little = all(slight(chain, kinks) for chain, kinks in zip(pair.chains, now, strict=True))
-            if made is None and little and not shared:
-                continue
             found[name] = now if made is None else tuple(map(Kinks.eased, now, made))
     return found
 
