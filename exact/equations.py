@@ -8,7 +8,7 @@ z           unknowns, see :mod:`exact.layout`
 ==========  ================================================================================================
 
 Source: S. S. Antman, Nonlinear Problems of Elasticity, chapter 4 (balance laws of planar rods), without stretch and
-shear.  At a knot everything is continuous, but the force where a load acts; contacts are :mod:`exact.touching` and
+shear.  At a knot everything is continuous, but the force where one acts; contacts are :mod:`exact.touching` and
 :mod:`exact.wrapping`; the forces and moments on every body that moves vanish together.
 
 Derivatives are taken by the complex step, all columns at once: unknowns have the shape (n, K), with one real part
@@ -32,7 +32,7 @@ from exact.touching import touch_points
 from exact.wrapping import lie_between, lie_from_clamp
 from scene import CircleContact
 from scene.answer import Array
-from scene.statement import BeamForce, DisplacementDrive, Force, Moment, SlidingBody
+from scene.statement import BeamForce, DisplacementDrive, DistributedLoad, Force, Moment, SlidingBody
 
 Guess = Callable[[str, Array], Array]
 """θ (n,) of a beam at arc lengths (n,)."""
@@ -71,7 +71,7 @@ class Equations:
         self._place_bodies(out, z)
         inside, at_ends = self._forces_on_beams(lam)
         for strip in self.model.strips.values():
-            self._beam(out, strip, z, guess, inside)
+            self._beam(out, strip, z, guess, lam, inside)
         touch_points(out, self.structure, self.layout, z, at_ends)
         self._loads(out, z, lam)
         for name, freedoms in self.model.moving.items():
@@ -164,20 +164,26 @@ class Equations:
     # ------------------------------------------------------------------------------------------- beams
 
     def _beam(
-        self, out: Evaluation, strip: Strip, z: Columns, guess: Guess, forces: Mapping[tuple[str, float], Columns]
+        self,
+        out: Evaluation,
+        strip: Strip,
+        z: Columns,
+        guess: Guess,
+        lam: Columns,
+        forces: Mapping[tuple[str, float], Columns],
     ) -> None:
         """A beam's pieces, with the rows at its ends and knots and along circles."""
         name, order = strip.name, self.structure.order[strip.name]
         wraps = {wrap.contact: wrap for wrap in self.structure.wraps(name)}
         begins, stops = self._borders(strip, z)
         parts = out.parts[name] = [
-            self._integrated(strip, a, b, z[index], guess)
+            self._integrated(strip, a, b, z[index], self._spread(strip, a, b, lam), guess)
             for index, a, b in zip(self.layout.pieces[name], begins, stops, strict=True)
         ]
         if not any(wrap.from_start for wrap in wraps.values()):
             self._end(out, strip, "start", parts[0].start)
         if not any(wrap.to_end for wrap in wraps.values()):
-            self._end(out, strip, "end", np.concatenate([parts[-1].end, parts[-1].force]))
+            self._end(out, strip, "end", np.concatenate([parts[-1].end, parts[-1].end_force]))
         k = 0
         for item in order:
             wrap = wraps.get(item) if isinstance(item, str) else None
@@ -193,7 +199,7 @@ class Equations:
                 out.turnings[name, item] = (self.layout.pieces[name][k].start + 2, len(out.rows) + 3)
             out.rows += list(after.start[:4] - before.end)
             if not isinstance(item, str):
-                jump = after.force - before.force
+                jump = after.force - before.end_force
                 out.rows += list(jump + forces[name, item] if (name, item) in forces else jump)
 
     def _borders(self, strip: Strip, z: Columns) -> tuple[list[Columns], list[Columns]]:
@@ -233,16 +239,26 @@ class Equations:
         """Arc lengths at which a beam's pieces begin, of unknowns z (n,)."""
         return [float(begin[0]) for begin in self._borders(self.model.strips[beam], z[:, None])[0]]
 
-    def _integrated(self, strip: Strip, a: Columns, b: Columns, start: Columns, guess: Guess) -> Part:
-        """A piece, from its start's state (6, K)."""
-        q = np.concatenate([start, [a, b]])
+    def _spread(self, strip: Strip, a: Columns, b: Columns, lam: Columns) -> Columns:
+        """The distributed load (2, K) on a piece, which no end of one lies within."""
+        middle, total = 0.5 * float((a[0] + b[0]).real), np.zeros((2, len(lam)), dtype=lam.dtype)
+        for load, begin, end in strip.spread:
+            if begin < middle < end:
+                record = self.model.scene.loads[load]
+                assert isinstance(record, DistributedLoad)
+                total = total + np.outer(unit(record.direction), self._value(load, lam))
+        return total
+
+    def _integrated(self, strip: Strip, a: Columns, b: Columns, start: Columns, spread: Columns, guess: Guess) -> Part:
+        """A piece, from its start's state (6, K), with the load on it (2, K)."""
+        q = np.concatenate([start, [a, b], spread])
         real = np.ascontiguousarray(q[:, 0].real)
         nodes = real[6] + (real[7] - real[6]) * rule(self.nodes).points
         solved = piece(strip.law, real, guess(strip.name, nodes))
         end = np.tile(solved.end[:, None], (1, q.shape[1])).astype(q.dtype)
         if np.iscomplexobj(q):
             end = end + 1j * (solved.slopes @ q.imag)
-        return Part(a, b, start, end, solved)
+        return Part(a, b, start, end, spread, solved)
 
     def _end(self, out: Evaluation, strip: Strip, which: str, state: Columns) -> None:
         """What holds at a beam's end, and what the beam does there; forces are looked at where contacts are known."""

@@ -21,18 +21,28 @@ Columns = NDArray[Any]
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A piece of a beam from ``a`` to ``b`` (K,): states ``start`` (6, K) and ``end`` (4, K), and what was solved."""
+    """A piece of a beam from ``a`` to ``b`` (K,): states ``start`` (6, K) and ``end`` (4, K), and what was solved.
+
+    ``spread`` (2, K) is the distributed load on it.
+    """
 
     a: Columns
     b: Columns
     start: Columns
     end: Columns
+    spread: Columns
     solved: Piece
 
     @property
     def force(self) -> Columns:
-        """Internal force (2, K)."""
+        """Internal force (2, K) at its start."""
         return self.start[4:]
+
+    @property
+    def end_force(self) -> Columns:
+        """Internal force (2, K) at its end."""
+        force: Columns = self.start[4:] - self.spread * (self.b - self.a)
+        return force
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +142,10 @@ class Evaluation:
             placements={name: one(columns) for name, columns in self.placements.items()},
             on_body={name: one(columns) for name, columns in self.on_body.items()},
             parts={
-                beam: [Part(one(part.a), one(part.b), one(part.start), one(part.end), part.solved) for part in parts]
+                beam: [
+                    Part(one(part.a), one(part.b), one(part.start), one(part.end), one(part.spread), part.solved)
+                    for part in parts
+                ]
                 for beam, parts in self.parts.items()
             },
             ends={key: Held(one(end.place), one(end.force), one(end.moment)) for key, end in self.ends.items()},

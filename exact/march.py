@@ -28,7 +28,7 @@ from exact.state import State
 from exact.structure import Meeting, Wrap
 from exact.way import Way
 from scene import Answer, Ending, Scene, StationAnswer
-from scene.statement import DistributedLoad, TurningBody
+from scene.statement import TurningBody
 
 _OVERLAP = 1e-10  # of the unit of length
 _FIRST_STEP = 0.2  # of the way to the first station
@@ -76,15 +76,13 @@ def _covered(scene: Scene) -> None:
     """Refuse what has no equations here.
 
     Raises:
-        NotCoveredError: the scene has stops, an assembly, a body on a pivot or a distributed load.
+        NotCoveredError: the scene has stops, an assembly or a body on a pivot.
     """
     pivots = any(isinstance(body, TurningBody) for body in scene.bodies.values())
-    distributed = any(isinstance(load, DistributedLoad) for load in scene.loads.values())
     for what, there in (
         ("stops", scene.stops),
         ("assembly", scene.assembly is not None),
         ("bodies on pivots", pivots),
-        ("distributed loads", distributed),
     ):
         if there:
             raise NotCoveredError(f"there are no equations for {what} here")

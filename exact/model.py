@@ -20,7 +20,7 @@ from exact.curves import NeutralLine, neutral_line
 from exact.spectral import Law
 from scene import Scene
 from scene.answer import Array
-from scene.statement import Beam, BeamEnd, BeamForce, FixedBody, FreeEnd, SlidingBody, WeldedEnd
+from scene.statement import Beam, BeamEnd, BeamForce, DistributedLoad, FixedBody, FreeEnd, SlidingBody, WeldedEnd
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,9 +40,11 @@ class Strip:
         line: its stress-free neutral line.
         beam: its record, whose sizes are in metres.
         knots: arc lengths strictly inside at which thickness, width or the stress-free curvature have kinks, or a
-            force acts.
+            force acts, or a distributed load begins or ends.
         stiffness: Young's modulus over Sℓ, 1/m⁴, so that E·I is without dimension.
         unit: ℓ, m.
+        start, end: its ends.
+        spread: distributed loads by name, and from where to where they act.
     """
 
     name: str
@@ -53,6 +55,7 @@ class Strip:
     unit: float
     start: End
     end: End
+    spread: tuple[tuple[str, float, float], ...]
 
     @property
     def length(self) -> float:
@@ -157,10 +160,25 @@ def modelled(scene: Scene) -> Model:
     for name, beam in scene.beams.items():
         line = neutral_line(beam.curve, unit)
         loaded = [load.at for load in scene.loads.values() if isinstance(load, BeamForce) and load.beam == name]
-        shares = {*map(float, beam.knots), *loaded} - {0.0, 1.0}
+        spread = {
+            key: load.along
+            for key, load in scene.loads.items()
+            if isinstance(load, DistributedLoad) and load.beam == name
+        }
+        shares = {*map(float, beam.knots), *loaded, *(end for along in spread.values() for end in along)} - {0.0, 1.0}
         knots = tuple(sorted({*(u * line.length for u in shares), *line.kinks}))
         stiffness = scene.materials[beam.material].youngs_modulus / (moment * unit)
-        strips[name] = Strip(name, line, beam, knots, stiffness, unit, _end(beam.start), _end(beam.end))
+        strips[name] = Strip(
+            name,
+            line,
+            beam,
+            knots,
+            stiffness,
+            unit,
+            _end(beam.start),
+            _end(beam.end),
+            tuple((key, begin * line.length, end * line.length) for key, (begin, end) in spread.items()),
+        )
     moving = {
         name: (1 if body.pin is None else 2) if isinstance(body, SlidingBody) else 3
         for name, body in scene.bodies.items()

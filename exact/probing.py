@@ -15,7 +15,7 @@ from exact.structure import Meeting, Wrap
 from exact.way import Way
 from scene import Certificate, CircleContact, Probe, Scene, Shape, StationAnswer
 from scene.answer import Array, frozen_array
-from scene.statement import BeamForce, DisplacementDrive, Force, Moment, RotationDrive
+from scene.statement import BeamForce, DisplacementDrive, DistributedLoad, Force, Moment, RotationDrive
 
 _FLOOR = 1e-13  # of a residual, no dimension: some hundred roundings
 
@@ -175,6 +175,15 @@ def _energy(model: Model, state: State) -> float:
             s = np.array([load.at * model.strips[load.beam].length])
             moved = state.along(load.beam, s)[:2] - model.strips[load.beam].line.place(s)
             energy -= value * float(unit(load.direction) @ moved[:, 0])
+        elif isinstance(load, DistributedLoad):
+            strip = model.strips[load.beam]
+            begin, stop = (share * strip.length for share in load.along)
+            for part in state.found.parts[load.beam]:
+                a, b = float(part.a[0]), float(part.b[0])
+                if begin < 0.5 * (a + b) < stop:
+                    s = a + (b - a) * gauss.points
+                    moved = unit(load.direction) @ (state.along(load.beam, s)[:2] - strip.line.place(s))
+                    energy -= value * (b - a) * float(gauss.weights @ moved)
         elif isinstance(load, Force):
             energy -= value * float(_displacement(model, state, load.point) @ unit(load.direction))
         elif isinstance(load, Moment):

@@ -111,7 +111,7 @@ def _state_between(out: Evaluation, structure: Structure, contact: str, beam: st
 def _jump(out: Evaluation, structure: Structure, contact: str, beam: str, force: Columns) -> None:
     """The force (2, K) of a contact on a beam between its ends."""
     k = structure.piece_beyond(beam, contact)
-    out.rows += list(out.parts[beam][k].force - out.parts[beam][k - 1].force + force)
+    out.rows += list(out.parts[beam][k].force - out.parts[beam][k - 1].end_force + force)
 
 
 def _release_ends(out: Evaluation, pushed: dict[tuple[str, str], Columns]) -> None:

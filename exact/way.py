@@ -78,6 +78,7 @@ class Way:
             "moment": self.model.unit_moment,
             "force": self.model.unit_force,
             "beam_force": self.model.unit_force,
+            "distributed": self.model.unit_force / self.model.unit_length,
             "displacement": self.model.unit_length,
             "rotation": 1.0,
         }

@@ -18,6 +18,7 @@ from comparisons.verdict import Word, compared
 from scene import Ending
 from scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, cantilever_data
+from tests.exact.scenes import case
 from tests.references.loaded import loaded
 from tests.together.bowed import on_a_beam, on_a_circle
 
@@ -135,16 +136,10 @@ def test_a_force_beside_the_clamp(at, load):
             assert np.log2(np.array(gaps[0]) / gaps[-1]) / 2.0 == pytest.approx([order, order], abs=0.1)
 
 
-@pytest.mark.parametrize("case", ["within", "two"])
+@pytest.mark.parametrize("case", CASES)
 @pytest.mark.parametrize("bowed", [False, True])
 def test_the_third_solver(case, bowed):
     assert np.all(errors(exact_answer, case, 0, bowed=bowed) < 1e-9)
-
-
-def test_the_third_solver_says_what_it_does_not_cover():
-    answer = exact.answer(scene_from(acting(CASES["weight"][0])))
-    assert answer.ending is Ending.NOT_COVERED
-    assert "distributed loads" in answer.sentence
 
 
 @pytest.mark.parametrize("solve", [cprbm_answer, fea_answer, exact_answer])
@@ -198,6 +193,24 @@ def test_the_verdict_on_a_circle_is_agree():
     assert [load_unit(scene, stage) for stage in scene.stages] == ["N/m", "N", "N"]
 
 
+def test_the_third_solver_in_contact_in_a_point():
+    scene = scene_from(weighed(on_a_circle(8.0), 40.0))
+    found, reference = (solve(scene, 80) for solve in (exact_answer, fea_answer))
+    assert found.ending is Ending.COMPLETED, found.sentence
+    for name, value in reference.stations[-1].values.items():
+        size = np.max(np.abs(value), initial=0.0)
+        assert found.stations[-1].values[name] == pytest.approx(value, rel=2e-4, abs=2e-4 * size), name
+
+
+def test_the_third_solver_has_no_equations_for_a_weight_along_a_circle():
+    data = case("wrapped")
+    data["loads"]["q"] = {"kind": "distributed", "beam": "beam", "direction": [0.0, -1.0]}
+    data["stages"].insert(0, {"name": "weight", "steps": "q", "stations": [0.01]})
+    answer = exact_answer(scene_from(data), 0)
+    assert answer.ending is Ending.NOT_COVERED
+    assert "beam lies along the circle of contact under a distributed load" in answer.sentence
+
+
 def test_a_weight_on_a_beam_that_presses_another():
     scene = scene_from(weighed(on_a_beam(8.0), 40.0))
     reference, found = (solve(scene, n).stations[-1].values for solve, n in ((fea_answer, 40), (cprbm_answer, 80)))
@@ -207,7 +220,7 @@ def test_a_weight_on_a_beam_that_presses_another():
         assert np.linalg.norm(found[name] - reference[name]) < 1e-3 * size, name
 
 
-@pytest.mark.parametrize("solve", [cprbm_answer, fea_answer])
+@pytest.mark.parametrize("solve", [cprbm_answer, fea_answer, exact_answer])
 def test_a_free_column_under_its_own_weight_buckles_where_greenhill_says(solve):
     """Reference: A. G. Greenhill (1881), q L³/EI = 7.8373 for a column that is clamped below and free above."""
     for q, stands in ((7.75, True), (7.95, False)):
