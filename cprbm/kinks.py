@@ -134,14 +134,29 @@ def within(chain: Chain, places: Array) -> Flags:
 
 
 def kinks_at(chain: Chain, state: State, places: Array) -> Kinks:
-    """The kinks of ``chain`` at arc lengths ``places`` (k,) in a state, slopes nought where springs are too few."""
-    element = _element(chain, places)
-    seen = (element >= SPRINGS) & (element < chain.n - SPRINGS)
+    """The kinks of ``chain`` at arc lengths ``places`` (k,) in a state, slopes nought where springs are too few.
+
+    Two springs on one side tell the slope there, and so do the nearer of them and the pressed one less what the other
+    side has bent of it.  From one border of the pressed element to the other the slope goes from the first to the
+    second, so that it is continuous as the place goes on.
+    """
+    e = _element(chain, places)
+    seen = (e >= SPRINGS) & (e < chain.n - SPRINGS)
+    e = np.where(seen, e, SPRINGS if chain.n > 2 * SPRINGS else 0)
+    nothing = np.zeros(len(places))
+    if chain.n <= 2 * SPRINGS:
+        return Kinks(places, nothing, nothing)
     kappa = (np.diff(state.theta[chain.links]) - np.diff(chain.rest)) / chain.sizes
-    springs = chain.s[1:-1]
-
-    def slope(one: int, other: int) -> Array:
-        i, j = np.where(seen, element + one, 0), np.where(seen, element + other, 1)
-        return np.where(seen, (kappa[j] - kappa[i]) / (springs[j] - springs[i]), 0.0)
-
-    return Kinks(places, slope(-2, -1), slope(1, 2))
+    springs, h = chain.s[1:-1], chain.sizes[e]
+    u = np.clip(places - chain.borders[e], 0.0, h)
+    far_p = (kappa[e - 1] - kappa[e - 2]) / (springs[e - 1] - springs[e - 2])
+    far_q = (kappa[e + 2] - kappa[e + 1]) / (springs[e + 2] - springs[e + 1])
+    bent = (far_q - far_p) / (2.0 * h)
+    near_p = (kappa[e] - bent * (h - u) ** 2 - kappa[e - 1]) / (springs[e] - springs[e - 1])
+    near_q = (kappa[e + 1] - kappa[e] + bent * u**2) / (springs[e + 1] - springs[e])
+    f = u / h
+    return Kinks(
+        places,
+        np.where(seen, far_p + f * (near_p - far_p), 0.0),
+        np.where(seen, near_q + f * (far_q - near_q), 0.0),
+    )

@@ -30,7 +30,8 @@ from cprbm.settings import Settings
 from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAnswer
 
 AGAIN = 12  # iterations on a mesh that fits a little better
-FITS = 6  # of the mesh to where contact is, at most
+FITS = 5  # of the mesh to where contact is, at most
+STRAIGHT = 2  # of them before two that take turns are eased
 BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is no doubt that it has ended
 ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all branches are near
 FURTHER = 30.0  # times as far before it, the fitted mesh is on the branch still
@@ -226,11 +227,11 @@ class March:
         """A state on the branch on the mesh that was asked, its borders where zones of contact end."""
         mechanism, iterations = self.on.mechanism, certificate.iterations
         asked, now = self.family[-1], self.on.settings
-        for settings in (*self.family[1:-1], *[asked] * FITS):
+        for turn, settings in enumerate((*self.family[1:-1], *[asked] * FITS)):
             zones = all_zones(mechanism, point)
             if settings is not asked and not long_ones(zones):
                 continue  # a few places need no mesh between the coarsest and the finest
-            fit = fitted(mechanism, point, zones, settings)
+            fit = fitted(mechanism, point, zones, settings, eased=turn > len(self.family) + STRAIGHT)
             if settings is now and fits(mechanism, fit):
                 break
             target = mechanism_of(self.scene, settings, fit)
