@@ -254,8 +254,6 @@ class _Seen:
         face, line = self.face, self.line
         even = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
         borders, kinks = self._borders(even)
-        for end in face.own:
-            borders = borders[np.abs(borders - end) > _AT_END]
         zeta = np.unique(np.concatenate([even, face.edge.knots, borders]))
         there = self._at(zeta, np.zeros_like(zeta))
         for end in face.own:
@@ -321,8 +319,10 @@ class _Seen:
             zeta, step = moved, zeta - moved
             if float(np.abs(step).max()) < _ARRIVED:
                 break
-        off = np.abs(((self.place(zeta) - P) * t).sum(axis=0))
-        return zeta, off < _ARRIVED
+        crosses = np.abs(((self.place(zeta) - P) * t).sum(axis=0)) < _ARRIVED
+        for end in self.face.own:
+            crosses &= np.abs(zeta - end) > _AT_END
+        return zeta, crosses
 
     def _back(self, vectors: Array) -> Array:
         """Vectors (2, k) as the body's frame sees them."""
