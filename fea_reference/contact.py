@@ -46,6 +46,7 @@ from fea_reference.zones import Zones, ends_over, find, side_of
 from scene.statement import BeamContact, Scene
 
 _AT_END = 1e-6  # elements
+_LYING = 1.0  # elements: what is shorter at an end does not lie on the other beam
 _LAYERS = 32.0  # the widest in a beam's length
 
 
@@ -151,15 +152,22 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
 
 
 def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
-    """κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂) where the zone meets an end of the first beam, where it matters; else the median.
+    """κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂) where a zone meets an end of the first beam, where it matters; else the median.
 
-    Zero where the beams pull apart.
+    Zero where the beams pull apart, and where what meets the end is less than an element: beside ends that are held
+    side by side and part at once.  Their gap is zero there but for round-off, and has nothing to press against.
     """
     if not touch.closed:
         return 0.0
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
-    middle, middle_m = touch.zones.intervals.mean(axis=1), touch.zones.zeta_m.mean(axis=1)
     line, line_m = model.line(beam, z), model.line(beam_m, z)
+    intervals = touch.zones.intervals
+    zone = np.cumsum(np.append(False, intervals[1:, 0] > intervals[:-1, 1]))
+    at_end = np.array([intervals[0, 0] <= _AT_END, intervals[-1, 1] >= line.n - _AT_END])
+    beside = [np.ptp(intervals[zone == one]) for one in zone[[0, -1]][at_end]]
+    if beside and min(beside) < _LYING:
+        return 0.0
+    middle, middle_m = intervals.mean(axis=1), touch.zones.zeta_m.mean(axis=1)
     e = line.locate(middle)[0] + beam.elements.start
     e_m = line_m.locate(middle_m)[0] + beam_m.elements.start
     _, speed, bent = line_m.at(middle_m)
@@ -169,7 +177,6 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
     axial, axial_m = z[model.element_dofs[6, e]], z[model.element_dofs[6, e_m]]
     EI, EI_m = beam.bending(middle / line.n), beam_m.bending(middle_m / line_m.n)
     pressure = kappa * (axial * EI_m - axial_m * EI) / (EI + EI_m)
-    at_end = np.array([touch.zones.intervals[0, 0] <= _AT_END, touch.zones.intervals[-1, 1] >= line.n - _AT_END])
     return max(0.0, float(np.median(pressure[[0, -1]][at_end] if at_end.any() else pressure)))
 
 
