@@ -37,12 +37,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea_reference.hermite import NeutralLine, along, apart, shape_slopes, shapes, twice_along
+from fea_reference.hermite import NeutralLine, along, apart, plane, shape_slopes, shapes, twice_along
 from fea_reference.model import BeamPart, Model
-from fea_reference.projection import project
+from fea_reference.projection import closest
 from fea_reference.state import State
-from fea_reference.touch import Pair, Penalty, Touch, together
-from fea_reference.zones import Zones, ends_over, find, side_of
+from fea_reference.touch import Pair, Penalty, Touch, gauss, together
+from fea_reference.zones import Zones, ends_over, find, overlap, seen, side_of
 from scene.statement import BeamContact, Scene
 
 _AT_END = 1e-6  # elements
@@ -94,13 +94,15 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
     line, line_m = model.line(beam, z), model.line(beam_m, z)
     distance = pair.distance + penalty.lead
-    zones = find(line, line_m, pair.side, distance)
-    least = zones.least + penalty.lead
-    if held is not None:
-        zones = find(line, line_m, pair.side, distance + zones.least + held)
-    zones = replace(zones, least=least)
+    gaps = seen(line, line_m, pair.side, distance)
+    level = 0.0 if held is None else gaps.least + held
+    if level < line_m.lengths.max():
+        zones = overlap(line, line_m, distance, gaps, level)
+    else:
+        zones = find(line, line_m, pair.side, distance + level)
+    zones = replace(zones, least=gaps.least + penalty.lead)
 
-    points, weights = np.polynomial.legendre.leggauss(quadrature)
+    points, weights = gauss(quadrature)
     share = 0.5 * (points + 1.0)
     width = zones.intervals[:, 1] - zones.intervals[:, 0]
     zeta = (zones.intervals[:, :1] + width[:, None] * share).ravel()
@@ -109,15 +111,16 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     e, xi = line.locate(zeta)
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
-    x = line.at(zeta)[0]
-    zeta_m, _ = project(line_m, x, guess)
+    there = line.around(zeta)
+    x = line.nodes[there.element] + there.way
+    zeta_m, _, across = closest(line_m, x, guess)
     e_m, xi_m = line_m.locate(zeta_m)
-    x_m, x_m1, x_m2 = line_m.at(zeta_m)
-    J = np.hypot(x_m1[0], x_m1[1])
-    tau = x_m1 / J
+    x_m = line_m.nodes[across.element] + across.way
+    J = np.abs(across.ahead)
+    tau = plane(across.ahead / J)
     n = np.stack([-tau[1], tau[0]])
-    d = (n * apart(line, zeta, line_m, zeta_m)).sum(axis=0)
-    a = (n * x_m2).sum(axis=0)
+    d = (n * plane(apart(line, there, line_m, across))).sum(axis=0)
+    a = (n * plane(across.bent)).sum(axis=0)
     Z = J**2 - d * a
     g = pair.side * d - distance
 
@@ -144,8 +147,8 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
         gap_by_twice=pair.side * d_qq,
         zeta=zeta,
         zeta_m=zeta_m,
-        x=x,
-        x_m=x_m,
+        x=plane(x),
+        x_m=plane(x_m),
         normal=normal,
         missing=_missing(line, line_m, pair, penalty, zones),
     )
@@ -185,10 +188,11 @@ def _missing(first: NeutralLine, second: NeutralLine, pair: Pair, penalty: Penal
     zeta, zeta_m = zones.intervals.ravel(), zones.zeta_m.ravel()
     across = np.minimum(zeta_m, second.n - zeta_m) <= _AT_END
     zeta, zeta_m = zeta[across], zeta_m[across]
-    _, x1, _ = first.at(zeta)
-    _, x_m1, _ = second.at(zeta_m)
-    tau = x_m1 / np.hypot(x_m1[0], x_m1[1])
-    n = np.stack([-tau[1], tau[0]])
-    g = np.minimum(pair.side * (n * apart(first, zeta, second, zeta_m)).sum(axis=0) - pair.distance - penalty.lead, 0.0)
-    ahead = np.abs((x1 * tau).sum(axis=0)) / first.lengths[first.locate(zeta)[0]]
+    if not zeta.size:
+        return 0.0
+    there, there_m = first.around(zeta), second.around(zeta_m)
+    back = (there_m.ahead / np.abs(there_m.ahead)).conj()
+    d = (back * apart(first, there, second, there_m)).imag
+    g = np.minimum(pair.side * d - pair.distance - penalty.lead, 0.0)
+    ahead = np.abs((back * there.ahead).real) / first.lengths[there.element]
     return float((0.5 * penalty.stiffness * g**2 / np.maximum(ahead, 1e-3)).sum())
