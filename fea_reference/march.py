@@ -169,8 +169,9 @@ class March:
         """What must not have happened on the way from the state ``before`` to a system; a sentence says ``where``."""
         pressing = {one.pair for one in system.touches if one.closed}
         for pair in (*self.open, *self.penalties):
-            closing = zones_of(self.model, pair, system.z).least <= _CLOSED * pair.scale
-            if not closing and pair not in pressing and self._overlapped_between(pair, before, system.z):
+            if pair in pressing or zones_of(self.model, pair, system.z).least <= _CLOSED * pair.scale:
+                continue
+            if self._overlapped_between(pair, before, system.z):
                 return Ending.BEAMS_CROSSED, f"{where} what may touch in {pair.name} passes through each other"
         turned = float(np.abs(system.elements.rotation).max())
         if turned > _TURNED:
@@ -192,12 +193,12 @@ class March:
 
     def switch(self, load: int, changing: Iterable[StopPart]) -> None:
         """Let those stops act, or act no more, that have arrived where they change."""
-        for stop in changing:
-            if self.room(stop, self.system) > _SWITCHED:
-                continue
+        arrived = [stop for stop in changing if self.room(stop, self.system) <= _SWITCHED]
+        for stop in arrived:
             self.switched[stop.name] = float(self.values[load])
             self.turn(stop, load, self.system)
-        self.renew()
+        if arrived:
+            self.renew()
 
     def turn(self, stop: StopPart, load: int, system: System) -> None:
         """Let a stop act no more if it does, and otherwise at the limit that it is nearest to in a system."""
@@ -297,12 +298,13 @@ class March:
 
     def watch_what_touches(self, load: int) -> None:
         """Give a penalty to every open contact whose gap has vanished."""
-        for pair in list(self.open):
-            if zones_of(self.model, pair, self.system.z).least <= _CLOSED * pair.scale:
-                self.open.remove(pair)
-                self.penalties[pair] = Penalty(pair.stiffness)
-                self.closing[pair.name] = self.value(load)
-        self.renew()
+        closing = [p for p in self.open if zones_of(self.model, p, self.system.z).least <= _CLOSED * p.scale]
+        for pair in closing:
+            self.open.remove(pair)
+            self.penalties[pair] = Penalty(pair.stiffness)
+            self.closing[pair.name] = self.value(load)
+        if closing:
+            self.renew()
 
     def loosen(self, *kinds: type[Circle | Pair]) -> bool:
         """Go back to the loosest penalties: the ends of a zone move by a layer's width per iteration.
