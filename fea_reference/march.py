@@ -12,7 +12,7 @@ from scipy.sparse.linalg import splu
 from fea_reference.acting import Acting
 from fea_reference.advance import advance
 from fea_reference.contacts import passed_through, resting_pressure, zones_of
-from fea_reference.curvature import smallest_curvature
+from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.settings import Settings
@@ -87,6 +87,13 @@ class March:
         if self.known is None or self.known[0] is not self.system:
             self.known = self.system, smallest_curvature(self.model, self.system)
         return self.known[1]
+
+    @property
+    def minimum(self) -> bool:
+        """Whether that is positive."""
+        if self.known is None or self.known[0] is not self.system:
+            return positive(self.model, self.system)
+        return self.known[1] > 0.0
 
     def saved(self) -> March:
         """A copy to come back to."""
