@@ -167,8 +167,8 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
     intervals = touch.zones.intervals
     zone = np.cumsum(np.append(False, intervals[1:, 0] > intervals[:-1, 1]))
     at_end = np.array([intervals[0, 0] <= _AT_END, intervals[-1, 1] >= line.n - _AT_END])
-    beside = [np.ptp(intervals[zone == one]) for one in zone[[0, -1]][at_end]]
-    if beside and min(beside) < _LYING:
+    widths = [np.ptp(intervals[zone == one]) for one in (zone[[0, -1]][at_end] if at_end.any() else np.unique(zone))]
+    if min(widths) < _LYING:
         return 0.0
     middle, middle_m = intervals.mean(axis=1), touch.zones.zeta_m.mean(axis=1)
     e = line.locate(middle)[0] + beam.elements.start

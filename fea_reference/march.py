@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
 from fea_reference.acting import Acting
-from fea_reference.advance import advance
+from fea_reference.advance import advance, carried
 from fea_reference.contacts import passed_through, resting_pressure, zones_of
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
@@ -23,6 +23,8 @@ from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
 from scene.answer import Array, Critical, Ending
 
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
+_AHEAD = 2.0  # of the last step: the longest for which its change of rate tells anything
+_BENT = 0.1  # of what a step moves by its rate: the most that its change may add
 _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _TIGHTENINGS = 25
@@ -53,6 +55,21 @@ class StoppedError(Exception):
         self.ending, self.sentence = ending, sentence
 
 
+@dataclass(frozen=True, slots=True)
+class Behind:
+    """The ``value`` of what is stepped (number ``load``) before the last step; state and ``rate`` there, what acted.
+
+    ``contacts`` are those that were closed.
+    """
+
+    load: int
+    value: float
+    z: State
+    rate: Array
+    acting: Acting
+    contacts: frozenset[Contact]
+
+
 @dataclass
 class March:
     """Where the march stands: the state of the one loop that is allowed one.
@@ -63,7 +80,8 @@ class March:
     of branches that have been passed; ``iterations`` are counted since the last station; ``far`` is whether zones have
     been too far from one station to the last for tight penalties and have not come nearer since, so that the way to
     the next one begins with loose ones on circles; ``loose`` whether penalties were loosened since they were tightened;
-    ``known`` is the last system whose smallest curvature was asked for, with that.
+    ``known`` is the last system whose smallest curvature was asked for, with that; ``behind`` is where the last step
+    began, if it went along a branch.
     """
 
     model: Model
@@ -80,6 +98,7 @@ class March:
     far: bool = False
     loose: bool = False
     known: tuple[System, float] | None = None
+    behind: Behind | None = None
 
     @property
     def curvature(self) -> float:
@@ -134,7 +153,7 @@ class March:
     def step(self, load: int, value: float, rate: Array) -> Trouble | None:
         """Try to step to ``value``, or to where a contact or stop changes before; the trouble if neither can be."""
         before, start = self.system.z, float(self.values[load])
-        predicted = advance(self.model, before, (value - start) * rate)
+        predicted = advance(self.model, before, self._foreseen(load, value - start, rate))
         system = self.solve(load, value, predicted)
         if system is None:
             return (
@@ -171,6 +190,18 @@ class March:
             self.watch_what_touches(load)
             self.switch(load, changing)
         return None
+
+    def _foreseen(self, load: int, step: float, rate: Array) -> Array:
+        """By what a step will move, (size,): to second order by the rates of now and of before, if they tell."""
+        first, behind = step * rate, self.behind
+        if behind is None or behind.load != load or behind.acting is not self.acting:
+            return first
+        back = float(self.values[load]) - behind.value
+        if behind.contacts != frozenset(self.penalties) or not abs(step) <= _AHEAD * abs(back):
+            return first
+        second = 0.5 * step**2 / back * (rate - carried(self.model, behind.z, self.system.z, behind.rate))
+        bent, straight = (float(np.abs(way[self.model.moving]).max()) for way in (second, first))
+        return first + second if bent <= _BENT * straight else first
 
     def passed(self, before: State, system: System, where: str) -> Trouble | None:
         """What must not have happened on the way from the state ``before`` to a system; a sentence says ``where``."""

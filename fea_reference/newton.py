@@ -38,6 +38,7 @@ _TURN = 0.4  # rad, and the same in lengths of the longest beam: the most that o
 _NEAR = 3.0  # factor between penetrations that Newton's method bridges by itself
 _SETTLED = 1e-4  # correction after which holding has done what it can
 _FALLING = 0.1  # of the unbalanced force before: who has come so far needs a few iterations more
+_TOUCHING = 1e-9  # of the thickness: an overlap that is none
 _HELD = 6  # iterations for which a contact is held at most
 
 
@@ -115,7 +116,7 @@ def _to_hold(one: Touch, depths: Mapping[Contact, float], before: Mapping[Contac
     if one.pair not in depths or _near(one, depths[one.pair]):
         return False
     pressed = one.pair in before and float(before[one.pair].sum()) > 0.0
-    return pressed or one.penetration > 0.0
+    return pressed or one.penetration > _TOUCHING * one.pair.scale
 
 
 def _near(one: Touch, depth: float) -> bool:

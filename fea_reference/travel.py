@@ -26,7 +26,7 @@ import numpy as np
 
 from fea_reference.descent import descended
 from fea_reference.following import Lost, about_to_go, followed
-from fea_reference.march import March, StoppedError, Trouble
+from fea_reference.march import Behind, March, StoppedError, Trouble
 from fea_reference.touch import Circle, Pair
 from scene.answer import Array, Critical, Ending, Loss
 
@@ -80,7 +80,7 @@ def reach(march: March, course: Course, target: float) -> None:
             march.restore(there)
         else:
             _beyond(march, course, target, lost)
-            march.iterations = 0
+            march.iterations, march.behind = 0, None
             _arrive(march, course, target)
             march.tighten()
     after = march.zones()
@@ -150,10 +150,12 @@ def _arrive(march: March, course: Course, target: float) -> None:
                 follow = False
             else:
                 follow = False
-            known, rate = [], None
+            known, rate, march.behind = [], None, None
         elif trouble is None:
             same = len(march.penalties) == len(saved.penalties) and march.acting is saved.acting
             known = [*known[-1:], (float(march.values[load]), march.curvature)] if same and watched else []
+            old = saved.system.z
+            march.behind = Behind(load, float(saved.values[load]), old, rate, saved.acting, frozenset(saved.penalties))
             rate = ahead
             easy = march.iterations - spent <= _EASY
             stride, cuts, follow = 2.0 * size if easy else size, 0, True
