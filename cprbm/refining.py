@@ -12,8 +12,8 @@ the two joints beside it bends the beam by a part of h² that depends on where b
 With a border at every end of a zone and a row there, and the elements between even, it is shared by none.
 
 A beam that is held at one place and pressed at another, s further on, says the force there by the curvature between:
-even over each element, it is wrong by a part (h/s)².  So a span between marks (held ends, places and ends of contact)
-has a stated share of the beam's elements, however short it is.
+even over each element, it is wrong by a part (h/s)².  So a span between marks (held ends, places and ends of contact,
+dead forces near held ends) has a stated share of the beam's elements, however short it is.
 """
 
 from __future__ import annotations
@@ -23,10 +23,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from cprbm.beam_loads import BeamLoad
 from cprbm.contact import Rows
 from cprbm.equilibrium import Point, point_at
 from cprbm.kinematics import State, positions
-from cprbm.kinks import kinks_at, slight, within
+from cprbm.kinks import kinks_at, within
 from cprbm.mechanism import Mechanism
 from cprbm.model import Chain, Fit, Kinks
 from cprbm.settings import Settings
@@ -42,7 +43,7 @@ SHARE = 4  # a span between marks has one of so many of the beam's elements at l
 BEYOND = 16  # one of so many of the beam's elements follow on a place in the size of the finer ones beside it
 FIXED = 0.75  # of a beam's elements, the most that such shares may take
 SHORTEST = 0.1  # elements: marks closer than this leave the elements even
-BENT = 0.05  # of the largest slope of a curvature beside a place: slopes that differ by less are the same
+BENT = 1e-6  # of the largest slope of a curvature beside a place: slopes that differ by less are the same
 MOVED = 0.02  # elements: ends that have moved less since the mesh was made are where the mesh has them
 
 
@@ -91,8 +92,18 @@ def ends_of(mechanism: Mechanism, zones: Mapping[str, tuple[Zone, ...]]) -> dict
     return ends
 
 
-def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]], settings: Settings) -> Fit:
-    """Elements that end where contacts do, even between; where these are much closer than that, even ones."""
+def fitted(
+    mechanism: Mechanism,
+    point: Point,
+    zones: Mapping[str, tuple[Zone, ...]],
+    settings: Settings,
+    *,
+    eased: bool = False,
+) -> Fit:
+    """Elements that end where contacts do, even between; where these are much closer than that, even ones.
+
+    ``eased`` lets kinks go half of the way only to what they are in this state.
+    """
     ends = ends_of(mechanism, zones)
     borders: dict[str, Array] = {}
     kept: dict[str, Array] = {}
@@ -100,12 +111,17 @@ def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
         names = [name for name in ends if mechanism.pairs[name].a is chain]
         found = [(float(place), name) for name in names for place in ends[name]]
         found += _places_on(mechanism, point, zones, chain)
+        if settings.formulation == "auto":
+            found += _forces_on(mechanism, chain)
         if not found:
             continue
         n = settings.links_of(chain.name)
         marks, of = np.array(sorted(mark for mark, _ in found)), [name for _, name in sorted(found)]
-        # between two places of one contact the beam lies on what it touches, or nearly; a free end has no curvature
-        needy = np.array([True, *(one != other for one, other in pairwise(of)), chain.end is not None])
+        # between two places of one contact the beam lies on what it touches, or nearly; a free end has no curvature;
+        # and a dead force is known whatever the curvature
+        dead = mechanism.problem.loads.keys()
+        between = [one != other and dead.isdisjoint((one, other)) for one, other in pairwise(of)]
+        needy = np.array([True, *between, chain.end is not None])
         numbers = _shared_out(marks, n, needy)
         # a zone's end is a border; a place need not be one, and as it goes on its way the mesh changes evenly
         numbers = np.round(numbers) if names else numbers
@@ -117,10 +133,12 @@ def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
             numbers, places = _surrounded(numbers, places, n / BEYOND)
         borders[chain.name] = np.interp(np.arange(n + 1), numbers, places)
         kept |= {name: ends[name] for name in names}
-    return Fit(borders, kept, _kinks(mechanism, point, zones))
+    return Fit(borders, kept, _kinks(mechanism, point, zones, eased=eased))
 
 
-def _kinks(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]]) -> dict[str, tuple[Kinks, ...]]:
+def _kinks(
+    mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]], *, eased: bool
+) -> dict[str, tuple[Kinks, ...]]:
     """Those of the contacts in points, of their first beam and of their second; none where a beam's end presses."""
     found = {}
     for name, mine in zones.items():
@@ -138,12 +156,7 @@ def _kinks(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
                 kinks_at(chain, point.state, arc[inner]) for chain, arc in zip(pair.chains, places, strict=True)
             )
             made = mechanism.fit.kinks.get(name)
-            # two joints that share the force of a place are told that it is one
-            shared = any(zone.begin < zone.end for zone in mine)
-            little = all(slight(chain, kinks) for chain, kinks in zip(pair.chains, now, strict=True))
-            if made is None and little and not shared:
-                continue
-            found[name] = now if made is None else tuple(map(Kinks.eased, now, made))
+            found[name] = tuple(map(Kinks.eased, now, made)) if eased and made is not None else now
     return found
 
 
@@ -161,6 +174,19 @@ def _places_on(
             places = pressed[1] / chain.s[-1]
             found += [(float(place), name) for place in places if 0.0 < place < 1.0]
     return found
+
+
+def _forces_on(mechanism: Mechanism, chain: Chain) -> list[tuple[float, str]]:
+    """The inmost dead force on a beam, as a share of its length, and its name, where all are near one of its ends."""
+    model, loads = mechanism.problem.model, mechanism.problem.loads
+    found = sorted(
+        (load.ends[0] / float(chain.s[-1]), name)
+        for name, load in loads.items()
+        if isinstance(load, BeamLoad) and not load.distributed and model.chains[load.chain].name == chain.name
+    )
+    if found and 0.0 < found[-1][0] < 1.0 / SHARE:
+        return found[-1:]
+    return found[:1] if found and 1.0 - 1.0 / SHARE < found[0][0] < 1.0 else []
 
 
 def _shared_out(marks: Array, n: int, needy: Flags) -> Array:
