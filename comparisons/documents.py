@@ -222,7 +222,8 @@ def plain(value: object) -> Any:  # noqa: ANN401 - whatever JSON holds
         case list() | tuple():
             return [plain(item) for item in value]
         case np.ndarray():
-            return plain(value.tolist())
+            whole = value.dtype.kind != "f" or bool(np.isfinite(value).all())
+            return value.tolist() if whole else plain(value.tolist())
         case bool() | int() | str() | None:
             return value
         case float() | np.floating():

@@ -238,6 +238,8 @@ def canvas(width: float, height: float) -> Iterator[Figure]:
 def picture(figure: Figure, name: str, caption: str) -> Picture:
     """A figure drawn to the end."""
     svg, png = io.BytesIO(), io.BytesIO()
+    figure.draw_without_rendering()  # makes the layout, which then serves both
+    figure.set_layout_engine("none")
     figure.savefig(svg, format="svg", metadata={"Date": None})
     figure.savefig(png, format="png", metadata={"Software": None})
     return Picture(name, caption, svg.getvalue(), png.getvalue())

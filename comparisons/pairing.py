@@ -7,12 +7,14 @@ the CPRBM's own; and at n in the theory between the two, if there is one, so tha
 can be split.
 
 Where ``auto`` was chosen and every contact of two beams says what ``paper`` must be told, that is run at N as well.
-It shows what the contact's formulation makes of the answer and takes no part in the verdict.
+It shows what the contact's formulation makes of the answer and takes no part in the verdict.  Not where the ends of
+branches are asked for: with another contact a branch ends elsewhere, and answers on two branches show nothing of it.
 
 Where an exact answer is known (in ``bending`` only), it stands beside both at the stations that it covers.
 
-Where a drive's reaction is asked, the CPRBM runs at N once more with two stations close round each of the scene's
-(:mod:`comparisons.nearby`): the reaction by the energies' difference, which takes no part in the verdict either.
+Where a drive's reaction is asked, and the scene's own stations are too far apart to tell it, the CPRBM runs at N once
+more with two stations close round each of them (:mod:`comparisons.nearby`): the reaction by the energies' difference,
+which takes no part in the verdict either.
 """
 
 from __future__ import annotations
@@ -301,11 +303,12 @@ def _links(choices: Choices) -> int:
 
 
 def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
-    """The CPRBM at N in the formulation ``paper``; None where that cannot be asked or takes long."""
+    """The CPRBM at N in the formulation ``paper``; None where that cannot be asked, takes long or shows nothing."""
     finest = choices.links if isinstance(choices.links, int) else max(choices.links.values())
     contacts = scene.contacts.values()
     told = all(isinstance(contact, CircleContact) or contact.paper is not None for contact in contacts)
-    if not contacts or not told or finest > PAPER_BESIDE_AUTO:
+    ends = any(stage.beyond is not None for stage in scene.stages)
+    if not contacts or not told or ends or finest > PAPER_BESIDE_AUTO:
         return None
     try:
         return solvers.cprbm(scene, replace(choices, formulation="paper"))

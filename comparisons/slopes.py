@@ -10,8 +10,8 @@ w_i         its weights: D_k = Σ w_i f_i
 ==========  ==========================================================================================
 
 D_k of a smooth function is off by a multiple of h^(k−1) with h the distance of the stations.  The value is D_k of as
-many stations as there are, nine at most; |D_k − D_(k−2)| is the error of the lower one, more than that of the value
-where the function is smooth, and no less than about half of it where it is not.  Round-off leaves Σ |w_i| ε_i.
+many stations as there are, nine at most; |D_k − D_(k−2)| is what the lower order is off, which is more than the value
+is.  Where the function has a kink it shows that, and bounds nothing.  Round-off leaves Σ |w_i| ε_i.
 """
 
 from __future__ import annotations

@@ -36,6 +36,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 
@@ -209,7 +210,7 @@ def _sentence(found: list[Reaction]) -> str:
         said = f"Work–energy with ρ = {percent(RHO)}: within {within} of the multiplier at "
         said += f"{sum(not each.apart for each in away)} of {len(away)} stations away from a contact that opens or "
         said += f"closes, and at {sum(not each.apart for each in near)} of {len(near)} within one station of one."
-    apart = [f"{each.stage} {each.station:g} ({percent(each.difference)})" for each in known if each.apart]
+    apart = _apart(found)
     if apart:
         said += f" Further apart: {', '.join(apart)}."
     floor = max((each.floor / each.scale for each in known if each.scale > 0.0), default=0.0)
@@ -225,6 +226,22 @@ def _sentence(found: list[Reaction]) -> str:
             if dense
             else f" {missing} stations were not reached by the run beside them."
         )
+    return said
+
+
+def _apart(found: list[Reaction]) -> list[str]:
+    """Where the two reactions are further apart than they may be: those that follow each other together."""
+    said = []
+    for (apart, stage), group in groupby(found, key=lambda each: (each.apart, each.stage)):
+        if not apart:
+            continue
+        mine = list(group)
+        worst = max(mine, key=lambda each: abs(each.difference or 0.0))
+        if len(mine) == 1:
+            said.append(f"{stage} {worst.station:g} ({percent(worst.difference)})")
+        else:
+            most = f"{len(mine)} stations, at most {percent(abs(worst.difference or 0.0))} at {worst.station:g}"
+            said.append(f"{stage} {mine[0].station:g} to {mine[-1].station:g} ({most})")
     return said
 
 
