@@ -4,17 +4,20 @@
 s, κ        arc length, and the change of curvature there
 h           length of the element that is pressed; u, v what lies of it before s and behind, u + v = h
 p, q        κ′ before the place and behind it; they differ by the contact's force over E·I
-γ           true tangent angle less that of the smooth line
+γ, Γ        true tangent angle less that of the smooth line, without the mean over the element; its integral
 ==========  ===================================================================================
 
-A spring knows the mean of κ over its element, so that tangents are right at the elements' borders, to a part of h² that
-is the same for all of them.  Between the borders the smooth line turns evenly (:mod:`cprbm.smooth`) and the beam does
-not: κ is a broken line with its corner at the place, and its mean over the element is known, so
+A spring knows the mean of κ over its element.  Between the borders the smooth line turns evenly (:mod:`cprbm.smooth`)
+and the beam does not: κ is a broken line with its corner at the place, and its mean over the element is known.  So the
+tangent differs by −(u v/2h)·(p u + q v), which is nought at both borders, and by less its mean over the element by
 
-    γ(s) = −(u v/2h)·(p u + q v),      γ = 0 at both borders.
+    γ(s) = (p + q) h²/24 − (u v/2h)·(p u + q v).
 
-Two lines touch where their tangents are parallel.  Without γ the place is wrong by γ/D″: also of second order in h, but
-as u v is, uneven in the number of elements, and the lever of the force with it.
+Two lines touch where their tangents are parallel.  Without γ the place is wrong by γ/D″: of second order in h, but as
+u v is, uneven in the number of elements, and the lever of the force with it.  The mean is the same wherever in the
+element the place is, and is left out: then Γ is nought at every border, and a function of the place alone by which the
+line lies elsewhere.  With a Γ that is nought at the place itself the gap would become another function as the place
+goes on, and what a drive does would not be what the energy gains.
 
 p and q are taken from the two springs on either side.  They belong to a state that is known already (the mesh is fitted
 to the same), and are constants while the next one is sought; how γ changes as the place moves is exact.
@@ -31,7 +34,6 @@ from cprbm.model import Chain, Kinks
 from cprbm.smooth import Points
 from scene.answer import Array, Flags, Ints
 
-SLIGHT = 1e-3  # of h² and the largest slope: γ is at most an eighth
 SPRINGS = 2  # on either side of the pressed element
 
 
@@ -61,7 +63,7 @@ class Missed:
         """γ (k,)."""
         u, h, p, q = self.u, self.h, self.before, self.behind
         v = h - u
-        return np.where(self.active, -u * v / (2.0 * h) * (p * u + q * v), 0.0)
+        return np.where(self.active, (p + q) * h * h / 24.0 - u * v / (2.0 * h) * (p * u + q * v), 0.0)
 
     @property
     def bend(self) -> Array:
@@ -72,13 +74,10 @@ class Missed:
 
     @property
     def integral(self) -> Array:
-        """∫ γ ds from the kink (k,), units of length."""
-        p, q, size = self.before, self.behind, self.size
-        start = _integral(self.place, size, p, q)
-        # over the whole element between this one and the kink's border
-        behind, ahead = _integral(size, size, p, q), -_integral(self.h, self.h, p, q)
-        between = np.where(self.side > 0.0, behind, np.where(self.side < 0.0, ahead, 0.0))
-        return np.where(self.active, between + _integral(self.u, self.h, p, q) - start, 0.0)
+        """Γ (k,), units of length, nought at both borders of the element."""
+        u, h, p, q = self.u, self.h, self.before, self.behind
+        bent = p * u**3 * (h / 3.0 - u / 4.0) + q * u**2 * (h * h / 2.0 - 2.0 * h * u / 3.0 + u * u / 4.0)
+        return np.where(self.active, (p + q) * h * h / 24.0 * u - bent / (2.0 * h), 0.0)
 
 
 def missed(chain: Chain, kinks: Kinks, s: Array) -> Missed:
@@ -135,20 +134,29 @@ def within(chain: Chain, places: Array) -> Flags:
 
 
 def kinks_at(chain: Chain, state: State, places: Array) -> Kinks:
-    """The kinks of ``chain`` at arc lengths ``places`` (k,) in a state, slopes nought where springs are too few."""
-    element = _element(chain, places)
-    seen = (element >= SPRINGS) & (element < chain.n - SPRINGS)
+    """The kinks of ``chain`` at arc lengths ``places`` (k,) in a state, slopes nought where springs are too few.
+
+    Two springs on one side tell the slope there, and so do the nearer of them and the pressed one less what the other
+    side has bent of it.  From one border of the pressed element to the other the slope goes from the first to the
+    second, so that it is continuous as the place goes on.
+    """
+    e = _element(chain, places)
+    seen = (e >= SPRINGS) & (e < chain.n - SPRINGS)
+    e = np.where(seen, e, SPRINGS if chain.n > 2 * SPRINGS else 0)
+    nothing = np.zeros(len(places))
+    if chain.n <= 2 * SPRINGS:
+        return Kinks(places, nothing, nothing)
     kappa = (np.diff(state.theta[chain.links]) - np.diff(chain.rest)) / chain.sizes
-    springs = chain.s[1:-1]
-
-    def slope(one: int, other: int) -> Array:
-        i, j = np.where(seen, element + one, 0), np.where(seen, element + other, 1)
-        return np.where(seen, (kappa[j] - kappa[i]) / (springs[j] - springs[i]), 0.0)
-
-    return Kinks(places, slope(-2, -1), slope(1, 2))
-
-
-def slight(chain: Chain, kinks: Kinks) -> bool:
-    """Whether γ at the places is next to nothing, as at a border or by symmetry in an element's middle."""
-    size = chain.sizes[_element(chain, kinks.places)]
-    return bool(np.all(np.abs(missed(chain, kinks, kinks.places).angle) <= SLIGHT * size**2 * kinks.largest))
+    springs, h = chain.s[1:-1], chain.sizes[e]
+    u = np.clip(places - chain.borders[e], 0.0, h)
+    far_p = (kappa[e - 1] - kappa[e - 2]) / (springs[e - 1] - springs[e - 2])
+    far_q = (kappa[e + 2] - kappa[e + 1]) / (springs[e + 2] - springs[e + 1])
+    bent = (far_q - far_p) / (2.0 * h)
+    near_p = (kappa[e] - bent * (h - u) ** 2 - kappa[e - 1]) / (springs[e] - springs[e - 1])
+    near_q = (kappa[e + 1] - kappa[e] + bent * u**2) / (springs[e + 1] - springs[e])
+    f = u / h
+    return Kinks(
+        places,
+        np.where(seen, far_p + f * (near_p - far_p), 0.0),
+        np.where(seen, near_q + f * (far_q - near_q), 0.0),
+    )

@@ -30,10 +30,11 @@ from cprbm.settings import Settings
 from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAnswer
 
 AGAIN = 12  # iterations on a mesh that fits a little better
-FITS = 6  # of the mesh to where contact is, at most
+FITS = 5  # of the mesh to where contact is, at most
+STRAIGHT = 2  # of them before two that take turns are eased
 BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is no doubt that it has ended
 ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all branches are near
-FURTHER = 30.0  # times as far before it, a finer mesh is on the branch still
+FURTHER = 30.0  # times as far before it, the fitted mesh is on the branch still
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
 
 
@@ -49,6 +50,8 @@ class March:
         problem = mechanism.problem
         closed = np.zeros(problem.closure.rows)
         rest = point_at(problem, {}, rest_state(problem.model), closed, np.zeros(0), NO_ROWS)
+        # the march's own mesh, of even elements
+        self.whole = mechanism
         self.on = Follower(mechanism, family[0], rest, {}, [])
         self.reached: list[StationAnswer] = []
         self.events: list[Event] = []
@@ -81,7 +84,6 @@ class March:
 
     def _reach(self, stage: Stage, target: float) -> Reached:
         """Go to a station, from branch to branch where one ends."""
-        on = self.on
 
         def accept(point: Point, values: dict[str, float]) -> None:
             if self.opened:
@@ -91,15 +93,50 @@ class March:
                     opened.append((values[stage.steps], point))
 
         while True:
-            reached = on.go(to(stage.steps, on.values, target), accept)
-            if reached.certificate is not None:
-                return reached
-            end = branch_end(on.mechanism, on.trail, on.refused)
+            reached = self.on.go(to(stage.steps, self.on.values, target), accept)
+            end = self._end(reached)
             if end is None:
                 return reached
-            landed, reached = self._ended(stage, target, self._sharpened(stage.steps, end))
-            if landed is None or on.values[stage.steps] == target:
+            finer = self._finer(stage.steps, end)
+            if finer is not None:
+                again = finer.go(to(stage.steps, finer.values, target), accept)
+                if again.certificate is not None:
+                    self.on = finer
+                    return again
+                sharper = branch_end(finer.mechanism, finer.trail, finer.refused)
+                if sharper is not None:
+                    self.on, end = finer, sharper
+            landed, reached = self._ended(stage, target, end)
+            if landed is None or self.on.values[stage.steps] == target:
                 return reached
+
+    def _end(self, reached: Reached) -> BranchEnd | None:
+        """Where the branch ends, if that is why a way has no certificate at its end."""
+        on = self.on
+        return branch_end(on.mechanism, on.trail, on.refused) if reached.certificate is None else None
+
+    def _finer(self, load: str, end: BranchEnd) -> Follower | None:
+        """From a little before the end, the same branch on the mesh that was asked, fitted to where contact is then.
+
+        None where this is that mesh already, or the branch is not found on it.
+        """
+        on = self.on
+        if on.mechanism is not self.whole:
+            return None
+        width = abs(on.refused - on.trail[-1].value) + abs(end.value - on.trail[-1].value)
+        for start in reversed(on.trail):
+            if abs(end.value - start.value) < FURTHER * width:
+                continue
+            values = {**on.values, load: start.value}
+            found = self._fitted(start.point, values, start.certificate)
+            if found is None:
+                continue
+            mechanism, point, certificate = found
+            if mechanism is on.mechanism:
+                return None
+            stood = Minimum(start.value, point, certificate)
+            return Follower(mechanism, self.family[-1], point, values, [stood], careful=on.careful)
+        return None
 
     def _ended(self, stage: Stage, target: float, end: BranchEnd) -> tuple[Landed | None, Reached]:
         """Note that the branch ends, and leap from there if the stage goes on, to what is the present state then."""
@@ -108,7 +145,6 @@ class March:
         before, after = potential_energy(problem, on.point) * problem.model.unit_moment, None
         landed, reached = None, Reached(Ending.BRANCH_ENDS, of, certificate=None)
         if stage.beyond == "jump":
-            # beyond the end on this mesh and on the one that was asked
             ends = (end.value, on.refused)
             furthest = max(ends) if target > on.trail[-1].value else min(ends)
             step = max(BEYOND * abs(on.refused - on.trail[-1].value), ONWARD * abs(target - furthest))
@@ -117,10 +153,9 @@ class March:
             landed = leap(on.mechanism, on.settings, values, on.point, end.direction)
             reached = Reached(Ending.STEP_TOO_SMALL, f"no minimum found to which {of} leads", certificate=None)
         if landed is not None:
-            on.point, on.values = landed.point, values
-            on.trail = [Minimum(value, landed.point, landed.certificate)]
-            after = potential_energy(problem, on.point) * problem.model.unit_moment
+            after = potential_energy(problem, landed.point) * problem.model.unit_moment
             reached = Reached(Ending.COMPLETED, "", landed.certificate)
+            self.on = self._evened(Minimum(value, landed.point, landed.certificate), values)
         self.critical.append(
             Critical(
                 stage=stage.name,
@@ -136,42 +171,33 @@ class March:
         )
         return landed, reached
 
-    def _sharpened(self, load: str, end: BranchEnd) -> BranchEnd:
-        """The same end on the mesh that was asked, fitted to where contact is then; as it is where that fails."""
-        on, asked = self.on, self.family[-1]
-        width = abs(on.refused - on.trail[-1].value) + abs(end.value - on.trail[-1].value)
-        for start in reversed(on.trail):
-            ahead = end.value - start.value
-            if abs(ahead) < FURTHER * width:
-                continue
-            values = {**on.values, load: start.value}
-            found = self._fitted(start.point, values, start.certificate)
-            if found is None:
-                continue
-            mechanism, point, certificate = found
-            if mechanism is on.mechanism:
-                return end
-            stood = Minimum(start.value, point, certificate)
-            finer = Follower(mechanism, asked, point, values, [stood], careful=on.careful)
-            finer.go(to(load, values, end.value + ahead), _unseen)
-            sharper = branch_end(mechanism, finer.trail, finer.refused)
-            if sharper is not None and (sharper.loss, sharper.what) == (end.loss, end.what):
-                return sharper
-        return end
+    def _evened(self, landed: Minimum, values: dict[str, float]) -> Follower:
+        """From where a leap has landed, on the mesh of the march again, unless that has no such minimum."""
+        on, settings = self.on, self.family[0]
+        careful = on.careful
+        if on.mechanism is not self.whole:
+            start = carried_over(on.mechanism, landed.point, self.whole, values)
+            found = equilibrium(self.whole.problem, values, start, settings.tolerance, settings.iterations, settle=True)
+            certificate, ending = certify(self.whole, settings, found)
+            turned = float(np.max(np.abs(found.point.state.theta - start.state.theta)))
+            if ending is Ending.COMPLETED and turned <= FOLLOWED:
+                stood = Minimum(landed.value, found.point, certificate)
+                return Follower(self.whole, settings, found.point, values, [stood], careful=careful)
+        return Follower(on.mechanism, on.settings, landed.point, values, [landed], careful=careful)
 
     def _assemble(self) -> tuple[Ending, str]:
         """Bring the beams' ends to their points; the Ending and its sentence."""
-        on, whole = self.on, self.on.mechanism
+        on = self.on
         for begun in (freed, brought, released, formulated):
-            part = begun(self.scene, whole, on.point)
+            part = begun(self.scene, self.whole, on.point)
             on.mechanism, on.point, on.trail, on.careful = part.mechanism, part.start, [], True
             reached = on.go(Way("", part.begin, part.target), _unseen)
             if reached.certificate is None:
-                end = branch_end(on.mechanism, on.trail, on.refused)
+                end = self._end(reached)
                 ending = reached.ending if end is None else Ending.BRANCH_ENDS
                 sentence = reached.sentence if end is None else told(end.loss, end.what)
                 return ending, f"{ending.value}: as {part.sentence}, {sentence}"
-        on.mechanism, on.values = whole, {}
+        on.mechanism, on.values = self.whole, {}
         self.closed_at |= {name: 0.0 for name in self.asked_events if _presses(on.point, name)}
         return Ending.COMPLETED, ""
 
@@ -201,11 +227,11 @@ class March:
         """A state on the branch on the mesh that was asked, its borders where zones of contact end."""
         mechanism, iterations = self.on.mechanism, certificate.iterations
         asked, now = self.family[-1], self.on.settings
-        for settings in (*self.family[1:-1], *[asked] * FITS):
+        for turn, settings in enumerate((*self.family[1:-1], *[asked] * FITS)):
             zones = all_zones(mechanism, point)
             if settings is not asked and not long_ones(zones):
                 continue  # a few places need no mesh between the coarsest and the finest
-            fit = fitted(mechanism, point, zones, settings)
+            fit = fitted(mechanism, point, zones, settings, eased=turn > len(self.family) + STRAIGHT)
             if settings is now and fits(mechanism, fit):
                 break
             target = mechanism_of(self.scene, settings, fit)
@@ -270,7 +296,7 @@ class March:
     @cached_property
     def asked(self) -> Mechanism:
         """The scene on even elements of the mesh that was asked."""
-        return self.on.mechanism if len(self.family) == 1 else mechanism_of(self.scene, self.family[-1])
+        return self.whole if len(self.family) == 1 else mechanism_of(self.scene, self.family[-1])
 
 
 def _unseen(point: Point, values: dict[str, float]) -> None:

@@ -363,7 +363,7 @@ class Pair:
         second = 0.5 * (second + np.swapaxes(second, 1, 2))  # γ leaves a part of its own size uneven
 
         return Touches(
-            values=self.offset - self.side * (distance + np.where(free, gained, 0.0)),
+            values=self.offset - self.side * (distance + gained),
             slopes=-self.side * n_r,
             second=-self.side * second,
             links=np.stack((A.link, B.link)),

@@ -26,7 +26,7 @@ import numpy as np
 from cprbm.contact import Rows
 from cprbm.equilibrium import Point, point_at
 from cprbm.kinematics import State, positions
-from cprbm.kinks import kinks_at, slight, within
+from cprbm.kinks import kinks_at, within
 from cprbm.mechanism import Mechanism
 from cprbm.model import Chain, Fit, Kinks
 from cprbm.settings import Settings
@@ -42,7 +42,7 @@ SHARE = 4  # a span between marks has one of so many of the beam's elements at l
 BEYOND = 16  # one of so many of the beam's elements follow on a place in the size of the finer ones beside it
 FIXED = 0.75  # of a beam's elements, the most that such shares may take
 SHORTEST = 0.1  # elements: marks closer than this leave the elements even
-BENT = 0.05  # of the largest slope of a curvature beside a place: slopes that differ by less are the same
+BENT = 1e-6  # of the largest slope of a curvature beside a place: slopes that differ by less are the same
 MOVED = 0.02  # elements: ends that have moved less since the mesh was made are where the mesh has them
 
 
@@ -91,8 +91,18 @@ def ends_of(mechanism: Mechanism, zones: Mapping[str, tuple[Zone, ...]]) -> dict
     return ends
 
 
-def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]], settings: Settings) -> Fit:
-    """Elements that end where contacts do, even between; where these are much closer than that, even ones."""
+def fitted(
+    mechanism: Mechanism,
+    point: Point,
+    zones: Mapping[str, tuple[Zone, ...]],
+    settings: Settings,
+    *,
+    eased: bool = False,
+) -> Fit:
+    """Elements that end where contacts do, even between; where these are much closer than that, even ones.
+
+    ``eased`` lets kinks go half of the way only to what they are in this state.
+    """
     ends = ends_of(mechanism, zones)
     borders: dict[str, Array] = {}
     kept: dict[str, Array] = {}
@@ -117,10 +127,12 @@ def fitted(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
             numbers, places = _surrounded(numbers, places, n / BEYOND)
         borders[chain.name] = np.interp(np.arange(n + 1), numbers, places)
         kept |= {name: ends[name] for name in names}
-    return Fit(borders, kept, _kinks(mechanism, point, zones))
+    return Fit(borders, kept, _kinks(mechanism, point, zones, eased=eased))
 
 
-def _kinks(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]]) -> dict[str, tuple[Kinks, ...]]:
+def _kinks(
+    mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]], *, eased: bool
+) -> dict[str, tuple[Kinks, ...]]:
     """Those of the contacts in points, of their first beam and of their second; none where a beam's end presses."""
     found = {}
     for name, mine in zones.items():
@@ -138,12 +150,7 @@ def _kinks(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, .
                 kinks_at(chain, point.state, arc[inner]) for chain, arc in zip(pair.chains, places, strict=True)
             )
             made = mechanism.fit.kinks.get(name)
-            # two joints that share the force of a place are told that it is one
-            shared = any(zone.begin < zone.end for zone in mine)
-            little = all(slight(chain, kinks) for chain, kinks in zip(pair.chains, now, strict=True))
-            if made is None and little and not shared:
-                continue
-            found[name] = now if made is None else tuple(map(Kinks.eased, now, made))
+            found[name] = tuple(map(Kinks.eased, now, made)) if eased and made is not None else now
     return found
 
 

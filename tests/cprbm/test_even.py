@@ -125,17 +125,24 @@ def bent_by_two_moments(places, place, p, q, kappa):
 
 @pytest.mark.parametrize("part", [0.0, 0.2, 0.5, 0.9])
 def test_what_is_missed_of_the_tangent_is_what_a_broken_line_of_curvature_says(part):
-    # the reference is the integral of that line, exact at the elements' borders
+    # the reference is the integral of that line, exact at the elements' borders, less its mean over all places
+    # that the corner may have, by Gauss's rule of three points
     chain = build(cantilever(force(0.0, -1.0), [1.0]), cprbm.Settings(links=10)).chains[0]
     place, p, q, kappa = chain.borders[5] + part * chain.sizes[5], 2.3, -1.7, 0.9
     theta = bent_by_two_moments(chain.borders, place, p, q, kappa)
     kinks = kinks_at(chain, State(chain.rest + theta, np.zeros((1, 3))), np.array([place]))
     assert kinks.before == pytest.approx([p])
     assert kinks.behind == pytest.approx([q])
-    within = (place - chain.borders[5]) / chain.sizes[5]
-    even = theta[5] + within * (theta[6] - theta[5])
-    true = bent_by_two_moments(place, place, p, q, kappa)
-    assert missed(chain, kinks, np.array([place])).angle == pytest.approx([true - even], abs=1e-14)
+
+    def beyond(part):
+        corner = chain.borders[5] + part * chain.sizes[5]
+        first, last = bent_by_two_moments(chain.borders[5:7], corner, p, q, kappa)
+        return bent_by_two_moments(corner, corner, p, q, kappa) - (first + part * (last - first))
+
+    mean = np.mean(
+        [beyond(part) for part in (0.5 - np.sqrt(0.15), 0.5, 0.5 + np.sqrt(0.15))] * np.array([5.0, 8.0, 5.0]) / 6.0
+    )
+    assert missed(chain, kinks, np.array([place])).angle == pytest.approx([beyond(part) - mean], abs=1e-14)
 
 
 def test_bend_and_integral_of_what_is_missed_are_its_own():
