@@ -44,7 +44,8 @@ def test_what_is_not_spoilt_is_certified(mechanism, good):
     assert judged(mechanism, good) == ("", Ending.COMPLETED)
     stage = {"name": "load", "steps": "M", "stations": [MOMENT]}
     (station,) = cprbm.answer(hinge(stages=[stage]), SETTINGS).stations
-    assert station.certificate.iterations == good.iterations
+    # on the mesh fitted to where the contact is, some more
+    assert station.certificate.iterations >= good.iterations
 
 
 @pytest.mark.parametrize("value", [1e-9, float("nan")])

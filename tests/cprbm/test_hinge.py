@@ -101,12 +101,14 @@ def test_paper_degree_is_lowered_to_the_points():
 
 
 def test_paper_joint_beyond_the_boundary_ends_by_name():
-    answer = cprbm.answer(
-        hinge(stages=[{"name": "load", "steps": "M", "stations": [0.67, 5.0]}]),
-        cprbm.Settings(formulation="paper"),
-    )
+    # beam 2's boundary begins beside the middle, where beam 1 comes to press
+    data = hinge_data()
+    related = {"beam1": {"x": [0.0198, 0.0322]}, "beam2": {"x": [0.0268, 0.0322]}}
+    data["contacts"]["contact"]["paper"]["related"] = related
+    data |= {"claims": [], "stages": [{"name": "load", "steps": "M", "stations": [0.2, 0.67]}]}
+    answer = cprbm.answer(scene_from(data), cprbm.Settings(formulation="paper"))
     assert answer.ending is Ending.LEFT_BOUNDARY
-    assert [station.value for station in answer.stations] == [0.67]
+    assert [station.value for station in answer.stations] == [0.2]
 
 
 @pytest.mark.parametrize("formulation", ["auto", "paper"])
