@@ -45,7 +45,7 @@ from tests.together.planted import remembered, stiffer, without_contact
 
 CHOICES = Choices(links=40, elements=20, kinematics="bending")
 FIRST_LOOK = Choices(links=14)
-ROUGH = Choices(links=16, elements=16, kinematics="bending")
+ROUGH = Choices(links=16, elements=18, kinematics="bending")
 SOME = 0.25  # of a contact's largest force
 REAL: dict[str, Solver] = {"cprbm": cprbm_answer, "fea": fea_answer}
 SIGNED = ("displacement", "rotation", "bending_stress", "reaction", "reaction_moment", "potential_energy")
