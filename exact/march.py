@@ -79,7 +79,11 @@ def _covered(scene: Scene) -> None:
         NotCoveredError: the scene has stops, an assembly or a body on a pivot.
     """
     pivots = any(isinstance(body, TurningBody) for body in scene.bodies.values())
-    for what, there in (("stops", scene.stops), ("assembly", scene.assembly is not None), ("bodies on pivots", pivots)):
+    for what, there in (
+        ("stops", scene.stops),
+        ("assembly", scene.assembly is not None),
+        ("bodies on pivots", pivots),
+    ):
         if there:
             raise NotCoveredError(f"there are no equations for {what} here")
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from fea_reference.curvature import smallest_curvature
 from fea_reference.march import March
-from fea_reference.model import Model
+from fea_reference.model import BeamLoadPart, Model
 from fea_reference.stops import acting_stops
 from fea_reference.supports import held, support
 from fea_reference.system import System, assemble
@@ -112,6 +112,8 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float]
         if stop.phi is None:
             moments.append(stop.moment(z))
     for part, value in zip(model.loads, values[: len(model.loads)], strict=True):
+        if isinstance(part, BeamLoadPart):
+            continue
         body = model.bodies[part.body]
         if part.direction is None:
             moments.append(float(value))
@@ -119,6 +121,9 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float]
             forces.append(value * part.direction)
             at = model.carried(body, part.arm, z)
             moments.append(float(at[0] * forces[-1][1] - at[1] * forces[-1][0]))
+    for load in system.loads:
+        forces.append(load.force.sum(axis=1))
+        moments.append(load.moment)
     for one in system.touches:
         if isinstance(one.pair, Circle) and model.bodies[one.pair.body].dofs is None:
             forces.append(one.force.sum(axis=1))
