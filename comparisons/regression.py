@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from comparisons import thinning
 from comparisons.choices import Choices
 from comparisons.criticals import mechanism
 from comparisons.documents import Plain, plain, text
@@ -21,7 +22,7 @@ from comparisons.pairing import Solvers
 from comparisons.soundness import complaints
 from comparisons.stations import station_of
 from comparisons.writing import write
-from scene import Answer, Probe, Scene, Stage
+from scene import Answer, Probe, Scene
 from scene.answer import Array
 
 TOLERANCE = 1e-6
@@ -106,24 +107,17 @@ def accept(file: Path, found: Plain, *, date: str, reason: str) -> None:
 def _shortened(scene: Scene) -> Scene:
     """The scene without those stations of its long stages that are not kept."""
     stages = tuple(
-        stage.model_copy(update={"stations": _stations(stage)}) if len(stage.stations) > MANY else stage
+        stage.model_copy(update={"stations": thinning.kept(stage)}) if len(stage.stations) > MANY else stage
         for stage in scene.stages
     )
     return scene.model_copy(update={"stages": stages})
-
-
-def _stations(stage: Stage) -> tuple[float, ...]:
-    """Those that are kept, in their order: what is shown, or else the middle one, and the last."""
-    middle = len(stage.stations) // 2
-    kept = {*(stage.shown or stage.stations[middle : middle + 1]), stage.stations[-1]}
-    return tuple(value for value in stage.stations if value in kept)
 
 
 def _kept(scene: Scene, answer: Answer) -> dict[str, dict[str, list[float]]]:
     """By probe and station the values of the stations that are kept of every stage, and the critical values."""
     kept: dict[str, dict[str, list[float]]] = {probe.name: {} for probe in scene.probes}
     for stage in scene.stages:
-        for value in _stations(stage):
+        for value in thinning.kept(stage):
             station = station_of(answer, stage.name, value)
             for probe in scene.probes:
                 kept[probe.name][f"{stage.name} {value:g}"] = _thinned(probe, station.values[probe.name]).tolist()
