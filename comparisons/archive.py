@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import math
+from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
@@ -12,6 +14,11 @@ from frozendict import frozendict
 from comparisons.documents import Plain, plain
 from scene import Answer, Certificate, Critical, Ending, Event, Loss, Shape, StationAnswer
 from scene.answer import Array, frozen_array
+
+
+def text(answers: Mapping[str, Answer]) -> str:
+    """Answers by name as JSON in one line: there are too many numbers for a line each."""
+    return json.dumps({name: packed(answer) for name, answer in answers.items()}, ensure_ascii=False, allow_nan=False)
 
 
 def packed(answer: Answer) -> Plain:

@@ -7,13 +7,19 @@ v_c     the CPRBM's critical value at N links, v_f the finite elements' in the c
 v_b     the finite elements' in ``bending``
 U, U_b  what may lie between v_c and v_f, and between v_c and v_b: as of every row (:mod:`comparisons.measures`), by
         the same runs; r is what following a branch leaves open of a value on its discretisation
+θ       the theory's part of U, |v_b − v_f|
 T       what the stage asks, or else 0.3 degrees of a rotation and 1 % of the stage's span of anything else
+W       the scene's ``verdict_limit`` as a share of the stage's span
 ======  =======================================================================================================
 
     DIFFER     one of the two has no such critical value, or another mechanism of losing stability, or
-               |v_c − v_f| > max(T, U) or |v_c − v_b| > max(T, U_b)
-    UNDECIDED  the runs of one solver do not all have it, or not by one mechanism; or max(U, U_b) > T
+               |v_c − v_b| > max(T, U_b)
+    UNDECIDED  the runs of one solver do not all have it, or not by one mechanism; or max(U − θ, U_b) > T; or
+               U > max(T, W)
     AGREE      otherwise
+
+T is asked of the solvers, within one theory: |v_c − v_f| is then no more than that and θ, which is told beside it and
+which W keeps from excusing much.
 
 The first critical value of a stage is held against the first of the other answers, the second against the second.
 What a state releases in a jump is told and has no part in it: the rows of the next branch are judged by themselves.
@@ -51,6 +57,7 @@ class CriticalRow:
         cprbm, fea: the two solvers'; None where one has none.
         span: of the stage.
         allowed: T.
+        largest: W.
         steady: whether the runs of either solver are of one mind: all have it by one mechanism, or none has it.
         difference: |v_c − v_f|, NaN where one is missing.
         same_theory: |v_c − v_b|, NaN where one is missing.
@@ -64,6 +71,7 @@ class CriticalRow:
     fea: Critical | None
     span: float
     allowed: float
+    largest: float
     steady: bool
     difference: float = math.nan
     same_theory: float = math.nan
@@ -83,15 +91,15 @@ class CriticalRow:
             return self.steady
         if self.bounds is None:
             return False
-        within = self.difference <= max(self.allowed, self.bounds.total)
-        return not (within and self.same_theory <= max(self.allowed, self.bounds.same_theory))
+        return self.same_theory > max(self.allowed, self.bounds.same_theory)
 
     @property
     def tellable(self) -> bool:
         """Whether what may lie between the values is small enough to have them agree."""
         if not self.steady or self.bounds is None:
             return False
-        return max(self.bounds.total, self.bounds.same_theory) <= self.allowed
+        own = max(self.bounds.total - self.bounds.theory, self.bounds.same_theory)
+        return own <= self.allowed and self.bounds.total <= max(self.allowed, self.largest)
 
     @property
     def station(self) -> float:
@@ -140,6 +148,7 @@ def _row(scene: Scene, runs: Runs, stage: Stage, place: int, here: Mapping[str, 
         fea=here[chosen],
         span=span,
         allowed=stage.critical_limit or (TURN if turns(scene, stage) else SHARE * span),
+        largest=scene.verdict_limit * span,
         steady=len(of_cprbm) == len(of_fea) == 1,
     )
     present = {name: each for name, each in here.items() if each is not None}

@@ -222,7 +222,8 @@ def plain(value: object) -> Any:  # noqa: ANN401 - whatever JSON holds
         case list() | tuple():
             return [plain(item) for item in value]
         case np.ndarray():
-            return plain(value.tolist())
+            whole = value.dtype.kind != "f" or bool(np.isfinite(value).all())
+            return value.tolist() if whole else plain(value.tolist())
         case bool() | int() | str() | None:
             return value
         case float() | np.floating():
@@ -322,7 +323,10 @@ def _reaction(found: Reaction) -> Plain:
         "multiplier": found.multiplier,
         "work_energy": found.work_energy,
         "difference": found.difference,
+        "allowed": found.within,
         "round_off": found.floor / found.scale if found.scale > 0.0 else None,
+        "truncation": found.truncation / found.scale if found.scale > 0.0 else None,
+        "energies": "of the stations" if found.dense else "beside the stations",
         "fea": found.fea,
         "difference_fea": found.from_fea,
         "changes_nearby": list(found.changes),

@@ -241,6 +241,10 @@ def canvas(width: float, height: float) -> Iterator[Figure]:
 def picture(figure: Figure, name: str, caption: str) -> Picture:
     """A figure drawn to the end."""
     svg, png = io.BytesIO(), io.BytesIO()
+    layout = figure.get_layout_engine()
+    if layout is not None:  # made once, it serves both
+        layout.execute(figure)
+        figure.set_layout_engine("none")
     figure.savefig(svg, format="svg", metadata={"Date": None})
     figure.savefig(png, format="png", metadata={"Software": None})
     return Picture(name, caption, svg.getvalue(), png.getvalue())

@@ -85,15 +85,15 @@ def points(curve: Curve, s: Array) -> Array:
             assert_never(curve)
 
 
-def nearest(shape: Shape, place: Array) -> float:
-    """Arc length, m, of the point of a deformed neutral line, taken as a polyline, nearest to ``place``."""
+def nearest(shape: Shape, places: Array) -> Array:
+    """Arc lengths (k,), m, of the points of a deformed neutral line, a polyline, nearest to ``places`` (k, 2), m."""
     start = np.stack([shape.x[:-1], shape.y[:-1]], axis=1)
     step = np.stack([np.diff(shape.x), np.diff(shape.y)], axis=1)
     square = np.maximum(np.sum(step**2, axis=1), np.finfo(float).tiny)
-    share = np.clip(np.sum((place - start) * step, axis=1) / square, 0.0, 1.0)
-    distance = np.hypot(*(start + share[:, None] * step - place).T)
-    best = int(np.argmin(distance))
-    return float(shape.s[best] + share[best] * (shape.s[best + 1] - shape.s[best]))
+    way = np.reshape(places, (-1, 1, 2)) - start
+    share = np.clip(np.sum(way * step, axis=2) / square, 0.0, 1.0)
+    best = np.argmin(np.sum((way - share[..., None] * step) ** 2, axis=2), axis=1)
+    return np.asarray(shape.s[best] + share[np.arange(len(best)), best] * (shape.s[best + 1] - shape.s[best]))
 
 
 def _turn(arc: Arc) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 from frozendict import frozendict
 
@@ -41,8 +42,12 @@ class Remembering(Crew):
         if new:
             self.say("; ".join(dict.fromkeys(self._told(job) for job in new.values())))
             # not super(), which a class with slots does not know
-            self.known.update(zip(new, Crew.answers(self, list(new.values())), strict=True))
+            self.known.update(zip(new, Crew.begin(self, list(new.values()))(), strict=True))
         return [self.known[key] for key in keys]
+
+    def begin(self, jobs: list[Job]) -> Callable[[], list[Answer]]:
+        """As of any crew; nothing is done before the answers are asked for, since what is known changes till then."""
+        return partial(self.answers, jobs)
 
     def sizes(self, solver: Solver, scene: Scene) -> tuple[int, ...]:
         """Every number of links or elements at which a solver has answered a scene, ascending."""

@@ -12,15 +12,28 @@ At every station the drive goes to d1, to d2 and then to d, so that what follows
 stage, which finds the drive where this one has left it) goes on from where the scene itself would.  Whether d1 of one
 station lies before d2 of the last does not matter: an equilibrium without friction does not know from which side it
 was reached.  A station at zero has no d1 and d2; a load's stations are as they are.
+
+Where a scene asks for the potential energy itself, and a stage's own stations are close together, nothing needs to be
+run beside it: the energies at the stations tell their derivative (:mod:`comparisons.slopes`).
 """
 
 from __future__ import annotations
 
+from itertools import pairwise
+
+from comparisons.branches import span_of
+from comparisons.slopes import MOST
 from scene import Drive, Probe, Scene, Stage
 from scene.statement import DisplacementDrive
 
 RHO = 2e-3
 """ρ of section 2.4 of the paper."""
+
+CLOSE = 0.02
+"""Largest distance of neighbouring stations, a share of the stage's span, from which a derivative is taken.
+
+The rate of an energy that goes through a whole wave in the stage is then off by less than 1e-7 of its largest.
+"""
 
 ENERGY = Probe(of="scene", quantity="potential_energy")
 
@@ -39,6 +52,18 @@ def is_asked(scene: Scene, stage: Stage) -> bool:
     return reaction_of(scene.drives[stage.steps]).name in {probe.name for probe in scene.probes}
 
 
+def is_dense(scene: Scene, stage: Stage) -> bool:
+    """Whether the energies at a stage's own stations are asked for, and the stations close enough together."""
+    asked = ENERGY.name in {probe.name for probe in scene.probes}
+    apart = max((abs(b - a) for a, b in pairwise(stage.stations)), default=0.0)
+    return asked and len(stage.stations) >= MOST and apart <= CLOSE * span_of(scene, stage)
+
+
+def needs_more(scene: Scene, stage: Stage) -> bool:
+    """Whether a stage steps a drive whose reaction is asked for, and its own stations do not tell the energy's rate."""
+    return is_asked(scene, stage) and not is_dense(scene, stage)
+
+
 def visited(d: float) -> tuple[float, ...]:
     """The values of a drive that are gone to at a station d, the last of them d."""
     return (d * (1.0 - RHO), d * (1.0 + RHO), d) if d != 0.0 else (d,)
@@ -47,13 +72,13 @@ def visited(d: float) -> tuple[float, ...]:
 def nearby(scene: Scene) -> Scene | None:
     """The scene with d1 and d2 beside every station d of a drive, and the energy for its only probe.
 
-    None where no stage steps a drive whose reaction is asked for.
+    Stages that tell it by themselves keep their stations; None where no other steps a drive whose reaction is asked.
     """
-    if not any(is_asked(scene, stage) for stage in scene.stages):
+    if not any(needs_more(scene, stage) for stage in scene.stages):
         return None
     stages = tuple(
         stage.model_copy(update={"stations": tuple(value for d in stage.stations for value in visited(d))})
-        if is_asked(scene, stage)
+        if needs_more(scene, stage)
         else stage
         for stage in scene.stages
     )

@@ -7,12 +7,14 @@ the CPRBM's own; and at n in the theory between the two, if there is one, so tha
 can be split.
 
 Where ``auto`` was chosen and every contact of two beams says what ``paper`` must be told, that is run at N as well.
-It shows what the contact's formulation makes of the answer and takes no part in the verdict.
+It shows what the contact's formulation makes of the answer and takes no part in the verdict.  Not where the ends of
+branches are asked for: with another contact a branch ends elsewhere, and answers on two branches show nothing of it.
 
 Where an exact answer is known (in ``bending`` only), it stands beside both at the stations that it covers.
 
-Where a drive's reaction is asked, the CPRBM runs at N once more with two stations close round each of the scene's
-(:mod:`comparisons.nearby`): the reaction by the energies' difference, which takes no part in the verdict either.
+Where a drive's reaction is asked, and the scene's own stations are too far apart to tell it, the CPRBM runs at N once
+more with two stations close round each of them (:mod:`comparisons.nearby`): the reaction by the energies' difference,
+which takes no part in the verdict either.
 """
 
 from __future__ import annotations
@@ -189,25 +191,40 @@ class Crew:
         Raises:
             SceneError: a solver refuses one.
         """
+        return self.begin(jobs)()
+
+    def begin(self, jobs: list[Job]) -> Callable[[], list[Answer]]:
+        """Have the processes begin with some jobs, behind those that were begun before; called, the result waits.
+
+        What it then gives and raises is as of :meth:`answers`.  Without a pool nothing is done before.
+        """
         if self.pool is None:
-            return [solver(scene, choices) for solver, scene, choices in jobs]
+            return lambda: [solver(scene, choices) for solver, scene, choices in jobs]
         # The finest runs take longest, and they stand last: handed out first, they leave no worker idle.
         with _workers_deaf_at_first():
-            futures: dict[Future[Answer | tuple[Mistake, ...]], int] = {
+            futures: dict[_Pending, int] = {
                 self.pool.submit(_job, solver, scene, choices): place
                 for place, (solver, scene, choices) in reversed(list(enumerate(jobs)))
             }
-        answers: dict[int, Answer] = {}
-        try:
-            for future in as_completed(futures):
-                result = future.result()
-                if isinstance(result, tuple):
-                    raise SceneError(result)
-                answers[futures[future]] = result
-        finally:
-            for future in futures:
-                future.cancel()
-        return [answers[place] for place in range(len(jobs))]
+        return lambda: _awaited(futures)
+
+
+_Pending = Future[Answer | tuple[Mistake, ...]]
+
+
+def _awaited(futures: Mapping[_Pending, int]) -> list[Answer]:
+    """The answers by their places; the first refusal ends the rest."""
+    answers: dict[int, Answer] = {}
+    try:
+        for future in as_completed(futures):
+            result = future.result()
+            if isinstance(result, tuple):
+                raise SceneError(result)
+            answers[futures[future]] = result
+    finally:
+        for future in futures:
+            future.cancel()
+    return [answers[place] for place in range(len(futures))]
 
 
 ALONE = Crew()
@@ -238,6 +255,17 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE)
     Raises:
         SceneError: a solver refuses the question.
     """
+    return begin(scene, choices, solvers, crew)()
+
+
+def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew) -> Callable[[], Runs]:
+    """Have the crew begin with the runs of a scene; called, the result waits for them.
+
+    The arguments, and what it then raises, are those of :func:`paired`.
+
+    Raises:
+        SceneError: the choices do not fit the scene.
+    """
     check(choices, scene)
     even = replace(choices, formulation="auto")
     extra = [] if even == choices else [(solvers.cprbm, scene, even)]
@@ -256,22 +284,27 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE)
     behind = len(jobs)
     if solvers.exact is not None:
         jobs.append((solvers.exact, scene, choices))
-    answers = crew.answers(jobs)
-    exact = answers[behind] if solvers.exact is not None else None
-    fea: dict[Kinematics, tuple[Answer, ...]] = {}
-    for (kinematics, _), answer in zip(places, answers[first:behind], strict=True):
-        fea[kinematics] = (*fea.get(kinematics, ()), answer)
-    return Runs(
-        choices.kinematics,
-        (answers[0], answers[1]),
-        frozendict(fea),
-        auto=answers[2] if extra else None,
-        paper=None if extra else in_paper(scene, choices, solvers),
-        beside=answers[2 + len(extra)] if beside else None,
-        ratio=ratio_beside(even),
-        nearby=answers[first - 1] if round_each else None,
-        exact=exact if exact is not None and exact.stations else None,
-    )
+    pending = crew.begin(jobs)
+
+    def ended() -> Runs:
+        answers = pending()
+        exact = answers[behind] if solvers.exact is not None else None
+        fea: dict[Kinematics, tuple[Answer, ...]] = {}
+        for (kinematics, _), answer in zip(places, answers[first:behind], strict=True):
+            fea[kinematics] = (*fea.get(kinematics, ()), answer)
+        return Runs(
+            choices.kinematics,
+            (answers[0], answers[1]),
+            frozendict(fea),
+            auto=answers[2] if extra else None,
+            paper=None if extra else in_paper(scene, choices, solvers),
+            beside=answers[2 + len(extra)] if beside else None,
+            ratio=ratio_beside(even),
+            nearby=answers[first - 1] if round_each else None,
+            exact=exact if exact is not None and exact.stations else None,
+        )
+
+    return ended
 
 
 def known_exactly(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew) -> Answer | None:
@@ -301,11 +334,12 @@ def _links(choices: Choices) -> int:
 
 
 def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
-    """The CPRBM at N in the formulation ``paper``; None where that cannot be asked or takes long."""
+    """The CPRBM at N in the formulation ``paper``; None where that cannot be asked, takes long or shows nothing."""
     finest = choices.links if isinstance(choices.links, int) else max(choices.links.values())
     contacts = scene.contacts.values()
     told = all(isinstance(contact, RigidContact) or contact.paper is not None for contact in contacts)
-    if not contacts or not told or finest > PAPER_BESIDE_AUTO:
+    ends = any(stage.beyond is not None for stage in scene.stages)
+    if not contacts or not told or ends or finest > PAPER_BESIDE_AUTO:
         return None
     try:
         return solvers.cprbm(scene, replace(choices, formulation="paper"))

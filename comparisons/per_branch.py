@@ -78,8 +78,11 @@ def critical_sentence(row: CriticalRow) -> str:
     if row.bounds is None:
         why = "" if row.steady else ", and the runs of one solver are not of one mind"
     else:
-        apart, total = distance(row.difference, row.unit), distance(row.bounds.total, row.unit)
-        why = f", {apart} apart against a stated {total}, {distance(row.allowed, row.unit)} allowed"
+        bounds = row.bounds
+        sizes = (row.difference, bounds.theory, row.same_theory, bounds.same_theory, row.allowed)
+        apart, theory, own, stated, allowed = (distance(size, row.unit) for size in sizes)
+        why = f", {apart} apart and {theory} by theory; within one theory {own} against a stated {stated}, "
+        why += f"{allowed} allowed"
     return f"The branch ends in {row.stage} at {said}{why}: {critical_word(row).value}."
 
 

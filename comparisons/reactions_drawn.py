@@ -9,7 +9,7 @@ from comparisons.figures import BLUE, GREY, RED, Picture, along_axis, canvas, pi
 from comparisons.formats import scaled_unit
 from comparisons.measures import LOAD_UNITS
 from comparisons.verdict import Comparison
-from comparisons.work_energy import WITHIN, Reaction, by_drive
+from comparisons.work_energy import Reaction, by_drive
 from scene import Scene
 
 if TYPE_CHECKING:
@@ -34,7 +34,8 @@ def _drawn(scene: Scene, drive: str, reactions: Sequence[Reaction]) -> Picture:
             _differences(below, mine, step, first=place == 0)
         above.set_ylabel(f"reaction {what}, {unit}")
         above.legend(loc="best")
-        below.axhspan(-100.0 * WITHIN, 100.0 * WITHIN, color="#eef2f7", zorder=0)
+        within = 100.0 * max(each.within for each in reactions)
+        below.axhspan(-within, within, color="#eef2f7", zorder=0)
         below.axhline(0.0, color=GREY, linewidth=0.6)
         below.set_ylabel("relative difference, %")
         below.set_xlabel(f"{drive}, {step_unit}")
@@ -43,7 +44,7 @@ def _drawn(scene: Scene, drive: str, reactions: Sequence[Reaction]) -> Picture:
             figure,
             f"reaction-{drive}",
             f"Reaction at the drive {drive}. Below: relative differences from the CPRBM's multiplier; the band is "
-            f"{100.0 * WITHIN:g} % wide to either side. Rings: within one station of a contact that opens or closes.",
+            f"{within:g} % wide to either side. Rings: within one station of a contact that opens or closes.",
         )
 
 

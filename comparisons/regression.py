@@ -14,11 +14,13 @@ from typing import Any
 
 import numpy as np
 
+from comparisons import thinning
 from comparisons.choices import Choices
 from comparisons.criticals import mechanism
 from comparisons.documents import Plain, plain, text
 from comparisons.pairing import Solvers
 from comparisons.soundness import complaints
+from comparisons.stations import station_of
 from comparisons.writing import write
 from scene import Answer, Probe, Scene
 from scene.answer import Array
@@ -28,6 +30,9 @@ TOLERANCE = 1e-6
 
 _EVERY = 10
 """Of a stress along a beam every tenth place is kept."""
+
+MANY = 40
+"""Most stations of a stage that are all solved; of a longer one only those that are kept."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +48,7 @@ class Departure:
 
 
 def measured(scene: Scene, solvers: Solvers) -> Plain:
-    """What a regression file keeps of the answers at standard settings: two stations per stage.
+    """What a regression file keeps of the answers at standard settings: few stations per stage, and critical values.
 
     Raises:
         SceneError: a solver refuses the scene.
@@ -51,9 +56,10 @@ def measured(scene: Scene, solvers: Solvers) -> Plain:
     """
     kept: Plain = {}
     settings: Plain = {}
+    asked = _shortened(scene)
     for name, solver in (("cprbm", solvers.cprbm), ("fea", solvers.fea)):
-        answer = solver(scene, Choices())
-        found = complaints(scene, answer)
+        answer = solver(asked, Choices())
+        found = complaints(asked, answer)
         if found:
             raise RuntimeError(f"{name} gave no whole answer: {found[0]}")
         settings[name] = plain(answer.settings)
@@ -98,15 +104,23 @@ def accept(file: Path, found: Plain, *, date: str, reason: str) -> None:
     write(file, text({**found, "history": [*history, {"date": date, "reason": reason}]}))
 
 
+def _shortened(scene: Scene) -> Scene:
+    """The scene without those stations of its long stages that are not kept."""
+    stages = tuple(
+        stage.model_copy(update={"stations": thinning.kept(stage)}) if len(stage.stations) > MANY else stage
+        for stage in scene.stages
+    )
+    return scene.model_copy(update={"stages": stages})
+
+
 def _kept(scene: Scene, answer: Answer) -> dict[str, dict[str, list[float]]]:
-    """By probe and station the values of the middle and the last station of every stage, and the critical values."""
+    """By probe and station the values of the stations that are kept of every stage, and the critical values."""
     kept: dict[str, dict[str, list[float]]] = {probe.name: {} for probe in scene.probes}
     for stage in scene.stages:
-        mine = [station for station in answer.stations if station.stage == stage.name]
-        for station in dict.fromkeys((len(mine) // 2, len(mine) - 1)):
-            place = f"{stage.name} {mine[station].value:g}"
+        for value in thinning.kept(stage):
+            station = station_of(answer, stage.name, value)
             for probe in scene.probes:
-                kept[probe.name][place] = _thinned(probe, mine[station].values[probe.name]).tolist()
+                kept[probe.name][f"{stage.name} {value:g}"] = _thinned(probe, station.values[probe.name]).tolist()
     for number, critical in enumerate(answer.critical):
         kept.setdefault("critical", {})[f"{number} {critical.stage} {mechanism(critical)}"] = [critical.value]
     return kept

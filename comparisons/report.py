@@ -67,12 +67,10 @@ def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison | Offse
 
 
 def _archive(own: Path, compared: Comparison) -> None:
-    answers = {name: archive.packed(answer) for name, answer in compared.runs.everything()}
     runs = compared.runs
-    for name, answer in (("cprbm paper", runs.paper), ("cprbm nearby", runs.nearby), ("exact", runs.exact)):
-        if answer is not None:
-            answers[name] = archive.packed(answer)
-    write(own / "answers.json", documents.text(answers))
+    beside = (("cprbm paper", runs.paper), ("cprbm nearby", runs.nearby), ("exact", runs.exact))
+    answers = {**dict(runs.everything()), **{name: answer for name, answer in beside if answer is not None}}
+    write(own / "answers.json", archive.text(answers))
     write(own / "comparison.json", documents.text({"cases": [documents.comparison(compared)]}))
 
 

@@ -26,6 +26,8 @@ from scene.statement import FreeEnd
 _STEPS_APART = 3.0
 """Largest distance of neighbours in a zone, in steps of the coarsest line that an answer draws of the beam."""
 
+_NOWHERE = np.empty((0, 2))
+
 
 def clear_of_spots(
     scene: Scene, beam: str, arc_length: Array, stations: tuple[StationAnswer, ...]
@@ -47,10 +49,7 @@ def clear_of_spots(
     coarsest = max(float(np.max(np.diff(station.shapes[beam].s))) for station in stations)
     for name, contact in scene.contacts.items():
         if beam in contact.beams:
-            places = [
-                np.array([nearest(station.shapes[beam], place) for place in station.touching.get(name, ())])
-                for station in stations
-            ]
+            places = [nearest(station.shapes[beam], station.touching.get(name, _NOWHERE)) for station in stations]
             spots += ends_of_zones(places, _STEPS_APART * coarsest)
     if not spots:
         return np.ones(arc_length.shape, dtype=bool)

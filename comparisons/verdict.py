@@ -115,7 +115,7 @@ def _up_to_there(verdict: Verdict, last: Row) -> Verdict:
 
 def _reactions(scene: Scene, runs: Runs) -> tuple[Reaction, ...]:
     """The drives' reactions by two ways: they need the answers at N and n alone, and no estimate of an error."""
-    if runs.nearby is None or complaints(scene, runs.cprbm[0]) or complaints(scene, runs.reference):
+    if complaints(scene, runs.cprbm[0]) or complaints(scene, runs.reference):
         return ()
     return reactions(scene, runs.cprbm[0], runs.reference, runs.nearby)
 

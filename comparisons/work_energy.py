@@ -13,8 +13,16 @@ n_j         unit directions of the drives of one point
 
 A drive's work is in the strain energy alone and the dead loads' work is taken off, so that F is the derivative of
 the potential energy with respect to d, other drives and loads kept, along one branch: where a jump lies between the
-stations, or between them and d, there is no such derivative.  The central difference leaves ρ²d²F″/6, a few
-millionths of F where F is smooth; where a contact opens or closes F has a kink, and nothing is said of it there.
+stations, or between them and d, there is no such derivative.
+
+Where a stage's stations are close together (:func:`comparisons.nearby.is_dense`), their own energies give it, by
+polynomials through as many as nine of them (:mod:`comparisons.slopes`) within a stretch: stations that follow each
+other on one branch, with the same contacts closed and the same stops holding.  The two reactions are then to be within
+1e-4 of each other; what two orders of the derivative are apart is stated beside it.
+
+Elsewhere the CPRBM is run at stations beside d, and eqs. (14), (15) are taken.  The central difference leaves
+ρ²d²F″/6, a few millionths of F where F is smooth; where a contact opens or closes F has a kink, and nothing is said of
+it there.  Within 1e-3 is asked.
 
 The energies nearly cancel.  What round-off leaves of their difference is at most the floor of the certificates'
 residuals times the energy, over 2ρd; it is stated beside each number as a share of F.  (What an equilibrium leaves
@@ -26,14 +34,18 @@ The force at a driven point is that of all its drives, Σ F_j n_j; the F_j follo
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 
 from comparisons.formats import percent
+from comparisons.held import Held, changes, held, stretches
 from comparisons.measures import UNITS
-from comparisons.nearby import ENERGY, RHO, is_asked, reaction_of, visited
+from comparisons.nearby import ENERGY, RHO, is_asked, is_dense, needs_more, reaction_of, visited
 from comparisons.scales import VANISHING
+from comparisons.slopes import FEWEST, slope
 from comparisons.stations import station_of
 from scene import Answer, Scene, Stage, StationAnswer
 from scene.freedoms import unit
@@ -42,6 +54,9 @@ from scene.statement import DisplacementDrive
 WITHIN = 1e-3
 """How far the two reactions of one solver may be apart, away from a contact that opens or closes."""
 
+WITHIN_DENSE = 1e-4
+"""The same where the energies at the stations themselves give one of them."""
+
 
 @dataclass(frozen=True, slots=True)
 class Reaction:
@@ -49,14 +64,18 @@ class Reaction:
 
     Attributes:
         multiplier: the CPRBM's, as the multiplier of what the drive prescribes.
-        work_energy: the same from its energies; None where the run beside the station has not reached it.
+        work_energy: the same from its energies; None where the run beside the station has not reached it, or the
+            stretch has too few stations.
         fea: the finite elements'.
         scale: what differences are divided by: the multiplier's magnitude, or the stage's largest where that vanishes.
         floor: what round-off may leave of ``work_energy``, in ``unit``.
         changes: contacts that open or close, and stops that take hold or let go, between the two stations next to this
             one.
         branch: the branch that the CPRBM is on here.
-        jumped: whether one of the runs beside the station is on another branch; there is no ``work_energy`` then.
+        jumped: whether one of the runs beside the station is on another branch, and there is no ``work_energy``; of
+            stations that are close together, whether the next or the last one is.
+        dense: whether the stations' own energies are taken.
+        truncation: how far two orders of ``work_energy`` are apart, in ``unit``; of a run beside the station 0.
     """
 
     stage: str
@@ -71,6 +90,13 @@ class Reaction:
     changes: tuple[str, ...]
     branch: int = 0
     jumped: bool = False
+    dense: bool = False
+    truncation: float = 0.0
+
+    @property
+    def within(self) -> float:
+        """How far the two reactions of the CPRBM may be apart."""
+        return WITHIN_DENSE if self.dense else WITHIN
 
     @property
     def difference(self) -> float | None:
@@ -85,55 +111,53 @@ class Reaction:
     @property
     def apart(self) -> bool:
         """Whether the two reactions of the CPRBM are further apart than they may be."""
-        return self.difference is not None and abs(self.difference) > WITHIN
+        return self.difference is not None and abs(self.difference) > self.within
 
     def _share(self, value: float) -> float | None:
         return value / self.scale if self.scale > 0.0 else None
 
 
-def reactions(scene: Scene, cprbm: Answer, fea: Answer, near: Answer) -> tuple[Reaction, ...]:
-    """The reaction of every drive that a stage steps, at every station but zero.
+def reactions(scene: Scene, cprbm: Answer, fea: Answer, near: Answer | None) -> tuple[Reaction, ...]:
+    """The reaction of every drive that a stage steps, at every station, but at zero where a run stands beside it.
 
     Args:
         scene: the question.
         cprbm: a whole answer to it.
         fea: another.
-        near: the CPRBM's answer to :func:`comparisons.nearby.nearby`, as far as it came.
+        near: the CPRBM's answer to :func:`comparisons.nearby.nearby`, as far as it came; without it only stages
+            whose own stations are close together have reactions.
 
     Raises:
         KeyError: ``cprbm`` or ``fea`` lacks a station or a probe.
     """
-    found: list[Reaction] = []
-    place = 0
-    closed = _closed(scene, cprbm)
+    every = held(scene, cprbm)
+    found = []
     for stage in scene.stages:
-        asked = is_asked(scene, stage)
-        largest = (
-            max(abs(along(scene, stage, station_of(cprbm, stage.name, d))) for d in stage.stations) if asked else 0.0
-        )
-        for d in stage.stations:
-            values = visited(d) if asked else (d,)
-            beside = near.stations[place : place + len(values)]
-            place += len(values)
-            if not asked or d == 0.0:
-                continue
-            here = station_of(cprbm, stage.name, d)
-            F = along(scene, stage, here)
-            jumped = any(station.branch != here.branch for station in beside)
+        if not is_asked(scene, stage):
+            continue
+        mine = [place for place, each in enumerate(every) if each.station.stage == stage.name]
+        forces = {place: along(scene, stage, every[place].station) for place in mine}
+        largest = max(map(abs, forces.values()))
+        dense = is_dense(scene, stage)
+        rates = _of_stations(scene, every, mine) if dense else _of_runs(scene, every, mine, near)
+        for place, rate in rates.items():
+            here, F = every[place].station, forces[place]
             found.append(
                 Reaction(
                     stage=stage.name,
-                    station=d,
+                    station=here.value,
                     drive=stage.steps,
                     unit=UNITS[reaction_of(scene.drives[stage.steps]).quantity],
                     multiplier=F,
-                    work_energy=None if jumped else _work_energy(d, values, beside),
-                    fea=along(scene, stage, station_of(fea, stage.name, d)),
+                    work_energy=rate.value,
+                    fea=along(scene, stage, station_of(fea, stage.name, here.value)),
                     scale=abs(F) if abs(F) >= VANISHING * largest else largest,
-                    floor=_floor(d, beside),
-                    changes=_changes(closed, (stage.name, d), beside),
+                    floor=rate.floor,
+                    changes=rate.changes,
                     branch=here.branch,
-                    jumped=jumped,
+                    jumped=rate.jumped,
+                    dense=dense,
+                    truncation=rate.truncation,
                 )
             )
     return tuple(found)
@@ -165,33 +189,134 @@ def by_drive(found: tuple[Reaction, ...]) -> dict[str, tuple[Reaction, ...]]:
 
 def sentence(found: tuple[Reaction, ...]) -> str:
     """How far the two reactions of the CPRBM are apart, and where they are further apart than they may be."""
+    said = [_sentence([each for each in found if each.dense is dense]) for dense in (False, True)]
+    return " ".join(each for each in said if each)
+
+
+def _sentence(found: list[Reaction]) -> str:
+    """The same of reactions that are all found in one way; nothing of none."""
+    if not found:
+        return ""
     known = [each for each in found if each.difference is not None]
-    away = [each for each in known if not each.changes]
-    near = [each for each in known if each.changes]
-    said = f"Work–energy with ρ = {percent(RHO)}: within {percent(WITHIN)} of the multiplier at "
-    said += f"{sum(not each.apart for each in away)} of {len(away)} stations away from a contact that opens or closes, "
-    said += f"and at {sum(not each.apart for each in near)} of {len(near)} within one station of one."
-    apart = [f"{each.stage} {each.station:g} ({percent(each.difference)})" for each in known if each.apart]
+    dense, within = found[0].dense, percent(found[0].within)
+    if dense:
+        met = f"{sum(not each.apart for each in known)} of {len(known)} stations"
+        said = f"Work–energy from the stations' own energies: within {within} of the multiplier at {met}."
+        truncation = max((each.truncation / each.scale for each in known if each.scale > 0.0), default=0.0)
+        said += f" Two orders of the derivative are at most {percent(truncation)} apart."
+    else:
+        away = [each for each in known if not each.changes]
+        near = [each for each in known if each.changes]
+        said = f"Work–energy with ρ = {percent(RHO)}: within {within} of the multiplier at "
+        said += f"{sum(not each.apart for each in away)} of {len(away)} stations away from a contact that opens or "
+        said += f"closes, and at {sum(not each.apart for each in near)} of {len(near)} within one station of one."
+    apart = _apart(found)
     if apart:
         said += f" Further apart: {', '.join(apart)}."
     floor = max((each.floor / each.scale for each in known if each.scale > 0.0), default=0.0)
     said += f" Round-off of the energies leaves at most {percent(floor)}."
     said += "".join(_on_branch(branch, known) for branch in dict.fromkeys((each.stage, each.branch) for each in known))
-    jumped = sum(each.jumped for each in found)
-    missing = len(found) - len(known) - jumped
-    if jumped:
-        said += f" At {jumped} stations the run beside is on another branch, and no derivative is taken across a jump."
-    return said + (f" {missing} stations were not reached by the run beside them." if missing else "")
+    across = sum(each.work_energy is None and each.jumped for each in found)
+    missing = len(found) - len(known) - across
+    if across and not dense:
+        said += f" At {across} stations the run beside is on another branch, and no derivative is taken across a jump."
+    if missing or (across and dense):
+        said += (
+            f" {missing + across} stations are in stretches of fewer than {FEWEST} between changes."
+            if dense
+            else f" {missing} stations were not reached by the run beside them."
+        )
+    return said
+
+
+def _apart(found: list[Reaction]) -> list[str]:
+    """Where the two reactions are further apart than they may be: those that follow each other together."""
+    said = []
+    for (apart, stage), group in groupby(found, key=lambda each: (each.apart, each.stage)):
+        if not apart:
+            continue
+        mine = list(group)
+        worst = max(mine, key=lambda each: abs(each.difference or 0.0))
+        if len(mine) == 1:
+            said.append(f"{stage} {worst.station:g} ({percent(worst.difference)})")
+        else:
+            most = f"{len(mine)} stations, at most {percent(abs(worst.difference or 0.0))} at {worst.station:g}"
+            said.append(f"{stage} {mine[0].station:g} to {mine[-1].station:g} ({most})")
+    return said
 
 
 def _on_branch(branch: tuple[str, int], known: list[Reaction]) -> str:
-    """The largest difference on one branch, away from contacts that change; nothing where all are beside one."""
-    mine = [each for each in known if (each.stage, each.branch) == branch and not each.changes]
+    """The largest difference on one branch, where the derivative crosses no change; nothing where all of them do."""
+    mine = [each for each in known if (each.stage, each.branch) == branch and (each.dense or not each.changes)]
     if not mine:
         return ""
     worst = max(mine, key=lambda each: abs(each.difference or 0.0))
     where = branch[0] if branch[1] == 0 else f"{branch[0]}, branch {branch[1]}"
     return f" Largest in {where}: {percent(abs(worst.difference or 0.0))} at {worst.station:g}."
+
+
+@dataclass(frozen=True, slots=True)
+class _Rate:
+    """The energy's rate at a station; attributes as those of :class:`Reaction`."""
+
+    value: float | None
+    floor: float
+    changes: tuple[str, ...]
+    jumped: bool
+    truncation: float = 0.0
+
+
+def _of_stations(scene: Scene, every: Sequence[Held], mine: Sequence[int]) -> dict[int, _Rate]:
+    """By place, of the stations at the places ``mine`` of a stage, from their own energies."""
+    rates: dict[int, _Rate] = {}
+    for stretch in stretches([every[place] for place in mine]):
+        x, PE = (
+            np.array(values)
+            for values in zip(*((at.station.value, _energy(at.station)) for at in stretch), strict=True)
+        )
+        rounding = np.array([_left(each.station) for each in stretch])
+        for index in range(len(stretch)):
+            place = mine[len(rates)]
+            found = slope(x, PE, rounding, index)
+            around = every[max(place - 1, mine[0]) : min(place + 1, mine[-1]) + 1]
+            rates[place] = _Rate(
+                value=None if found is None else found.value,
+                floor=0.0 if found is None else found.round_off,
+                changes=changes(scene, every, place),
+                jumped=any(each.station.branch != every[place].station.branch for each in around),
+                truncation=0.0 if found is None else found.truncation,
+            )
+    return rates
+
+
+def _of_runs(scene: Scene, every: Sequence[Held], mine: Sequence[int], near: Answer | None) -> dict[int, _Rate]:
+    """The same from a run at stations close by, eqs. (14) and (15); of no station where there is no such run."""
+    if near is None:
+        return {}
+    rates = {}
+    first = sum(len(values) for values in _visited(scene, every[: mine[0]]))
+    for place, values in zip(mine, _visited(scene, [every[place] for place in mine]), strict=True):
+        here, beside = every[place].station, near.stations[first : first + len(values)]
+        first += len(values)
+        if here.value == 0.0:
+            continue
+        jumped = any(station.branch != here.branch for station in beside)
+        rates[place] = _Rate(
+            value=None if jumped else _work_energy(here.value, values, beside),
+            floor=max((_left(station) / abs(2.0 * RHO * here.value) for station in beside[:2]), default=0.0),
+            changes=changes(scene, every, place, beside),
+            jumped=jumped,
+        )
+    return rates
+
+
+def _visited(scene: Scene, every: Sequence[Held]) -> list[tuple[float, ...]]:
+    """Which values the run close by goes to at each station."""
+    stages = {stage.name: stage for stage in scene.stages}
+    return [
+        visited(each.station.value) if needs_more(scene, stages[each.station.stage]) else (each.station.value,)
+        for each in every
+    ]
 
 
 def _work_energy(d: float, values: tuple[float, ...], beside: tuple[StationAnswer, ...]) -> float | None:
@@ -205,47 +330,10 @@ def _work_energy(d: float, values: tuple[float, ...], beside: tuple[StationAnswe
     return F if math.isfinite(F) else None
 
 
-def _floor(d: float, beside: tuple[StationAnswer, ...]) -> float:
-    return max(
-        (station.certificate.residual_floor * abs(_energy(station)) / abs(2.0 * RHO * d) for station in beside[:2]),
-        default=0.0,
-    )
+def _left(station: StationAnswer) -> float:
+    """What round-off may leave of a station's energy, J."""
+    return station.certificate.residual_floor * abs(_energy(station))
 
 
 def _energy(station: StationAnswer) -> float:
     return float(station.values[ENERGY.name][0])
-
-
-@dataclass(frozen=True, slots=True)
-class _Held:
-    """Which contacts are closed at a station and, of those that are asked for, which stops hold."""
-
-    at: tuple[str, float]
-    contacts: frozenset[str]
-    stops: frozenset[str]
-
-
-def _closed(scene: Scene, answer: Answer) -> list[_Held]:
-    """Every station in order."""
-    moments = {probe.of: probe.name for probe in scene.probes if probe.quantity == "moment"}
-    found = []
-    for stage in scene.stages:
-        for d in stage.stations:
-            station = station_of(answer, stage.name, d)
-            stops = frozenset(stop for stop, moment in moments.items() if station.values[moment].any())
-            found.append(_Held((stage.name, d), frozenset(station.touching), stops))
-    return found
-
-
-def _changes(closed: list[_Held], at: tuple[str, float], beside: tuple[StationAnswer, ...]) -> tuple[str, ...]:
-    """Contacts and stops that are not in one state from the station before to the one after, and close round this one.
-
-    Before the first station nothing is loaded, and no contact presses.
-    """
-    here = next(place for place, each in enumerate(closed) if each.at == at)
-    nothing = frozenset[str]()
-    around = [closed[here - 1] if here > 0 else _Held(at, nothing, nothing), *closed[here : here + 2]]
-    contacts = [*(each.contacts for each in around), *(frozenset(station.touching) for station in beside)]
-    stops = [each.stops for each in around]
-    changing = [frozenset.union(*states) - frozenset.intersection(*states) for states in (contacts, stops)]
-    return tuple(sorted(frozenset.union(*changing)))

@@ -37,3 +37,19 @@ def advance(model: Model, z: State, step: Array) -> State:
         changes = np.stack([along * dx - across * dy, across * dx + along * dy])
         way[dofs[:, 1:]] = step[dofs[:, :1]] + np.cumsum(changes, axis=1)
     return z.moved(way)
+
+
+def carried(model: Model, before: State, now: State, rate: Array) -> Array:
+    """A ``rate`` (size,) in the state ``before`` as one that turns and stretches the chords of ``now`` by the same."""
+    same = rate.copy()
+    for beam in model.beams:
+        dofs = model.node_dofs[:2, beam.nodes]
+        dx, dy = before.difference(dofs[:, 1:], dofs[:, :-1])
+        rate_x, rate_y = np.diff(rate[dofs], axis=1)
+        square = dx * dx + dy * dy
+        turn = (dx * rate_y - dy * rate_x) / square
+        stretch = (dx * rate_x + dy * rate_y) / square
+        dx, dy = now.difference(dofs[:, 1:], dofs[:, :-1])
+        changes = np.stack([stretch * dx - turn * dy, turn * dx + stretch * dy])
+        same[dofs[:, 1:]] = rate[dofs[:, :1]] + np.cumsum(changes, axis=1)
+    return same

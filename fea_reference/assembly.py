@@ -6,8 +6,6 @@ points; the moments go away.  Stops act as soon as the ends have arrived.
 
 from __future__ import annotations
 
-from math import degrees
-
 import numpy as np
 
 from fea_reference.acting import Acting
@@ -38,7 +36,7 @@ def assemble_ends(scene: Scene, march: March) -> None:
         ways = np.array([_way(march, i) for i in range(len(model.apart))])
         march.act(Acting(ways, stopping=False))
         reach(march, Course(way, 1.0), 1.0)
-        forbidden = [mistake for stop in model.stops for mistake in _forbidden(march, stop, scene.file)]
+        forbidden = [mistake for stop in model.stops for mistake in _forbidden(march, stop, scene)]
         if forbidden:
             raise SceneError(forbidden)
         march.act(Acting(ways, stopping=True))
@@ -56,15 +54,14 @@ def _way(march: March, number: int) -> Array:
     return np.asarray(march.system.z[joint.dofs[:2]] - march.model.carried(body, joint.arm, march.system.z))
 
 
-def _forbidden(march: March, stop: StopPart, file: str) -> list[Mistake]:
-    """That an assembled end is beyond its stop's limits, if it is."""
-    room, _ = stop.room(march.system.z)
+def _forbidden(march: March, stop: StopPart, scene: Scene) -> list[Mistake]:
+    """That an assembled end is beyond a limit of its stop, if it is."""
+    room, limit = stop.room(march.system.z)
     if room >= -_BEYOND:
         return []
-    angle = stop.angle(march.system.z)
-    low, high = (
-        "any" if limit is None else f"{limit:.6g} rad ({degrees(limit):.4g} degrees)"
-        for limit in (stop.least, stop.most)
+    key = f"stops.{stop.name}.{'most' if limit == stop.most else 'least'}"
+    found = (
+        f"{limit:g} rad: a stop that forbids the assembly, by which {scene.stops[stop.name].beam!r} comes to "
+        f"stand at {stop.angle(march.system.z):.4g} rad"
     )
-    found = f"an angle of {angle:.6g} rad ({degrees(angle):.4g} degrees) when the ends are at their points"
-    return [Mistake(f"stops.{stop.name}", found, f"from {low} to {high}: a stop forbids the assembly", file)]
+    return [Mistake(key, found, "limits that the assembled beam keeps, or other moments", scene.file)]

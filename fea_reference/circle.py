@@ -37,7 +37,7 @@ from fea_reference.edge import edge_of
 from fea_reference.hermite import NeutralLine, along, shapes, twice_along
 from fea_reference.model import Model, turned
 from fea_reference.state import State, squared, summed
-from fea_reference.touch import Circle, Penalty, Touch, together
+from fea_reference.touch import Circle, Penalty, Touch, gauss, together
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative
 from scene.answer import Array
 from scene.statement import CircleContact, Scene
@@ -121,7 +121,7 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
     ahead = _find(line, c, circle, penalty.lead)
     zones = replace(ahead, least=ahead.least + penalty.lead)
 
-    points, weights = np.polynomial.legendre.leggauss(quadrature)
+    points, weights = gauss(quadrature)
     width = zones.intervals[:, 1] - zones.intervals[:, 0]
     zeta = (zones.intervals[:, :1] + width[:, None] * 0.5 * (points + 1.0)).ravel()
     e, xi = line.locate(zeta)

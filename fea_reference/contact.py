@@ -37,16 +37,17 @@ from dataclasses import replace
 
 import numpy as np
 
-from fea_reference.hermite import NeutralLine, along, apart, shape_slopes, shapes, twice_along
+from fea_reference.hermite import NeutralLine, along, apart, plane, shape_slopes, shapes, twice_along
 from fea_reference.model import BeamPart, Model
-from fea_reference.projection import project
+from fea_reference.projection import closest
 from fea_reference.state import State
-from fea_reference.touch import Pair, Penalty, Touch, together
-from fea_reference.zones import Zones, ends_over, find, side_of
+from fea_reference.touch import Pair, Penalty, Touch, gauss, together
+from fea_reference.zones import Zones, ends_over, find, overlap, seen, side_of
 from scene.statement import BeamContact, Scene
 
 _AT_END = 1e-6  # elements
 _SLENDER = 0.01  # of the longest beam: what stands for the thickness of beams that touch as lines
+_LYING = 1.0  # elements: what is shorter at an end does not lie on the other beam
 _LAYERS = 32.0  # the widest in a beam's length
 
 
@@ -94,13 +95,15 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
     line, line_m = model.line(beam, z), model.line(beam_m, z)
     distance = pair.distance + penalty.lead
-    zones = find(line, line_m, pair.side, distance)
-    least = zones.least + penalty.lead
-    if held is not None:
-        zones = find(line, line_m, pair.side, distance + zones.least + held)
-    zones = replace(zones, least=least)
+    gaps = seen(line, line_m, pair.side, distance)
+    level = 0.0 if held is None else gaps.least + held
+    if level < line_m.lengths.max():
+        zones = overlap(line, line_m, distance, gaps, level)
+    else:
+        zones = find(line, line_m, pair.side, distance + level)
+    zones = replace(zones, least=gaps.least + penalty.lead)
 
-    points, weights = np.polynomial.legendre.leggauss(quadrature)
+    points, weights = gauss(quadrature)
     share = 0.5 * (points + 1.0)
     width = zones.intervals[:, 1] - zones.intervals[:, 0]
     zeta = (zones.intervals[:, :1] + width[:, None] * share).ravel()
@@ -109,15 +112,16 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     e, xi = line.locate(zeta)
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
-    x = line.at(zeta)[0]
-    zeta_m, _ = project(line_m, x, guess)
+    there = line.around(zeta)
+    x = line.nodes[there.element] + there.way
+    zeta_m, _, across = closest(line_m, x, guess)
     e_m, xi_m = line_m.locate(zeta_m)
-    x_m, x_m1, x_m2 = line_m.at(zeta_m)
-    J = np.hypot(x_m1[0], x_m1[1])
-    tau = x_m1 / J
+    x_m = line_m.nodes[across.element] + across.way
+    J = np.abs(across.ahead)
+    tau = plane(across.ahead / J)
     n = np.stack([-tau[1], tau[0]])
-    d = (n * apart(line, zeta, line_m, zeta_m)).sum(axis=0)
-    a = (n * x_m2).sum(axis=0)
+    d = (n * plane(apart(line, there, line_m, across))).sum(axis=0)
+    a = (n * plane(across.bent)).sum(axis=0)
     Z = J**2 - d * a
     g = pair.side * d - distance
 
@@ -144,23 +148,30 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
         gap_by_twice=pair.side * d_qq,
         zeta=zeta,
         zeta_m=zeta_m,
-        x=x,
-        x_m=x_m,
+        x=plane(x),
+        x_m=plane(x_m),
         normal=normal,
         missing=_missing(line, line_m, pair, penalty, zones),
     )
 
 
 def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
-    """κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂) where the zone meets an end of the first beam, where it matters; else the median.
+    """κ (N₁ EI₂ − N₂ EI₁)/(EI₁ + EI₂) where a zone meets an end of the first beam, where it matters; else the median.
 
-    Zero where the beams pull apart.
+    Zero where the beams pull apart, and where what meets the end is less than an element: beside ends that are held
+    side by side and part at once.  Their gap is zero there but for round-off, and has nothing to press against.
     """
     if not touch.closed:
         return 0.0
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
-    middle, middle_m = touch.zones.intervals.mean(axis=1), touch.zones.zeta_m.mean(axis=1)
     line, line_m = model.line(beam, z), model.line(beam_m, z)
+    intervals = touch.zones.intervals
+    zone = np.cumsum(np.append(False, intervals[1:, 0] > intervals[:-1, 1]))
+    at_end = np.array([intervals[0, 0] <= _AT_END, intervals[-1, 1] >= line.n - _AT_END])
+    widths = [np.ptp(intervals[zone == one]) for one in (zone[[0, -1]][at_end] if at_end.any() else np.unique(zone))]
+    if min(widths) < _LYING:
+        return 0.0
+    middle, middle_m = intervals.mean(axis=1), touch.zones.zeta_m.mean(axis=1)
     e = line.locate(middle)[0] + beam.elements.start
     e_m = line_m.locate(middle_m)[0] + beam_m.elements.start
     _, speed, bent = line_m.at(middle_m)
@@ -170,7 +181,6 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
     axial, axial_m = z[model.element_dofs[6, e]], z[model.element_dofs[6, e_m]]
     EI, EI_m = beam.bending(middle / line.n), beam_m.bending(middle_m / line_m.n)
     pressure = kappa * (axial * EI_m - axial_m * EI) / (EI + EI_m)
-    at_end = np.array([touch.zones.intervals[0, 0] <= _AT_END, touch.zones.intervals[-1, 1] >= line.n - _AT_END])
     return max(0.0, float(np.median(pressure[[0, -1]][at_end] if at_end.any() else pressure)))
 
 
@@ -179,10 +189,11 @@ def _missing(first: NeutralLine, second: NeutralLine, pair: Pair, penalty: Penal
     zeta, zeta_m = zones.intervals.ravel(), zones.zeta_m.ravel()
     across = np.minimum(zeta_m, second.n - zeta_m) <= _AT_END
     zeta, zeta_m = zeta[across], zeta_m[across]
-    _, x1, _ = first.at(zeta)
-    _, x_m1, _ = second.at(zeta_m)
-    tau = x_m1 / np.hypot(x_m1[0], x_m1[1])
-    n = np.stack([-tau[1], tau[0]])
-    g = np.minimum(pair.side * (n * apart(first, zeta, second, zeta_m)).sum(axis=0) - pair.distance - penalty.lead, 0.0)
-    ahead = np.abs((x1 * tau).sum(axis=0)) / first.lengths[first.locate(zeta)[0]]
+    if not zeta.size:
+        return 0.0
+    there, there_m = first.around(zeta), second.around(zeta_m)
+    back = (there_m.ahead / np.abs(there_m.ahead)).conj()
+    d = (back * apart(first, there, second, there_m)).imag
+    g = np.minimum(pair.side * d - pair.distance - penalty.lead, 0.0)
+    ahead = np.abs((back * there.ahead).real) / first.lengths[there.element]
     return float((0.5 * penalty.stiffness * g**2 / np.maximum(ahead, 1e-3)).sum())

@@ -28,8 +28,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded, eigh_tridiagonal, null_space
-from scipy.sparse import block_diag, csr_array, diags_array
+from scipy.linalg import LinAlgError, cholesky_banded, eigh_tridiagonal, null_space
+from scipy.linalg.lapack import dpbtrs
+from scipy.sparse import csr_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from fea_reference.hermite import Index
@@ -40,6 +41,8 @@ from fea_reference.system import System
 from scene.answer import Array
 
 _STEPS = 30
+_LOOK = 4  # steps after which Lanczos' method looks at what it has
+_ENOUGH = 1e-6  # of the Ritz value: what its vector may leave; the value's own error is of second order in that
 _SEED = 20200103
 _STIFF = 1e6  # EI/length²: EA of a beam that does not stretch, a hundred times that of a stout one
 _CLOSE = 0.9  # of a Ritz value: the μ that is proven to have none below it
@@ -59,135 +62,178 @@ def smallest_curvature(model: Model, system: System) -> float:
     return softest(model, system).curvature
 
 
+def positive(model: Model, system: System) -> bool:
+    """Whether all μ are above zero, as far as round-off lets it be seen."""
+    return _factor(_feasible(model, system).stiffness) is not None
+
+
 def softest(model: Model, system: System) -> Mode:
     """The least μ, if it is above zero: a Ritz value, and a tenth less is proven to lie below all.
 
     Where that cannot be proven, a value that can, and if not even zero can, a Ritz value above one below zero that can:
     there is a negative curvature about as large, or round-off hides that there is none.
     """
-    motions, T, A, mass = _on_feasible_directions(model, system)
-    order = np.asarray(reverse_cuthill_mckee(A, symmetric_mode=True))
-    T = T[:, order]
-    stiffness, inertia = _bands(A[order][:, order], (T.T @ diags_array(mass) @ T).tocsr())
+    on = _feasible(model, system)
+    root = np.sqrt(lumped_mass(model))
 
     def factor(sigma: float) -> Array | None:
         """Cholesky's of A − σ M; None where there is a pivot below zero."""
-        try:
-            return np.asarray(cholesky_banded(stiffness - sigma * inertia, lower=True, check_finite=False))
-        except LinAlgError:
-            return None
+        return _factor(on.stiffness - sigma * on.inertia)
 
-    def mode(curvature: float, u: Array) -> Mode:
-        direction = np.zeros(model.size)
-        direction[motions] = u
-        return Mode(curvature, direction)
-
-    root = np.sqrt(mass)
     at_zero = factor(0.0)
     if at_zero is None:
         below = _below_zero(factor)
         at_below = factor(below)
         if at_below is None:  # round-off, however far below
-            return mode(below, np.zeros(motions.size))
-        ritz, u = _ritz(T, at_below, root)
+            return Mode(below, np.zeros(model.size))
+        ritz, u = _ritz(on, at_below, root)
         # rounded to zero it would not say that there was a negative pivot
-        return mode(min(below + ritz, -np.finfo(float).tiny), u)
-    ritz, u = _ritz(T, at_zero, root)
+        return Mode(min(below + ritz, -np.finfo(float).tiny), u)
+    ritz, u = _ritz(on, at_zero, root)
     if factor(_CLOSE * ritz) is not None:
-        return mode(ritz, u)
+        return Mode(ritz, u)
     sigma = 0.5 * ritz
     while factor(sigma) is None and sigma > 0.0:
         sigma *= 0.5
-    return mode(sigma, u)
+    return Mode(sigma, u)
 
 
-def _on_feasible_directions(model: Model, system: System) -> tuple[Index, csr_array, csr_array, Array]:
-    """Which unknowns are the motions (u,), T (u, q), A (q, q) and the diagonal of M (u,)."""
-    K = csr_array(system.tangent)
-    bodies = [body.dofs for body in model.bodies if body.dofs is not None]
-    motions = np.concatenate([model.node_dofs.T.ravel(), *bodies])
+@dataclass(frozen=True, slots=True)
+class _Feasible:
+    """The feasible directions, in an order that makes A a band.
+
+    Attributes:
+        T: all unknowns' motions by them (size, q); back: its transpose.
+        place: of every direction in that order, (q,).
+        stiffness, inertia: lower halves of A and T^T M T (width + 1, q), in LAPACK's order.
+    """
+
+    T: csr_array
+    back: csr_array
+    place: Index
+    stiffness: Array
+    inertia: Array
+
+
+def _factor(band: Array) -> Array | None:
+    """Cholesky's of a matrix by the lower half of its band; None where there is a pivot below zero."""
+    try:
+        return np.asarray(cholesky_banded(band, lower=True, check_finite=False))
+    except LinAlgError:
+        return None
+
+
+def _feasible(model: Model, system: System) -> _Feasible:
+    """T and A."""
+    tangent = system.tangent
+    K = csr_array((tangent.data, tangent.indices, tangent.indptr), tangent.shape)  # symmetric
+    T = _directions(model, system, K)
+    back = T.T.tocsr()
+    KT = K @ T
     axial = model.element_dofs[6]
-    place = np.full(model.size, -1)
-    place[motions] = np.arange(motions.size)
+    BT = KT[axial]
+    compliance = np.maximum(-tangent.diagonal()[axial], model.elements.length / _STIFF)
+    BT.data /= np.sqrt(np.repeat(compliance, np.diff(BT.indptr)))
+    A = csr_array(back @ KT + BT.T.tocsr() @ BT)
+    order = reverse_cuthill_mckee(A, symmetric_mode=True)
+    place = np.empty(order.size, dtype=np.int64)
+    place[order] = np.arange(order.size)
+    mass = np.repeat(lumped_mass(model), np.diff(T.indptr))
+    stiffness, inertia = _bands(place, A, csr_array(back @ csr_array((mass * T.data, T.indices, T.indptr), T.shape)))
+    return _Feasible(T, back, place, stiffness, inertia)
 
+
+def _directions(model: Model, system: System, K: csr_array) -> csr_array:
+    """T: every motion by those that nothing holds, follows or guides; zero for what is no motion."""
     joints = [joint for joint in model.joints if not model.free(joint, system.acting)]
     stops = [stop for stop, _ in acting_stops(model.stops, system.acting)]
-    held = np.concatenate(
-        [
-            np.array([stop.theta for stop in stops], dtype=np.int64),
-            *(joint.dofs[: joint.rows.size] for joint in joints),
-        ]
-    )
-    rows = np.concatenate([np.array([stop.row for stop in stops], dtype=np.int64), *(joint.rows for joint in joints)])
-    free = np.ones(motions.size, dtype=bool)
-    free[place[held]] = False
     # A joint's row is its node's motion, less what the body makes of it, and so is a stop's.
-    follow = csr_array((motions.size, motions.size))
-    if held.size:
-        own = csr_array((np.ones(held.size), (place[held], np.arange(held.size))), (motions.size, held.size))
-        follow = own @ K[rows][:, motions]
-    T = csr_array(diags_array(np.ones(motions.size)) - follow)[:, free] @ _bodies_motions(model, K, int(free.sum()))
+    row_of = {int(dof): int(row) for one in joints for dof, row in zip(one.dofs, one.rows, strict=False)}
+    row_of |= {stop.theta: stop.row for stop in stops}
+    free = np.ones(model.size, dtype=bool)
+    free[list(row_of)] = False
+    nodes = model.node_dofs.ravel()
+    alone = nodes[free[nodes]]
+    rows, columns, entries = [alone], [np.arange(alone.size)], [np.ones(alone.size)]
+    count = alone.size
+    of_bodies: dict[int, tuple[Index, Array]] = {}
+    for group in _together(model):
+        dofs = np.concatenate([dofs for i in group if (dofs := model.bodies[i].dofs) is not None])
+        held = [hold.row for hold in (*model.guides, *model.drives) if hold.body in group]
+        held += [int(row) for hinge in model.hinges if set(hinge.bodies) & group for row in hinge.rows]
+        left = null_space(K[held][:, dofs].toarray()) if held else np.eye(dofs.size)
+        here = count + np.arange(left.shape[1])
+        count += here.size
+        of_bodies |= {int(dof): (here, line) for dof, line in zip(dofs, left, strict=True)}
+    ways = [(dof, dof, 1.0) for dof in of_bodies]
+    for dof, row in row_of.items():
+        entry = slice(K.indptr[row], K.indptr[row + 1])
+        ways += [
+            (dof, int(other), -float(value))
+            for other, value in zip(K.indices[entry], K.data[entry], strict=True)
+            if int(other) in of_bodies
+        ]
+    for dof, other, value in ways:
+        here, line = of_bodies[other]
+        rows.append(np.full(here.size, dof))
+        columns.append(here)
+        entries.append(value * line)
+    coordinates = (np.concatenate(rows), np.concatenate(columns))
+    return csr_array((np.concatenate(entries), coordinates), (model.size, count))
 
-    compliance = np.maximum(-K.diagonal()[axial], model.elements.length / _STIFF)
-    B = K[axial][:, motions] @ T
-    A = T.T @ K[motions][:, motions] @ T + B.T @ diags_array(1.0 / compliance) @ B
 
-    return motions, T, csr_array(A), lumped_mass(model)[motions]
-
-
-def _bodies_motions(model: Model, K: csr_array, size: int) -> csr_array:
-    """What hinges, guides and drives leave free of ``size`` motions, of which the last are the bodies', (size, q)."""
-    if model.hinges:
-        dofs = np.concatenate([body.dofs for body in model.bodies if body.dofs is not None])
-        rows = [*(row for hinge in model.hinges for row in hinge.rows)]
-        rows += [hold.row for hold in (*model.guides, *model.drives)]
-        nodes = diags_array(np.ones(size - dofs.size))
-        return csr_array(block_diag([nodes, csr_array(null_space(K[rows][:, dofs].toarray()))]))
-    blocks = []
-    for i, body in enumerate(model.bodies):
-        if body.dofs is None:
-            continue
-        rows = [hold.row for hold in (*model.guides, *model.drives) if hold.body == i]
-        blocks.append(null_space(K[rows][:, body.dofs].toarray()) if rows else np.eye(3))
-    nodes = diags_array(np.ones(size - 3 * len(blocks)))
-    return csr_array(block_diag([nodes, *blocks]))
+def _together(model: Model) -> list[set[int]]:
+    """Numbers of the bodies that move, those together that hinges join."""
+    groups = [{i} for i, body in enumerate(model.bodies) if body.dofs is not None]
+    for hinge in model.hinges:
+        joined = [group for group in groups if group & set(hinge.bodies)]
+        groups = [group for group in groups if group not in joined]
+        groups.append(set[int]().union(*joined))
+    return groups
 
 
-def _bands(*matrices: csr_array) -> list[Array]:
-    """The lower halves of symmetric matrices (m, m), all as wide as the widest, in LAPACK's order."""
-    entries = [matrix.tocoo() for matrix in matrices]
-    width = max(int((one.coords[0] - one.coords[1]).max(initial=0)) for one in entries)
+def _bands(place: Index, *matrices: csr_array) -> list[Array]:
+    """The lower halves of symmetric matrices (m, m), rows and columns at their ``place``, all as wide as the widest."""
+    entries = [(np.repeat(place, np.diff(one.indptr)), place[one.indices], one.data) for one in matrices]
+    width = max(int((rows - columns).max(initial=0)) for rows, columns, _ in entries)
     bands = []
-    for one in entries:
-        rows, columns = one.coords
-        band = np.zeros((width + 1, one.shape[0]))
+    for rows, columns, data in entries:
         lower = rows >= columns
-        band[(rows - columns)[lower], columns[lower]] = one.data[lower]
+        band = np.zeros((width + 1, place.size))
+        band[(rows - columns)[lower], columns[lower]] = data[lower]
         bands.append(band)
     return bands
 
 
-def _ritz(T: csr_array, factor: Array, root: Array) -> tuple[float, Array]:
-    """1 over the largest Ritz value of M^½ T A⁻¹ T^T M^½, whose eigenvalues are 1/μ and zeros, and its u."""
-    v = root * np.random.default_rng(_SEED).standard_normal(root.size)
+def _ritz(on: _Feasible, factor: Array, root: Array) -> tuple[float, Array]:
+    """1 over the largest Ritz value of M^½ T A⁻¹ T^T M^½, whose eigenvalues are 1/μ and zeros, and its u (size,)."""
+    moving = np.flatnonzero(root)
+    v = np.zeros(root.size)
+    v[moving] = root[moving] * np.random.default_rng(_SEED).standard_normal(moving.size)
     v /= np.linalg.norm(v)
-    basis: list[Array] = []
+    Q = np.zeros((_STEPS, root.size))
     diagonal: list[float] = []
     beside: list[float] = []
-    for _ in range(_STEPS):
-        basis.append(v)
-        w = root * (T @ cho_solve_banded((factor, True), T.T @ (root * v), check_finite=False))
+    for step in range(_STEPS):
+        Q[step] = v
+        right = np.empty(on.place.size)
+        right[on.place] = on.back @ (root * v)
+        w = root * (on.T @ dpbtrs(factor, right, lower=1)[0][on.place])
         diagonal.append(float(v @ w))
-        Q = np.array(basis)
-        w -= Q.T @ (Q @ w)
-        w -= Q.T @ (Q @ w)
+        so_far = Q[: step + 1]
+        w -= so_far.T @ (so_far @ w)
+        w -= so_far.T @ (so_far @ w)
         beta = float(np.linalg.norm(w))
-        if beta <= 1e-12 * max(diagonal):
-            break
+        last = beta <= 1e-12 * max(diagonal) or step == _STEPS - 1
+        if last or step % _LOOK == _LOOK - 1:
+            values, vectors = eigh_tridiagonal(np.array(diagonal), np.array(beside))
+            if last or beta * abs(float(vectors[-1, -1])) <= _ENOUGH * float(values[-1]):
+                break
         beside.append(beta)
         v = w / beta
-    values, vectors = eigh_tridiagonal(np.array(diagonal), np.array(beside[: len(diagonal) - 1]))
-    return 1.0 / float(values[-1]), np.asarray((np.array(basis).T @ vectors[:, -1]) / root)
+    u = np.zeros(root.size)
+    u[moving] = (so_far.T @ vectors[:, -1])[moving] / root[moving]
+    return 1.0 / float(values[-1]), u
 
 
 def _below_zero(factor: Callable[[float], Array | None]) -> float:

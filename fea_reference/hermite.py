@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fea_reference.state import summed
+from fea_reference.state import Complex, summed
 from scene.answer import Array
 
 Index = NDArray[np.int64]
@@ -35,8 +35,8 @@ class NeutralLine:
 
     ``points`` (2, n+1) and what their rounding left, ``rest`` (2, n+1); ``angles`` (n+1,); the elements'
     undeformed ``lengths`` (n,), their ``speeds`` m, what these ``give`` by N and, ``arching``, change by θ₂ (n,);
-    ``tangents`` and ``normals`` (2, n+1); and the coefficients ``cubic`` (3, 2, n) of ξ, ξ², ξ³ of every element,
-    from its first node.
+    ``tangents`` and ``normals`` (2, n+1); and the coefficients ``cubic`` (3, n) of ξ, ξ², ξ³ of every element,
+    from its first node, as complex numbers x + i y, as ``nodes`` and ``rests`` (n+1,) are the points and their rests.
     """
 
     points: Array
@@ -48,7 +48,9 @@ class NeutralLine:
     arching: Array
     tangents: Array
     normals: Array
-    cubic: Array
+    cubic: Complex
+    nodes: Complex
+    rests: Complex
 
     @classmethod
     def through(
@@ -56,17 +58,17 @@ class NeutralLine:
     ) -> NeutralLine:
         """The line through ``points`` + ``rest`` (2, n+1), its elements stretched by ``compliance`` ``axial`` (n,)."""
         cos, sin = np.cos(angles), np.sin(angles)
-        tangents = np.stack([cos, sin])
-        step, error = summed(points[:, 1:], -points[:, :-1])
-        step = step + (error + np.diff(rest, axis=1))
+        nodes, rests, ahead = points[0] + 1j * points[1], rest[0] + 1j * rest[1], cos + 1j * sin
+        step, error = summed(nodes[1:], -nodes[:-1])
+        step = step + (error + np.diff(rests))
         give = compliance * lengths
         turned = np.diff(angles)
         speeds = lengths * (1.0 + turned**2 / (2.0 * _ARC)) + give * axial
-        t1, t2 = speeds * tangents[:, :-1], speeds * tangents[:, 1:]
+        t1, t2 = speeds * ahead[:-1], speeds * ahead[1:]
         cubic = np.stack([t1, 3.0 * step - 2.0 * t1 - t2, t1 + t2 - 2.0 * step])
-        return cls(
-            points, rest, angles, lengths, speeds, give, lengths * turned / _ARC, tangents, np.stack([-sin, cos]), cubic
-        )
+        arching = lengths * turned / _ARC
+        tangents, normals = np.stack([cos, sin]), np.stack([-sin, cos])
+        return cls(points, rest, angles, lengths, speeds, give, arching, tangents, normals, cubic, nodes, rests)
 
     @property
     def n(self) -> int:
@@ -78,29 +80,49 @@ class NeutralLine:
         element = np.minimum(zeta.astype(np.int64), self.n - 1)
         return element, zeta - element
 
+    def around(self, zeta: Array) -> Around:
+        """What there is at places (k,)."""
+        e, xi = self.locate(zeta)
+        t, b, a = self.cubic[:, e]
+        last = xi * a
+        bent = b + last
+        return Around(e, xi * (t + xi * bent), t + xi * (bent + bent + last), 2.0 * bent + 4.0 * last)
+
     def from_node(self, zeta: Array) -> Array:
         """From the first node of each place's element to the place, (2, k)."""
-        e, xi = self.locate(zeta)
-        t, b, a = self.cubic[:, :, e]
-        return np.asarray(xi * (t + xi * (b + xi * a)))
+        return plane(self.around(zeta).way)
 
     def at(self, zeta: Array) -> tuple[Array, Array, Array]:
         """Position, first and second derivative by ζ, each (2, k)."""
-        e, xi = self.locate(zeta)
-        t, b, a = self.cubic[:, :, e]
-        return (
-            self.points[:, e] + xi * (t + xi * (b + xi * a)),
-            t + xi * (2.0 * b + xi * (3.0 * a)),
-            2.0 * b + xi * (6.0 * a),
-        )
+        there = self.around(zeta)
+        return plane(self.nodes[there.element] + there.way), plane(there.ahead), plane(there.bent)
 
 
-def apart(first: NeutralLine, zeta: Array, second: NeutralLine, zeta_m: Array) -> Array:
-    """From places ``zeta_m`` (k,) of the second line to ``zeta`` (k,) of the first, (2, k), with all digits."""
-    e, e_m = first.locate(zeta)[0], second.locate(zeta_m)[0]
-    value, error = summed(first.points[:, e], -second.points[:, e_m])
-    nodes = value + (error + (first.rest[:, e] - second.rest[:, e_m]))
-    return np.asarray(nodes + (first.from_node(zeta) - second.from_node(zeta_m)))
+@dataclass(frozen=True, slots=True)
+class Around:
+    """Of k places on a line: the ``element``, the ``way`` from its first node, x' and x'' by ζ; as complex numbers."""
+
+    element: Index
+    way: Complex
+    ahead: Complex
+    bent: Complex
+
+    def moved(self, by: Array) -> Around:
+        """What there is at places so little farther (k,) that their squares are nothing."""
+        return Around(self.element, self.way + by * self.ahead, self.ahead + by * self.bent, self.bent)
+
+
+def plane(number: Complex) -> Array:
+    """x + i y as (2, k)."""
+    return np.stack([number.real, number.imag])
+
+
+def apart(first: NeutralLine, at: Around, second: NeutralLine, at_m: Around) -> Complex:
+    """From places (k,) of the second line to those of the first, x + i y, with all digits."""
+    e, e_m = at.element, at_m.element
+    value, error = summed(first.nodes[e], -second.nodes[e_m])
+    nodes = value + (error + (first.rests[e] - second.rests[e_m]))
+    return np.asarray(nodes + (at.way - at_m.way))
 
 
 def shapes(xi: Array) -> Array:

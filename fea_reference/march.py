@@ -10,9 +10,9 @@ from scipy.optimize import brentq
 from scipy.sparse.linalg import splu
 
 from fea_reference.acting import Acting
-from fea_reference.advance import advance
+from fea_reference.advance import advance, carried
 from fea_reference.contacts import passed_through, resting_pressure, zones_of
-from fea_reference.curvature import smallest_curvature
+from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.settings import Settings
@@ -23,6 +23,8 @@ from fea_reference.touch import Contact, Face, Pair, Penalty, Rigid, Touch
 from scene.answer import Array, Critical, Ending
 
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
+_AHEAD = 2.0  # of the last step: the longest for which its change of rate tells anything
+_BENT = 0.02  # of what a step moves by its rate: the most that its change may add
 _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _TIGHTENINGS = 25
@@ -54,6 +56,21 @@ class StoppedError(Exception):
         self.ending, self.sentence = ending, sentence
 
 
+@dataclass(frozen=True, slots=True)
+class Behind:
+    """The ``value`` of what is stepped (number ``load``) before the last step; state and ``rate`` there, what acted.
+
+    ``contacts`` are those that were closed.
+    """
+
+    load: int
+    value: float
+    z: State
+    rate: Array
+    acting: Acting
+    contacts: frozenset[Contact]
+
+
 @dataclass
 class March:
     """Where the march stands: the state of the one loop that is allowed one.
@@ -64,7 +81,8 @@ class March:
     of branches that have been passed; ``iterations`` are counted since the last station; ``far`` is whether zones have
     been too far from one station to the last for tight penalties and have not come nearer since, so that the way to
     the next one begins with loose ones on what is rigid; ``loose`` whether penalties were loosened since they were
-    tightened; ``known`` is the last system whose smallest curvature was asked for, with that.
+    tightened; ``known`` is the last system whose smallest curvature was asked for, with that; ``behind`` is where the
+    last step began, if it went along a branch.
     """
 
     model: Model
@@ -81,6 +99,7 @@ class March:
     far: bool = False
     loose: bool = False
     known: tuple[System, float] | None = None
+    behind: Behind | None = None
 
     @property
     def curvature(self) -> float:
@@ -88,6 +107,13 @@ class March:
         if self.known is None or self.known[0] is not self.system:
             self.known = self.system, smallest_curvature(self.model, self.system)
         return self.known[1]
+
+    @property
+    def minimum(self) -> bool:
+        """Whether that is positive."""
+        if self.known is None or self.known[0] is not self.system:
+            return positive(self.model, self.system)
+        return self.known[1] > 0.0
 
     def saved(self) -> March:
         """A copy to come back to."""
@@ -128,7 +154,7 @@ class March:
     def step(self, load: int, value: float, rate: Array) -> Trouble | None:
         """Try to step to ``value``, or to where a contact or stop changes before; the trouble if neither can be."""
         before, start = self.system.z, float(self.values[load])
-        predicted = advance(self.model, before, (value - start) * rate)
+        predicted = advance(self.model, before, self._foreseen(load, value - start, rate))
         system = self.solve(load, value, predicted)
         if system is None:
             return (
@@ -166,14 +192,27 @@ class March:
             self.switch(load, changing)
         return None
 
+    def _foreseen(self, load: int, step: float, rate: Array) -> Array:
+        """By what a step will move, (size,): to second order by the rates of now and of before, if they tell."""
+        first, behind = step * rate, self.behind
+        if behind is None or behind.load != load or behind.acting is not self.acting:
+            return first
+        back = float(self.values[load]) - behind.value
+        if behind.contacts != frozenset(self.penalties) or not abs(step) <= _AHEAD * abs(back):
+            return first
+        second = 0.5 * step**2 / back * (rate - carried(self.model, behind.z, self.system.z, behind.rate))
+        bent, straight = (float(np.abs(way[self.model.moving]).max()) for way in (second, first))
+        return first + second if bent <= _BENT * straight else first
+
     def passed(self, before: State, system: System, where: str) -> Trouble | None:
         """What must not have happened on the way from the state ``before`` to a system; a sentence says ``where``."""
         pressing = {one.pair for one in system.touches if one.closed}
         for pair in (*self.open, *self.penalties):
             if isinstance(pair, Face):
                 continue  # its straight way is one in the frame of its body
-            closing = zones_of(self.model, pair, system.z).least <= _CLOSED * pair.scale
-            if not closing and pair not in pressing and self._overlapped_between(pair, before, system.z):
+            if pair in pressing or zones_of(self.model, pair, system.z).least <= _CLOSED * pair.scale:
+                continue
+            if self._overlapped_between(pair, before, system.z):
                 return Ending.BEAMS_CROSSED, f"{where} what may touch in {pair.name} passes through each other"
         turned = float(np.abs(system.elements.rotation).max())
         if turned > _TURNED:
@@ -195,12 +234,12 @@ class March:
 
     def switch(self, load: int, changing: Iterable[StopPart]) -> None:
         """Let those stops act, or act no more, that have arrived where they change."""
-        for stop in changing:
-            if self.room(stop, self.system) > _SWITCHED:
-                continue
+        arrived = [stop for stop in changing if self.room(stop, self.system) <= _SWITCHED]
+        for stop in arrived:
             self.switched[stop.name] = float(self.values[load])
             self.turn(stop, load, self.system)
-        self.renew()
+        if arrived:
+            self.renew()
 
     def turn(self, stop: StopPart, load: int, system: System) -> None:
         """Let a stop act no more if it does, and otherwise at the limit that it is nearest to in a system."""
@@ -300,12 +339,13 @@ class March:
 
     def watch_what_touches(self, load: int) -> None:
         """Give a penalty to every open contact whose gap has vanished."""
-        for pair in list(self.open):
-            if zones_of(self.model, pair, self.system.z).least <= _CLOSED * pair.scale:
-                self.open.remove(pair)
-                self.penalties[pair] = Penalty(pair.stiffness)
-                self.closing.setdefault(pair.name, self.value(load))
-        self.renew()
+        closing = [p for p in self.open if zones_of(self.model, p, self.system.z).least <= _CLOSED * p.scale]
+        for pair in closing:
+            self.open.remove(pair)
+            self.penalties[pair] = Penalty(pair.stiffness)
+            self.closing.setdefault(pair.name, self.value(load))
+        if closing:
+            self.renew()
 
     def loosen(self, *kinds: type[Contact]) -> bool:
         """Go back to the loosest penalties: the ends of a zone move by a layer's width per iteration.

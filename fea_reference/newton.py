@@ -31,13 +31,14 @@ from fea_reference.model import Model
 from fea_reference.settings import Settings
 from fea_reference.state import State
 from fea_reference.system import Drag, System, assemble
-from fea_reference.touch import Contact, Penalty
+from fea_reference.touch import Contact, Penalty, Touch
 from scene.answer import Array
 
 _TURN = 0.4  # rad, and the same in lengths of the longest beam: the most that one iteration may move anything
 _NEAR = 3.0  # factor between penetrations that Newton's method bridges by itself
 _SETTLED = 1e-4  # correction after which holding has done what it can
 _FALLING = 0.1  # of the unbalanced force before: who has come so far needs a few iterations more
+_TOUCHING = 1e-9  # of the thickness: an overlap that is none
 _HELD = 6  # iterations for which a contact is held at most
 
 
@@ -63,14 +64,17 @@ def equilibrium(
 ) -> Solved:
     """Seek the equilibrium near ``z`` under load ``values``, with those stops ``acting`` that do, whatever their sign.
 
-    ``depths`` are the penetrations of the contacts that were closed in the equilibrium before: these are held
-    until their penetration is near that again, or until they pull.  ``before`` is what the points of the contacts
+    ``depths`` are the penetrations of the contacts that were closed in the equilibrium before: where they are not near
+    that, these are held until they are again, or until they pull.  ``before`` is what the points of the contacts
     pushed with there, (k,) each.  A ``drag`` resists the motions.
     """
     moving = model.moving
     correction, last, iteration = np.inf, np.inf, 0
-    held, foreseen = dict(depths), dict(before)
-    system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
+    foreseen = dict(before)
+    system = assemble(model, penalties, settings.quadrature, values, z, acting, {}, foreseen, drag)
+    held = {one.pair: depths[one.pair] for one in system.touches if _to_hold(one, depths, before)}
+    if held:
+        system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
     while True:
         unbalanced = float(np.abs(system.residual).max())
         accepted = max(settings.residual * system.scale, system.floor)
@@ -94,17 +98,30 @@ def equilibrium(
         else:
             z = advance(model, z, step)
             system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
-        if held:
-            for one in system.touches:
-                depth = held.get(one.pair)
-                if depth is None:
-                    continue
-                near = depth / _NEAR < one.penetration < _NEAR * depth
-                settled = iteration >= _HELD or correction < _SETTLED
-                if near or settled or (iteration > 0 and foreseen[one.pair].sum() < 0.0):
-                    del held[one.pair]
+        settled = iteration >= _HELD or correction < _SETTLED
+        free = [
+            one.pair
+            for one in system.touches
+            if one.pair in held
+            and (settled or _near(one, held[one.pair]) or (iteration > 0 and foreseen[one.pair].sum() < 0.0))
+        ]
+        if free:
+            held = {pair: depth for pair, depth in held.items() if pair not in free}
             system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
         iteration += 1
+
+
+def _to_hold(one: Touch, depths: Mapping[Contact, float], before: Mapping[Contact, Array]) -> bool:
+    """Whether a contact is to be held: one that did not press and does not overlap is as it was."""
+    if one.pair not in depths or _near(one, depths[one.pair]):
+        return False
+    pressed = one.pair in before and float(before[one.pair].sum()) > 0.0
+    return pressed or one.penetration > _TOUCHING * one.pair.scale
+
+
+def _near(one: Touch, depth: float) -> bool:
+    """Whether Newton's method bridges by itself what a penetration is from a depth."""
+    return depth / _NEAR < one.penetration < _NEAR * depth
 
 
 def _along(

@@ -99,4 +99,4 @@ def _course(march: March, stage: Stage) -> Course:
     """What a stage steps, and over which span: from where it is, through all stations."""
     load = [part.name for part in march.model.stepped].index(stage.steps)
     ways = [march.values[load], *(station / march.model.stepped[load].unit for station in stage.stations)]
-    return Course(load, float(np.ptp(ways)) or 1.0, stage.name, stage.beyond == "jump")
+    return Course(load, float(np.ptp(ways)) or 1.0, stage.name, stage.beyond)

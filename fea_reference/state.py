@@ -18,11 +18,15 @@ D. E. Knuth, The Art of Computer Programming, vol. 2, §4.2.2): a + b = (a ⊕ b
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import overload
+from typing import TypeVar, overload
 
 import numpy as np
+from numpy.typing import NDArray
 
 from scene.answer import Array, Ints
+
+Complex = NDArray[np.complex128]
+Numbers = TypeVar("Numbers", Array, Complex)
 
 _SPLITTER = 2.0**27 + 1.0  # cuts 53 bits into two halves
 
@@ -58,9 +62,9 @@ class State:
         return np.asarray(value + (error + (self.rest[end] - self.rest[start])))
 
 
-def summed(a: Array, b: Array) -> tuple[Array, Array]:
+def summed(a: Numbers, b: Numbers) -> tuple[Numbers, Numbers]:
     """a ⊕ b and its error."""
-    value = np.asarray(a + b)
+    value = a + b
     shift = value - a
     return value, (a - (value - shift)) + (b - shift)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from fea_reference.hermite import Index
 from fea_reference.leaning import Chain
 from fea_reference.outline import Outline
 from fea_reference.zones import Zones
-from scene.answer import Array
+from scene.answer import Array, frozen_array
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,6 +214,13 @@ class Touch:
     def closed(self) -> bool:
         """Whether the beams touch anywhere."""
         return self.zeta.size > 0
+
+
+@cache
+def gauss(points: int) -> tuple[Array, Array]:
+    """Places in [−1, 1] and weights of Gauss' rule, (points,) each."""
+    places, weights = np.polynomial.legendre.leggauss(points)
+    return frozen_array(places), frozen_array(weights)
 
 
 def together(quadrature: int, *elements: Index) -> int:

@@ -20,12 +20,13 @@ changes in between by something between both; one that does not is on another br
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from fea_reference.descent import descended
 from fea_reference.following import Lost, about_to_go, followed
-from fea_reference.march import March, StoppedError, Trouble
+from fea_reference.march import Behind, March, StoppedError, Trouble
 from fea_reference.touch import Circle, Face, Pair
 from scene.answer import Array, Critical, Ending, Loss
 
@@ -44,15 +45,15 @@ _TIRED = 3  # cuts in a row after which that is tried
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """What is stepped: number ``load``, over a ``span`` without units, in a ``stage``; whether to ``jump`` at its end.
+    """What is stepped: number ``load``, over a ``span`` without units, in a ``stage``; what to do ``beyond`` its end.
 
-    The assembly is no stage, and has no name.
+    The assembly is no stage, and has no name.  Where nothing is asked of the end of the branch, steps look for none.
     """
 
     load: int
     span: float
     stage: str = ""
-    jump: bool = False
+    beyond: Literal["stop", "jump"] | None = "stop"
 
 
 def reach(march: March, course: Course, target: float) -> None:
@@ -71,7 +72,7 @@ def reach(march: March, course: Course, target: float) -> None:
     _arrive(march, course, target)
     march.settle(load)
     same = len(march.critical) == len(origin.critical) and march.values[load] != origin.values[load]
-    if same and not march.curvature > 0.0:
+    if same and not march.minimum:
         # with the penalties of the way it was a minimum: the branch ends before, with those of its beginning
         there = march.saved()
         march.restore(origin)
@@ -80,7 +81,7 @@ def reach(march: March, course: Course, target: float) -> None:
             march.restore(there)
         else:
             _beyond(march, course, target, lost)
-            march.iterations = 0
+            march.iterations, march.behind = 0, None
             _arrive(march, course, target)
             march.settle(load)
     after = march.zones()
@@ -99,6 +100,7 @@ def _arrive(march: March, course: Course, target: float) -> None:
     known: list[tuple[float, float]] = []
     limit = march.settings.iteration_limit
     rate: Array | None = None
+    watched = course.beyond is not None
     while march.values[load] != target:
         if cuts > _CUTS:
             raise StoppedError(*reason)
@@ -107,20 +109,20 @@ def _arrive(march: March, course: Course, target: float) -> None:
                 Ending.STEP_TOO_SMALL,
                 f"{march.iterations} iterations only led to {march.shown(load, march.values[load])}",
             )
-        if not known:
+        if watched and not known:
             known = [(float(march.values[load]), march.curvature)]
         rate = march.rate(load) if rate is None else rate
         speed = float(np.abs(rate[march.model.moving]).max())
         way = target - march.values[load]
         foreseen = _HALF * _vanishing(known)
         size = min(abs(way), stride, _PREDICTED / max(speed, 1e-300))
-        minimum = known[-1][1] > 0.0
+        minimum = not watched or known[-1][1] > 0.0
         close = minimum and foreseen < size and foreseen < _NEAR * course.span
         size = min(size, foreseen)
         value = target if size >= abs(way) else march.values[load] + np.copysign(size, way)
         if value == march.values[load]:
             raise StoppedError(*reason)
-        close = close or (minimum and follow and about_to_go(march, load, float(value)))
+        close = close or (watched and minimum and follow and about_to_go(march, load, float(value)))
         saved, spent = march.saved(), march.iterations
         trouble: Trouble | None = None
         unstable = False
@@ -133,13 +135,12 @@ def _arrive(march: March, course: Course, target: float) -> None:
                         Ending.STEP_TOO_SMALL,
                         f"beyond {saved.shown(load, saved.values[load])} the nearest equilibrium is on another branch",
                     )
-                else:
-                    curvature = march.curvature
-                    unstable = minimum and curvature <= 0.0
+                elif watched:
+                    unstable = minimum and march.curvature <= 0.0
         tired = trouble is not None and cuts >= _TIRED
         if minimum and follow and (close or unstable or tired):
             march.restore(saved)
-            lost = followed(march, load, target, course.span)
+            lost = followed(march, load, target, course.span) if march.curvature > 0.0 else None
             if lost is not None:
                 _beyond(march, course, target, lost)
                 stride, cuts, searching = np.inf, 0, False
@@ -150,10 +151,12 @@ def _arrive(march: March, course: Course, target: float) -> None:
                 follow = False
             else:
                 follow = False
-            known, rate = [], None
+            known, rate, march.behind = [], None, None
         elif trouble is None:
             same = len(march.penalties) == len(saved.penalties) and march.acting is saved.acting
-            known = [*known[-1:], (float(march.values[load]), curvature)] if same else []
+            known = [*known[-1:], (float(march.values[load]), march.curvature)] if same and watched else []
+            old = saved.system.z
+            march.behind = Behind(load, float(saved.values[load]), old, rate, saved.acting, frozenset(saved.penalties))
             rate = ahead
             easy = march.iterations - spent <= _EASY
             stride, cuts, follow = 2.0 * size if easy else size, 0, True
@@ -211,7 +214,7 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
         f"at {march.shown(load, lost.value)} the branch of minima ends, {why}: the smallest curvature comes to "
         f"{lost.curvature:.3g} there, and what is left has {lost.left:.3g}"
     )
-    after = descended(march, load, target, course.span, lost) if course.jump else None
+    after = descended(march, load, target, course.span, lost) if course.beyond == "jump" else None
     if course.stage:
         march.critical.append(
             Critical(
@@ -227,6 +230,6 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
             )
         )
     if after is None:
-        if course.jump:
+        if course.beyond == "jump":
             sentence += "; the decrease of the energy from there leads to no minimum that was found"
         raise StoppedError(Ending.BRANCH_ENDS, sentence)

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from fea_reference.hermite import NeutralLine, apart
-from fea_reference.projection import project
+from fea_reference.projection import closest, project
 from scene.answer import Array
 
 SAMPLES_PER_ELEMENT = 4
@@ -49,6 +49,65 @@ class Gap:
     zeta_m: Array
     found: NDArray[np.bool_]
 
+    @property
+    def rows(self) -> tuple[Array, Array, Array, Array]:
+        """All of them but ``found``."""
+        return self.g, self.slope, self.curvature, self.zeta_m
+
+    def chosen(self, which: NDArray[np.bool_] | NDArray[np.int64]) -> Gap:
+        """At some of the places only."""
+        g, slope, curvature, zeta_m = (one[which] for one in self.rows)
+        return Gap(g, slope, curvature, zeta_m, self.found[which])
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """A gap at places ``zeta`` (k,) in order, its least values among them, from which follows where it is small.
+
+    ``at`` gives it at other places ζ, its closest points sought from ζ_m; ``neighbours`` (k−1,) says whether it is
+    known between a place and the next; ``kinks`` are those of the places, but for nodes, at which it has a kink.
+    ``least`` is its least value anywhere, an upper bound of it where there are no places.
+    """
+
+    at: Callable[[Array, Array], Gap]
+    zeta: Array
+    there: Gap
+    neighbours: NDArray[np.bool_]
+    kinks: tuple[float, ...]
+    least: float
+
+    def below(self, level: float) -> Zones:
+        """The intervals on which the gap is below a level, each as long as its element lets it be."""
+        if self.least >= level:
+            return none(self.least)
+        zeta, neighbours, there = self.zeta, self.neighbours, self.there
+        g, zeta_m = there.g - level, there.zeta_m
+
+        def gap_at(where: Array, guess: Array) -> tuple[Array, Array, Array]:
+            one = self.at(where, guess)
+            return one.g - level, one.slope, one.zeta_m
+
+        ends = np.flatnonzero(neighbours & (g[:-1] * g[1:] < 0.0))
+        if ends.size:
+            share = _parabola(zeta, g, there.slope, there.curvature, ends)
+            where, guess = _roots(gap_at, zeta, g, zeta_m, ends, share)
+            new = np.stack([where, np.zeros_like(where), guess])
+            zeta, g, zeta_m = np.insert(np.stack([zeta, g, zeta_m]), ends + 1, new, axis=1)
+            neighbours = np.insert(neighbours, ends, True)
+        inside = np.flatnonzero(neighbours & (g[:-1] <= 0.0) & (g[1:] <= 0.0) & (g[:-1] + g[1:] < 0.0))
+        # What follows on within one element is one interval: the gap is smooth there.
+        parted = zeta[inside] == np.floor(zeta[inside])
+        if self.kinks:
+            parted |= np.isin(zeta[inside], self.kinks)
+        begins = np.flatnonzero((np.diff(inside, prepend=-2) > 1) | parted)
+        last = np.append(begins[1:], inside.size)[: begins.size] - 1
+        low, high = inside[begins], inside[last] + 1
+        intervals, closest_there = (
+            np.stack([zeta[low], zeta[high]], axis=1),
+            np.stack([zeta_m[low], zeta_m[high]], axis=1),
+        )
+        return Zones(intervals, closest_there, self.least)
+
 
 @dataclass(frozen=True, slots=True)
 class Zones:
@@ -65,17 +124,15 @@ class Zones:
 
 def gap(first: NeutralLine, second: NeutralLine, side: float, T: float, zeta: Array, zeta_m: Array) -> Gap:
     """The gap at ``zeta`` (k,), closest points sought from ``zeta_m`` (k,)."""
-    x, x1, x2 = first.at(zeta)
-    zeta_m, found = project(second, x, zeta_m)
-    _, xm1, xm2 = second.at(zeta_m)
-    J = np.hypot(xm1[0], xm1[1])
-    tau = xm1 / J
-    n = np.stack([-tau[1], tau[0]])
-    d = (n * apart(first, zeta, second, zeta_m)).sum(axis=0)
-    a = (n * xm2).sum(axis=0)
-    slope = side * (n * x1).sum(axis=0)
-    curvature = side * ((n * x2).sum(axis=0) - a * (tau * x1).sum(axis=0) ** 2 / (J**2 - d * a))
-    return Gap(side * d - T, slope, curvature, zeta_m, found)
+    there = first.around(zeta)
+    zeta_m, found, across = closest(second, first.nodes[there.element] + there.way, zeta_m)
+    J = np.abs(across.ahead)
+    back = (1j * across.ahead / J).conj()  # n; of a product with it n·v is real, and −τ·v imaginary
+    d = (back * apart(first, there, second, across)).real
+    a = (back * across.bent).real
+    ahead = back * there.ahead
+    curvature = (back * there.bent).real - a * ahead.imag**2 / (J**2 - d * a)
+    return Gap(side * d - T, side * ahead.real, side * curvature, zeta_m, found)
 
 
 def side_of(first: NeutralLine, second: NeutralLine) -> float:
@@ -101,28 +158,36 @@ def ends_over(first: NeutralLine, second: NeutralLine) -> bool:
 
 def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zones:
     """All intervals on which the first beam overlaps the second."""
+    return overlap(first, second, T, seen(first, second, side, T), 0.0)
+
+
+def seen(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Survey:
+    """The gap of two beams wherever it is less than the second's longest element."""
+
+    def at(where: Array, guess: Array) -> Gap:
+        return gap(first, second, side, T, where, guess)
+
     zeta = _samples(first, second, T)
     x = first.at(zeta)[0]
     distance, nearest = KDTree(second.points.T).query(x.T)
     reach = _reach(first, second, T)
     near = np.flatnonzero(distance < reach)
-    least = float(distance.min()) - T
-    if near.size == 0:
-        return none(least)
-    there = gap(first, second, side, T, zeta[near], nearest[near].astype(float))
+    there = at(zeta[near], nearest[near].astype(float))
     # A point that sees the far side of a strongly bent second beam is no overlap.
     usable = there.found & (there.g > -T - reach)
-    near = near[usable]
-    if near.size == 0:
-        return none(least)
-    there = Gap(
-        there.g[usable], there.slope[usable], there.curvature[usable], there.zeta_m[usable], there.found[usable]
-    )
+    if not usable.any():
+        return Survey(at, zeta[:0], there.chosen(near[:0]), np.empty(0, dtype=bool), (), float(distance.min()) - T)
+    near, there = near[usable], there.chosen(usable)
+    return survey(at, zeta[near], there, np.diff(near) == 1)
 
-    def at(where: Array, guess: Array) -> Gap:
-        return gap(first, second, side, T, where, guess)
 
-    inside = negative(at, zeta[near], there, np.diff(near) == 1)
+def overlap(first: NeutralLine, second: NeutralLine, T: float, where: Survey, level: float) -> Zones:
+    """All intervals on which the gap that was seen is below a ``level``, which is less than the second's element.
+
+    Below by more than the gap is rounded to: beams that are held side by side lie on each other without pressing.
+    """
+    lengths = abs(T) + first.lengths.max() + second.lengths.max()
+    inside = where.below(level - float(np.finfo(float).eps * lengths))
     return Zones(*_split_at_nodes(first, second, inside.intervals, inside.zeta_m), inside.least)
 
 
@@ -134,7 +199,19 @@ def negative(
     kinks: tuple[float, ...] = (),
     joined: tuple[float, ...] = (),
 ) -> Zones:
-    """The intervals on which a gap is negative, each as long as its element lets it be.
+    """The intervals on which a gap is negative, see :func:`survey`."""
+    return survey(at, zeta, there, neighbours, kinks, joined).below(0.0)
+
+
+def survey(
+    at: Callable[[Array, Array], Gap],
+    zeta: Array,
+    there: Gap,
+    neighbours: NDArray[np.bool_],
+    kinks: tuple[float, ...] = (),
+    joined: tuple[float, ...] = (),
+) -> Survey:
+    """Where a gap is least, and whether anything may be beside.
 
     Args:
         at: the gap at places ζ (k,), the closest points sought from ζ_m (k,).
@@ -144,43 +221,29 @@ def negative(
         joined: those at which a joint makes it zero, which is no least gap.
     """
     zeta, there, neighbours = _with_bends(at, zeta, there, neighbours)
-    g, slope, curvature, zeta_m = there.g, there.slope, there.curvature, there.zeta_m
+    slope, zeta_m = there.slope, there.zeta_m
 
     def slope_at(where: Array, guess: Array) -> tuple[Array, Array, Array]:
         one = at(where, guess)
         return one.slope, one.curvature, one.zeta_m
 
-    def gap_at(where: Array, guess: Array) -> tuple[Array, Array, Array]:
-        one = at(where, guess)
-        return one.g, one.slope, one.zeta_m
-
     turning = np.flatnonzero(neighbours & (slope[:-1] * slope[1:] < 0.0))
     if turning.size:
         share = slope[turning] / (slope[turning] - slope[turning + 1])
         where, guess = _roots(slope_at, zeta, slope, zeta_m, turning, share)
-        least_there = at(where, guess)
-        after = turning + 1
-        zeta, zeta_m = np.insert(zeta, after, where), np.insert(zeta_m, after, least_there.zeta_m)
-        g, slope = np.insert(g, after, least_there.g), np.insert(slope, after, least_there.slope)
-        curvature = np.insert(curvature, after, least_there.curvature)
-        neighbours = np.insert(neighbours, turning, True)
-    least = float(g[~np.isin(zeta, joined)].min())
-    if least >= 0.0:
-        return none(least)
+        zeta, there, neighbours = _with(zeta, there, neighbours, turning, where, at(where, guess))
+    least = float((there.g[~np.isin(zeta, joined)] if joined else there.g).min())
+    return Survey(at, zeta, there, neighbours, kinks, least)
 
-    ends = np.flatnonzero(neighbours & (g[:-1] * g[1:] < 0.0))
-    if ends.size:
-        where, guess = _roots(gap_at, zeta, g, zeta_m, ends, _parabola(zeta, g, slope, curvature, ends))
-        after = ends + 1
-        zeta, g, zeta_m = np.insert(zeta, after, where), np.insert(g, after, 0.0), np.insert(zeta_m, after, guess)
-        neighbours = np.insert(neighbours, ends, True)
-    inside = np.flatnonzero(neighbours & (g[:-1] <= 0.0) & (g[1:] <= 0.0) & (g[:-1] + g[1:] < 0.0))
-    # What follows on within one element is one interval: the gap is smooth there.
-    at_node, at_kink = zeta[inside] == np.floor(zeta[inside]), np.isin(zeta[inside], kinks)
-    begins = np.flatnonzero((np.diff(inside, prepend=-2) > 1) | at_node | at_kink)
-    last = np.append(begins[1:], inside.size)[: begins.size] - 1
-    low, high = inside[begins], inside[last] + 1
-    return Zones(np.stack([zeta[low], zeta[high]], axis=1), np.stack([zeta_m[low], zeta_m[high]], axis=1), least)
+
+def _with(
+    zeta: Array, there: Gap, neighbours: NDArray[np.bool_], left: NDArray[np.int64], where: Array, more: Gap
+) -> tuple[Array, Gap, NDArray[np.bool_]]:
+    """The same with further places ``where``, each behind the one ``left`` of it."""
+    rows = np.insert(np.stack([zeta, *there.rows]), left + 1, np.stack([where, *more.rows]), axis=1)
+    zeta, g, slope, curvature, zeta_m = rows
+    found = np.insert(there.found, left + 1, more.found)
+    return zeta, Gap(g, slope, curvature, zeta_m, found), np.insert(neighbours, left, True)
 
 
 def _with_bends(
@@ -204,15 +267,7 @@ def _with_bends(
     share = turned[bends]
     where = zeta[bends] + share * width[bends]
     more = at(where, there.zeta_m[bends] + share * (there.zeta_m[bends + 1] - there.zeta_m[bends]))
-    after = bends + 1
-    merged = Gap(
-        np.insert(there.g, after, more.g),
-        np.insert(there.slope, after, more.slope),
-        np.insert(there.curvature, after, more.curvature),
-        np.insert(there.zeta_m, after, more.zeta_m),
-        np.insert(there.found, after, more.found),
-    )
-    return np.insert(zeta, after, where), merged, np.insert(neighbours, bends, True)
+    return _with(zeta, there, neighbours, bends, where, more)
 
 
 def _reach(first: NeutralLine, second: NeutralLine, T: float) -> float:
@@ -266,6 +321,7 @@ def _roots(
     x = low + share * (high - low)
     guess = zeta_m[left] + share * (zeta_m[left + 1] - zeta_m[left])
     rising = np.sign(values[left + 1])
+    pace = (zeta_m[left + 1] - zeta_m[left]) / np.where(high > low, high - low, 1.0)
     for _ in range(_ITERATIONS):
         f, df, guess = function(x, guess)
         below = f * rising < 0.0
@@ -275,8 +331,9 @@ def _roots(
         # A step that rounding takes out of the bracket has arrived; halving would begin again from afar.
         good = (newton > low - _ARRIVED) & (newton < high + _ARRIVED) & (df != 0.0)
         moved = np.where(f == 0.0, x, np.where(good, np.clip(newton, low, high), 0.5 * (low + high)))
-        done = np.abs(moved - x).max() < _ARRIVED  # as in a projection, the last step's error is of second order
-        x = moved
+        step, x = moved - x, moved
+        done = np.abs(step).max() < _ARRIVED  # as in a projection, the last step's error is of second order
+        guess = guess + pace * step
         if done:
             break
     return x, guess

@@ -497,7 +497,7 @@ class Stage(Record):
     steps are so short that no end is passed.  Without it they are as long as they can be, and an end is told of only
     where a step finds no way past it.  ``shown`` are the stations that tables and pictures are to show beside the last
     of all.  ``critical_limit`` (in the unit of the stations) is how far apart and how uncertain critical values may be
-    with which the stage still wants to hear AGREE; without it what is usual.
+    within one theory with which the stage still wants to hear AGREE; without it what is usual.
     """
 
     name: Name

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -44,10 +44,10 @@ def command(
     from comparisons.cli import showing
     from comparisons.cli.asking import questions
     from comparisons.offset_verdict import OffsetComparison, compared_offset
-    from comparisons.pairing import crew_of, paired, solvers_of, workers_for
+    from comparisons.pairing import Runs, begin, crew_of, solvers_of, workers_for
     from comparisons.tolerances.tolerated import paired_within
     from comparisons.verdict import compared
-    from scene import OffsetQuestion
+    from scene import OffsetQuestion, Scene
 
     one_of_both(tol)
     solvers = solvers_of(planted)
@@ -63,16 +63,25 @@ def command(
     finished: list[Comparison | OffsetComparison] = []
     chapters: tuple[report.Chapter, ...] = ()
     with crew_of(workers_for(planted)) as crew:
+
+        def begun(place: int) -> Callable[[], Runs] | None:
+            scene = scenes[place] if tol is None and place < len(scenes) else None
+            return begin(scene, choices, solvers, crew) if isinstance(scene, Scene) else None
+
+        following = begun(0)
         # a line that says which N is being solved stands in the bar's place
-        for scene in showing.progress(scenes, shown=not quiet and tol is None):
+        for place, scene in enumerate(showing.progress(scenes, shown=not quiet and tol is None)):
             comparison: Comparison | OffsetComparison
+            # the next case is solved while this one is judged and drawn
+            pending, following = following, begun(place + 1)
             if isinstance(scene, OffsetQuestion):
                 comparison = compared_offset(scene, solvers.offset)
             else:
                 found: tuple[Tolerance, ...] = ()
-                if tol is None:
-                    runs = paired(scene, choices, solvers, crew)
+                if pending is not None:
+                    runs = pending()
                 else:
+                    assert tol is not None
                     with showing.current(shown=not quiet) as say:
                         runs, found = paired_within(scene, choices, tol, solvers, crew, say)
                 comparison = replace(compared(scene, runs), tolerances=found)

@@ -98,10 +98,12 @@ def _told(question: Question, sizes: tuple[int, ...], choices: Choices, solvers:
     from comparisons.converging.families import converged
     from comparisons.converging.report import Told
     from comparisons.memory import Remembering
+    from comparisons.thinning import at_shown
     from scene import OffsetQuestion
 
     if isinstance(question, OffsetQuestion):
         return offset.told(question, sizes, solvers.offset)
+    question = at_shown(question)
     memory = Remembering(pool=crew.pool, solvers=solvers)
     found = converged(question, sizes, choices, solvers, memory)
     n = numbers.shown_size(found)

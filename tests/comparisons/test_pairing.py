@@ -7,7 +7,7 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.pairing import Solvers, cprbm_answer, crew_of, fea_answer, paired
+from comparisons.pairing import ALONE, Solvers, begin, cprbm_answer, crew_of, fea_answer, paired
 from scene import Mistake, SceneError
 from tests.comparisons.made_up import MadeUp
 
@@ -55,6 +55,7 @@ def test_both_formulations_are_there_whichever_was_chosen(hinge):
         ("hinge", 161, False),
         ("hinge", {"beam1": 20, "beam2": 200}, False),
         ("wrapped", 40, True),
+        ("prestressed", 40, False),  # it asks where branches end
     ],
 )
 def test_paper_stands_beside_auto_where_it_was_told_all_and_is_quick(right, case, links, asked):
@@ -99,6 +100,33 @@ def test_two_processes_give_the_answers_of_one(hinge, right):
             assert {name: values.tolist() for name, values in a.values.items()} == {
                 name: values.tolist() for name, values in b.values.items()
             }
+
+
+def test_one_case_can_be_begun_before_another_has_ended(hinge, right):
+    """Whichever is waited for first, each gets its own answers; what is refused leaves the other as it is."""
+    wrapped = cases.opened("wrapped")
+    with crew_of(2) as crew:
+        first, second = (begin(scene, Choices(), right, crew) for scene in (hinge, wrapped))
+        refused = begin(hinge, Choices(), Solvers(Refusing(), right.fea), crew)
+        last = begin(wrapped, Choices(), right, crew)
+        assert second().reference.scene == "wrapped"
+        assert first().reference.scene == "hinge"
+        with pytest.raises(SceneError):
+            refused()
+        assert last().reference.scene == "wrapped"
+
+
+def test_without_processes_nothing_is_done_before_it_is_waited_for(hinge, right):
+    asked = []
+
+    def noting(scene, choices):
+        asked.append(choices)
+        return right.cprbm(scene, choices)
+
+    pending = begin(hinge, Choices(), Solvers(noting, right.fea), ALONE)
+    assert asked == []
+    pending()
+    assert len(asked) > 2
 
 
 class Refusing:

@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import pytest
 
-from comparisons import regression
+from comparisons import cases, regression
 from comparisons.pairing import Solvers
+from tests.comparisons.jumping import Jumping
 from tests.comparisons.made_up import MadeUp, with_value
 
 
@@ -65,3 +66,27 @@ def test_an_acceptance_adds_to_the_history(file, hinge):
 def test_an_answer_that_is_not_whole_is_nothing_to_keep(hinge, right):
     with pytest.raises(RuntimeError, match="no station"):
         regression.measured(hinge, Solvers(replace(right.cprbm, until=3), right.fea))
+
+
+def test_of_a_long_stage_only_what_is_kept_is_solved():
+    """The stations to show and the last; where none is shown the middle one and the last; critical values too."""
+    scene = cases.opened("prestressed")
+    asked = []
+
+    def noting(solver):
+        def answer(scene, choices):
+            asked.append([stage.stations for stage in scene.stages])
+            return Jumping(solver)(scene, choices)
+
+        return answer
+
+    found = regression.measured(scene, Solvers(noting("cprbm"), noting("fea")))
+    forward, back = scene.stages
+    kept = [forward.shown, (back.stations[45], 0.0)]
+    assert asked == [kept, kept]
+    assert list(found["values"]["fea"]["D.displacement"]) == [
+        *(f"forward {value:g}" for value in forward.shown),
+        f"back {back.stations[45]:g}",
+        "back 0",
+    ]
+    assert len(found["values"]["cprbm"]["critical"]) == 2

@@ -252,6 +252,92 @@ def test_a_stop_that_takes_hold_is_a_change_nearby():
     """The made-up stops hold on the second branch."""
     changes = [each.changes for each in jumping().reactions]
     stops = ("stopB", "stopC")
-    assert changes[0] == ("contact",)  # before the first station nothing touches
+    assert changes[0] == ()  # contacts may press once it is assembled
     assert changes[1:4] == [stops, stops, ()]
     assert changes[4:] == [(), stops, stops]
+
+
+def dense(cprbm=None, *, forward=91, back=89):
+    """The same crank at every degree, or as far as that, and back."""
+    scene = cases.opened("prestressed")
+    ways = {"forward": range(forward), "back": range(back, -1, -1)}
+    stages = tuple(
+        stage.model_copy(update={"stations": tuple(radians(a) for a in ways[stage.name]), "shown": ()})
+        for stage in scene.stages
+    )
+    scene = scene.model_copy(update={"stages": stages, "claims": ()})
+    solvers = Solvers(cprbm or Jumping("cprbm"), Jumping("fea"))
+    return scene, compared(scene, paired(scene, Choices(), solvers))
+
+
+def test_close_stations_tell_the_energys_rate_by_themselves():
+    """No run stands beside them, zero has a rate too, and nothing is differentiated across the two jumps."""
+    scene, comparison = dense()
+    assert nearby(scene) is None
+    assert comparison.runs.nearby is None
+    found = comparison.reactions
+    assert len(found) == 181
+    assert {each.station for each in found if each.jumped} == {radians(a) for a in (70, 71, 26, 25)}
+    assert {each.branch for each in found} == {0, 1, 2}
+    for each in found:
+        assert each.dense
+        assert abs(each.difference) < 1e-7
+        assert each.truncation < 1e-4 * each.scale
+        assert not each.apart
+    said = sentence(found)
+    assert "within 0.0100 % of the multiplier at 181 of 181 stations" in said
+    assert "Largest in back, branch 2: " in said
+    row = documents.comparison(comparison)["work_energy"][0]
+    assert (row["energies"], row["allowed"], row["station"]) == ("of the stations", 1e-4, 0.0)
+
+
+def test_close_stations_find_a_multiplier_that_is_wrong_by_two_ten_thousandths():
+    def wrong(scene, choices):
+        answer = Jumping("cprbm")(scene, choices)
+        stations = tuple(
+            replace(at, values={**at.values, "crank.reaction_moment": 1.0002 * at.values["crank.reaction_moment"]})
+            if at.stage == "forward" and 0.5 < at.value < 0.6
+            else at
+            for at in answer.stations
+        )
+        return replace(answer, stations=stations)
+
+    _, comparison = dense(wrong)
+    apart = [each for each in comparison.reactions if each.apart]
+    assert [round(np.degrees(each.station)) for each in apart] == [29, 30, 31, 32, 33, 34]
+    said = sentence(comparison.reactions)
+    assert "Further apart: forward 0.506145 to 0.593412 (6 stations, at most 0.0200 % at 0." in said
+
+
+def test_a_stretch_of_too_few_stations_is_told():
+    """The branch after the jump at 70.4° has the three stations 71° to 73°; the way back begins with it anew."""
+    _, comparison = dense(forward=74, back=72)
+    without = [each for each in comparison.reactions if each.work_energy is None]
+    assert [round(np.degrees(each.station)) for each in without] == [71, 72, 73]
+    assert "3 stations are in stretches of fewer than 4 between changes." in sentence(comparison.reactions)
+
+
+def test_stations_that_are_far_apart_or_without_their_energy_have_a_run_beside_them():
+    scene, _ = dense()
+    probes = tuple(probe for probe in scene.probes if probe.quantity != "potential_energy")
+    assert nearby(scene.model_copy(update={"probes": probes})) is not None
+    back = scene.stages[1].model_copy(update={"stations": scene.stages[1].stations[::2]})
+    half = nearby(scene.model_copy(update={"stages": (scene.stages[0], back)}))
+    assert half is not None
+    assert half.stages[0].stations == scene.stages[0].stations
+    assert len(half.stages[1].stations) == 3 * 45
+
+
+def test_close_and_far_stations_stand_beside_each_other():
+    """One stage by itself, the other by a run: each as if it were alone."""
+    scene, _ = dense()
+    back = scene.stages[1].model_copy(update={"stations": scene.stages[1].stations[9::20]})
+    mixed = scene.model_copy(update={"stages": (scene.stages[0], back)})
+    comparison = compared(mixed, paired(mixed, Choices(), Solvers(Jumping("cprbm"), Jumping("fea"))))
+    assert [each.dense for each in comparison.reactions] == [True] * 91 + [False] * 4
+    for each in comparison.reactions:
+        assert each.work_energy is not None
+        assert abs(each.difference) < 1e-4
+    said = sentence(comparison.reactions)
+    assert said.startswith("Work–energy with ρ")
+    assert "from the stations' own energies" in said

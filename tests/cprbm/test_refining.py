@@ -9,9 +9,10 @@ import cprbm
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import point_at
 from cprbm.kinematics import State, rest_state
+from cprbm.levelling import levelled
 from cprbm.march import March
 from cprbm.mechanism import mechanism_of
-from cprbm.model import Fit, build
+from cprbm.model import Fit, Kinks, build
 from cprbm.refining import BEYOND, SHARE, all_zones, carried_over, coarser, ends_of, fits, fitted, long_ones
 from cprbm.settings import Settings
 from cprbm.zones import Zone
@@ -144,3 +145,11 @@ def test_an_answer_at_many_links_is_that_of_the_plain_march():
     assert plain.run()[0].name == "COMPLETED"
     for name, value in plain.reached[0].values.items():
         assert nested.values[name] == pytest.approx(value, rel=1e-6, abs=1e-6 * np.max(np.abs(value))), name
+
+
+def test_a_place_on_a_circle_is_no_matter_of_two_beams_that_lie_on_each_other():
+    march = marched(40)
+    kinks = Kinks(np.array([0.4]), np.array([1.0]), np.array([-1.0]))
+    fit = Fit({}, {}, {"circle": (kinks,)})
+    on = march.on
+    assert levelled(march.scene, on.settings, on.mechanism, on.point, fit, on.values) is None

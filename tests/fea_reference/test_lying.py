@@ -5,6 +5,10 @@ import pytest
 
 from comparisons import cases
 from fea_reference import Settings, answer
+from fea_reference.contacts import contacts, resting_pressure, touch
+from fea_reference.model import build
+from fea_reference.state import State
+from fea_reference.touch import Penalty
 from scene import Ending, Scene
 from tests.fea_reference.lying import LENGTH, LOWER, RADIUS, UPPER, WIDTH, YOUNG, lying
 from tests.references.lying import Lying, Strip
@@ -104,3 +108,26 @@ def test_a_beam_wraps_round_a_stiff_beam_as_round_a_circle(between):
         assert got["contact.ends"] == pytest.approx([0.0, share * exact.wrap_length], abs=5e-5 * exact.length)
         assert got["contact.centre"][0] == pytest.approx(share * exact.contact_centre, abs=5e-4 * exact.length)
         assert got["C.reaction"] == pytest.approx(exact.reaction, abs=1e-3 * load)
+
+
+@pytest.mark.parametrize("elements", [0.01, 0.9, 3.0])
+def test_beams_that_part_at_their_clamps_press_no_more_than_their_penalty(elements):
+    """A pressure that axial forces give is none where the beams part at once, by 3 s²/(8 R) at s from their clamps.
+
+    A pressure that begins at a gap of that size would have a zone up to there, and would hold itself.
+    """
+    scene, settings = lying(("upper", "lower"), (0.0,)), Settings(elements=40, kinematics="bending")
+    model = build(scene, settings)
+    (pair,) = contacts(scene, model, settings.penetration)
+    upper, lower = model.beam("upper"), model.beam("lower")
+    radius = 4.0 * RADIUS / model.units.length
+    z = model.start.values.copy()
+    x, y, _ = dofs = model.node_dofs[:, lower.nodes]
+    angle = z[x] / radius
+    z[dofs] = radius * np.sin(angle), z[y] + radius * (1.0 - np.cos(angle)), angle
+    z[model.element_dofs[6, upper.elements]] = -1.0  # pushed the upper leans into the hollow lower, if it lies there
+    s = elements * float(model.elements.length[upper.elements.start])
+    one = touch(model, pair, Penalty(pair.stiffness, 1.5 * s**2 / radius), 6, State.of(z))
+    assert np.ptp(one.zones.intervals) == pytest.approx(elements, rel=0.02)
+    pressure = resting_pressure(model, one, State.of(z))
+    assert pressure > 0.0 if elements > 1.0 else pressure == 0.0
