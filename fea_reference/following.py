@@ -163,7 +163,11 @@ def _changed(march: March, load: int, event: Place) -> Lost | None:
 
 def stop_lost(march: March, load: int, held: float, system: System) -> Lost | None:
     """What is lost by stops that have just let go of a ``system`` of curvature ``held``; None if it stands."""
-    gone = [name for name in system.acting.limits if name not in march.acting.limits]
+    gone = [
+        stop.known_as
+        for stop in march.model.stops
+        if stop.name in system.acting.limits and stop.name not in march.acting.limits
+    ]
     left = softest(march.model, march.system)
     if not gone or left.curvature > 0.0:
         return None
