@@ -59,9 +59,9 @@ def _forbidden(march: March, stop: StopPart, scene: Scene) -> list[Mistake]:
     room, limit = stop.room(march.system.z)
     if room >= -_BEYOND:
         return []
-    key = f"stops.{stop.name}.{'most' if limit == stop.most else 'least'}"
+    key = f"contacts.{stop.owner}" if stop.owner else f"stops.{stop.name}.{'most' if limit == stop.most else 'least'}"
     found = (
-        f"{limit:g} rad: a stop that forbids the assembly, by which {scene.stops[stop.name].beam!r} comes to "
+        f"{limit:g} rad: a stop that forbids the assembly, by which {stop.end[0]!r} comes to "
         f"stand at {stop.angle(march.system.z):.4g} rad"
     )
     return [Mistake(key, found, "limits that the assembled beam keeps, or other moments", scene.file)]

@@ -176,11 +176,11 @@ class March:
                     f"no closing of a contact or stop found beyond {self.shown(load, start)}",
                 )
             value, system = found
-            again = [stop.name for stop in changing if self.switched.get(stop.name) == value]
+            again = [stop.known_as for stop in changing if self.switched.get(stop.name) == value]
             if again:
                 return (
                     Ending.STEP_TOO_SMALL,
-                    f"beyond {self.shown(load, start)} the stop {again[0]} neither holds nor lets go",
+                    f"beyond {self.shown(load, start)} {again[0]} neither holds nor lets go",
                 )
         trouble = self.passed(before, system, f"beyond {self.shown(load, start)}")
         if trouble is not None:
