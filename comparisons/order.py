@@ -18,7 +18,7 @@ import math
 from collections.abc import Mapping
 from typing import Literal
 
-from scene import BeamContact, CircleContact, Probe, Scene
+from scene import BeamContact, Probe, RigidContact, Scene
 from scene.statement import FreeEnd
 
 USUAL, BESIDE_A_HELD_END = 2, 1
@@ -40,7 +40,7 @@ def order_of(scene: Scene, probe: Probe) -> int:
 def _shared(scene: Scene, name: str) -> set[str]:
     """Points of held ends up to which a contact may reach."""
     contact = scene.contacts[name]
-    if isinstance(contact, CircleContact):
+    if isinstance(contact, RigidContact):
         return set(_held(scene, contact.beam))
     assert isinstance(contact, BeamContact)
     one, other = (_held(scene, beam) for beam in contact.between)

@@ -32,7 +32,7 @@ from pydantic import ValidationError
 
 from comparisons.choices import KINEMATICS, Choices, Kinematics, check
 from comparisons.nearby import nearby
-from scene import Answer, CircleContact, Mistake, Scene, SceneError, Spacing
+from scene import Answer, Mistake, RigidContact, Scene, SceneError, Spacing
 from scene.answer import Array
 from scene.statement import Curve
 
@@ -304,7 +304,7 @@ def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:
     """The CPRBM at N in the formulation ``paper``; None where that cannot be asked or takes long."""
     finest = choices.links if isinstance(choices.links, int) else max(choices.links.values())
     contacts = scene.contacts.values()
-    told = all(isinstance(contact, CircleContact) or contact.paper is not None for contact in contacts)
+    told = all(isinstance(contact, RigidContact) or contact.paper is not None for contact in contacts)
     if not contacts or not told or finest > PAPER_BESIDE_AUTO:
         return None
     try:

@@ -20,7 +20,7 @@ from cprbm.nearest import Pair, pair_of
 from cprbm.rigid import RigidCircle, rigid_circle
 from cprbm.settings import Settings
 from cprbm.stops import AngleStop, stop_of
-from scene import BeamContact, Scene
+from scene import BeamContact, EdgeContact, Mistake, Scene, SceneError
 
 BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle or another
 SHALLOW = 0.05  # of the radius: an overlap between rows of a coarse mesh
@@ -129,12 +129,30 @@ def _formulation(parts: dict[str, Groups]) -> Formulation:
     return rows
 
 
+def _offered(scene: Scene) -> None:
+    """Refuse what there are no constraints for.
+
+    Raises:
+        SceneError: a contact with a line, a half-plane or a function, or a pin between bodies.
+    """
+    mistakes = [
+        Mistake(f"contacts.{name}.kind", repr(contact.kind), "a kind that this method offers so far", scene.file)
+        for name, contact in scene.contacts.items()
+        if isinstance(contact, EdgeContact)
+    ]
+    allowed = "bodies that beams join, or another solver: this method does not offer pins between bodies so far"
+    mistakes += [Mistake(f"pins.{name}", "a pin between two bodies", allowed, scene.file) for name in scene.pins]
+    if mistakes:
+        raise SceneError(mistakes)
+
+
 def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism:
     """Make a scene ready on even elements or those of a ``fit``.
 
     Raises:
         SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
     """
+    _offered(scene)
     model = build(scene, settings, fit)
     pairs = {
         name: (pair_of if isinstance(contact, BeamContact) else circle_of)(scene, model, name, fit)

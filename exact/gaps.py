@@ -75,7 +75,7 @@ def overlaps(
     for name, contact in model.scene.contacts.items():
         if isinstance(contact, CircleContact):
             found += _of_circle(model, now, name, contact, now.centre(name), touched)
-        else:
+        elif isinstance(contact, BeamContact):
             one, other = contact.between
             found += _of_pair(model, now, before, name, contact, (one, other), touched, sides)
             found += _of_pair(model, now, before, name, contact, (other, one), touched, sides)

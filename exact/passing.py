@@ -18,7 +18,7 @@ import numpy as np
 from exact.gaps import SAMPLES
 from exact.model import Model
 from exact.state import Known
-from scene import CircleContact
+from scene import BeamContact, CircleContact
 from scene.answer import Array
 
 _ON = 1e-5  # of the unit of length: more than a line is away from its chords
@@ -36,6 +36,7 @@ def passes(model: Model, before: Known, after: Known) -> bool:
             if _through_circle(p, q, contact.radius / model.unit_length + half):
                 return True
             continue
+        assert isinstance(contact, BeamContact)
         for one, other in (contact.between, contact.between[::-1]):
             sigma = np.linspace(0.0, model.strips[other].length, SAMPLES)
             for end in (0.0, model.strips[one].length):

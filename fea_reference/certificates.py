@@ -8,14 +8,14 @@ from fea_reference.curvature import smallest_curvature
 from fea_reference.march import March
 from fea_reference.model import Model
 from fea_reference.stops import acting_stops
-from fea_reference.supports import held, support
+from fea_reference.supports import grounded, held, support
 from fea_reference.system import System, assemble
-from fea_reference.touch import Circle, Pair
+from fea_reference.touch import Pair
 from scene.answer import Array, Certificate
 
 _VIOLATION = 1e-9
 _BALANCE = 1e-8
-_RESOLVED = 0.05  # of the thickness: overlap with a circle, whose penalty is as stiff as the elements can follow
+_RESOLVED = 0.05  # of the thickness: overlap with what is rigid, whose penalty is as stiff as the elements can follow
 _SOFT = 0.05  # by which a penalty may fall short of the stiffness that its elements ask for
 _NOTHING = 10.0  # floors: forces below this are round-off themselves
 _PULLS = 1e-8  # of the largest force or of EI/length: what a stop may pull with
@@ -51,7 +51,7 @@ def certify(march: March) -> Certificate:
     for stop, limit in acting_stops(model.stops, march.acting):
         press = stop.press(system.z, limit)
         if not press >= -_PULLS * max(1.0, system.scale):
-            failures.append(f"the stop {stop.name} holds with {press * model.units.moment:.1e} N·m on the wrong side")
+            failures.append(f"{stop.known_as} holds with {press * model.units.moment:.1e} N·m on the wrong side")
     for one in system.touches:
         allowed = settings.penetration if isinstance(one.pair, Pair) else max(settings.penetration, _RESOLVED)
         overlap = one.penetration / one.pair.scale
@@ -91,8 +91,8 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float]
 
     Each is over the largest in it if that is no round-off.
 
-    A contact's two forces are opposite on one line: they cancel in both sums, unless one of them is on a circle
-    that is fixed to the ground, which makes the other a support's.
+    A contact's two forces are opposite on one line: they cancel in both sums, unless one of them is on what
+    is rigid and fixed to the ground, which makes the other a support's.
     """
     z = system.z
     forces: list[Array] = []
@@ -103,6 +103,11 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float]
             forces.append(force)
             at = z[joint.dofs[:2]]
             moments += [moment, float(at[0] * force[1] - at[1] * force[0])]
+    for hinge in model.hinges:
+        if (found := grounded(model, hinge, z)) is not None:
+            forces.append(found[1])
+            at = model.carried(model.bodies[hinge.bodies[0]], hinge.arms[0], z)
+            moments.append(float(at[0] * found[1][1] - at[1] * found[1][0]))
     for hold in (*model.guides, *model.drives):
         force, moment = held(hold, z)
         forces.append(force)
@@ -120,7 +125,7 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float]
             at = model.carried(body, part.arm, z)
             moments.append(float(at[0] * forces[-1][1] - at[1] * forces[-1][0]))
     for one in system.touches:
-        if isinstance(one.pair, Circle) and model.bodies[one.pair.body].dofs is None:
+        if not isinstance(one.pair, Pair) and model.bodies[one.pair.body].dofs is None:
             forces.append(one.force.sum(axis=1))
             moments.append(float((one.x[0] * one.force[1] - one.x[1] * one.force[0]).sum()))
     largest_force = max((float(np.hypot(*force)) for force in forces), default=0.0)

@@ -136,7 +136,13 @@ def _on_feasible_directions(model: Model, system: System) -> tuple[Index, csr_ar
 
 
 def _bodies_motions(model: Model, K: csr_array, size: int) -> csr_array:
-    """What guides and drives leave free of ``size`` motions, of which the last are the bodies': a matrix (size, q)."""
+    """What hinges, guides and drives leave free of ``size`` motions, of which the last are the bodies', (size, q)."""
+    if model.hinges:
+        dofs = np.concatenate([body.dofs for body in model.bodies if body.dofs is not None])
+        rows = [*(row for hinge in model.hinges for row in hinge.rows)]
+        rows += [hold.row for hold in (*model.guides, *model.drives)]
+        nodes = diags_array(np.ones(size - dofs.size))
+        return csr_array(block_diag([nodes, csr_array(null_space(K[rows][:, dofs].toarray()))]))
     blocks = []
     for i, body in enumerate(model.bodies):
         if body.dofs is None:

@@ -27,11 +27,12 @@ from __future__ import annotations
 import numpy as np
 
 from fea_reference.circle import centre
+from fea_reference.face import beside
 from fea_reference.model import BeamPart, Model
 from fea_reference.projection import project
 from fea_reference.recovery import bending_moment
 from fea_reference.system import System
-from fea_reference.touch import Circle, Touch
+from fea_reference.touch import Circle, Face, Touch
 from scene.answer import Array
 
 _AT_END = 1e-6  # elements
@@ -89,6 +90,10 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array,
         lengths = line.lengths[line.locate(zeta)[0]]
         level = np.sqrt(1.0 - (pair.edge.slope(zeta) / lengths) ** 2)
         return np.asarray(turning * own + level / (pair.radius + pair.edge.at(zeta)))
+    if isinstance(pair, Face):
+        near = beside(model, pair, system.z, zeta)
+        turning = np.sign(tangent[0] * near.normal[1] - tangent[1] * near.normal[0])
+        return None if near.corner.any() else np.asarray(turning * own + near.bend)
     other = model.beams[pair.second]
     line_m = model.line(other, z)
     zeta_m, found = project(line_m, x, np.full(zeta.shape, facing))
@@ -96,8 +101,8 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array,
         return None
     tangent_m = line_m.at(zeta_m)[1]
     along = np.sign((tangent * tangent_m).sum(axis=0))
-    beside = _curvature(model, system, other, zeta_m)
-    return np.asarray(pair.side * (along * own - beside / (1.0 - pair.side * pair.distance * beside)))
+    across = _curvature(model, system, other, zeta_m)
+    return np.asarray(pair.side * (along * own - across / (1.0 - pair.side * pair.distance * across)))
 
 
 def _curvature(model: Model, system: System, beam: BeamPart, zeta: Array) -> Array:

@@ -17,7 +17,7 @@ that its elements have, keeps the line smooth; they differ as the shear force do
 
 At a welded end the section's rotation is given, and with it the line's: a pressure beside a clamp turns the line there
 with a moment that is the clamp's, and handed on to the shear of one element it would be a force between clamp and
-contact, of first order in the element.
+contact, of first order in the element.  The same holds of an end that is pinned to what it may lie on.
 """
 
 from __future__ import annotations

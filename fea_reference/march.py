@@ -19,7 +19,7 @@ from fea_reference.settings import Settings
 from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
-from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
+from fea_reference.touch import Contact, Pair, Penalty, Rigid, Touch
 from scene.answer import Array, Critical, Ending
 
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
@@ -62,8 +62,8 @@ class March:
     each did, and each stop first; ``switched`` that at which each stop last closed or let go; ``critical`` are the ends
     of branches that have been passed; ``iterations`` are counted since the last station; ``far`` is whether zones have
     been too far from one station to the last for tight penalties and have not come nearer since, so that the way to
-    the next one begins with loose ones on circles; ``loose`` whether penalties were loosened since they were tightened;
-    ``known`` is the last system whose smallest curvature was asked for, with that.
+    the next one begins with loose ones on what is rigid; ``loose`` whether penalties were loosened since they were
+    tightened; ``known`` is the last system whose smallest curvature was asked for, with that.
     """
 
     model: Model
@@ -205,7 +205,7 @@ class March:
             self.acting = self.acting.released(stop.name)
         else:
             self.acting = self.acting.stopped(stop.name, stop.room(system.z)[1])
-            self.closing.setdefault(stop.name, self.value(load))
+            self.closing.setdefault(stop.known_as, self.value(load))
 
     def act(self, acting: Acting) -> None:
         """Let other pins and stops act, without moving."""
@@ -301,10 +301,10 @@ class March:
             if zones_of(self.model, pair, self.system.z).least <= _CLOSED * pair.scale:
                 self.open.remove(pair)
                 self.penalties[pair] = Penalty(pair.stiffness)
-                self.closing[pair.name] = self.value(load)
+                self.closing.setdefault(pair.name, self.value(load))
         self.renew()
 
-    def loosen(self, *kinds: type[Circle | Pair]) -> bool:
+    def loosen(self, *kinds: type[Contact]) -> bool:
         """Go back to the loosest penalties: the ends of a zone move by a layer's width per iteration.
 
         Returns whether it could be done.  Most pairs of beams touch in a point, whose zone is found all the same.
@@ -325,11 +325,11 @@ class March:
         return False
 
     def zones(self) -> dict[Contact, Array]:
-        """Where the zones on circles begin and end, (2,) each."""
+        """Where the zones on what is rigid begin and end, (2,) each."""
         return {
             one.pair: np.array([one.zones.intervals.min(), one.zones.intervals.max()])
             for one in self.system.touches
-            if isinstance(one.pair, Circle) and one.closed
+            if isinstance(one.pair, Rigid) and one.closed
         }
 
     def tighten(self) -> None:
@@ -376,14 +376,14 @@ class March:
         least = one.pair.stiffest / self.penalties[one.pair].stiffness
         if not one.closed:
             return 1.0
-        if isinstance(one.pair, Circle):
+        if isinstance(one.pair, Rigid):
             return max(1.0, least)
         aim = _AIM * self.settings.penetration * one.pair.scale
         return max(float((one.penetration / aim) ** fall), least)
 
     def _will_do(self, one: Touch, factor: float, tries: int) -> bool:
         """Whether a penalty is as wanted; after some tries that of beams may be stiffer."""
-        if isinstance(one.pair, Circle):
+        if isinstance(one.pair, Rigid):
             return factor <= 1.0 + _SAME
         if abs(factor - 1.0) <= _EVEN:
             return True

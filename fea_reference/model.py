@@ -5,8 +5,8 @@ moments over EI/length: the same scene in other units is the same problem to the
 
 The unknowns z are, in this order: the nodes' (x, y, θ) and the elements' axial forces N, numbered by
 scikit-fem; (X, Y, φ) of every body that moves, its displacement and rotation; one multiplier per row of a joint, of a
-guide (a sliding body has two: no motion across, no rotation; a turning one two: its pivot stays), of a drive and of a
-stop.
+hinge between bodies (two), of a guide (a sliding body has two: no motion across, no rotation; a turning one two: its
+pivot stays), of a drive and of a stop.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from fea_reference.curves import length, sample
 from fea_reference.element import Elements, reference
 from fea_reference.hermite import Index, NeutralLine
 from fea_reference.leaning import Chain, Span, chain, tangent_angles
+from fea_reference.own_pins import own_pins
 from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
 from fea_reference.settings import Settings
 from fea_reference.state import State
@@ -124,6 +125,19 @@ class JointPart:
 
 
 @dataclass(frozen=True, slots=True)
+class HingePart:
+    """Points of two bodies that stay together: X₁ + R(φ₁) r₁ − X₂ − R(φ₂) r₂ and what the centres differ by is zero.
+
+    ``arms`` are r₁ and r₂ (2,), ``points`` their names, ``rows`` the two multipliers'.
+    """
+
+    points: tuple[str, str]
+    bodies: tuple[int, int]
+    arms: tuple[Array, Array]
+    rows: Index
+
+
+@dataclass(frozen=True, slots=True)
 class LoadPart:
     """A moment on a body (``direction`` is None), or a force along ``direction`` (2,) at its ``arm`` (2,)."""
 
@@ -198,6 +212,7 @@ class Model:
     bodies: tuple[BodyPart, ...]
     joints: tuple[JointPart, ...]
     loads: tuple[LoadPart, ...]
+    hinges: tuple[HingePart, ...]
     guides: tuple[DrivePart, ...]
     drives: tuple[DrivePart, ...]
     stops: tuple[StopPart, ...]
@@ -252,8 +267,9 @@ class Model:
         return chain(self.elements, tuple((self._span(beam), e) for beam, e in places), moved, z)
 
     def _span(self, beam: BeamPart) -> Span:
-        ends = (beam.record.start, beam.record.end)
-        welded = tuple(isinstance(end, WeldedEnd) for end in ends)
+        own = {stop.end for stop in self.stops if stop.owner}
+        ends = (("start", beam.record.start), ("end", beam.record.end))
+        welded = tuple(isinstance(end, WeldedEnd) or (beam.name, which) in own for which, end in ends)
         return Span(beam.elements, self.element_dofs[:, beam.elements], (welded[0], welded[1]))
 
     def body_state(self, body: BodyPart, z: State) -> Array:
@@ -350,6 +366,13 @@ def build(scene: Scene, settings: Settings) -> Model:
             if which == "end" and scene.assembly is not None and is_apart(scene, ends):
                 apart.append(ApartPart(joints[-1], scene.assembly.moments.get(part.name, 0.0) / units.moment))
 
+    hinges: list[HingePart] = []
+    for pin in scene.pins.values():
+        one, other = (number[scene.body_of(point)] for point in pin.points)
+        arms = [bodies[i].points[point] - bodies[i].centre for i, point in zip((one, other), pin.points, strict=True)]
+        hinges.append(HingePart(pin.points, (one, other), (arms[0], arms[1]), np.arange(size, size + 2)))
+        size += 2
+
     loads: list[LoadPart] = []
     for name, load in scene.loads.items():
         match load:
@@ -383,7 +406,9 @@ def build(scene: Scene, settings: Settings) -> Model:
         else:
             drives.append(DrivePart(name, number[drive.body], size, np.zeros(2), None, 1.0))
         size += 1
-    stops = stops_of(scene, {body.name: (i, body.dofs) for i, body in enumerate(bodies)}, at_ends, size)
+    numbered = {body.name: (i, body.dofs) for i, body in enumerate(bodies)}
+    stops = stops_of(scene, numbered, at_ends, size)
+    stops += own_pins(scene, numbered, at_ends, size + len(stops))
     size += len(stops)
 
     start = np.zeros(size)
@@ -394,6 +419,7 @@ def build(scene: Scene, settings: Settings) -> Model:
         tuple(bodies),
         tuple(joints),
         tuple(loads),
+        tuple(hinges),
         tuple(guides),
         tuple(drives),
         stops,

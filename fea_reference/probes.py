@@ -10,8 +10,8 @@ from fea_reference.march import March
 from fea_reference.model import Model
 from fea_reference.projection import project
 from fea_reference.recovery import bending_moment
-from fea_reference.stops import StopPart
-from fea_reference.supports import held, support
+from fea_reference.stops import StopPart, acting_stops
+from fea_reference.supports import grounded, held, support
 from fea_reference.touch import Pair, Touch
 from scene.answer import Array, Shape, frozen_array
 from scene.statement import DisplacementDrive, Probe, Scene, TurningBody
@@ -43,12 +43,13 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
         case "potential_energy":
             return frozen_array(potential_energy(model, march.system, march.values) * units.moment)
         case "closing_load":
-            touch = _touch(march, probe.of)
-            return frozen_array([] if touch is None else march.closing[probe.of])
+            closed = _touch(march, probe.of) is not None or _holding_ends(march, probe.of)
+            return frozen_array(march.closing[probe.of] if closed else [])
         case "angle":
             return frozen_array(_stop(model, probe.of).angle(z))
         case "moment":
-            return frozen_array(abs(_stop(model, probe.of).moment(z)) * units.moment)
+            stops = [stop for stop in model.stops if stop.known_as == probe.of]
+            return frozen_array(sum(abs(stop.moment(z)) for stop in stops) * units.moment)
         case "force":
             touch = _touch(march, probe.of)
             return frozen_array(0.0 if touch is None else np.hypot(*touch.force.sum(axis=1)) * units.force)
@@ -56,8 +57,9 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
             touch = _touch(march, probe.of)
             return frozen_array([] if touch is None else _centre(march, touch) * units.length)
         case "ends":
-            touch = _touch(march, probe.of)
-            return frozen_array([] if touch is None else _ends(march, touch) * units.length)
+            touch, held = _touch(march, probe.of), _holding_ends(march, probe.of)
+            places = [*held, *([] if touch is None else _ends(march, touch))]
+            return frozen_array(np.array([min(places), max(places)]) * units.length if places else [])
 
 
 def shapes(march: March) -> dict[str, Shape]:
@@ -81,7 +83,7 @@ def touching(march: March) -> dict[str, Array]:
                 own, other = (model.beams[i].thickness for i in (one.pair.first, one.pair.second))
                 to_surfaces = np.asarray(one.pair.distance / (own + other) * (other - own))
             else:
-                # A circle's points are on its surface already.
+                # Points of what is rigid are on its surface already.
                 to_surfaces = -one.pair.edge.at(one.zeta)
             middle = 0.5 * (one.x + one.x_m + to_surfaces * one.normal)
             places[one.pair.name] = frozen_array((middle * model.units.length + model.units.origin[:, None]).T)
@@ -92,13 +94,24 @@ def _stop(model: Model, name: str) -> StopPart:
     return next(stop for stop in model.stops if stop.name == name)
 
 
+def _holding_ends(march: March, name: str) -> list[float]:
+    """Arc lengths of the pinned ends that a contact of that name holds by a moment."""
+    model, found = march.model, []
+    for stop, _ in acting_stops(model.stops, march.acting):
+        if stop.owner == name:
+            found.append(0.0 if stop.end[1] == "start" else model.beam(stop.end[0]).length)
+    return found
+
+
 def _holding(scene: Scene, march: March, name: str) -> list[tuple[Array, float]]:
     """Forces and moments of the ground at a point, with its pivots and stops, or of the drives of a point or body."""
     model, z = march.model, march.system.z
     turning = {key for key, body in scene.bodies.items() if isinstance(body, TurningBody) and body.about == name}
-    grounded = [joint for joint in model.joints if model.bodies[joint.body].dofs is None]
+    joints = [joint for joint in model.joints if model.bodies[joint.body].dofs is None]
+    hinges = [found for hinge in model.hinges if (found := grounded(model, hinge, z)) is not None]
     return [
-        *(support(joint, z) for joint in grounded if joint.point == name),
+        *(support(joint, z) for joint in joints if joint.point == name),
+        *((force, 0.0) for point, force in hinges if point == name),
         *(held(part, z) for part in model.guides if part.name in turning),
         *((np.zeros(2), stop.moment(z)) for stop in model.stops if stop.phi is None and stop.point == name),
         *(held(part, z) for part in model.drives if _driven(scene, part.name) == name),

@@ -14,7 +14,7 @@ import numpy as np
 
 from fea_reference.model import BeamPart, Model
 from fea_reference.system import System
-from fea_reference.touch import Circle, Pair, Touch
+from fea_reference.touch import Pair, Touch
 from scene.answer import Array
 
 _NOTHING = (np.empty(0), np.empty((2, 0)), np.empty((2, 0)))
@@ -31,7 +31,7 @@ def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Arra
     for touch in system.touches:
         gradient = touch.gradient
         for of_line, row, elements in touch.chain.shares:
-            if number == (touch.pair.first if of_line == 0 or isinstance(touch.pair, Circle) else touch.pair.second):
+            if number == (touch.pair.second if of_line == 1 and isinstance(touch.pair, Pair) else touch.pair.first):
                 for i in range(3):
                     np.add.at(ends[i], elements, gradient[row + i])
 

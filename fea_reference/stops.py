@@ -34,7 +34,8 @@ _ROUNDED = 1e-9  # rad: an angle that is π may be drawn a little beyond
 class StopPart:
     """A stop: unknown ``theta`` of the end, number of the ``body`` and its unknown ``phi`` if it moves, ``row`` of m.
 
-    ``offset`` is β⁰ − θ⁰; ``point`` names the pin's.
+    ``offset`` is β⁰ − θ⁰; ``point`` names the pin's, ``end`` the beam and which end of it.  ``owner`` names the contact
+    whose edge the end is pinned to, of a stop that is one, see :mod:`fea_reference.own_pins`.
     """
 
     name: str
@@ -46,6 +47,13 @@ class StopPart:
     offset: float
     least: float | None
     most: float | None
+    end: tuple[str, str]
+    owner: str = ""
+
+    @property
+    def known_as(self) -> str:
+        """What it is to the scene: a stop of its own, or a contact."""
+        return self.owner or self.name
 
     def angle(self, z: State) -> float:
         """β, rad."""
@@ -93,7 +101,10 @@ def stops_of(
         angle -= 2.0 * np.pi if angle > np.pi + _ROUNDED else 0.0
         number, dofs = bodies[scene.body_of(end.point)]
         phi = None if dofs is None else int(dofs[2])
-        found.append(StopPart(name, end.point, number, theta, phi, row + i, angle - drawn, stop.least, stop.most))
+        ends_of = (stop.beam, stop.end)
+        found.append(
+            StopPart(name, end.point, number, theta, phi, row + i, angle - drawn, stop.least, stop.most, ends_of)
+        )
     return tuple(found)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea_reference.model import DrivePart, JointPart
+from fea_reference.model import DrivePart, HingePart, JointPart, Model
 from fea_reference.state import State
 from scene.answer import Array
 
@@ -13,6 +13,14 @@ def support(joint: JointPart, z: State) -> tuple[Array, float]:
     """Force (2,) and moment of a joint's body on the beam's end: the multipliers, turned round."""
     force = -z[joint.rows[:2]]
     return force, float(-z[joint.rows[2]]) if joint.rows.size == 3 else 0.0
+
+
+def grounded(model: Model, hinge: HingePart, z: State) -> tuple[str, Array] | None:
+    """Point of the ground at a hinge, and its force (2,) on the body there; None between bodies that move."""
+    for i, point, sign in zip(hinge.bodies, hinge.points, (1.0, -1.0), strict=True):
+        if model.bodies[i].dofs is None:
+            return point, np.asarray(sign * z[hinge.rows])
+    return None
 
 
 def held(part: DrivePart, z: State) -> tuple[Array, float]:

@@ -21,7 +21,7 @@ from fea_reference.hermite import Index
 from fea_reference.model import MOMENTS, WAY, DrivePart, Model, SharePart, turned
 from fea_reference.state import State
 from fea_reference.stops import acting_stops
-from fea_reference.touch import Contact, Pair, Penalty, Touch
+from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
 from scene.answer import Array
 
 _ROUND_OFF = 3.0  # measured: up to two from 20 to 1280 elements, of both of its parts
@@ -138,15 +138,15 @@ def _pushes(one: Touch, foreseen: Array | None) -> Array:
 def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
     """Of a contact's force on a node: ε times what lies in an element of the zone, times what the gap is rounded to.
 
-    Within an element that is a share of the element's length, across a pair also of the beams' distance; where a
-    circle moves with its body, of the longest beam.
+    Within an element that is a share of the element's length, across a pair also of the beams' distance; where what
+    is rigid moves with its body, or has corners, of the longest beam.
     """
     pair = touch.pair
     h = float(model.elements.length[model.beams[pair.first].elements.start])
     if isinstance(pair, Pair):
         lengths = h + float(model.elements.length[model.beams[pair.second].elements.start]) + pair.distance
     else:
-        lengths = h if model.bodies[pair.body].dofs is None else 1.0
+        lengths = h if isinstance(pair, Circle) and model.bodies[pair.body].dofs is None else 1.0
     widest = h * float(np.diff(touch.zones.intervals, axis=1).max(initial=0.0))
     return float(np.finfo(float).eps) * stiffness * widest * lengths
 
@@ -180,7 +180,7 @@ def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
 
 
 def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array, list[int], list[int], list[float]]:
-    """Joints, guides, drives, stops and loads: few, so one after the other."""
+    """Joints, hinges, guides, drives, stops and loads: few, so one after the other."""
     residual = np.zeros(model.size)
     ways: dict[int, Array] = {}
     if acting.ways is not None:
@@ -234,6 +234,24 @@ def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array
             if body.dofs is not None:
                 residual[body.dofs[2]] -= multiplier
                 couple(row, int(body.dofs[2]), -1.0)
+    for hinge in model.hinges:
+        for i, r, sign in zip(hinge.bodies, hinge.arms, (1.0, -1.0), strict=True):
+            body = model.bodies[i]
+            residual[hinge.rows] += sign * model.carried(body, r, z)
+            if body.dofs is None:
+                continue
+            pull = sign * z[hinge.rows]
+            r = turned(r, z[body.dofs[2]])
+            lever = np.array([-r[1], r[0]])  # ∂(R r)/∂φ
+            residual[hinge.rows] += sign * z.rest[body.dofs[:2]]
+            residual[body.dofs[:2]] += pull
+            residual[body.dofs[2]] += pull @ lever
+            for axis in range(2):
+                couple(int(hinge.rows[axis]), int(body.dofs[axis]), sign)
+                couple(int(hinge.rows[axis]), int(body.dofs[2]), sign * lever[axis])
+            rows.append(int(body.dofs[2]))
+            columns.append(int(body.dofs[2]))
+            entries.append(-float(pull @ r))
     acting_loads, prescribed, _ = np.split(values, np.cumsum([len(model.loads), len(model.drives)]))
     rests = np.zeros(len(model.guides))
     for hold, value in zip((*model.guides, *model.drives), (*rests, *prescribed), strict=True):

@@ -9,6 +9,7 @@ import numpy as np
 from fea_reference.edge import Edge
 from fea_reference.hermite import Index
 from fea_reference.leaning import Chain
+from fea_reference.outline import Outline
 from fea_reference.zones import Zones
 from scene.answer import Array
 
@@ -74,7 +75,37 @@ class Circle:
         return self.loosest
 
 
-Contact = Pair | Circle
+@dataclass(frozen=True, slots=True)
+class Face:
+    """A beam and a rigid edge that may touch.
+
+    Attributes:
+        first: number of the beam.
+        body: number of the body that the edge is fixed to.
+        outline: the edge, in a frame about the body's reference centre.
+        own: ends ζ of the beam that joints hold on the edge.
+        edge: T, distance of the neutral line from the edge where they touch.
+        scale, loosest, stiffest: as of a circle.
+    """
+
+    name: str
+    first: int
+    body: int
+    outline: Outline
+    own: tuple[float, ...]
+    edge: Edge
+    scale: float
+    loosest: float
+    stiffest: float
+
+    @property
+    def stiffness(self) -> float:
+        """The penalty to begin with."""
+        return self.loosest
+
+
+Rigid = Circle | Face
+Contact = Pair | Rigid
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,12 +128,13 @@ class Touch:
 
     ``stiffness`` (k,) is the penalty's times the length that a point stands for, ``gap`` (k,) that to where the
     pressure begins, ``gap_by`` (m, k) and ``gap_by_twice`` (m, m, k) its derivatives by what the lines go by: that of
-    the first beam, then that of the second's or the circle's body's unknowns, if that is free.  ``chain`` leads on to
-    all unknowns, for every ``alike`` points that lie in the same elements: at c = k/alike places.
-    Places ``zeta`` (k,) on the first beam and ``zeta_m`` on the second (empty for a circle), points ``x`` of the
-    first beam's neutral line and ``x_m`` of the second's or of the circle's edge (2, k), the ``normal`` (2, k) away
+    the first beam, then that of the second's or the unknowns of the body of what is rigid, if it moves.  ``chain``
+    leads on to all unknowns, for every ``alike`` points that lie in the same elements: at c = k/alike places.
+    Places ``zeta`` (k,) on the first beam and ``zeta_m`` on the second (empty for what is rigid), points ``x`` of the
+    first beam's neutral line and ``x_m`` of the second's or of the rigid edge (2, k), the ``normal`` (2, k) away
     from what it touches.
-    ``missing`` is the force that ends of the second beam leave out.
+    ``missing`` is the force that ends of the second beam leave out, ``bent`` (m, m, k) what else the energy's second
+    derivatives have, at some of the points.
     """
 
     pair: Contact
@@ -119,6 +151,7 @@ class Touch:
     x_m: Array
     normal: Array
     missing: float
+    bent: Array | None = None
 
     @property
     def pushes(self) -> Array:
@@ -143,6 +176,8 @@ class Touch:
     def hessian(self, pushes: Array) -> Array:
         """Of the penalty's energy by the unknowns, (M, M, c), if the points push with ``pushes`` (k,)."""
         local = self.stiffness * self.gap_by[:, None] * self.gap_by[None, :] - pushes * self.gap_by_twice
+        if self.bent is not None:
+            local += self.bent
         return self.chain.hessian(self._summed(local), self._summed(-pushes * self.gap_by))
 
     def foreseen(self, step: Array) -> Array:

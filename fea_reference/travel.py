@@ -26,7 +26,7 @@ import numpy as np
 from fea_reference.descent import descended
 from fea_reference.following import Lost, about_to_go, followed
 from fea_reference.march import March, StoppedError, Trouble
-from fea_reference.touch import Circle, Pair
+from fea_reference.touch import Circle, Face, Pair
 from scene.answer import Array, Critical, Ending, Loss
 
 _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
@@ -66,7 +66,7 @@ def reach(march: March, course: Course, target: float) -> None:
     march.watch_what_touches(load)
     origin, before = march.saved(), march.zones()
     if march.far and march.values[load] != target:
-        march.loosen(Circle)
+        march.loosen(Circle, Face)
     _arrive(march, course, target)
     march.tighten()
     same = len(march.critical) == len(origin.critical) and march.values[load] != origin.values[load]
@@ -160,7 +160,7 @@ def _arrive(march: March, course: Course, target: float) -> None:
         else:
             march.restore(saved)
             rate = None
-            if not searching and march.loosen(Circle, Pair):
+            if not searching and march.loosen(Circle, Face, Pair):
                 searching, march.far, known = True, True, []
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble

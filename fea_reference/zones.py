@@ -132,6 +132,7 @@ def negative(
     there: Gap,
     neighbours: NDArray[np.bool_],
     kinks: tuple[float, ...] = (),
+    joined: tuple[float, ...] = (),
 ) -> Zones:
     """The intervals on which a gap is negative, each as long as its element lets it be.
 
@@ -140,6 +141,7 @@ def negative(
         zeta: places (k,) in order, all nodes that matter among them; ``there`` is the gap at them.
         neighbours: whether the gap is known between a place and the next (k−1,).
         kinks: those of the places, but for nodes, at which the gap has a kink.
+        joined: those at which a joint makes it zero, which is no least gap.
     """
     zeta, there, neighbours = _with_bends(at, zeta, there, neighbours)
     g, slope, curvature, zeta_m = there.g, there.slope, there.curvature, there.zeta_m
@@ -162,7 +164,7 @@ def negative(
         g, slope = np.insert(g, after, least_there.g), np.insert(slope, after, least_there.slope)
         curvature = np.insert(curvature, after, least_there.curvature)
         neighbours = np.insert(neighbours, turning, True)
-    least = float(g.min())
+    least = float(g[~np.isin(zeta, joined)].min())
     if least >= 0.0:
         return none(least)
 

@@ -31,14 +31,19 @@ def wrong_supports(scene: Scene) -> Iterator[Mistake]:
             yield Mistake(f"beams.{name}", found, "a weld, or joints at both ends")
         sound = sound and all(end.point in known for end in joined)
         met[name] = {scene.body_of(end.point) for end in joined if end.point in known}
-    if not sound or not _rows_stated(scene):
+    for name, pin in scene.pins.items():
+        sound = sound and all(point in known for point in pin.points)
+        met[f"pins.{name}"] = {scene.body_of(point) for point in pin.points if point in known}
+    if not sound or not rows_stated(scene):
         return
     for name, body in scene.bodies.items():
         if _holds(scene, _together(name, met)):
             continue
         kind = {"slides": "sliding", "turns": "turning"}.get(body.motion, "free")
         if not any(name in bodies for bodies in met.values()):
-            yield Mistake(f"bodies.{name}", f"a {kind} body that no beam meets", "a beam's end at one of its points")
+            yield Mistake(
+                f"bodies.{name}", f"a {kind} body that no beam meets", "a beam's end or a pin at one of its points"
+            )
         else:
             allowed = "beams that lead to a fixed body, or slides, pivots and drives that hold it"
             yield Mistake(f"bodies.{name}", f"a {kind} body that no fixed body holds", allowed)
@@ -90,7 +95,7 @@ def wrong_stages(scene: Scene) -> Iterator[Mistake]:
                 yield Mistake(f"stages[{i}].shown[{j}]", f"{value:g}", "one of the stage's stations")
 
 
-def _rows_stated(scene: Scene) -> bool:
+def rows_stated(scene: Scene) -> bool:
     """Whether every guide and every drive says which motion it prescribes."""
     return all(has_guide(scene, name) for name in scene.bodies) and all(
         is_stated(scene, drive) for drive in scene.drives.values()
@@ -98,7 +103,7 @@ def _rows_stated(scene: Scene) -> bool:
 
 
 def _together(body: str, met: dict[str, set[str]]) -> set[str]:
-    """Bodies that beams connect to a ``body``, itself among them."""
+    """Bodies that beams and pins connect to a ``body``, itself among them."""
     reached = {body}
     while True:
         more = {other for bodies in met.values() if bodies & reached for other in bodies} - reached
@@ -108,7 +113,7 @@ def _together(body: str, met: dict[str, set[str]]) -> set[str]:
 
 
 def _holds(scene: Scene, bodies: set[str]) -> bool:
-    """Whether bodies that beams connect cannot all move as one: one is fixed, or guides and drives prevent it."""
+    """Whether bodies that beams and pins connect cannot all move as one: one is fixed, guides and drives prevent it."""
     if any(scene.bodies[name].motion == "fixed" for name in bodies):
         return True
     rows = [row for name in bodies for row in guide_rows(scene, name)]

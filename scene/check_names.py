@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from scene.mistakes import Mistake, unknown_name
-from scene.statement import CircleContact, FreeEnd, Moment, RotationDrive, Scene
+from scene.statement import FreeEnd, Moment, RigidContact, RotationDrive, Scene
 
 RESERVED = "scene"
 
@@ -16,7 +16,7 @@ def point_names(scene: Scene) -> list[str]:
 
 
 def repeated_names(scene: Scene) -> Iterator[Mistake]:
-    """Names of points, bodies, beams, contacts, stops, loads and drives that are used twice or reserved."""
+    """Names of points, bodies, beams, contacts, stops, pins, loads and drives that are used twice or reserved."""
     bearers = [
         *((f"bodies.{name}", name) for name in scene.bodies),
         *((f"bodies.{name}.points.{point}", point) for name, body in scene.bodies.items() for point in body.points),
@@ -25,13 +25,14 @@ def repeated_names(scene: Scene) -> Iterator[Mistake]:
         *((f"drives.{name}", name) for name in scene.drives),
         *((f"contacts.{name}", name) for name in scene.contacts),
         *((f"stops.{name}", name) for name in scene.stops),
+        *((f"pins.{name}", name) for name in scene.pins),
     ]
     first: dict[str, str] = {}
     for key, name in bearers:
         if name == RESERVED:
             yield Mistake(key, f"the name {name!r}, which stands for the scene itself", "another name")
         elif name in first:
-            allowed = "names that are used once among points, bodies, beams, loads, drives, contacts and stops"
+            allowed = "names that are used once among points, bodies, beams, loads, drives, contacts, stops and pins"
             yield Mistake(key, f"the name {name!r}, which {first[name]} has too", allowed)
         first.setdefault(name, key)
 
@@ -54,18 +55,22 @@ def unknown_names(scene: Scene) -> Iterator[Mistake]:
         elif each.point not in points:
             yield unknown_name(f"{key}.point", each.point, "point", points)
     for name, contact in scene.contacts.items():
-        circle = isinstance(contact, CircleContact)
+        rigid = isinstance(contact, RigidContact)
         for i, beam_name in enumerate(contact.beams):
             if beam_name not in scene.beams:
-                key = "beam" if circle else f"between[{i}]"
+                key = "beam" if rigid else f"between[{i}]"
                 yield unknown_name(f"contacts.{name}.{key}", beam_name, "beam", scene.beams)
-        if isinstance(contact, CircleContact) and contact.body not in scene.bodies:
+        if isinstance(contact, RigidContact) and contact.body not in scene.bodies:
             yield unknown_name(f"contacts.{name}.body", contact.body, "body", scene.bodies)
     for name, stop in scene.stops.items():
         if stop.beam not in scene.beams:
             yield unknown_name(f"stops.{name}.beam", stop.beam, "beam", scene.beams)
         if stop.towards not in points:
             yield unknown_name(f"stops.{name}.towards", stop.towards, "point", points)
+    for name, pin in scene.pins.items():
+        for i, point in enumerate(pin.points):
+            if point not in points:
+                yield unknown_name(f"pins.{name}.points[{i}]", point, "point", points)
     for beam_name in scene.assembly.moments if scene.assembly is not None else ():
         if beam_name not in scene.beams:
             yield unknown_name(f"assembly.moments.{beam_name}", beam_name, "beam", scene.beams)

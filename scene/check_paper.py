@@ -9,7 +9,7 @@ import numpy as np
 from scene.check_shapes import is_beam
 from scene.geometry import arc_length, tangents_on
 from scene.mistakes import Mistake
-from scene.statement import Beam, BeamContact, PaperCircle, PaperContact, Scene
+from scene.statement import Beam, BeamContact, PaperContact, PaperRigid, Scene
 
 SAMPLES = 1001  # of a beam's tangent
 BACKWARDS = 1e-9  # part of a unit tangent that is none
@@ -48,7 +48,7 @@ def _runs_along(beam: Beam, axis: str) -> bool:
 
 
 def _wrong_related(
-    key: str, paper: PaperContact | PaperCircle, beams: tuple[str, ...], allowed: str
+    key: str, paper: PaperContact | PaperRigid, beams: tuple[str, ...], allowed: str
 ) -> Iterator[Mistake]:
     for beam, related in paper.related.items():
         where = f"{key}.related.{beam}"

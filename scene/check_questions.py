@@ -6,7 +6,16 @@ from collections.abc import Iterator
 
 from scene.check_names import RESERVED, point_names
 from scene.mistakes import Mistake, unknown_name
-from scene.statement import CRITICAL, DisplacementDrive, FreeEnd, Quantity, RotationDrive, Scene, TurningBody
+from scene.statement import (
+    CRITICAL,
+    DisplacementDrive,
+    EdgeContact,
+    FreeEnd,
+    Quantity,
+    RotationDrive,
+    Scene,
+    TurningBody,
+)
 
 # what a quantity may be asked of
 _OF: dict[Quantity, str] = {
@@ -21,15 +30,16 @@ _OF: dict[Quantity, str] = {
     "reaction_moment": "turned",
     "potential_energy": RESERVED,
     "angle": "stop",
-    "moment": "stop",
+    "moment": "holding",
 }
 _SAID = {
     "point": "a body's point",
     "body": "a body",
     "contact": "a contact",
     "beam": "a beam",
-    "support": "a point of a fixed body at which a beam ends, a pivot, or a driven point",
+    "support": "a point of a fixed body at which a beam ends or that is pinned to another, a pivot, or a driven point",
     "stop": "a stop",
+    "holding": "a stop, or a contact with a line, a half-plane or a function",
     "turned": "a point of a fixed body at which a beam ends, or a body whose rotation is driven",
     RESERVED: f"{RESERVED!r}, the scene itself",
 }
@@ -89,6 +99,7 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
     fixed = {p for body in scene.bodies.values() if body.motion == "fixed" for p in body.points}
     ends = [end for beam in scene.beams.values() for end in (beam.start, beam.end)]
     supports = [end.point for end in ends if not isinstance(end, FreeEnd) and end.point in fixed]
+    supports += [point for pin in scene.pins.values() for point in pin.points if point in fixed]
     pivots = [body.about for body in scene.bodies.values() if isinstance(body, TurningBody)]
     points = [drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)]
     bodies = [drive.body for drive in scene.drives.values() if isinstance(drive, RotationDrive)]
@@ -100,5 +111,6 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
         "support": list(dict.fromkeys((*supports, *pivots, *points))),
         "turned": list(dict.fromkeys((*supports, *bodies))),
         "stop": list(scene.stops),
+        "holding": [*scene.stops, *(name for name, each in scene.contacts.items() if isinstance(each, EdgeContact))],
         RESERVED: [RESERVED],
     }

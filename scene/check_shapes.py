@@ -89,7 +89,7 @@ def is_beam(beam: Beam) -> bool:
 
 def wrong_curve(key: str, curve: Curve) -> Mistake | None:
     """What is wrong with the curve at ``key``, if anything is."""
-    if isinstance(curve, Polynomial) and (mistake := _wrong_polynomial(key, curve)) is not None:
+    if isinstance(curve, Polynomial) and (mistake := wrong_polynomial(key, curve)) is not None:
         return mistake
     if curve.start == curve.end:
         return Mistake(
@@ -122,7 +122,7 @@ def wrong_curve(key: str, curve: Curve) -> Mistake | None:
     return None
 
 
-def _wrong_polynomial(key: str, curve: Polynomial) -> Mistake | None:
+def wrong_polynomial(key: str, curve: Polynomial) -> Mistake | None:
     """What is wrong with a polynomial before its length can be asked."""
     degree = len(curve.coefficients) - 1
     if degree > HIGHEST_DEGREE:

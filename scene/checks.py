@@ -8,10 +8,12 @@ from scene.check_assembly import wrong_assembly
 from scene.check_beside_itself import beside_themselves
 from scene.check_circles import circle_overlaps, wrong_circles
 from scene.check_drives import wrong_drives, wrong_guides
+from scene.check_edges import edge_overlaps, wrong_edges
 from scene.check_motion import wrong_loads, wrong_stages, wrong_supports
 from scene.check_names import repeated_names, unknown_names
 from scene.check_overlaps import overlaps, wrong_contacts
 from scene.check_paper import wrong_hints, wrong_spacings
+from scene.check_pins import loose_bodies, wrong_pins
 from scene.check_profiles import thick_contacts, wrong_profiles
 from scene.check_questions import wrong_claims, wrong_probes
 from scene.check_shapes import wrong_curves, wrong_ends, wrong_sections
@@ -30,7 +32,9 @@ _CHECKS = (
     wrong_assembly,
     wrong_stops,
     wrong_guides,
+    wrong_pins,
     wrong_supports,
+    loose_bodies,
     wrong_loads,
     wrong_drives,
     wrong_contacts,
@@ -40,6 +44,8 @@ _CHECKS = (
     overlaps,
     wrong_circles,
     circle_overlaps,
+    wrong_edges,
+    edge_overlaps,
     wrong_stages,
     wrong_probes,
     wrong_claims,

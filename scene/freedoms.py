@@ -21,7 +21,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from scene.statement import Drive, Force, Load, Moment, Point, RotationDrive, Scene, SlidingBody, TurningBody
+from scene.statement import BodyPin, Drive, Force, Load, Moment, Point, RotationDrive, Scene, SlidingBody, TurningBody
 
 Row = NDArray[np.float64]
 NEGLIGIBLE = 1e-9
@@ -62,6 +62,20 @@ def guide_rows(scene: Scene, name: str) -> list[Row]:
         x, y = _offsets(scene)[name, body.about]
         return [np.array([1.0, 0.0, -y]), np.array([0.0, 1.0, x])]
     return []
+
+
+def pin_rows(scene: Scene, pin: BodyPin) -> dict[str, list[Row]]:
+    """What a pin makes vanish: for each of its two bodies its part of the two rows.
+
+    Raises:
+        KeyError: one of its points does not exist.
+    """
+    rows = {}
+    for point, sign in zip(pin.points, (1.0, -1.0), strict=True):
+        name = scene.body_of(point)
+        x, y = _offsets(scene)[name, point]
+        rows[name] = [sign * np.array([1.0, 0.0, -y]), sign * np.array([0.0, 1.0, x])]
+    return rows
 
 
 def has_guide(scene: Scene, name: str) -> bool:

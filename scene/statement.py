@@ -239,6 +239,12 @@ class TurningBody(Record):
 Body = Annotated[FixedBody | FreeBody | SlidingBody | TurningBody, Field(discriminator="motion")]
 
 
+class BodyPin(Record):
+    """Joins two bodies by a frictionless hinge: the ``points``, one of each, stay together."""
+
+    points: tuple[Name, Name]
+
+
 class Stop(Record):
     """Limits the angle at which a pinned ``beam`` stands at its pin, rad.
 
@@ -322,8 +328,8 @@ class PaperContact(Record):
     related: Named[Related] = Field(default_factory=frozendict)
 
 
-class PaperCircle(Record):
-    """Which joints of the beam the paper's contact with a circle holds outside; without an entry all."""
+class PaperRigid(Record):
+    """Which joints of the beam the paper's contact with something rigid holds outside; without an entry all."""
 
     related: Named[Related] = Field(default_factory=frozendict)
 
@@ -342,20 +348,17 @@ class BeamContact(Record):
         return self.between
 
 
-class CircleContact(Record):
-    """A beam that may touch a rigid circle from outside, without friction.
+class RigidContact(Record):
+    """What contacts of a beam with something rigid have in common.  They are without friction.
 
-    The circle of ``radius`` about ``center`` (metres, initial position) is fixed to ``body``;
-    a ``thick`` beam touches by its edge, half of the thickness of the place from its neutral line, another as a line.
+    What the beam may touch is fixed to ``body`` and stated where it is initially, metres.  A ``thick`` beam touches by
+    its edge, half of the thickness of the place from its neutral line, another as a line.
     """
 
-    kind: Literal["beam-circle"]
     beam: Name
     body: Name
-    center: Point
-    radius: Positive
     thick: bool = True
-    paper: PaperCircle | None = None
+    paper: PaperRigid | None = None
 
     @property
     def beams(self) -> tuple[str, ...]:
@@ -363,7 +366,61 @@ class CircleContact(Record):
         return (self.beam,)
 
 
-Contact = Annotated[BeamContact | CircleContact, Field(discriminator="kind")]
+class CircleContact(RigidContact):
+    """A beam that may touch a rigid circle of ``radius`` about ``center`` from outside."""
+
+    kind: Literal["beam-circle"]
+    center: Point
+    radius: Positive
+
+
+class LineContact(RigidContact):
+    """A beam that may touch a rigid line of straight pieces between ``points``.
+
+    The beam lies on the free ``side``, seen along the points.  What is rigid lies behind the line, and ends where it
+    does: at right angles to its first and its last piece.
+    """
+
+    kind: Literal["beam-line"]
+    points: Annotated[tuple[Point, ...], Field(min_length=2)]
+    side: Literal["left", "right"]
+
+
+class HalfPlaneContact(RigidContact):
+    """A beam that may touch a rigid half-plane, whose straight edge goes through ``point``.
+
+    ``normal`` points away from the half-plane, to where the beam lies; it is made a unit vector.
+    """
+
+    kind: Literal["beam-half-plane"]
+    point: Point
+    normal: Point
+
+
+class FunctionContact(RigidContact):
+    """A beam that may touch a rigid edge y = f(x) (``axis`` is ``x``) or x = f(y) (``axis`` is ``y``).
+
+    ``coefficients`` of f, lowest power first, f in metres for a variable in metres, which is within ``range``.  The
+    beam lies ``above``, where the other coordinate is larger than f, or ``below``.  As with a :class:`LineContact`,
+    what is rigid lies behind the edge and ends where that does.
+    """
+
+    kind: Literal["beam-function"]
+    axis: Literal["x", "y"]
+    coefficients: Annotated[tuple[float, ...], Field(min_length=2)]
+    range: tuple[float, float]
+    side: Literal["above", "below"]
+
+    @property
+    def curve(self) -> Polynomial:
+        """The edge."""
+        return Polynomial(kind="polynomial", axis=self.axis, coefficients=self.coefficients, range=self.range)
+
+
+EdgeContact = LineContact | HalfPlaneContact | FunctionContact
+"""Contacts with what a beam may lie on up to its own pin, where it is held like by a stop."""
+
+Contact = Annotated[BeamContact | CircleContact | EdgeContact, Field(discriminator="kind")]
 
 
 class Stage(Record):
@@ -456,7 +513,7 @@ class Claim(Record):
 class Scene(Record):
     """One problem statement: what is there, what happens to it, and what is asked.
 
-    Names of points, bodies, beams, contacts, stops, loads and drives are unique across the scene.
+    Names of points, bodies, beams, contacts, stops, pins, loads and drives are unique across the scene.
     ``verdict_limit`` is the largest total uncertainty (a fraction of a probe's scale)
     with which the scene still wants to hear AGREE; a probe may have its own.
     """
@@ -471,6 +528,7 @@ class Scene(Record):
     drives: Named[Drive] = Field(default_factory=frozendict)
     contacts: Named[Contact] = Field(default_factory=frozendict)
     stops: Named[Stop] = Field(default_factory=frozendict)
+    pins: Named[BodyPin] = Field(default_factory=frozendict)
     assembly: Assembly | None = None
     stages: Annotated[tuple[Stage, ...], Field(min_length=1)]
     probes: Annotated[tuple[Probe, ...], Field(min_length=1)]

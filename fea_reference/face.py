@@ -1,0 +1,317 @@
+"""Frictionless contact of a beam with a rigid edge on a body, by a penalty along the beam's neutral line.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+x, r    point of the neutral line; r = x − c − X, from where the body's reference centre is
+y       R(−φ) r, where the edge stands still
+d, n    distance of y from the edge and its gradient, turned with the body;  τ is n turned clockwise
+b       second derivative of d along τ
+T, g    half of the beam's thickness at ζ, zero for a line; gap d − T
+ε       penalty stiffness per unit length of the beam
+k ×     a vector turned counter-clockwise
+======  =====================================================================================
+
+Energy Π_c = ∫ ½ ε ⟨−g⟩² ds over the beam's undeformed arc length.  With δu = δx − δX − δφ k × r, what the point moves
+against the body,
+
+    δg = n·δu,     δ²g = n·δ²x − 2 δφ n·k × (δx − δX) − n·r δφ² + b (τ·δu)²,
+
+and by ζ alone g' = n·x' − T', g'' = n·x'' + b (τ·x')².  The integral runs over the exact intervals on which g < 0.
+Where n jumps, at a corner, intervals end, too: g is the same on both sides of such a place, so that the gradient
+has no part of it; as the place moves with the beam, the second derivative has −ε g (Δδg)²/Δg', Δ being what is before
+less what is behind.
+
+A beam's end that a joint holds on the edge is there whatever happens: it counts for no gap.  Where it is pinned, a stop
+keeps its tangent from turning into the edge (:mod:`fea_reference.own_pins`).  Along a straight edge an even beam's
+moment is constant: what presses it on acts at the ends of the zone, by a force where it lifts off, and at the pin by
+the stop's moment.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea_reference.edge import edge_of
+from fea_reference.hermite import Index, NeutralLine, along, shapes, twice_along
+from fea_reference.model import BodyPart, Model, turned
+from fea_reference.outline import Near
+from fea_reference.own_pins import held_on
+from fea_reference.state import State, summed
+from fea_reference.touch import Face, Penalty, Touch, together
+from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, none
+from scene.answer import Array
+from scene.statement import EdgeContact, Scene
+
+_LAYERS = 32.0  # of the first penalty, in a beam's length
+_RESOLVED = 3.0  # layers in an element: what they leave is of second order in their width
+# as on a circle: what thinner layers in a beam's length would leave is below what makes them hard to find
+_THINNEST, _STANDARD = 800.0, 1e-4
+_REACH = 2.0  # elements, from a corner to where what happens there is looked for
+_CROSSING_STEPS = 15
+_ARRIVED = 1e-10  # elements
+_PARTS = 4  # of a way on which a beam must not have passed through
+
+
+def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
+    """The scene's contacts of a beam with an edge, ``penetration`` as in the settings."""
+    found = []
+    thinnest = _THINNEST * (_STANDARD / penetration) ** 0.25
+    beams = [beam.name for beam in model.beams]
+    bodies = [body.name for body in model.bodies]
+    for name, contact in scene.contacts.items():
+        if not isinstance(contact, EdgeContact):
+            continue
+        first, body = beams.index(contact.beam), bodies.index(contact.body)
+        beam = model.beams[first]
+        elements = beam.elements.stop - beam.elements.start
+        units = model.units
+        edge = edge_of(beam.record, elements, units.length, thick=contact.thick)
+        h = float(model.elements.length[beam.elements.start])
+        layer = max(h, 0.5 * beam.thickness, beam.length / _LAYERS)
+        outline, own = held_on(scene, contact, units.origin + units.length * model.bodies[body].centre, units.length)
+        found.append(
+            Face(
+                name,
+                first,
+                body,
+                outline,
+                tuple(float(elements) if end == "end" else 0.0 for end in own),
+                edge,
+                2.0 * edge.nearest if contact.thick else 1.0,
+                beam.softest / layer**4,
+                beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
+            )
+        )
+    return tuple(found)
+
+
+def zones_of(model: Model, face: Face, z: State) -> Zones:
+    """Where the beam overlaps the face in state ``z``."""
+    return _Seen(model, face, z).zones()[0]
+
+
+def passed(model: Model, face: Face, before: State, after: State) -> bool:
+    """Whether a beam that goes straight from one state to another has gone through the edge.
+
+    A place of it that comes from the free side and goes through the edge must be seen in it afterwards.
+    """
+    chain = face.outline.chain
+    seen = [_Seen(model, face, z) for z in (before, after)]
+    even = np.arange(_PARTS * seen[0].line.n + 1) / _PARTS
+    old, new = (one.place(even) for one in seen)
+    found = face.outline.near(new)
+    inside = (found.distance < 0.0) & (found.distance > -face.outline.extent)
+    apart = ~np.isin(even, face.own)
+    for a, b in zip(chain.T[:-1], chain.T[1:], strict=True):
+        along = b - a
+        old_side = along[0] * (old[1] - a[1]) - along[1] * (old[0] - a[0])
+        new_side = along[0] * (new[1] - a[1]) - along[1] * (new[0] - a[0])
+        way = new - old
+        from_a, from_b = (way[0] * (at[1] - old[1]) - way[1] * (at[0] - old[0]) for at in (a, b))
+        through = (old_side > 0.0) & (new_side < 0.0) & (from_a * from_b < 0.0)
+        if (through & apart & ~inside).any():
+            return True
+    return False
+
+
+def beside(model: Model, face: Face, z: State, zeta: Array) -> Near:
+    """What is nearest to places ``zeta`` (k,) of the beam, normals as they point now."""
+    seen = _Seen(model, face, z)
+    near = face.outline.near(seen.place(zeta))
+    return Near(near.distance, seen.turned(near.normal), near.bend, near.corner)
+
+
+def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State) -> Touch:
+    """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
+    beam, body = model.beams[face.first], model.bodies[face.body]
+    seen = _Seen(model, face, z)
+    zones, kinks = seen.zones()
+    line = seen.line
+
+    points, weights = np.polynomial.legendre.leggauss(quadrature)
+    width = zones.intervals[:, 1] - zones.intervals[:, 0]
+    zeta = (zones.intervals[:, :1] + width[:, None] * 0.5 * (points + 1.0)).ravel()
+    e, xi = line.locate(zeta)
+    ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
+
+    x, x1, _ = line.at(zeta)
+    near = face.outline.near(seen.place(zeta))
+    n = seen.turned(near.normal)
+    tau = np.stack([n[1], -n[0]])
+    r = x - seen.centre[:, None]
+    g = near.distance - face.edge.at(zeta)
+
+    H = shapes(xi)
+    moves = body.dofs is not None
+    g_q = seen.by(n, H, e, r, moves=moves)
+    p = seen.by(tau, H, e, r, moves=moves)
+    g_qq = near.bend * p[:, None] * p[None, :]
+    g_qq[:7, :7] += twice_along(n, H, line, e)
+    if moves:
+        across = np.stack([-n[1], n[0]])  # across·w = −n·k × w
+        turning = np.concatenate([along(across, H, line, e), -across])
+        g_qq[:9, 9] += turning
+        g_qq[9, :9] += turning
+        g_qq[9, 9] -= (n * r).sum(axis=0)
+
+    alike = together(quadrature, e)
+    weight = penalty.stiffness * ds
+    return Touch(
+        pair=face,
+        zones=zones,
+        chain=model.chain(((beam, e[::alike]),), z, body.dofs),
+        alike=alike,
+        stiffness=weight,
+        gap=g,
+        gap_by=g_q,
+        gap_by_twice=g_qq,
+        zeta=zeta,
+        zeta_m=np.empty(0),
+        x=x,
+        x_m=x - near.distance * n,
+        normal=n,
+        missing=0.0,
+        bent=_bent(seen, zones, kinks, penalty.stiffness, quadrature, moves=moves),
+    )
+
+
+def _bent(
+    seen: _Seen, zones: Zones, kinks: dict[float, np.int64], stiffness: float, quadrature: int, *, moves: bool
+) -> Array | None:
+    """What the moving places at corners add to the second derivatives, (m, m, k); None where there are none."""
+    bends = [(i, float(end)) for i, end in enumerate(zones.intervals[:, 1]) if float(end) in kinks]
+    bends = [(i, end) for i, end in bends if (zones.intervals[:, 0] == end).any()]
+    if not bends:
+        return None
+    size = 10 if moves else 7
+    more = np.zeros((size, size, len(zones.intervals) * quadrature))
+    for i, end in bends:
+        # of the element in which the interval lies, for what follows is the same at a node
+        e = np.array([min(int(zones.intervals[i].mean()), seen.line.n - 1)])
+        xi = np.array([end]) - e
+        corner = kinks[end]
+        normals = [side[:, corner] for side in seen.face.outline.corners.normals]
+        x, x1, _ = seen.line.at(np.array([end]))
+        steeper = [float((seen.turned(n[:, None])[:, 0] * x1[:, 0]).sum()) for n in normals]
+        # where the corner juts out, d is the larger of both distances behind it, else the smaller
+        first = int(np.argmin(steeper) if seen.face.outline.corners.jutting[corner] else np.argmax(steeper))
+        before, behind = normals[first], normals[1 - first]
+        difference = seen.turned((before - behind)[:, None])
+        slope = steeper[first] - steeper[1 - first]
+        gap = float(seen.gap(np.array([end]))[0])
+        by = seen.by(difference, shapes(xi), e, x - seen.centre[:, None], moves=moves)[:, 0]
+        more[:, :, (i + 1) * quadrature - 1] = (
+            -stiffness * gap / slope * float(seen.line.lengths[e[0]]) * np.outer(by, by)
+        )
+    return more
+
+
+class _Seen:
+    """A beam as it lies before a face: places in the frame of the face's body."""
+
+    def __init__(self, model: Model, face: Face, z: State) -> None:
+        self.face = face
+        self.line: NeutralLine = model.line(model.beams[face.first], z)
+        body: BodyPart = model.bodies[face.body]
+        X, Y, self.phi = model.body_state(body, z)
+        self.centre = body.centre + np.array([X, Y])
+        rest = np.zeros(2) if body.dofs is None else z.rest[body.dofs[:2]]
+        q, error = summed(self.line.points, -self.centre[:, None] * np.ones_like(self.line.points))
+        self.nodes = self._back(q + (error + self.line.rest - rest[:, None]))
+
+    def place(self, zeta: Array) -> Array:
+        """y (2, k)."""
+        e, _ = self.line.locate(zeta)
+        return np.asarray(self.nodes[:, e] + self._back(self.line.from_node(zeta)))
+
+    def turned(self, vectors: Array) -> Array:
+        """Vectors (2, k) of the body's frame as they point now."""
+        return turned(vectors, self.phi)
+
+    def gap(self, zeta: Array) -> Array:
+        """g (k,)."""
+        return np.asarray(self.face.outline.near(self.place(zeta)).distance - self.face.edge.at(zeta))
+
+    def by(self, v: Array, H: Array, e: Index, r: Array, *, moves: bool) -> Array:
+        """v·δu by the line's element and by the body's three if it ``moves``, (m, k)."""
+        own = along(v, H, self.line, e)
+        if not moves:
+            return own
+        return np.concatenate([own, -v, -(v[1] * r[0] - v[0] * r[1])[None]])
+
+    def zones(self) -> tuple[Zones, dict[float, np.int64]]:
+        """All intervals on which the gap is negative, and the corners of the places between them where n jumps."""
+        face, line = self.face, self.line
+        even = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
+        borders, kinks = self._borders(even)
+        zeta = np.unique(np.concatenate([even, face.edge.knots, borders]))
+        there = self._at(zeta, np.zeros_like(zeta))
+        if face.own:
+            own = np.isin(zeta, face.own)
+            there = Gap(np.where(own, 0.0, there.g), there.slope, there.curvature, there.zeta_m, there.found)
+        if not there.found.any():
+            return none(float(np.abs(there.g).min())), {}
+        neighbours = there.found[:-1] & there.found[1:]
+        if not there.found.all():
+            keep = there.found
+            neighbours = np.diff(np.flatnonzero(keep)) == 1
+            zeta = zeta[keep]
+            there = Gap(there.g[keep], there.slope[keep], there.curvature[keep], there.zeta_m[keep], keep[keep])
+        splits = (*face.edge.knots, *borders.tolist())
+        return negative(self._at, zeta, there, neighbours, splits, face.own), kinks
+
+    def _at(self, zeta: Array, none_m: Array) -> Gap:
+        face = self.face
+        near = face.outline.near(self.place(zeta))
+        _, x1, x2 = self.line.at(zeta)
+        n = self.turned(near.normal)
+        along_face = n[1] * x1[0] - n[0] * x1[1]
+        slope, curvature = (n * x1).sum(axis=0) - face.edge.slope(zeta), (n * x2).sum(axis=0)
+        return Gap(
+            near.distance - face.edge.at(zeta),
+            slope,
+            curvature + near.bend * along_face**2,
+            none_m,
+            near.distance > -face.outline.extent,
+        )
+
+    def _borders(self, even: Array) -> tuple[Array, dict[float, np.int64]]:
+        """Places at which n or b jumps, and the corners of those where n does."""
+        corners = self.face.outline.corners
+        if corners.points.shape[1] == 0:
+            return np.empty(0), {}
+        y = self.place(even)
+        apart = np.hypot(*(y[:, None, :] - corners.points[:, :, None]))
+        reach = 2.0 * max(self.face.edge.half) + _REACH * float(self.line.lengths.max())
+        near = np.flatnonzero(apart.min(axis=1) < reach)
+        if near.size == 0:
+            return np.empty(0), {}
+        start = even[apart[near].argmin(axis=1)]
+        P = corners.points[:, near]
+        zeta, crosses = self._crossing(P, corners.halving[:, near], start)
+        d = self.face.outline.near(self.place(zeta)).distance
+        jumps = crosses & np.where(corners.jutting[near], d < 0.0, d > 0.0)
+        found = [zeta[crosses]]
+        for side in corners.tangents:
+            beside, crosses = self._crossing(P, side[:, near], start)
+            found.append(beside[crosses])
+        return np.concatenate(found), dict(zip(zeta[jumps].tolist(), near[jumps], strict=True))
+
+    def _crossing(self, P: Array, t: Array, start: Array) -> tuple[Array, Array]:
+        """Places (c,) where the line crosses those through P across t (2, c), sought from ``start`` (c,)."""
+        zeta, step = start.copy(), np.zeros_like(start)
+        for _ in range(_CROSSING_STEPS):
+            ahead = (self._back(self.line.at(zeta)[1]) * t).sum(axis=0)
+            off = ((self.place(zeta) - P) * t).sum(axis=0)
+            step = np.clip(off / np.where(ahead == 0.0, 1.0, ahead), -1.0, 1.0)
+            moved = np.clip(zeta - step, 0.0, self.line.n)
+            zeta, step = moved, zeta - moved
+            if float(np.abs(step).max()) < _ARRIVED:
+                break
+        off = np.abs(((self.place(zeta) - P) * t).sum(axis=0))
+        return zeta, off < _ARRIVED
+
+    def _back(self, vectors: Array) -> Array:
+        """Vectors (2, k) as the body's frame sees them."""
+        return turned(vectors, -self.phi)

@@ -1,0 +1,293 @@
+"""How far a place is from something rigid with a straight, broken or curved edge, in the frame of its body.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+y       place in the body's frame
+d, n    distance, negative behind the edge, and its gradient, a unit vector
+τ, b    n turned clockwise; the second derivative of d is b τ τᵀ
+P, t    a place where n or b jumps lies on the straight line through P across t
+======  =====================================================================================
+
+An edge runs with the free side to its left; a side to the right is one that runs the other way.  Where it ends, what is
+rigid goes straight back: two more sides, at right angles to the first and the last piece, of no end.  In front of a
+corner that juts out d is the distance from the corner, b = 1/d; behind it the nearer side counts, and n jumps on the
+line that halves the angle.  At a corner that juts in it is the other way round.
+
+So of a graph, with b = κ/(1 + κ d) where κ is its curvature, positive where it juts out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from numpy.typing import NDArray
+
+from scene.answer import Array
+from scene.statement import EdgeContact, FunctionContact, HalfPlaneContact, LineContact
+
+_SAME = 1e-6  # as near as a scene's places have to be
+_SAMPLES = 257  # of a graph, from which the nearest place is sought
+_PIECES = 64  # of a graph, as what a beam goes through
+_NEWTON_STEPS = 30
+_ARRIVED = 1e-15
+
+
+@dataclass(frozen=True, slots=True)
+class Near:
+    """d (k,), n (2, k), b (k,), and whether the nearest place is a corner (k,), of places (2, k)."""
+
+    distance: Array
+    normal: Array
+    bend: Array
+    corner: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Corners:
+    """``points`` P (2, c) between two straight sides each: tangents and normals (2, c) before and behind."""
+
+    points: Array
+    tangents: tuple[Array, Array]
+    normals: tuple[Array, Array]
+
+    @property
+    def halving(self) -> Array:
+        """t (2, c) of the lines that halve the angles."""
+        both = self.tangents[0] + self.tangents[1]
+        return np.asarray(both / np.hypot(both[0], both[1]))
+
+    @property
+    def jutting(self) -> NDArray[np.bool_]:
+        """Which jut out, (c,)."""
+        a, b = self.tangents
+        return np.asarray(a[0] * b[1] - a[1] * b[0] < 0.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class HalfPlane:
+    """A straight edge without ends through ``point`` (2,), ``normal`` (2,)."""
+
+    point: Array
+    normal: Array
+
+    @property
+    def corners(self) -> Corners:
+        """None."""
+        none = np.empty((2, 0))
+        return Corners(none, (none, none), (none, none))
+
+    @property
+    def chain(self) -> Array:
+        """Nothing that a beam could go through without being seen behind it, (2, 0)."""
+        return np.empty((2, 0))
+
+    @property
+    def extent(self) -> float:
+        """How deep behind the edge a place is still taken for one that has sunk in."""
+        return float(np.inf)
+
+    def near(self, y: Array) -> Near:
+        """Distance and so on of places (2, k)."""
+        k = y.shape[1]
+        return Near(
+            self.normal @ (y - self.point[:, None]),
+            np.repeat(self.normal[:, None], k, axis=1),
+            np.zeros(k),
+            np.zeros(k, dtype=bool),
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Broken:
+    """An edge of straight pieces: the free side is to the left of what runs along ``points`` (2, m+1)."""
+
+    points: Array
+
+    @property
+    def corners(self) -> Corners:
+        """Its corners, and those at its ends."""
+        tau = self._tangents
+        before = np.column_stack([_left(tau[:, :1]), tau])
+        behind = np.column_stack([tau, -_left(tau[:, -1:])])
+        return Corners(self.points, (before, behind), (_left(before), _left(behind)))
+
+    @property
+    def extent(self) -> float:
+        """How deep behind the edge a place is still taken for one that has sunk in: a share of its size."""
+        return 0.25 * float(np.hypot(*np.ptp(self.points, axis=1)))
+
+    @property
+    def chain(self) -> Array:
+        """The edge in straight pieces, free side to the left, (2, m+1)."""
+        return self.points
+
+    def near(self, y: Array) -> Near:
+        """Distance and so on of places (2, k)."""
+        tau = self._tangents
+        length = np.hypot(*np.diff(self.points, axis=1))
+        # the sides straight back begin or end at no place
+        tangents = np.column_stack([_left(tau[:, :1]), tau, -_left(tau[:, -1:])])
+        first = np.column_stack([self.points[:, :1], self.points[:, :-1], self.points[:, -1:]])
+        low = np.concatenate([[-np.inf], np.zeros(length.size), [0.0]])
+        high = np.concatenate([[0.0], length, [np.inf]])
+        r = y[:, None, :] - first[:, :, None]
+        t = np.clip((r * tangents[:, :, None]).sum(axis=0), low[:, None], high[:, None])
+        away = r - t * tangents[:, :, None]
+        nearest = np.hypot(away[0], away[1]).argmin(axis=0)
+        every = np.arange(y.shape[1])
+        t = t[nearest, every]
+        side = _left(tangents[:, nearest])
+        corner = (t <= low[nearest]) | (t >= high[nearest])
+        d = (side * away[:, nearest, every]).sum(axis=0)
+        # at a corner both of its sides say on which of them a place is
+        neighbour = np.clip(np.where(t <= low[nearest], nearest - 1, nearest + 1), 0, length.size + 1)
+        both = side + np.where(corner, _left(tangents[:, neighbour]), 0.0)
+        away = away[:, nearest, every]
+        r_corner = np.hypot(away[0], away[1])
+        corner &= r_corner > 0.0
+        sign = np.where((both * away).sum(axis=0) < 0.0, -1.0, 1.0)
+        unit = away / np.where(corner, r_corner, 1.0)
+        return Near(
+            np.where(corner, sign * r_corner, d),
+            np.where(corner, sign * unit, side),
+            np.where(corner, sign / np.where(corner, r_corner, 1.0), 0.0),
+            corner,
+        )
+
+    @property
+    def _tangents(self) -> Array:
+        along = np.diff(self.points, axis=1)
+        return np.asarray(along / np.hypot(along[0], along[1]))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Graph:
+    """An edge y₂ = f(y₁), or y₁ = f(y₂) if ``across``, with y₁ in the ``span``; free where ``sign`` (y₂ − f) > 0."""
+
+    f: Polynomial
+    span: tuple[float, float]
+    across: bool
+    sign: float
+
+    @property
+    def corners(self) -> Corners:
+        """Those at its ends."""
+        ends = np.array(self.span if self._forwards else self.span[::-1])
+        points, tau = self._at(ends)
+        before = np.column_stack([_left(tau[:, :1]), tau[:, 1:]])
+        behind = np.column_stack([tau[:, :1], -_left(tau[:, 1:])])
+        return Corners(points, (before, behind), (_left(before), _left(behind)))
+
+    @property
+    def extent(self) -> float:
+        """How deep behind the edge a place is still taken for one that has sunk in: a share of its size."""
+        low, high = self._at(np.array(self.span))[0].T
+        return 0.25 * float(np.hypot(*(high - low)))
+
+    @property
+    def chain(self) -> Array:
+        """The edge in straight pieces, free side to the left, (2, m+1)."""
+        v = np.linspace(*self.span, _PIECES + 1)
+        return self._at(v if self._forwards else v[::-1])[0]
+
+    def near(self, y: Array) -> Near:
+        """Distance and so on of places (2, k)."""
+        v, w = y[::-1] if self.across else y
+        low, high = self.span
+        f1, f2 = self.f.deriv(), self.f.deriv(2)
+        samples = np.linspace(low, high, _SAMPLES)
+        at = samples[((samples - v[:, None]) ** 2 + (self.f(samples) - w[:, None]) ** 2).argmin(axis=1)]
+        for _ in range(_NEWTON_STEPS):
+            slope, rest = f1(at), self.f(at) - w
+            bent = 1.0 + slope**2 + rest * f2(at)
+            # beyond the centre of curvature a place of the edge is farthest: it stays where it is
+            step = np.where(bent > 0.0, (at - v + rest * slope) / np.where(bent > 0.0, bent, 1.0), 0.0)
+            moved = np.clip(at - step, low, high)
+            done = float(np.abs(moved - at).max(initial=0.0)) <= _ARRIVED * (high - low)
+            at = moved
+            if done:
+                break
+        point, tau = self._at(at)
+        away = y - point
+        side = _left(tau)
+        d, beyond = (side * away).sum(axis=0), (tau * away).sum(axis=0)
+        slope = f1(at)
+        kappa = -self.sign * f2(at) / (1.0 + slope**2) ** 1.5  # juts out where it bends away from the free side
+        first, last = (low, high) if self._forwards else (high, low)
+        past = ((at == first) & (beyond < 0.0)) | ((at == last) & (beyond > 0.0))
+        r = np.hypot(away[0], away[1])
+        past &= r > 0.0
+        unit = away / np.where(past, r, 1.0)
+        distance, normal = np.where(past, r, d), np.where(past, unit, side)
+        bend = np.where(past, 1.0 / np.where(past, r, 1.0), kappa / (1.0 + kappa * d))
+        # behind the edge the sides straight back may be nearer
+        corners = self.corners
+        for i, back in ((0, corners.normals[0]), (1, corners.normals[1])):
+            beside = back[:, i] @ (y - corners.points[:, i, None])
+            nearer = ~past & (d < 0.0) & (beside > d) & (beside <= 0.0)
+            distance = np.where(nearer, beside, distance)
+            normal = np.where(nearer, back[:, i, None], normal)
+            bend = np.where(nearer, 0.0, bend)
+        return Near(distance, normal, bend, past)
+
+    @property
+    def _forwards(self) -> bool:
+        """Whether the free side lies to the left of what runs along the axis."""
+        return (self.sign > 0.0) != self.across
+
+    def _at(self, v: Array) -> tuple[Array, Array]:
+        """Points and unit tangents (2, k) at ``v`` (k,), the free side to the left."""
+        slope = self.f.deriv()(v)
+        tau = np.stack([np.ones_like(v), slope]) / np.hypot(1.0, slope) * (1.0 if self._forwards else -1.0)
+        point = np.stack([v, self.f(v)])
+        return (point[::-1], tau[::-1]) if self.across else (point, tau)
+
+
+Outline = HalfPlane | Broken | Graph
+
+
+def outline_of(contact: EdgeContact, origin: Array, unit: float, places: Sequence[Array] = ()) -> Outline:
+    """The outline with ``origin`` (2,) m for its own and ``unit`` m for one; ends near ``places`` (2,) are there."""
+    match contact:
+        case HalfPlaneContact():
+            normal = np.array(contact.normal) / np.abs(contact.normal).max()
+            return HalfPlane((np.array(contact.point) - origin) / unit, normal / np.hypot(*normal))
+        case LineContact():
+            points = (np.array(contact.points).T - origin[:, None]) / unit
+            for place in places:
+                near = np.hypot(*(points - place[:, None])) < _SAME
+                points[:, near] = place[:, None]
+            return Broken(points if contact.side == "left" else points[:, ::-1])
+        case FunctionContact():
+            across = contact.axis == "y"
+            first, other = origin[::-1] if across else origin
+            f = (Polynomial(contact.coefficients)(Polynomial([first, unit])) - other) / unit
+            low, high = sorted((end - first) / unit for end in contact.range)
+            return Graph(f, (float(low), float(high)), across, 1.0 if contact.side == "above" else -1.0)
+
+
+def ends_at(outline: Outline, place: Array, near: float) -> tuple[Array | None, Array | None]:
+    """Directions (2,) in which the edge goes on from a ``place`` (2,) on it, free side to the left, and comes from.
+
+    None where it does not, because it ends there.
+    """
+    corners = outline.corners
+    at = np.flatnonzero(np.hypot(*(corners.points - place[:, None])) <= near)
+    normal = outline.near(place[:, None]).normal[:, 0]
+    ahead = np.array([normal[1], -normal[0]])
+    if at.size == 0:
+        return ahead, -ahead
+    corner, last = int(at[0]), corners.points.shape[1] - 1
+    return (
+        corners.tangents[1][:, corner] if corner < last else None,
+        -corners.tangents[0][:, corner] if corner > 0 else None,
+    )
+
+
+def _left(tangents: Array) -> Array:
+    """Tangents (2, k) turned counter-clockwise."""
+    return np.stack([-tangents[1], tangents[0]])

@@ -1,0 +1,117 @@
+"""A beam that a joint holds on what it may lie on: if it is pinned there, it cannot turn into the edge.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+P       the joint, on the edge (half of the thickness from it, for a beam that touches by its own edge)
+τ       along the edge at P, the free side to the left: τ₋ before, τ₊ behind
+β       angle from τ₊ to the direction in which the beam leaves the pin, counter-clockwise
+======  =====================================================================================
+
+The free side is 0 ≤ β ≤ ∠(τ₊, −τ₋).  Where the edge ends at P only one of the two holds, and if that is the second, β
+is counted from −τ₋ and is not positive.  A stop holds these limits: the tangent at the pin is what the gap beside it
+goes by, on however fine a mesh, and the moment of the pressure that would be there is the stop's.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from fea_reference.hermite import Index
+from fea_reference.outline import Outline, ends_at, outline_of
+from fea_reference.stops import StopPart
+from scene.answer import Array
+from scene.statement import BeamEnd, EdgeContact, FreeEnd, PinnedEnd, Scene
+
+Which = Literal["start", "end"]
+_SAME = 1e-6  # of the beam's length or of the unit: as near as a scene's places have to be
+
+
+def held_on(scene: Scene, contact: EdgeContact, origin: Array, unit: float) -> tuple[Outline, dict[Which, Array]]:
+    """The outline of what a beam may touch, and which of its ends are held on it, and where (2,).
+
+    Args:
+        scene: the scene.
+        contact: one of its contacts.
+        origin: of the frame, (2,) m.
+        unit: of its lengths, m.
+    """
+    beam = scene.beams[contact.beam]
+    outline, held = outline_of(contact, origin, unit), dict[Which, Array]()
+    half = 0.5 * beam.thickness_at(np.array([0.0, 1.0])) / unit if contact.thick else np.zeros(2)
+    ends: tuple[tuple[Which, BeamEnd], ...] = (("start", beam.start), ("end", beam.end))
+    for (which, end), T in zip(ends, half, strict=True):
+        if isinstance(end, FreeEnd) or not _moves_with(scene, end.point, contact.body):
+            continue
+        place = (np.array(scene.place_of(end.point)) - origin) / unit
+        if abs(float(outline.near(place[:, None]).distance[0]) - T) <= _SAME:
+            held[which] = place
+    on_it = [place for place, T in zip(held.values(), half, strict=False) if T == 0.0]
+    return outline_of(contact, origin, unit, on_it), held
+
+
+def own_pins(
+    scene: Scene, bodies: dict[str, tuple[int, Index | None]], ends: dict[tuple[str, str], tuple[int, float]], row: int
+) -> tuple[StopPart, ...]:
+    """The stops by which contacts hold pinned ends; arguments as of :func:`fea_reference.stops.stops_of`."""
+    found: list[StopPart] = []
+    for name, contact in scene.contacts.items():
+        if not isinstance(contact, EdgeContact):
+            continue
+        beam = scene.beams[contact.beam]
+        unit = max(np.hypot(*(np.array(beam.curve.end) - beam.curve.start)), beam.thickest)
+        outline, held = held_on(scene, contact, np.array(beam.curve.start), float(unit))
+        number, dofs = bodies[contact.body]
+        for which, place in held.items():
+            end = beam.start if which == "start" else beam.end
+            if not isinstance(end, PinnedEnd):
+                continue
+            ahead, back = ends_at(outline, place, _SAME)
+            theta, drawn = ends[contact.beam, which]
+            along = drawn if which == "start" else drawn + np.pi  # out of the pin into the beam
+            limits: tuple[float | None, float | None]
+            if ahead is not None:
+                angle = _within(along - _angle(ahead), -np.pi / 4.0 if back is None else 0.0)
+                limits = 0.0, None if back is None else _within(_angle(back) - _angle(ahead), 0.0)
+            elif back is not None:
+                angle, limits = -_within(_angle(back) - along, -np.pi / 4.0), (None, 0.0)
+            else:
+                continue
+            least, most = limits
+            phi = None if dofs is None else int(dofs[2])
+            found.append(
+                StopPart(
+                    f"{name}.{which}",
+                    end.point,
+                    number,
+                    theta,
+                    phi,
+                    row + len(found),
+                    angle - drawn,
+                    least,
+                    most,
+                    (contact.beam, which),
+                    name,
+                )
+            )
+    return tuple(found)
+
+
+def _moves_with(scene: Scene, point: str, body: str) -> bool:
+    """Whether a point is the body's, or pinned to one of its own."""
+    points = {point}
+    for pin in scene.pins.values():
+        if point in pin.points:
+            points.update(pin.points)
+    return any(scene.body_of(each) == body for each in points)
+
+
+def _angle(vector: Array) -> float:
+    return float(np.arctan2(vector[1], vector[0]))
+
+
+def _within(angle: float, least: float) -> float:
+    """An angle from ``least`` on, to what it may be rounded to."""
+    return float(np.remainder(angle - least + _SAME, 2.0 * np.pi)) + least - _SAME
