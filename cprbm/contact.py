@@ -56,6 +56,11 @@ class Group:
     arc: Array
     reach: float = 0.0
 
+    @property
+    def holds_angles(self) -> bool:
+        """Whether the rows limit angles alone, so that their multipliers are moments."""
+        return self.joints.shape[1] == 0
+
 
 @dataclass(frozen=True)
 class Rows:

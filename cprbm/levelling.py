@@ -38,7 +38,9 @@ MOVES = 12
 def levelled(
     scene: Scene, settings: Settings, before: Mechanism, point: Point, fit: Fit, values: dict[str, float]
 ) -> tuple[Mechanism, Equilibrium] | None:
-    """The equilibrium in which each contact in points presses where the beams are parallel; None if none is found.
+    """The equilibrium in which contacts in points press where the beams are parallel; None if none is found.
+
+    Rigid circles and edges are no part of this: what is known of their places are minima.
 
     Args:
         scene, settings: the question, and the mesh.
@@ -46,20 +48,22 @@ def levelled(
         fit: for that state, with the places of contacts in points.
         values: of loads and drives, SI.
     """
+    between = [name for name in fit.kinks if isinstance(before.pairs[name], Pair)]
+    if not between:
+        return None
     known: dict[str, tuple[Array, Array]] = {}
     for _ in range(MOVES):
-        target = mechanism_of(scene, settings, replace(fit, fixed=frozenset(fit.kinks)))
+        target = mechanism_of(scene, settings, replace(fit, fixed=frozenset(between)))
         start = carried_over(before, point, target, values)
         solved = equilibrium(target.problem, values, start, settings.tolerance, settings.iterations)
         if not solved.converged:
             return None
         before, point = target, solved.point
-        slopes = {name: _slopes(target, solved.point, name) for name in fit.kinks}
+        slopes = {name: _slopes(target, solved.point, name) for name in between}
         if all(np.all(np.abs(slope) <= LEVEL) for slope in slopes.values()):
             return target, solved
-        fit = replace(
-            fit, kinks=frozendict({name: _moved(target, solved.point, name, slopes, known) for name in slopes})
-        )
+        moved = {name: _moved(target, solved.point, name, slopes, known) for name in between}
+        fit = replace(fit, kinks=frozendict({**fit.kinks, **moved}))
     return None
 
 
