@@ -297,7 +297,7 @@ class Edge:
         B = line.at(places)
         settled &= found.held(self._seen(face, B, frame).distance - self.offset)
         settled &= self._next_to(face, B, frame) & ~self._ruled(places)
-        places = places[settled]
+        places = places[settled & ~self._lying(places, D, parting)]
         for place in places:
             near &= np.abs(s - place) > wells.BESIDE * self.a.size_at(place)
         ends = np.array(self.ends)
@@ -305,6 +305,25 @@ class Edge:
             ends = ends[self._next_to(face, line.at(ends), frame) & ~self._ruled(ends)]
         fixed = np.concatenate((s[near], ends))
         return np.concatenate((fixed, places)), np.arange(len(fixed) + len(places)) >= len(fixed)
+
+    def _lying(self, places: Array, D: Array, parting: Array) -> Flags:
+        """At which ``places`` (k,) the beam lies on the edge from an own pin on: it is the end of a zone.
+
+        Args:
+            places: minima of D.
+            D: at the samples (2N+3,).
+            parting: D″ at the joints (N+2,).
+        """
+        s, joints = smooth.halves(self.a), self.a.s
+        lying = np.zeros(len(places), dtype=bool)
+        for pin in self.pins:
+            for i, place in enumerate(places if pin is not None else []):
+                assert pin is not None
+                low, high = sorted((pin.arc, float(place)))
+                h = float(np.max(self.a.size_at(place + np.array([-0.5, 0.5]) * self.a.sizes.min())))
+                bent = np.max(np.abs(parting[(joints >= low - h) & (joints <= high + h)]))
+                lying[i] |= np.max(D[(s > low) & (s < high)], initial=-np.inf) < bent * h**2
+        return lying
 
     def _refined(self, face: Face, line: smooth.SmoothLine, frame: Frame, s: Array) -> tuple[Array, Flags]:
         """Newton's method on D_s = 0; the flags say where it settled at a minimum nearby."""

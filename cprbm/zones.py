@@ -8,6 +8,9 @@ D″          curvature with which the beam parts from what it touched, zero in 
 
 Forces act on joints, so that the last that press tell an end only to one element.  Beyond it the moment is
 smooth and D″ grows from zero: continued backwards from the next three joints, it says where it began.
+
+Next to a pin on the edge that presses, a moment holds the beam's end.  More of it than bends the beam along the edge is
+what forces at joints do on their way to the pin: there is a zone, however few elements long, and D″ says how long.
 """
 
 from __future__ import annotations
@@ -37,13 +40,14 @@ class Zone:
 
 def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     """The zones of one contact in ascending order, none while it is open."""
-    chain = pair.a
-    mine = np.array([name == pair.name for name in point.rows.contact], dtype=bool)
-    arcs, forces, overlaps = point.rows.arc[mine], point.lam[mine], point.rows.values[mine]
-    reach = point.rows.reach[mine]
+    chain, rows = pair.a, point.rows
+    mine = np.array([name == pair.name for name in rows.contact], dtype=bool)
+    arcs, forces, overlaps, reach = rows.arc[mine], point.lam[mine], rows.values[mine], rows.reach[mine]
     if not np.any(forces > 0.0):
         return ()
-    largest = forces.max()
+    moments = rows.holds_angles[mine]
+    pinned = arcs[moments & (forces > 0.0)]
+    largest = np.max(forces[~moments], initial=0.0)
     # ends that are clamped in touch: no force is needed there
     clamped = chain.s[[0, -1]][list(pair.clamped)]
     arcs, forces = np.append(arcs, clamped), np.append(forces, np.full(len(clamped), largest))
@@ -57,8 +61,13 @@ def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     apart = np.diff(arcs) > CLOSE * np.maximum(h[1:], h[:-1]) + reach[1:] + reach[:-1]
     breaks = np.concatenate(([0], np.cumsum(apart | arched[1:] | arched[:-1])))
     runs = np.split(arcs[pressed], np.flatnonzero(np.diff(breaks[pressed])) + 1)
+    runs = _with_pins(pair, point, runs, pinned, arcs, -overlaps)
     runs = [_without_idle_clamp(chain, run, clamped) for run in runs]
-    return tuple(_zone(pair, point, chain, run) for run in runs if len(run) > 1 or run[0] not in clamped)
+    return tuple(
+        _zone(pair, point, chain, run, pinned=bool(np.any(np.isin(run, pinned))))
+        for run in runs
+        if len(run) > 1 or run[0] not in clamped
+    )
 
 
 def _without_idle_clamp(chain: Chain, run: Array, clamped: Array) -> Array:
@@ -71,18 +80,44 @@ def _without_idle_clamp(chain: Chain, run: Array, clamped: Array) -> Array:
     return inner if beside and np.ptp(inner) < SHORTEST * h else run
 
 
-def _zone(pair: Touching, point: Point, chain: Chain, run: Array) -> Zone:
-    """The zone whose forces act at arc lengths ``run``, ascending."""
+def _with_pins(
+    pair: Touching, point: Point, runs: list[Array], pinned: Array, arcs: Array, gaps: Array
+) -> list[Array]:
+    """The ``runs`` in which those that begin or end at an own pin go on to the next if the beam lies flat between."""
+    joined = [runs[0]]
+    for run in runs[1:]:
+        low, high = float(joined[-1][-1]), float(run[0])
+        beside = np.isin((low, high), pinned).any()
+        if beside and _flat(pair, point, low, high, gaps[(arcs > low) & (arcs < high)]):
+            joined[-1] = np.concatenate((joined[-1], run))
+        else:
+            joined.append(run)
+    return joined
+
+
+def _flat(pair: Touching, point: Point, low: float, high: float, gaps: Array) -> bool:
+    """Whether a beam lies on what it touches between two arc lengths, but for what it bends by over one element."""
+    chain = pair.a
+    h = float(np.max(chain.size_at(np.array([low, high]) + np.array([[-1.0], [1.0]]) * 0.5 * chain.sizes.min())))
+    joints = chain.s[(chain.s >= low - h) & (chain.s <= high + h)]
+    bent = float(np.max(np.abs(pair.parting(point.state, point.at, joints))))
+    return bool(np.max(gaps, initial=-np.inf) < bent * h**2)
+
+
+def _zone(pair: Touching, point: Point, chain: Chain, run: Array, *, pinned: bool) -> Zone:
+    """The zone whose forces act at arc lengths ``run``, ascending; ``pinned`` where it goes on to an own pin."""
     first, last = float(run[0]), float(run[-1])
     h = chain.size_at(run[[0, -1]])
     springs = chain.s[1:-1]
     before, after = springs[springs < first - 0.25 * h[0]][::-1], springs[springs > last + 0.25 * h[1]]
     whole = run.size > 1 and (not before.size or not after.size)
-    if not whole and last - first < SHORTEST * h.max():
+    if not whole and not pinned and last - first < SHORTEST * h.max():
         return Zone(first, last, long=False)
     begin = _continued(pair, point, before[:CONTINUED], first, h[0]) if before.size else 0.0
     end = _continued(pair, point, after[:CONTINUED], last, h[1]) if after.size else float(chain.s[-1])
-    return Zone(begin, max(begin, end), long=True)
+    if pinned:
+        begin, end = min(begin, first), max(end, last)
+    return Zone(begin, max(begin, end), long=not pinned or end > begin)
 
 
 def _continued(pair: Touching, point: Point, joints: Array, last: float, h: float) -> float:
