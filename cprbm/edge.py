@@ -52,6 +52,7 @@ REACH = 0.1  # minima of D farther than this part of the longest beam are no con
 ON_IT = 1e-9  # gap and slope of a clamped end that is in touch with the edge
 ARCHING = 0.2  # of what the largest force bends one element by: where a zone ends within one it arches by less
 JOINT_REACH = 2.0  # joints farther than this many h²·(κ + 1/ℓ) are none
+FLAT = 0.01  # of D″ times the length squared, as for zones
 NEAREST = 1e-9  # of ℓ: pieces whose distances differ by less are equally near
 
 
@@ -321,8 +322,10 @@ class Edge:
                 assert pin is not None
                 low, high = sorted((pin.arc, float(place)))
                 h = float(np.max(self.a.size_at(place + np.array([-0.5, 0.5]) * self.a.sizes.min())))
-                bent = np.max(np.abs(parting[(joints >= low - h) & (joints <= high + h)]))
-                lying[i] |= np.max(D[(s > low) & (s < high)], initial=-np.inf) < bent * h**2
+                bent = np.max(np.abs(parting[(joints >= low - 2.0 * h) & (joints <= high + 2.0 * h)]))
+                lying[i] |= np.max(D[(s > low) & (s < high)], initial=-np.inf) < bent * max(
+                    h**2, FLAT * (high - low) ** 2
+                )
         return lying
 
     def _refined(self, face: Face, line: smooth.SmoothLine, frame: Frame, s: Array) -> tuple[Array, Flags]:

@@ -27,6 +27,7 @@ from scene.answer import Array
 CLOSE = 1.6  # elements between joints that are close; farther, a joint between them is not
 SHORTEST = 1.9  # elements between the outer forces of a zone; two neighbours share the force of one place
 CONTINUED = 3  # joints
+FLAT = 0.01  # of D″ times the length squared: a beam that is held at one end and pressed at the other arches by 1/27
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,12 +97,12 @@ def _with_pins(
 
 
 def _flat(pair: Touching, point: Point, low: float, high: float, gaps: Array) -> bool:
-    """Whether a beam lies on what it touches between two arc lengths, but for what it bends by over one element."""
+    """Whether a beam lies on what it touches between two arc lengths, but for what it bends by near them."""
     chain = pair.a
     h = float(np.max(chain.size_at(np.array([low, high]) + np.array([[-1.0], [1.0]]) * 0.5 * chain.sizes.min())))
-    joints = chain.s[(chain.s >= low - h) & (chain.s <= high + h)]
+    joints = chain.s[(chain.s >= low - 2.0 * h) & (chain.s <= high + 2.0 * h)]
     bent = float(np.max(np.abs(pair.parting(point.state, point.at, joints))))
-    return bool(np.max(gaps, initial=-np.inf) < bent * h**2)
+    return bool(np.max(gaps, initial=-np.inf) < bent * max(h**2, FLAT * (high - low) ** 2))
 
 
 def _zone(pair: Touching, point: Point, chain: Chain, run: Array, *, pinned: bool) -> Zone:
