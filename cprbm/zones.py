@@ -65,7 +65,7 @@ def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     runs = _with_pins(pair, point, runs, pinned, arcs, -overlaps)
     runs = [_without_idle_clamp(chain, run, clamped) for run in runs]
     return tuple(
-        _zone(pair, point, chain, run, pinned=bool(np.any(np.isin(run, pinned))))
+        _zone(pair, point, chain, run, run[np.isin(run, pinned)])
         for run in runs
         if len(run) > 1 or run[0] not in clamped
     )
@@ -105,20 +105,20 @@ def _flat(pair: Touching, point: Point, low: float, high: float, gaps: Array) ->
     return bool(np.max(gaps, initial=-np.inf) < bent * max(h**2, FLAT * (high - low) ** 2))
 
 
-def _zone(pair: Touching, point: Point, chain: Chain, run: Array, *, pinned: bool) -> Zone:
-    """The zone whose forces act at arc lengths ``run``, ascending; ``pinned`` where it goes on to an own pin."""
+def _zone(pair: Touching, point: Point, chain: Chain, run: Array, pins: Array) -> Zone:
+    """The zone whose forces act at arc lengths ``run``, ascending, own ``pins`` among them."""
     first, last = float(run[0]), float(run[-1])
     h = chain.size_at(run[[0, -1]])
     springs = chain.s[1:-1]
     before, after = springs[springs < first - 0.25 * h[0]][::-1], springs[springs > last + 0.25 * h[1]]
     whole = run.size > 1 and (not before.size or not after.size)
-    if not whole and not pinned and last - first < SHORTEST * h.max():
+    if not whole and not pins.size and last - first < SHORTEST * h.max():
         return Zone(first, last, long=False)
     begin = _continued(pair, point, before[:CONTINUED], first, h[0]) if before.size else 0.0
     end = _continued(pair, point, after[:CONTINUED], last, h[1]) if after.size else float(chain.s[-1])
-    if pinned:
-        begin, end = min(begin, first), max(end, last)
-    return Zone(begin, max(begin, end), long=not pinned or end > begin)
+    if pins.size:
+        begin, end = min(begin, float(pins[0])), max(end, float(pins[-1]))
+    return Zone(begin, max(begin, end), long=not pins.size or end > begin)
 
 
 def _continued(pair: Touching, point: Point, joints: Array, last: float, h: float) -> float:
