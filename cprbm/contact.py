@@ -59,7 +59,7 @@ class Group:
     @property
     def holds_angles(self) -> bool:
         """Whether the rows limit angles alone, so that their multipliers are moments."""
-        return self.joints.shape[1] == 0
+        return self.joints.size == 0
 
 
 @dataclass(frozen=True)

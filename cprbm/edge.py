@@ -39,6 +39,7 @@ from cprbm.faces import Face, Seen, faces_of
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model, anchor
+from cprbm.own_pins import ON_IT as PIN_ON_IT
 from cprbm.own_pins import own_pins
 from cprbm.stops import AngleStop
 from scene import EdgeContact, Scene
@@ -317,15 +318,13 @@ class Edge:
         """
         s, joints = smooth.halves(self.a), self.a.s
         lying = np.zeros(len(places), dtype=bool)
-        for pin in self.pins:
-            for i, place in enumerate(places if pin is not None else []):
-                assert pin is not None
-                low, high = sorted((pin.arc, float(place)))
+        for end in joints[[0, -1]][[pin is not None for pin in self.pins]]:
+            for i, place in enumerate(places):
+                low, high = sorted((float(end), float(place)))
                 h = float(np.max(self.a.size_at(place + np.array([-0.5, 0.5]) * self.a.sizes.min())))
                 bent = np.max(np.abs(parting[(joints >= low - 2.0 * h) & (joints <= high + 2.0 * h)]))
-                lying[i] |= np.max(D[(s > low) & (s < high)], initial=-np.inf) < bent * max(
-                    h**2, FLAT * (high - low) ** 2
-                )
+                arched = np.max(D[(s > low) & (s < high)], initial=-np.inf)
+                lying[i] |= arched < bent * max(h**2, FLAT * (high - low) ** 2)
         return lying
 
     def _refined(self, face: Face, line: smooth.SmoothLine, frame: Frame, s: Array) -> tuple[Array, Flags]:
@@ -379,6 +378,40 @@ class Edge:
     def pressed(self, state: State, at: Positions, chain: Chain, s: Array) -> tuple[float, Array, Array] | None:
         """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s``."""
         return (1.0, s, self.line(state, at).at(s).psi) if chain is self.a else None
+
+    def presses_an_end(self, state: State, at: Positions, s: Array) -> bool:
+        """Whether what presses at arc lengths ``s`` does so next to an end of a piece that stands out.
+
+        There the edge has a corner, which presses in a point between joints; an own pin's is none.
+        """
+        A, frame = self.line(state, at).at(s), self.frame(state, at)
+        h = self.a.size_at(s)
+        own = [self.a.joints.start] if self.pins[0] is not None else []
+        own += [self.a.joints.stop - 1] if self.pins[1] is not None else []
+        pins = np.stack((at.x[own], at.y[own]), axis=1)
+        for face in self.faces:
+            seen = self._seen(face, A, frame)
+            distance = seen.distance + self._half(A.s) - self.offset
+            feet = np.stack((A.x, A.y), axis=1) - distance[:, None] * seen.normal
+            near = self._next_to(face, A, frame) & (np.abs(seen.distance - self.offset) <= h**2)
+            for end in face.ends:
+                if end is None or self._goes_on(face, end):
+                    continue
+                place = frame.outwards(end[None])[0]
+                at_pin = np.hypot(*(pins - place).T) <= self.offset + PIN_ON_IT
+                if not np.any(at_pin) and np.any(near & (np.hypot(*(feet - place).T) < h)):
+                    return True
+        return False
+
+    def _goes_on(self, face: Face, end: Array) -> bool:
+        """Whether another piece goes on at an ``end``, straight or into the free side."""
+        for other in self.faces:
+            if other is not face and any(
+                there is not None and np.hypot(*(there - end)) <= NEAREST for there in other.ends
+            ):
+                farther = max((there for there in other.ends if there is not None), key=lambda p: np.hypot(*(p - end)))
+                return bool(face.seen(farther[None]).distance[0] >= -NEAREST)
+        return False
 
     def least_gap(self, state: State, at: Positions) -> float:
         """Least gap anywhere along the beam, units of length; negative where it overlaps."""

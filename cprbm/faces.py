@@ -15,6 +15,7 @@ piece that is seen.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Protocol
 
 import numpy as np
@@ -79,7 +80,7 @@ class Straight:
         """The piece from places ``q`` (k, 2)."""
         r, none = q - np.array(self.begin), np.zeros(len(q))
         along = r @ np.array(self.tau)
-        within = np.full(len(q), True) if self.length == np.inf else (along >= 0.0) & (along <= self.length)
+        within = (self.length == np.inf) | ((along >= 0.0) & (along <= self.length))
         return Seen(r @ np.array(self.normal), np.tile(self.normal, (len(q), 1)), none, within)
 
 
@@ -152,7 +153,7 @@ def faces_of(contact: EdgeContact, unit_length: float, origin: tuple[float, floa
             points = np.array(contact.points) / unit_length - np.array(origin)
             sign = 1.0 if contact.side == "left" else -1.0
             found = []
-            for one, other in zip(points[:-1], points[1:], strict=True):
+            for one, other in pairwise(points):
                 length = float(np.hypot(*(other - one)))
                 tx, ty = (other - one) / length
                 begin = (float(one[0]), float(one[1]))

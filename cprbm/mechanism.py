@@ -22,7 +22,7 @@ from cprbm.nearest import Pair, pair_of
 from cprbm.rigid import RigidCircle, rigid_circle
 from cprbm.settings import Settings
 from cprbm.stops import AngleStop, stop_of
-from scene import BeamContact, CircleContact, Scene
+from scene import BeamContact, CircleContact, EdgeContact, Mistake, Scene, SceneError
 
 BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle or another
 SHALLOW = 0.05  # of the radius: an overlap between rows of a coarse mesh
@@ -88,7 +88,7 @@ class Mechanism:
         return False
 
     def _crossed_between(self, pair: Pair | Edge, before: Point, after: Point, way: float) -> bool:
-        """Whether a beam lay across what it may touch, by more than the way is known, on the way from one state to another."""
+        """Whether a beam lay across what it may touch between two states, by more than the way between is known."""
         allowed = pair.offset + way * _turned(before.state, after.state) ** 2
         return any(
             pair.least_gap(state, positions(self.problem.model, state)) + pair.offset < -allowed
@@ -143,6 +143,21 @@ def _pair(scene: Scene, model: Model, name: str, fit: Fit) -> Pair | Circle | Ed
     return edge_of(scene, model, name, fit)
 
 
+def _boundary(scene: Scene, model: Model, name: str, settings: Settings) -> FittedBoundary | RigidCircle:
+    """A contact in the paper's form.
+
+    Raises:
+        SceneError: the form lacks what it must be told, or is not offered for the contact's kind.
+    """
+    contact = scene.contacts[name]
+    if isinstance(contact, EdgeContact):
+        allowed = "a kind that the formulation 'paper' offers so far, or the formulation 'auto'"
+        raise SceneError([Mistake(f"contacts.{name}.kind", repr(contact.kind), allowed, scene.file)])
+    if isinstance(contact, BeamContact):
+        return fitted_boundary(scene, model, name, settings.degree)
+    return rigid_circle(scene, model, name)
+
+
 def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism:
     """Make a scene ready on even elements or those of a ``fit``.
 
@@ -153,12 +168,7 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism
     pairs = {name: _pair(scene, model, name, fit) for name in scene.contacts}
     boundaries: dict[str, FittedBoundary | RigidCircle] = {}
     if settings.formulation == "paper":
-        boundaries = {
-            name: fitted_boundary(scene, model, name, settings.degree)
-            if isinstance(contact, BeamContact)
-            else rigid_circle(scene, model, name)
-            for name, contact in scene.contacts.items()
-        }
+        boundaries = {name: _boundary(scene, model, name, settings) for name in scene.contacts}
     stops = {name: stop_of(scene, model, name) for name in scene.stops}
     closure = closure_of(model, hinges_of(scene, model), holds_of(scene, model))
     loads = dead_loads(scene, model) | end_moments(scene, model)

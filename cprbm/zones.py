@@ -81,9 +81,7 @@ def _without_idle_clamp(chain: Chain, run: Array, clamped: Array) -> Array:
     return inner if beside and np.ptp(inner) < SHORTEST * h else run
 
 
-def _with_pins(
-    pair: Touching, point: Point, runs: list[Array], pinned: Array, arcs: Array, gaps: Array
-) -> list[Array]:
+def _with_pins(pair: Touching, point: Point, runs: list[Array], pinned: Array, arcs: Array, gaps: Array) -> list[Array]:
     """The ``runs`` in which those that begin or end at an own pin go on to the next if the beam lies flat between."""
     joined = [runs[0]]
     for run in runs[1:]:

@@ -12,7 +12,7 @@ from cprbm.mechanism import mechanism_of
 from scene.reading import scene_from
 from tests.together.pivots import FORCE, LENGTH, MATERIALS, MOMENT, STRIP, line, pin, weld
 
-O, D = (0.0, 0.0), (1.1, 0.2)
+D = (1.1, 0.2)
 CRANK, COUPLER, FOLLOWER = 0.4, 0.9, 0.7
 
 
@@ -33,13 +33,16 @@ def four_bar(*, pinned, spring=False):
     """
     a = np.array([0.0, CRANK])
     b = meeting(a, D, COUPLER, FOLLOWER)
+    far = b + np.array([1.0, 0.5])
 
     def at(place):
         return [float(LENGTH * coordinate) for coordinate in place]
 
-    crank = {"points": {"O": at(O), "A": at(a)}} | ({"motion": "free"} if pinned else {"motion": "turns", "about": "O"})
+    crank = {"points": {"O": at((0.0, 0.0)), "A": at(a)}} | (
+        {"motion": "free"} if pinned else {"motion": "turns", "about": "O"}
+    )
     bodies = {
-        "ground": {"motion": "fixed", "points": {"W": at((-3.0, 0.0)), "O_ground": at(O), "S": at(b + [1.0, 0.5])}},
+        "ground": {"motion": "fixed", "points": {"W": at((-3.0, 0.0)), "O_ground": at((0.0, 0.0)), "S": at(far)}},
         "crank": crank,
         "coupler": {"motion": "free", "points": {"mid": at(0.5 * (a + b)), "A_c": at(a), "B_c": at(b)}},
         "follower": {"motion": "turns", "about": "D", "points": {"D": at(D), "B": at(b)}},
@@ -49,7 +52,7 @@ def four_bar(*, pinned, spring=False):
         pins["at_O"] = {"points": ["O_ground", "O"]}
     start, end = at((-3.0, 0.0)), at((-2.0, 0.0))
     idle = {**STRIP, "curve": line(start, end), "start": weld("W"), "end": {"joint": "free"}}
-    drag = {**STRIP, "curve": line(at(b), at(b + [1.0, 0.5])), "start": pin("B"), "end": weld("S")}
+    drag = {**STRIP, "curve": line(at(b), at(far)), "start": pin("B"), "end": weld("S")}
     return {
         "name": "four-bar",
         "materials": MATERIALS,
