@@ -112,11 +112,19 @@ def _zone(pair: Touching, point: Point, chain: Chain, run: Array, pins: Array) -
     whole = run.size > 1 and (not before.size or not after.size)
     if not whole and not pins.size and last - first < SHORTEST * h.max():
         return Zone(first, last, long=False)
+    if pins.size:  # the first spring may lie within
+        before, after = (_parting(pair, point, springs) for springs in (before, after))
     begin = _continued(pair, point, before[:CONTINUED], first, h[0]) if before.size else 0.0
     end = _continued(pair, point, after[:CONTINUED], last, h[1]) if after.size else float(chain.s[-1])
     if pins.size:
         begin, end = min(begin, float(pins[0])), max(end, float(pins[-1]))
     return Zone(begin, max(begin, end), long=not pins.size or end > begin)
+
+
+def _parting(pair: Touching, point: Point, joints: Array) -> Array:
+    """Those of some ``joints``, the nearest first, from which on the beam parts; all where it does not."""
+    parts = np.flatnonzero(pair.parting(point.state, point.at, joints) > 0.0)
+    return joints[parts[0] :] if parts.size else joints
 
 
 def _continued(pair: Touching, point: Point, joints: Array, last: float, h: float) -> float:
