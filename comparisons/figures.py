@@ -192,6 +192,7 @@ def _against_load(scene: Scene, rows: list[Row], quantity: str, what: str) -> Pi
         last = scene.stages[-1]
         step, step_unit = along_axis(load_unit(scene, last), 1.0)
         names = list(dict.fromkeys(row.probe.name for row in rows))
+        told: set[str] = set()
         for name, (line, marker) in zip(names, islice(cycle(LOOKS), len(names)), strict=True):
             for stage in scene.stages:
                 if stage.steps != last.steps:  # another load or drive has another axis
@@ -202,7 +203,8 @@ def _against_load(scene: Scene, rows: list[Row], quantity: str, what: str) -> Pi
                     load = [row.station / step for row in mine]
                     # where the answers are not on one branch there is none to draw a line of
                     style = line if branch is not None else "none"
-                    first = mine[0] is next(row for row in rows if row.probe.name == name)
+                    first = name not in told
+                    told.add(name)
                     axes.plot(
                         load,
                         [row.fea[0] / factor for row in mine],

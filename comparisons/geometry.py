@@ -10,7 +10,7 @@ R       radius of an arc, m
 φ       angle that an arc turns through, counter-clockwise
 ======  ===================================================
 
-Of a polynomial they are what the scene's own geometry says, :mod:`scene.geometry`.
+Of a polynomial and a spline they are what the scene's own geometry says, :mod:`scene.geometry`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from typing import assert_never
 
 import numpy as np
 
-from scene import Arc, Beam, Line, Polynomial
+from scene import Arc, Beam, Line, Polynomial, Spline
 from scene.answer import Array, Shape
 from scene.geometry import arc_length, curvature_on, largest_curvature, points_on
 from scene.statement import Curve
@@ -35,7 +35,7 @@ def length(curve: Curve) -> float:
             return math.dist(curve.start, curve.end)
         case Arc():
             return radius(curve) * abs(_turn(curve))
-        case Polynomial():
+        case Polynomial() | Spline():
             return arc_length(curve)
         case _:
             assert_never(curve)
@@ -48,7 +48,7 @@ def radius(curve: Curve) -> float:
             return math.inf
         case Arc():
             return math.dist(curve.start, curve.center)
-        case Polynomial():
+        case Polynomial() | Spline():
             curvature = largest_curvature(curve)
             return 1.0 / curvature if curvature > 0.0 else math.inf
         case _:
@@ -79,7 +79,7 @@ def points(curve: Curve, s: Array) -> Array:
             first = math.atan2(curve.start[1] - centre[1], curve.start[0] - centre[0])
             angle = first + math.copysign(1.0, _turn(curve)) * np.asarray(s) / radius(curve)
             return np.asarray(centre + radius(curve) * np.stack([np.cos(angle), np.sin(angle)], axis=1))
-        case Polynomial():
+        case Polynomial() | Spline():
             return points_on(curve, np.asarray(s) / arc_length(curve))
         case _:
             assert_never(curve)

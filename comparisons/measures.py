@@ -101,7 +101,14 @@ UNITS: Mapping[Quantity, str] = {
     "moment": "N·m",
 }
 
-LOAD_UNITS = {"moment": "N·m", "force": "N", "displacement": "m", "rotation": "rad"}
+LOAD_UNITS = {
+    "moment": "N·m",
+    "force": "N",
+    "beam_force": "N",
+    "distributed": "N/m",
+    "displacement": "m",
+    "rotation": "rad",
+}
 
 
 @dataclass(frozen=True, slots=True)

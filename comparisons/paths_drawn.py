@@ -21,7 +21,7 @@ from comparisons.verdict import Comparison
 from comparisons.work_energy import along
 from scene import Answer, Critical, Probe, Scene, Stage, StationAnswer
 from scene.freedoms import unit
-from scene.statement import Force, Moment
+from scene.statement import DisplacementDrive, Force, Moment, RotationDrive
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -68,7 +68,7 @@ def _ordinates(scene: Scene, stage: Stage) -> Iterator[_Ordinate]:
         probe = Probe(of=stepped.body, quantity="rotation")
         if probe.name in asked:
             yield _Ordinate(f"rotation of {stepped.body}", "rad", value(probe))
-    else:
+    elif isinstance(stepped, DisplacementDrive | RotationDrive):
         probe = reaction_of(stepped)
         if probe.name in asked:
             what = "reaction moment" if probe.quantity == "reaction_moment" else "reaction force"

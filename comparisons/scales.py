@@ -10,7 +10,7 @@ quantity                               the family's scale in a stage
 displacement                           largest displacement of any point, driven ones too, or rotation times length
 rotation                               largest rotation of any body, driven ones too, or displacement over length
 angle                                  largest angle of any stop
-force, reaction                        largest of them, of the force loads, and of the moments over length
+force, reaction                        largest of them, of the force loads' resultants, and of the moments over length
 reaction_moment, moment                largest of them, of the moment loads, and of the forces times length
 bending_stress                         largest stress in any beam
 potential_energy                       largest energy
@@ -41,7 +41,7 @@ import numpy as np
 from comparisons.geometry import length
 from scene import Answer, Beam, Probe, Scene, Stage
 from scene.answer import Array
-from scene.statement import Quantity
+from scene.statement import DistributedLoad, Quantity
 
 SMALLEST_SHARE = 1e-3
 """Least scale of a probe as a share of its family's."""
@@ -52,7 +52,7 @@ SMALLEST_EVENT = 1e-7
 VANISHING = 1e-2
 """A reference below this share of its probe's scale counts as one that may vanish."""
 
-Kind = Literal["moment", "force", "displacement", "rotation"]
+Kind = Literal["moment", "force", "beam_force", "displacement", "rotation"]
 """Of a load or drive."""
 
 _OWN_NORM = frozenset({"displacement", "rotation", "potential_energy", "closing_load"})
@@ -97,7 +97,14 @@ def natural_scale(scene: Scene, quantity: Quantity, stage: Stage, *, contact: st
         case "force" | "reaction":
             return S / lever
         case "closing_load":
-            return {"moment": S, "force": S / lever, "displacement": lever, "rotation": 1.0}[scene.stepped(stage).kind]
+            return {
+                "moment": S,
+                "force": S / lever,
+                "beam_force": S / lever,
+                "distributed": S / lever**2,
+                "displacement": lever,
+                "rotation": 1.0,
+            }[scene.stepped(stage).kind]
         case "bending_stress":
             return max(E * beam.thickest for beam, E in beams) / (2.0 * lever)
         case "centre" | "ends":
@@ -124,7 +131,7 @@ def family_size(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[A
         case "force" | "reaction":
             return max(
                 largest("force", "reaction"),
-                _stepped(scene, stage, "force"),
+                _stepped_force(scene, stage),
                 largest("reaction_moment", "moment") / lever,
                 _stepped(scene, stage, "moment") / lever,
             )
@@ -133,7 +140,7 @@ def family_size(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[A
                 largest("reaction_moment", "moment"),
                 _stepped(scene, stage, "moment"),
                 largest("force", "reaction") * lever,
-                _stepped(scene, stage, "force") * lever,
+                _stepped_force(scene, stage) * lever,
             )
         case "closing_load":
             return max(abs(station) for station in stage.stations)
@@ -171,6 +178,15 @@ def _norms(probes: tuple[Probe, ...], stage: Stage, answers: tuple[Answer, ...])
                 values = station.values.get(probe.name)
                 if values is not None and bool(np.all(np.isfinite(values))):
                     yield norm(probe.quantity, values)
+
+
+def _stepped_force(scene: Scene, stage: Stage) -> float:
+    """Largest resultant, N, of a load that the stage steps, if it is a force on a body or a beam."""
+    load = scene.stepped(stage)
+    if isinstance(load, DistributedLoad):
+        stretch = (load.along[1] - load.along[0]) * length(scene.beams[load.beam].curve)
+        return stretch * max(abs(station) for station in stage.stations)
+    return max(_stepped(scene, stage, "force"), _stepped(scene, stage, "beam_force"))
 
 
 def _stepped(scene: Scene, stage: Stage, kind: Kind) -> float:

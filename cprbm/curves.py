@@ -18,7 +18,8 @@ from typing import assert_never
 import numpy as np
 
 from cprbm.polynomial import PolynomialLine, polynomial_line
-from scene import Arc, Line, Polynomial
+from cprbm.spline import SplineLine, spline_line
+from scene import Arc, Line, Polynomial, Spline
 from scene.answer import Array
 from scene.statement import Curve
 
@@ -57,7 +58,7 @@ class EvenLine:
         return np.hypot(np.diff(x), np.diff(y)), self.angle(0.5 * (s[1:] + s[:-1]))
 
 
-NeutralLine = EvenLine | PolynomialLine
+NeutralLine = EvenLine | PolynomialLine | SplineLine
 
 
 def neutral_line(curve: Curve) -> NeutralLine:
@@ -70,6 +71,8 @@ def neutral_line(curve: Curve) -> NeutralLine:
             return _arc(curve)
         case Polynomial():
             return polynomial_line(curve)
+        case Spline():
+            return spline_line(curve)
         case _:
             assert_never(curve)
 

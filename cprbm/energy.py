@@ -6,7 +6,7 @@ m_i     k_i δ_i, moment of spring i
 W       work of the dead loads from the initial state
 ======  ========================================================================
 
-PE = Σ ½ k_i δ_i² − W; the Hessian over θ is tridiagonal, W is linear in θ.
+PE = Σ ½ k_i δ_i² − W; the Hessian over θ is tridiagonal, also that of W, which loads on bodies leave linear in θ.
 """
 
 from __future__ import annotations
@@ -16,7 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm.kinematics import State
+from cprbm.beam_loads import BeamLoad, beam_loads, beam_work
+from cprbm.kinematics import Positions, State, pulled_back
 from cprbm.model import Model
 from scene import Scene
 from scene.answer import Array
@@ -41,9 +42,12 @@ class EndMoment:
     moment: float
 
 
-def dead_loads(scene: Scene, model: Model) -> dict[str, DeadLoad]:
+AnyLoad = DeadLoad | EndMoment | BeamLoad
+
+
+def dead_loads(scene: Scene, model: Model) -> dict[str, DeadLoad | BeamLoad]:
     """The scene's loads by name."""
-    loads = {}
+    loads: dict[str, DeadLoad | BeamLoad] = {**beam_loads(scene, model)}
     for name, load in scene.loads.items():
         if isinstance(load, Moment):
             body = model.free_bodies.index(load.body)
@@ -106,23 +110,51 @@ def strain_hessian(model: Model) -> tuple[Array, Array]:
 
 @dataclass(frozen=True, slots=True)
 class LoadWork:
-    """W and its derivatives: value, gradient over all unknowns (n_links + 3B,), second over φ of the bodies (B,)."""
+    """W and its derivatives.
+
+    Attributes:
+        value, gradient: W, and over all unknowns (n_links + 3B,).
+        second: second derivatives over φ of the bodies (B,).
+        diagonal, off: the same over θ, (n_links,) and (n_links−1,).
+        fx, fy: what of the loads on beams is forces on joints (n_joints,), all of their resultants.
+        on_beams: loads on beams that act, with their values (SI).
+    """
 
     value: float
     gradient: Array
     second: Array
+    diagonal: Array
+    off: Array
+    fx: Array
+    fy: Array
+    on_beams: tuple[tuple[BeamLoad, float], ...]
 
 
 def load_work(
-    model: Model, loads: Mapping[str, DeadLoad | EndMoment], values: dict[str, float], state: State
+    model: Model, loads: Mapping[str, AnyLoad], values: dict[str, float], state: State, at: Positions
 ) -> LoadWork:
     """Work of all loads at their present ``values`` (SI)."""
     total = 0.0
     gradient = np.zeros(model.n_unknowns)
     over_bodies = gradient[model.n_links :].reshape(-1, 3)  # a view
     second = np.zeros(len(model.free_bodies))
+    diagonal, off = np.zeros(model.n_links), np.zeros(model.n_links - 1)
+    on_x, on_y = np.zeros(model.n_joints), np.zeros(model.n_joints)
+    on_beams = []
     for name, load in loads.items():
         value = values.get(name, 0.0)
+        if isinstance(load, BeamLoad):
+            if value == 0.0:
+                continue
+            work = beam_work(model, load, state, at)
+            total += value * work.value
+            gradient[: model.n_links] += value * work.gradient
+            diagonal += value * work.diagonal
+            off += value * work.off
+            on_x += value * work.fx
+            on_y += value * work.fy
+            on_beams.append((load, value))
+            continue
         if isinstance(load, EndMoment):
             total += value * load.moment * (state.theta[load.link] - model.rest[load.link])
             gradient[load.link] += value * load.moment
@@ -135,4 +167,9 @@ def load_work(
         total += value * load.moment * phi + fx * (u + rx - px) + fy * (v + ry - py)
         over_bodies[load.body] += (fx, fy, value * load.moment + rx * fy - ry * fx)
         second[load.body] -= fx * rx + fy * ry
-    return LoadWork(float(total), gradient, second)
+    if on_beams:
+        over_theta, bodies, twice, twice_bodies = pulled_back(model, state, at, on_x, on_y)
+        gradient += np.concatenate((over_theta, bodies))
+        diagonal += twice
+        second += twice_bodies
+    return LoadWork(float(total), gradient, second, diagonal, off, on_x, on_y, tuple(on_beams))

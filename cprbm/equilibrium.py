@@ -25,8 +25,7 @@ from cprbm.closure import Closure, closure_forces, closure_rows, closure_second,
 from cprbm.complementarity import pressing
 from cprbm.contact import Formulation, Rows
 from cprbm.energy import (
-    DeadLoad,
-    EndMoment,
+    AnyLoad,
     LoadWork,
     load_work,
     spring_moments,
@@ -72,7 +71,7 @@ class Problem:
 
     model: Model
     closure: Closure
-    loads: Mapping[str, DeadLoad | EndMoment]
+    loads: Mapping[str, AnyLoad]
     formulation: Formulation
     steady: Formulation
     drag: Drag | None = None
@@ -132,7 +131,7 @@ def point_at(problem: Problem, values: dict[str, float], state: State, mu: Array
     model = problem.model
     at = positions(model, state)
     rows = problem.formulation(state, at)
-    work = load_work(model, problem.loads, values, state)
+    work = load_work(model, problem.loads, values, state, at)
     gradient = -work.gradient
     gradient[: model.n_links] += strain_gradient(model, state)
     if problem.drag is not None:
@@ -260,7 +259,8 @@ def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System
     fx, fy = fx + cx, fy + cy
     _, _, second, second_bodies = pulled_back(model, point.state, point.at, fx, fy)
     diagonal, off = strain_hessian(model)
-    diagonal = diagonal + second + shift * model.lengths + problem.stiffened()
+    diagonal = diagonal + second + shift * model.lengths + problem.stiffened() - point.work.diagonal
+    off = off - point.work.off
     over_phi = second_bodies + closure_second(model, closure, point.state, point.mu) - point.work.second
 
     columns, curvatures, known = [], [], []

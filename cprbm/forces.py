@@ -76,7 +76,8 @@ def supports(problem: Problem, point: Point) -> tuple[Support, ...]:
     for chain in model.chains:
         if chain.start.body < 0:
             j = chain.joints
-            force = np.array([np.sum(fx[j] - contact.fx[j]), np.sum(fy[j] - contact.fy[j])])
+            others = contact.fx[j] + point.work.fx[j], contact.fy[j] + point.work.fy[j]
+            force = np.array([np.sum(fx[j] - others[0]), np.sum(fy[j] - others[1])])
             place = np.array([point.at.x[chain.first_joint], point.at.y[chain.first_joint]])
             moment = float(held[chain.first_link]) if chain.start.welded else 0.0
             found.append(Support(chain.name, "start", place, force, moment))
@@ -142,11 +143,15 @@ def balances(problem: Problem, point: Point) -> tuple[float, float]:
     for b in range(len(model.free_bodies)):
         place = model.references[b] + point.state.bodies[b, :2]
         parts.append((place, work[b, :2], float(work[b, 2] + stops[b, 2])))
+    # of loads on beams that is the moment about the beam's start; where the ground holds that, the force is no body's
     parts.append((np.zeros(2), np.zeros(2), float(np.sum(point.work.gradient[: model.n_links]))))
     # ends that are apart from their points pass forces on across the gap
     parts += [(np.zeros(2), np.zeros(2), moment) for moment in _across_gaps(problem, point)]
     for chain in model.chains:
         j = chain.joints
+        if chain.start.body < 0:
+            start = np.array([point.at.x[chain.first_joint], point.at.y[chain.first_joint]])
+            parts.append((start, np.array([np.sum(point.work.fx[j]), np.sum(point.work.fy[j])]), 0.0))
         force = np.array([np.sum(contact.fx[j]), np.sum(contact.fy[j])])
         moment = np.sum(point.at.x[j] * contact.fy[j] - point.at.y[j] * contact.fx[j])
         moment += np.sum(contact.moments[chain.links])

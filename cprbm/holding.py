@@ -7,7 +7,8 @@ q       value of the drive; zero for a slide or a pivot
 μ       multiplier; −μ e and −μ τ are the force at the point and the moment on the body
 ======  ======================================================================================
 
-A slide is two of them: none across its direction, and no rotation.  So is a pivot: its point stays where it is.
+A slide is two of them: none across its direction, and no rotation; a pin in a slot is the first alone, of the pin.  A
+pivot is two: its point stays where it is.
 """
 
 from __future__ import annotations
@@ -80,7 +81,9 @@ def holds_of(scene: Scene, model: Model) -> tuple[Hold, ...]:
         if isinstance(body, SlidingBody):
             body_itself = Attachment(model.free_bodies.index(name), (0.0, 0.0), welded=False)
             ex, ey = _unit(body.along)
-            found += [Hold("", body_itself, (-ey, ex), 0.0, 0.0), Hold("", body_itself, (0.0, 0.0), 1.0, 0.0)]
+            found.append(Hold("", body_itself if body.pin is None else at(body.pin), (-ey, ex), 0.0, 0.0))
+            if body.pin is None:
+                found.append(Hold("", body_itself, (0.0, 0.0), 1.0, 0.0))
         elif isinstance(body, TurningBody):
             found += [
                 Hold(body.about, attached(scene, model, body.about), axis, 0.0, 0.0)

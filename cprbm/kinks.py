@@ -104,6 +104,8 @@ def missed(chain: Chain, kinks: Kinks, s: Array) -> Missed:
 
 def kinked(chain: Chain, kinks: Kinks, points: Points) -> Points:
     """Points of the smooth line with the true tangents; where they lie is not changed."""
+    if not kinks.places.size:
+        return points
     near = np.zeros(len(points.s), dtype=bool)
     for home in _element(chain, kinks.places):
         near |= (points.s > chain.borders[max(home - 1, 0)]) & (points.s < chain.borders[min(home + 2, chain.n)])

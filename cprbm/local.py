@@ -136,6 +136,7 @@ def local_system(
     _, _, second, second_bodies = pulled_back(model, state, at, fx + cx, fy + cy)
     over_phi = second_bodies + closure_second(model, closure, state, mu) - work.second
     diagonal, off = strain_hessian(model)
+    diagonal, off = diagonal - work.diagonal, off - work.off
 
     entries = _Entries()
     links = np.arange(n)

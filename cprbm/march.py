@@ -33,6 +33,7 @@ AGAIN = 12  # iterations on a mesh that fits a little better
 FITS = 5  # of the mesh to where contact is, at most
 STRAIGHT = 2  # of them before two that take turns are eased
 BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is no doubt that it has ended
+ENDS = 10  # of branches between two stations
 ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all branches are near
 FURTHER = 30.0  # times as far before it, the fitted mesh is on the branch still
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
@@ -92,7 +93,7 @@ class March:
                 if not _presses(point, name):
                     opened.append((values[stage.steps], point))
 
-        while True:
+        for _ in range(ENDS):
             reached = self.on.go(to(stage.steps, self.on.values, target), accept)
             end = self._end(reached)
             if end is None:
@@ -109,6 +110,7 @@ class March:
             landed, reached = self._ended(stage, target, end)
             if landed is None or self.on.values[stage.steps] == target:
                 return reached
+        return Reached(Ending.STEP_TOO_SMALL, f"{ENDS} branches ended one after the other", certificate=None)
 
     def _end(self, reached: Reached) -> BranchEnd | None:
         """Where the branch ends, if that is why a way has no certificate at its end."""

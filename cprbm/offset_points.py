@@ -35,7 +35,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.curves import neutral_line
-from scene import Line, Polynomial, Spacing
+from scene import Line, Polynomial, Spacing, Spline
 from scene.answer import Array
 from scene.statement import Arc, Curve
 
@@ -80,7 +80,7 @@ def joints_on(curve: Curve, places: Array) -> Array:
             variable = first + (last - first) * places
             value = np.polynomial.polynomial.polyval(variable, np.array(curve.coefficients))
             return np.column_stack((variable, value) if curve.axis == "x" else (value, variable))
-        case Line() | Arc():
+        case Line() | Arc() | Spline():
             line = neutral_line(curve)
             return np.column_stack(line.position(line.length * places))
 

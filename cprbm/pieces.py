@@ -19,6 +19,7 @@ import numpy as np
 
 from cprbm.curves import EvenLine, NeutralLine
 from cprbm.polynomial import PolynomialLine
+from cprbm.spline import SplineLine
 from scene.answer import Array, Ints
 
 
@@ -61,7 +62,7 @@ class CurvePieces:
         angle: of the links (N+1,).
     """
 
-    line: PolynomialLine
+    line: PolynomialLine | SplineLine
     x: Array
     y: Array
     angle: Array

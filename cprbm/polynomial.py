@@ -9,8 +9,7 @@ a, b    unit vectors along the axis, in the beam's sense, and of the other axis;
 κ       ε g''/(1 + g'²)^(3/2), 1/m
 ======  ==========================================================================================
 
-ds/dv = √(1 + g'²) is integrated over panels of v by Gauss's rule, which are halved until their ends' arc
-lengths settle.  v(s) is Newton's: it begins at the cubic through its panel's ends with the slopes there.
+ds/dv = √(1 + g'²); how it is integrated, and v(s), stand in :mod:`cprbm.panels`.
 """
 
 from __future__ import annotations
@@ -20,14 +19,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm.panels import Panels, panelled
 from scene import Polynomial
 from scene.answer import Array
 
-ABSCISSAE, WEIGHTS = (0.5 * part for part in np.polynomial.legendre.leggauss(8))  # on [−½, ½]
-FEWEST_PANELS, MOST_PANELS = 64, 1 << 15
-SETTLED = 1e-14  # of the length: eight points err by 2⁻¹⁶ of this after a further halving
-NEWTON_ITERATIONS = 20
-CLOSE = 1e-9  # of the length: a step whose square is nothing
+FEWEST_PANELS = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +44,7 @@ class PolynomialLine:
         x0, y0: position of the start, m.
         along: a as (cos, sin); across: b.
         slope: coefficients of g', lowest power first.
-        v, s: ends of the panels and arc length there, m.
+        panels: v and arc length, m.
     """
 
     x0: float
@@ -56,13 +52,12 @@ class PolynomialLine:
     along: tuple[float, float]
     across: tuple[float, float]
     slope: Array
-    v: Array
-    s: Array
+    panels: Panels
 
     @property
     def length(self) -> float:
         """ℓ, m."""
-        return float(self.s[-1])
+        return self.panels.length
 
     def angle(self, s: Array) -> Array:
         """Tangent angle θ(s), rad."""
@@ -83,7 +78,7 @@ class PolynomialLine:
 
     def at(self, s: Array) -> Places:
         """Places at arc lengths ``s`` (k,), m; beyond the ends the end itself."""
-        v = self._inverted(s)
+        v = self.panels.inverted(s)
         # g, g' and g'' in one go of Horner's rule, from the coefficients of g' = Σ c_k v^k
         g = g1 = g2 = np.zeros_like(v)
         for k in range(len(self.slope) - 1, -1, -1):
@@ -106,24 +101,6 @@ class PolynomialLine:
         """Direction of what lies at an ``angle`` from a towards b."""
         return np.asarray(math.atan2(self.along[1], self.along[0]) + self._sense() * angle)
 
-    def _inverted(self, s: Array) -> Array:
-        """v(s)."""
-        s = np.clip(s, 0.0, self.length)
-        panel = np.minimum(np.searchsorted(self.s, s, side="right") - 1, len(self.v) - 2)
-        v0, v1, s0, s1 = self.v[panel], self.v[panel + 1], self.s[panel], self.s[panel + 1]
-        size = s1 - s0
-        t = (s - s0) / size
-        d0, d1 = size / speed(self.slope, v0), size / speed(self.slope, v1)
-        rise = v1 - v0
-        v = v0 + t * (d0 + t * (3.0 * rise - 2.0 * d0 - d1 + t * (d0 + d1 - 2.0 * rise)))
-        for _ in range(NEWTON_ITERATIONS):
-            v = np.clip(v, v0, v1)
-            step = (s - s0 - arc(self.slope, v0, v)) / speed(self.slope, v)
-            v = v + step
-            if np.max(np.abs(step), initial=0.0) <= CLOSE * self.length:
-                break
-        return np.asarray(v)
-
 
 def speed(slope: Array, v: Array) -> Array:
     """ds/dv = √(1 + g'²)."""
@@ -131,12 +108,6 @@ def speed(slope: Array, v: Array) -> Array:
     for coefficient in slope[-2::-1]:
         g1 = g1 * v + coefficient
     return np.hypot(1.0, g1)
-
-
-def arc(slope: Array, v0: Array, v1: Array) -> Array:
-    """Arc lengths (k,) between places v (k,) of one panel."""
-    points = 0.5 * (v0 + v1)[:, None] + (v1 - v0)[:, None] * ABSCISSAE
-    return np.asarray((v1 - v0) * (speed(slope, points) @ WEIGHTS))
 
 
 def polynomial_line(curve: Polynomial) -> PolynomialLine:
@@ -150,24 +121,7 @@ def polynomial_line(curve: Polynomial) -> PolynomialLine:
         slope.append(sense ** (k + 1) * float(derivative(begin)) / math.factorial(k))
         derivative = derivative.deriv()
     along, across = ((sense, 0.0), (0.0, 1.0)) if curve.axis == "x" else ((0.0, sense), (1.0, 0.0))
-    v, s = _panels(np.array(slope), abs(end - begin))
+    coefficients = np.array(slope)
+    ends = abs(end - begin) * np.linspace(0.0, 1.0, FEWEST_PANELS + 1)
     x0, y0 = curve.start
-    return PolynomialLine(x0, y0, along, across, np.array(slope), v, s)
-
-
-def _panels(slope: Array, extent: float) -> tuple[Array, Array]:
-    """Ends of the panels and the arc length there."""
-    panels = FEWEST_PANELS
-    v, s = _summed(slope, extent, panels)
-    while panels < MOST_PANELS:
-        panels *= 2
-        before = s
-        v, s = _summed(slope, extent, panels)
-        if np.max(np.abs(s[::2] - before)) <= SETTLED * s[-1]:
-            break
-    return v, s
-
-
-def _summed(slope: Array, extent: float, panels: int) -> tuple[Array, Array]:
-    v = extent * np.linspace(0.0, 1.0, panels + 1)
-    return v, np.concatenate(([0.0], np.cumsum(arc(slope, v[:-1], v[1:]))))
+    return PolynomialLine(x0, y0, along, across, coefficients, panelled(lambda v: speed(coefficients, v), ends))

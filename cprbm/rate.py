@@ -32,7 +32,7 @@ def rate(problem: Problem, point: Point, change: Mapping[str, float]) -> Array:
     """r (n_links,), rad per unit of a way on which named values (SI) ``change``; nought in a singular system."""
     model, closure = problem.model, problem.closure
     moved = {name: load for name, load in problem.loads.items() if change.get(name, 0.0)}
-    f = load_work(model, moved, dict(change), point.state).gradient
+    f = load_work(model, moved, dict(change), point.state, point.at).gradient
     f[closure.fixed] = 0.0
     driven = [
         change.get(name, 0.0) / model.unit_length for c in closure.ends for name in apart_by(model.chains[c].name)

@@ -12,8 +12,8 @@ the two joints beside it bends the beam by a part of h² that depends on where b
 With a border at every end of a zone and a row there, and the elements between even, it is shared by none.
 
 A beam that is held at one place and pressed at another, s further on, says the force there by the curvature between:
-even over each element, it is wrong by a part (h/s)².  So a span between marks (held ends, places and ends of contact)
-has a stated share of the beam's elements, however short it is.
+even over each element, it is wrong by a part (h/s)².  So a span between marks (held ends, places and ends of contact,
+dead forces near held ends) has a stated share of the beam's elements, however short it is.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from cprbm.beam_loads import BeamLoad
 from cprbm.contact import Rows
 from cprbm.equilibrium import Point, point_at
 from cprbm.kinematics import State, positions
@@ -110,12 +111,17 @@ def fitted(
         names = [name for name in ends if mechanism.pairs[name].a is chain]
         found = [(float(place), name) for name in names for place in ends[name]]
         found += _places_on(mechanism, point, zones, chain)
+        if settings.formulation == "auto":
+            found += _forces_on(mechanism, chain)
         if not found:
             continue
         n = settings.links_of(chain.name)
         marks, of = np.array(sorted(mark for mark, _ in found)), [name for _, name in sorted(found)]
-        # between two places of one contact the beam lies on what it touches, or nearly; a free end has no curvature
-        needy = np.array([True, *(one != other for one, other in pairwise(of)), chain.end is not None])
+        # between two places of one contact the beam lies on what it touches, or nearly; a free end has no curvature;
+        # and a dead force is known whatever the curvature
+        dead = mechanism.problem.loads.keys()
+        between = [one != other and dead.isdisjoint((one, other)) for one, other in pairwise(of)]
+        needy = np.array([True, *between, chain.end is not None])
         numbers = _shared_out(marks, n, needy)
         # a zone's end is a border; a place need not be one, and as it goes on its way the mesh changes evenly
         numbers = np.round(numbers) if names else numbers
@@ -168,6 +174,19 @@ def _places_on(
             places = pressed[1] / chain.s[-1]
             found += [(float(place), name) for place in places if 0.0 < place < 1.0]
     return found
+
+
+def _forces_on(mechanism: Mechanism, chain: Chain) -> list[tuple[float, str]]:
+    """The inmost dead force on a beam, as a share of its length, and its name, where all are near one of its ends."""
+    model, loads = mechanism.problem.model, mechanism.problem.loads
+    found = sorted(
+        (load.ends[0] / float(chain.s[-1]), name)
+        for name, load in loads.items()
+        if isinstance(load, BeamLoad) and not load.distributed and model.chains[load.chain].name == chain.name
+    )
+    if found and 0.0 < found[-1][0] < 1.0 / SHARE:
+        return found[-1:]
+    return found[:1] if found and 1.0 - 1.0 / SHARE < found[0][0] < 1.0 else []
 
 
 def _shared_out(marks: Array, n: int, needy: Flags) -> Array:

@@ -31,7 +31,7 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
     with threadpool_limits(limits=1, user_api="blas"):
         march = March(scene, coarser(settings))
         ending, sentence = march.run()
-        if ending is not Ending.COMPLETED and len(march.family) > 1:
+        if ending not in (Ending.COMPLETED, Ending.BRANCH_ENDS) and len(march.family) > 1:
             # a coarse mesh may be too coarse: without it then
             march = March(scene, (settings,))
             ending, sentence = march.run()

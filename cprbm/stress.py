@@ -18,6 +18,9 @@ a contact in a point M − K is.  So m_i − K̄_i are joined by polynomials thr
 where the stress is wanted.  What they miss is less than second order in h, and so the error of M, as that of the forces
 and of the shape, goes evenly with N.
 
+Where a distributed load begins or ends at s_q, d²M/ds² jumps by J, its part along the left normal.  The kinks of that,
+¼ J (s − s_q)|s − s_q|, are taken out and added back likewise, by their own mean over each element.
+
 Where a beam lies on something, the pressure is shared by joints and what they carry next to the zone's end is no
 force of the place.  Elements end where such zones do: there M is continued from the springs on the same side alone.
 """
@@ -26,6 +29,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm.beam_loads import kinks
 from cprbm.energy import spring_moments
 from cprbm.equilibrium import Point
 from cprbm.forces import contact_forces
@@ -41,13 +45,34 @@ def bending_stress(mechanism: Mechanism, point: Point, chain: Chain, points: int
     """σ (points,), Pa, at equal arc-length steps; beyond the outer springs the nearest are continued."""
     moments = spring_moments(mechanism.problem.model, point.state)[chain.first_link : chain.first_link + chain.n]
     at, jumps = _kinks(mechanism, point, chain)
-    springs = _kinked(at, jumps, chain.s[1:-1])
+    forces, distributed = _loads(mechanism, point, chain)
+    s = np.linspace(0.0, chain.s[-1], points)
+    springs, known = _kinked(at, jumps, chain.s[1:-1]), _kinked(at, jumps, s)
     if not mechanism.boundaries:  # forces of a fitted boundary act on joints
         springs += _evened(chain, at, jumps)
-    s = np.linspace(0.0, chain.s[-1], points)
-    moment = _joined(chain, moments - springs, _parted(mechanism, chain), s) + _kinked(at, jumps, s)
+    springs += _kinked(*forces, chain.s[1:-1]) + _evened(chain, *forces)
+    known += _kinked(*forces, s)
+    for c, J in zip(*distributed, strict=True):
+        springs += 0.25 * J * np.diff(np.abs(chain.borders - c) ** 3) / (3.0 * chain.sizes)
+        known += 0.25 * J * (s - c) * np.abs(s - c)
+    moment = _joined(chain, moments - springs, _parted(mechanism, chain), s) + known
     curvature = moment / chain.section.rigidity_at(s)
     return np.asarray(0.5 * chain.youngs_modulus * chain.section.thickness_at(s) * curvature)
+
+
+def _loads(mechanism: Mechanism, point: Point, chain: Chain) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+    """s_c and V of loads at places of a beam, s_q and J of the ends of distributed ones."""
+    model = mechanism.problem.model
+    found: dict[bool, list[tuple[Array, Array]]] = {False: [], True: []}
+    for load, value in point.work.on_beams:
+        if model.chains[load.chain] is chain:
+            places, jumps = kinks(model, load, point.state, point.at)
+            found[load.distributed].append((places, value * jumps))
+    forces, distributed = (
+        (np.concatenate([np.zeros(0), *(p for p, _ in each)]), np.concatenate([np.zeros(0), *(j for _, j in each)]))
+        for each in (found[False], found[True])
+    )
+    return forces, distributed
 
 
 def _parted(mechanism: Mechanism, chain: Chain) -> Array:

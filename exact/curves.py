@@ -23,16 +23,22 @@ from typing import Protocol
 
 import numpy as np
 
+from exact.spline import Interpolated
 from scene.answer import Array
-from scene.statement import Arc, Curve, Line, Polynomial
+from scene.statement import Arc, Curve, Line, Polynomial, Spline
 
 _PANELS, _NODES = 64, 16
 _INVERSIONS = 8
 
 
 class NeutralLine(Protocol):
-    """A line by arc length; every function takes arc lengths (n,) and hands out (n,), ``place`` (2, n)."""
+    """A line by arc length; every function takes arc lengths (n,) and hands out (n,), ``place`` (2, n).
 
+    ``kinks`` are arc lengths strictly inside at which its curvature has a kink.
+    """
+
+    @property
+    def kinks(self) -> tuple[float, ...]: ...  # noqa: D102
     @property
     def length(self) -> float: ...  # noqa: D102
     def angle(self, s: Array) -> Array: ...  # noqa: D102
@@ -51,6 +57,8 @@ def neutral_line(curve: Curve, unit: float) -> NeutralLine:
             return Circular.of(curve, unit)
         case Polynomial():
             return Graph(curve, unit)
+        case Spline():
+            return Interpolated(curve, unit)
 
 
 @dataclass(frozen=True)
@@ -59,6 +67,7 @@ class Straight:
 
     start: Array
     end: Array
+    kinks = ()
 
     @cached_property
     def length(self) -> float:
@@ -94,6 +103,7 @@ class Circular:
     radius: float
     begin: float
     sweep: float
+    kinks = ()
 
     @staticmethod
     def of(arc: Arc, unit: float) -> Circular:
@@ -134,6 +144,8 @@ class Circular:
 
 class Graph:
     """A polynomial's graph."""
+
+    kinks = ()
 
     def __init__(self, curve: Polynomial, unit: float) -> None:
         # f(u)/unit of u/unit

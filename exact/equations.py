@@ -8,8 +8,8 @@ z           unknowns, see :mod:`exact.layout`
 ==========  ================================================================================================
 
 Source: S. S. Antman, Nonlinear Problems of Elasticity, chapter 4 (balance laws of planar rods), without stretch and
-shear.  At a knot everything is continuous; contacts are :mod:`exact.touching` and :mod:`exact.wrapping`; the forces
-and moments on every body that moves vanish together.
+shear.  At a knot everything is continuous, but the force where one acts; contacts are :mod:`exact.touching` and
+:mod:`exact.wrapping`; the forces and moments on every body that moves vanish together.
 
 Derivatives are taken by the complex step, all columns at once: unknowns have the shape (n, K), with one real part
 in all columns.  A piece's end follows from its start by its own exact derivatives.
@@ -32,7 +32,7 @@ from exact.touching import touch_points
 from exact.wrapping import lie_between, lie_from_clamp
 from scene import CircleContact
 from scene.answer import Array
-from scene.statement import DisplacementDrive, Force, SlidingBody
+from scene.statement import BeamForce, DisplacementDrive, DistributedLoad, Force, Moment, SlidingBody
 
 Guess = Callable[[str, Array], Array]
 """θ (n,) of a beam at arc lengths (n,)."""
@@ -69,14 +69,21 @@ class Equations:
         """
         out = Evaluation(self.model)
         self._place_bodies(out, z)
+        inside, at_ends = self._forces_on_beams(lam)
         for strip in self.model.strips.values():
-            self._beam(out, strip, z, guess)
-        touch_points(out, self.structure, self.layout, z)
+            self._beam(out, strip, z, guess, lam, inside)
+        touch_points(out, self.structure, self.layout, z, at_ends)
         self._loads(out, z, lam)
         for name, freedoms in self.model.moving.items():
             balance = out.on_body[name]
+            if freedoms == 3:
+                out.rows += list(balance)
+                continue
             along = self._along(name)
-            out.rows += list(balance) if freedoms == 3 else [along[0] * balance[0] + along[1] * balance[1]]
+            out.rows.append(along[0] * balance[0] + along[1] * balance[1])
+            if freedoms == 2:
+                x, y = out.turned(name, self._pin(name))
+                out.rows.append(balance[2] - (x * balance[1] - y * balance[0]))
         return out
 
     # ------------------------------------------------------------------------------------------ bodies
@@ -88,6 +95,12 @@ class Equations:
             if self.model.moving.get(name) == 1:
                 along = self._along(name)
                 out.placements[name] = np.outer([along[0], along[1], 0.0], z[bodies[name]][0])
+            elif self.model.moving.get(name) == 2:
+                # how far the pin is in its slot, and how the body turns about it
+                along, (far, phi), pin = self._along(name), z[bodies[name]], self._pin(name)
+                out.placements[name] = np.stack([0.0 * phi, 0.0 * phi, phi])
+                u, v = np.outer(along, far) + (pin - self.model.reference(name))[:, None] - out.turned(name, pin)
+                out.placements[name] = np.stack([u, v, phi])
             else:
                 out.placements[name] = z[bodies[name]] if name in bodies else nowhere
             out.on_body[name] = nowhere
@@ -100,17 +113,24 @@ class Equations:
         record = self.model.scene.bodies[body]
         return unit(record.along) if isinstance(record, SlidingBody) else np.zeros(2)
 
+    def _pin(self, body: str) -> Array:
+        """The point (2,) that stays in the slot, at rest; of no meaning for others."""
+        record = self.model.scene.bodies[body]
+        if not isinstance(record, SlidingBody) or record.pin is None:
+            return np.zeros(2)
+        return self.model.rest(record.pin)
+
     def _loads(self, out: Evaluation, z: Columns, lam: Columns) -> None:
         scene, nothing = self.model.scene, np.zeros((2, len(lam)), dtype=lam.dtype)
         for name, load in scene.loads.items():
-            value = lam if name == self.stepped else np.full_like(lam, self.others.get(name, 0.0))
+            value = self._value(name, lam)
             if isinstance(load, Force):
                 body = scene.body_of(load.point)
                 out.act(body, out.moved(body, self.model.rest(load.point)), np.outer(unit(load.direction), value))
-            else:
+            elif isinstance(load, Moment):
                 out.act(load.body, nothing, nothing, value)
         for name, drive in scene.drives.items():
-            value = lam if name == self.stepped else np.full_like(lam, self.others.get(name, 0.0))
+            value = self._value(name, lam)
             reaction = z[self.layout.drives[name]]
             if isinstance(drive, DisplacementDrive):
                 body, rest = scene.body_of(drive.point), self.model.rest(drive.point)
@@ -121,21 +141,49 @@ class Equations:
                 out.act(drive.body, nothing, nothing, reaction)
                 out.rows.append(out.placements[drive.body][2] - value)
 
+    def _value(self, name: str, lam: Columns) -> Columns:
+        """Of a load or drive (K,)."""
+        return lam if name == self.stepped else np.full_like(lam, self.others.get(name, 0.0))
+
+    def _forces_on_beams(self, lam: Columns) -> tuple[dict[tuple[str, float], Columns], dict[tuple[str, str], Columns]]:
+        """Forces (2, K) by beam and knot, and by beam and end."""
+        inside: dict[tuple[str, float], Columns] = {}
+        at_ends: dict[tuple[str, str], Columns] = {}
+        for name, load in self.model.scene.loads.items():
+            if not isinstance(load, BeamForce):
+                continue
+            force = np.outer(unit(load.direction), self._value(name, lam))
+            if load.at in (0.0, 1.0):
+                end = load.beam, "start" if load.at == 0.0 else "end"
+                at_ends[end] = at_ends[end] + force if end in at_ends else force
+            else:
+                knot = load.beam, load.at * self.model.strips[load.beam].length
+                inside[knot] = inside[knot] + force if knot in inside else force
+        return inside, at_ends
+
     # ------------------------------------------------------------------------------------------- beams
 
-    def _beam(self, out: Evaluation, strip: Strip, z: Columns, guess: Guess) -> None:
+    def _beam(
+        self,
+        out: Evaluation,
+        strip: Strip,
+        z: Columns,
+        guess: Guess,
+        lam: Columns,
+        forces: Mapping[tuple[str, float], Columns],
+    ) -> None:
         """A beam's pieces, with the rows at its ends and knots and along circles."""
         name, order = strip.name, self.structure.order[strip.name]
         wraps = {wrap.contact: wrap for wrap in self.structure.wraps(name)}
         begins, stops = self._borders(strip, z)
         parts = out.parts[name] = [
-            self._integrated(strip, a, b, z[index], guess)
+            self._integrated(strip, a, b, z[index], self._spread(strip, a, b, lam), guess)
             for index, a, b in zip(self.layout.pieces[name], begins, stops, strict=True)
         ]
         if not any(wrap.from_start for wrap in wraps.values()):
             self._end(out, strip, "start", parts[0].start)
         if not any(wrap.to_end for wrap in wraps.values()):
-            self._end(out, strip, "end", np.concatenate([parts[-1].end, parts[-1].force]))
+            self._end(out, strip, "end", np.concatenate([parts[-1].end, parts[-1].end_force]))
         k = 0
         for item in order:
             wrap = wraps.get(item) if isinstance(item, str) else None
@@ -151,7 +199,8 @@ class Equations:
                 out.turnings[name, item] = (self.layout.pieces[name][k].start + 2, len(out.rows) + 3)
             out.rows += list(after.start[:4] - before.end)
             if not isinstance(item, str):
-                out.rows += list(after.force - before.force)
+                jump = after.force - before.end_force
+                out.rows += list(jump + forces[name, item] if (name, item) in forces else jump)
 
     def _borders(self, strip: Strip, z: Columns) -> tuple[list[Columns], list[Columns]]:
         """Where a beam's pieces begin and where they stop."""
@@ -190,16 +239,26 @@ class Equations:
         """Arc lengths at which a beam's pieces begin, of unknowns z (n,)."""
         return [float(begin[0]) for begin in self._borders(self.model.strips[beam], z[:, None])[0]]
 
-    def _integrated(self, strip: Strip, a: Columns, b: Columns, start: Columns, guess: Guess) -> Part:
-        """A piece, from its start's state (6, K)."""
-        q = np.concatenate([start, [a, b]])
+    def _spread(self, strip: Strip, a: Columns, b: Columns, lam: Columns) -> Columns:
+        """The distributed load (2, K) on a piece, which no end of one lies within."""
+        middle, total = 0.5 * float((a[0] + b[0]).real), np.zeros((2, len(lam)), dtype=lam.dtype)
+        for load, begin, end in strip.spread:
+            if begin < middle < end:
+                record = self.model.scene.loads[load]
+                assert isinstance(record, DistributedLoad)
+                total = total + np.outer(unit(record.direction), self._value(load, lam))
+        return total
+
+    def _integrated(self, strip: Strip, a: Columns, b: Columns, start: Columns, spread: Columns, guess: Guess) -> Part:
+        """A piece, from its start's state (6, K), with the load on it (2, K)."""
+        q = np.concatenate([start, [a, b], spread])
         real = np.ascontiguousarray(q[:, 0].real)
         nodes = real[6] + (real[7] - real[6]) * rule(self.nodes).points
         solved = piece(strip.law, real, guess(strip.name, nodes))
         end = np.tile(solved.end[:, None], (1, q.shape[1])).astype(q.dtype)
         if np.iscomplexobj(q):
             end = end + 1j * (solved.slopes @ q.imag)
-        return Part(a, b, start, end, solved)
+        return Part(a, b, start, end, spread, solved)
 
     def _end(self, out: Evaluation, strip: Strip, which: str, state: Columns) -> None:
         """What holds at a beam's end, and what the beam does there; forces are looked at where contacts are known."""

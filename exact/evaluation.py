@@ -21,18 +21,28 @@ Columns = NDArray[Any]
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A piece of a beam from ``a`` to ``b`` (K,): states ``start`` (6, K) and ``end`` (4, K), and what was solved."""
+    """A piece of a beam from ``a`` to ``b`` (K,): states ``start`` (6, K) and ``end`` (4, K), and what was solved.
+
+    ``spread`` (2, K) is the distributed load on it.
+    """
 
     a: Columns
     b: Columns
     start: Columns
     end: Columns
+    spread: Columns
     solved: Piece
 
     @property
     def force(self) -> Columns:
-        """Internal force (2, K)."""
+        """Internal force (2, K) at its start."""
         return self.start[4:]
+
+    @property
+    def end_force(self) -> Columns:
+        """Internal force (2, K) at its end."""
+        force: Columns = self.start[4:] - self.spread * (self.b - self.a)
+        return force
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +109,12 @@ class Evaluation:
         less, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
         return np.stack([rest[0] + u + less * x - sin * y, rest[1] + v + sin * x + less * y])
 
+    def turned(self, body: str, rest: Array) -> Columns:
+        """The way (2, K) from a body's reference to its point that is at ``rest`` (2,)."""
+        phi = self.placements[body][2]
+        x, y = rest - self.model.reference(body)
+        return np.stack([np.cos(phi) * x - np.sin(phi) * y, np.sin(phi) * x + np.cos(phi) * y])
+
     def act(self, body: str, place: Columns, force: Columns, moment: Columns | float = 0.0) -> None:
         """Let a force (2, K) at a place (2, K) and a moment (K,) act on a body."""
         arm = place - self.moved(body, self.model.reference(body))
@@ -126,7 +142,10 @@ class Evaluation:
             placements={name: one(columns) for name, columns in self.placements.items()},
             on_body={name: one(columns) for name, columns in self.on_body.items()},
             parts={
-                beam: [Part(one(part.a), one(part.b), one(part.start), one(part.end), part.solved) for part in parts]
+                beam: [
+                    Part(one(part.a), one(part.b), one(part.start), one(part.end), one(part.spread), part.solved)
+                    for part in parts
+                ]
                 for beam, parts in self.parts.items()
             },
             ends={key: Held(one(end.place), one(end.force), one(end.moment)) for key, end in self.ends.items()},

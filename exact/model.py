@@ -20,7 +20,7 @@ from exact.curves import NeutralLine, neutral_line
 from exact.spectral import Law
 from scene import Scene
 from scene.answer import Array
-from scene.statement import Beam, BeamEnd, FixedBody, FreeEnd, SlidingBody, WeldedEnd
+from scene.statement import Beam, BeamEnd, BeamForce, DistributedLoad, FixedBody, FreeEnd, SlidingBody, WeldedEnd
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,9 +39,12 @@ class Strip:
         name: the beam's.
         line: its stress-free neutral line.
         beam: its record, whose sizes are in metres.
-        knots: arc lengths strictly inside at which thickness or width have kinks.
+        knots: arc lengths strictly inside at which thickness, width or the stress-free curvature have kinks, or a
+            force acts, or a distributed load begins or ends.
         stiffness: Young's modulus over Sℓ, 1/m⁴, so that E·I is without dimension.
         unit: ℓ, m.
+        start, end: its ends.
+        spread: distributed loads by name, and from where to where they act.
     """
 
     name: str
@@ -52,6 +55,7 @@ class Strip:
     unit: float
     start: End
     end: End
+    spread: tuple[tuple[str, float, float], ...]
 
     @property
     def length(self) -> float:
@@ -118,7 +122,7 @@ class Model:
         scene: the question.
         unit_length, unit_moment: ℓ, m, and S, N·m.
         strips: the beams by name.
-        moving: names of the bodies that move, with how many freedoms each has (3, or 1 for a slide).
+        moving: names of the bodies that move, with how many freedoms each has: 3, for a slide 1, a pin in a slot 2.
     """
 
     scene: Scene
@@ -155,11 +159,28 @@ def modelled(scene: Scene) -> Model:
     strips = {}
     for name, beam in scene.beams.items():
         line = neutral_line(beam.curve, unit)
-        knots = tuple(float(u) * line.length for u in beam.knots[1:-1])
+        loaded = [load.at for load in scene.loads.values() if isinstance(load, BeamForce) and load.beam == name]
+        spread = {
+            key: load.along
+            for key, load in scene.loads.items()
+            if isinstance(load, DistributedLoad) and load.beam == name
+        }
+        shares = {*map(float, beam.knots), *loaded, *(end for along in spread.values() for end in along)} - {0.0, 1.0}
+        knots = tuple(sorted({*(u * line.length for u in shares), *line.kinks}))
         stiffness = scene.materials[beam.material].youngs_modulus / (moment * unit)
-        strips[name] = Strip(name, line, beam, knots, stiffness, unit, _end(beam.start), _end(beam.end))
+        strips[name] = Strip(
+            name,
+            line,
+            beam,
+            knots,
+            stiffness,
+            unit,
+            _end(beam.start),
+            _end(beam.end),
+            tuple((key, begin * line.length, end * line.length) for key, (begin, end) in spread.items()),
+        )
     moving = {
-        name: 1 if isinstance(body, SlidingBody) else 3
+        name: (1 if body.pin is None else 2) if isinstance(body, SlidingBody) else 3
         for name, body in scene.bodies.items()
         if not isinstance(body, FixedBody)
     }

@@ -15,7 +15,7 @@ from exact.structure import Meeting, Wrap
 from exact.way import Way
 from scene import Certificate, CircleContact, Probe, Scene, Shape, StationAnswer
 from scene.answer import Array, frozen_array
-from scene.statement import DisplacementDrive, Force, RotationDrive
+from scene.statement import BeamForce, DisplacementDrive, DistributedLoad, Force, Moment, RotationDrive
 
 _FLOOR = 1e-13  # of a residual, no dimension: some hundred roundings
 
@@ -171,8 +171,21 @@ def _energy(model: Model, state: State) -> float:
             energy += 0.5 * (b - a) * float(gauss.weights @ (model.strips[beam].compliance(s) * m**2))
     for name, load in model.scene.loads.items():
         value = state.lam if name == state.equations.stepped else state.equations.others.get(name, 0.0)
-        if isinstance(load, Force):
+        if isinstance(load, BeamForce):
+            s = np.array([load.at * model.strips[load.beam].length])
+            moved = state.along(load.beam, s)[:2] - model.strips[load.beam].line.place(s)
+            energy -= value * float(unit(load.direction) @ moved[:, 0])
+        elif isinstance(load, DistributedLoad):
+            strip = model.strips[load.beam]
+            begin, stop = (share * strip.length for share in load.along)
+            for part in state.found.parts[load.beam]:
+                a, b = float(part.a[0]), float(part.b[0])
+                if begin < 0.5 * (a + b) < stop:
+                    s = a + (b - a) * gauss.points
+                    moved = unit(load.direction) @ (state.along(load.beam, s)[:2] - strip.line.place(s))
+                    energy -= value * (b - a) * float(gauss.weights @ moved)
+        elif isinstance(load, Force):
             energy -= value * float(_displacement(model, state, load.point) @ unit(load.direction))
-        else:
+        elif isinstance(load, Moment):
             energy -= value * float(state.found.placements[load.body][2, 0])
     return energy

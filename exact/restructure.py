@@ -27,7 +27,7 @@ def structured(model: Model, touches: Mapping[str, Touch], places: Places) -> St
     """The structure of some closed contacts at some places.
 
     Raises:
-        NotCoveredError: a section has a kink where the beam lies on a circle, or a thickness that varies.
+        NotCoveredError: a section has a kink, a load or a thickness that varies where the beam lies on a circle.
     """
     order: dict[str, tuple[float | str, ...]] = {}
     for beam, strip in model.strips.items():
@@ -38,8 +38,12 @@ def structured(model: Model, touches: Mapping[str, Touch], places: Places) -> St
                 end = strip.length if touch.to_end else places[name, "end"]
                 if strip.beam.tapered and model.scene.contacts[name].thick:
                     raise NotCoveredError(f"{beam} lies along the circle of {name} with an edge that is not round")
+                if strip.spread:
+                    raise NotCoveredError(f"{beam} lies along the circle of {name} under a distributed load")
                 if any(begin <= knot <= end for knot in strip.knots):
-                    raise NotCoveredError(f"{beam} lies along the circle of {name} where its section has a kink")
+                    raise NotCoveredError(
+                        f"{beam} lies along the circle of {name} where its section has a kink or a force acts"
+                    )
                 items.append((begin, name))
             elif (name, beam) in places:
                 items.append((places[name, beam], name))

@@ -6,17 +6,18 @@ symbol     meaning
 a, b       arc lengths of the piece's start and end, h = b − a; s_i = a + h ξ_i
 ξ, w, B    Gauss's points in (0, 1), their weights, and B_ij = ∫₀^ξi of the j-th Lagrange polynomial
 x, y, θ, m place, tangent angle and bending moment
-Fx, Fy     internal force, what lies beyond on what lies before; constant in the piece
+Fx, Fy     internal force at the start, what lies beyond on what lies before
+Qx, Qy     distributed load, even in the piece
 κ0, c      stress-free curvature and 1/EI by arc length, with their derivatives κ0', c'
-q          (x, y, θ, m, Fx, Fy, a, b) at the start; e = (x, y, θ, m) at the end
+q          (x, y, θ, m, Fx, Fy, a, b) at the start and (Qx, Qy); e = (x, y, θ, m) at the end
 =========  =====================================================================================
 
-    θ' = κ0 + c m,    m' = Fx sin θ − Fy cos θ,    x' = cos θ,    y' = sin θ
+    θ' = κ0 + c m,    m' = X sin θ − Y cos θ,    x' = cos θ,    y' = sin θ,    (X, Y) = (Fx, Fy) − (Qx, Qy)(s − a)
 
-Collocated, with g_j = κ0(s_j) + c(s_j) m_j and f_j = Fx sin θ_j − Fy cos θ_j,
+Collocated, with g_j = κ0(s_j) + c(s_j) m_j and f_j = X_j sin θ_j − Y_j cos θ_j,
 
     m_i = m + h B_ij f_j,    0 = r_i = θ_i − θ − h B_ij g_j                                          (1)
-    A = ∂r/∂θ = I − h² B diag(c) B diag(Fx cos θ + Fy sin θ),    A dθ = −∂r/∂q dq                    (2)
+    A = ∂r/∂θ = I − h² B diag(c) B diag(X cos θ + Y sin θ),    A dθ = −∂r/∂q dq                    (2)
 
 and e = (x + h w·cos θ, y + h w·sin θ, θ + h w·g, m + h w·f).  With p points e is right to order 2p in h (the
 superconvergence of Gauss's rule; Hairer, Nørsett and Wanner, Solving Ordinary Differential Equations I, II.7).
@@ -77,7 +78,7 @@ def rule(p: int) -> Rule:
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A piece's solution: ``start`` q (8,), ``end`` e (4,), ``slopes`` ∂e/∂q (4, 8), θ and m (p,) at Gauss's points."""
+    """A piece's solution: ``start`` q (10,), ``end`` e (4,), ``slopes`` ∂e/∂q (4, 10), θ and m (p,) at the points."""
 
     start: Array
     end: Array
@@ -91,7 +92,7 @@ def piece(law: Law, q: Array, guess: Array) -> Piece:
 
     Args:
         law: its curvature and compliance.
-        q: (x, y, θ, m, Fx, Fy, a, b).
+        q: (x, y, θ, m, Fx, Fy, a, b, Qx, Qy).
         guess: θ at Gauss's points, (p,).
 
     Raises:
@@ -100,16 +101,17 @@ def piece(law: Law, q: Array, guess: Array) -> Piece:
     if not (np.all(np.isfinite(q)) and np.all(np.isfinite(guess))):
         raise UnsolvableError
     gauss = rule(len(guess))
-    x, y, angle, moment, Fx, Fy, a, b = q
+    x, y, angle, moment, Fx, Fy, a, b, Qx, Qy = q
     h, B, w = b - a, gauss.integrals, gauss.weights
     s = a + h * gauss.points
+    X, Y = Fx - Qx * h * gauss.points, Fy - Qy * h * gauss.points
     kappa, c = law.curvature(s), law.compliance(s)
     theta, last = guess.copy(), np.inf
     for _ in range(_ITERATIONS):
         cos, sin = np.cos(theta), np.sin(theta)
-        m = moment + h * (B @ (Fx * sin - Fy * cos))
+        m = moment + h * (B @ (X * sin - Y * cos))
         r = theta - angle - h * (B @ (kappa + c * m))
-        A = np.eye(len(theta)) - h * h * (B * c) @ (B * (Fx * cos + Fy * sin))
+        A = np.eye(len(theta)) - h * h * (B * c) @ (B * (X * cos + Y * sin))
         size = float(np.max(np.abs(r)))
         if not size <= _LARGEST:
             raise UnsolvableError
@@ -124,12 +126,18 @@ def piece(law: Law, q: Array, guess: Array) -> Piece:
             raise UnsolvableError
     else:
         raise UnsolvableError
-    f, g = Fx * sin - Fy * cos, kappa + c * m
-    # ∂r/∂q at fixed θ, by columns θ, m, Fx, Fy, a, b
-    along = Fx * cos + Fy * sin
+    f, g = X * sin - Y * cos, kappa + c * m
+    along = X * cos + Y * sin
+    # at fixed θ, by columns θ, m, Fx, Fy, a, b, Qx, Qy: ∂f/∂q, ∂m/∂q, ∂s/∂q, ∂r/∂q
+    spread = (Qx * sin - Qy * cos) * gauss.points
+    zero = np.zeros_like(s)
+    f_at = np.stack([zero, zero, sin, -cos, spread, -spread, -h * gauss.points * sin, h * gauss.points * cos], axis=1)
     kappa_s, c_s = law.curvature_slope(s), law.compliance_slope(s)
-    m_q = np.stack([np.zeros_like(s), np.ones_like(s), h * (B @ sin), -h * (B @ cos), -(B @ f), B @ f], axis=1)
-    s_q = np.zeros((len(s), 6))
+    m_q = h * (B @ f_at)
+    m_q[:, 1] += 1.0
+    m_q[:, 4] -= B @ f
+    m_q[:, 5] += B @ f
+    s_q = np.zeros((len(s), 8))
     s_q[:, 4], s_q[:, 5] = 1.0 - gauss.points, gauss.points
     g_q = (kappa_s + c_s * m)[:, None] * s_q + c[:, None] * m_q
     r_q = -h * (B @ g_q)
@@ -139,10 +147,8 @@ def piece(law: Law, q: Array, guess: Array) -> Piece:
     theta_q = -np.linalg.solve(A, r_q)
     m_q = m_q + h * (B @ (along[:, None] * theta_q))
     g_q = (kappa_s + c_s * m)[:, None] * s_q + c[:, None] * m_q
-    f_q = along[:, None] * theta_q
-    f_q[:, 2] += sin
-    f_q[:, 3] -= cos
-    slopes = np.zeros((4, 8))
+    f_q = along[:, None] * theta_q + f_at
+    slopes = np.zeros((4, 10))
     slopes[[0, 1, 2, 3], [0, 1, 2, 3]] = 1.0
     slopes[0, 2:] += -h * (w * sin) @ theta_q
     slopes[1, 2:] += h * (w * cos) @ theta_q

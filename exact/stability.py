@@ -73,7 +73,8 @@ def _cut(state: State) -> tuple[Structure, dict[tuple[str, float], float]]:
         for part in state.found.parts[beam]:
             a, b = float(part.a[0]), float(part.b[0])
             compliance = float(np.max(strip.compliance(np.linspace(a, b, 9))))
-            buckling = pi / sqrt(compliance * hypot(*part.force[:, 0]) + 1e-6)
+            largest = max(hypot(*part.force[:, 0]), hypot(*part.end_force[:, 0]))
+            buckling = pi / sqrt(compliance * largest + 1e-6)
             n = ceil((b - a) / min(_SHARE * buckling, strip.length / _KNOTS)) if b > a else 1
             if a in strip.knots:
                 spacing[beam, a] = (b - a) / n

@@ -171,7 +171,7 @@ def _within(part: Part, s: Array) -> Array:
     through = BarycentricInterpolator(points, values.T, wi=weights)
     xi = np.clip((s - a) / h, 0.0, 1.0) if h != 0.0 else np.zeros_like(s)
     xi = np.where(np.abs(xi) < _AT_START, 0.0, xi)  # the interpolation divides by its distance from its points
-    return np.concatenate([through(xi).T, np.tile(start[4:, None], (1, len(s)))])
+    return np.concatenate([through(xi).T, start[4:, None] - part.spread[:, :1] * (h * xi)])
 
 
 def start_of(equations: Equations, known: Known, guesses: Mapping[Any, float]) -> Array:

@@ -23,6 +23,8 @@ force there.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from exact.evaluation import Columns, Evaluation, Held
@@ -31,9 +33,14 @@ from exact.structure import Meeting, Resting, Structure, Wrap
 from scene import CircleContact
 
 
-def touch_points(out: Evaluation, structure: Structure, where: Layout, z: Columns) -> None:
-    """Add the rows of all contacts at places, and of all beams' ends as far as they are about forces."""
-    pushed: dict[tuple[str, str], Columns] = {}
+def touch_points(
+    out: Evaluation, structure: Structure, where: Layout, z: Columns, at_ends: Mapping[tuple[str, str], Columns]
+) -> None:
+    """Add the rows of all contacts at places, and of all beams' ends as far as they are about forces.
+
+    Loads act on some of the ends, by beam and ``start`` or ``end``, (2, K).
+    """
+    pushed = dict(at_ends)
     for name, touch in structure.touches.items():
         if isinstance(touch, Wrap):
             continue
@@ -104,7 +111,7 @@ def _state_between(out: Evaluation, structure: Structure, contact: str, beam: st
 def _jump(out: Evaluation, structure: Structure, contact: str, beam: str, force: Columns) -> None:
     """The force (2, K) of a contact on a beam between its ends."""
     k = structure.piece_beyond(beam, contact)
-    out.rows += list(out.parts[beam][k].force - out.parts[beam][k - 1].force + force)
+    out.rows += list(out.parts[beam][k].force - out.parts[beam][k - 1].end_force + force)
 
 
 def _release_ends(out: Evaluation, pushed: dict[tuple[str, str], Columns]) -> None:

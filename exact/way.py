@@ -77,6 +77,8 @@ class Way:
         units = {
             "moment": self.model.unit_moment,
             "force": self.model.unit_force,
+            "beam_force": self.model.unit_force,
+            "distributed": self.model.unit_force / self.model.unit_length,
             "displacement": self.model.unit_length,
             "rotation": 1.0,
         }

@@ -6,7 +6,7 @@ import numpy as np
 
 from fea_reference.curvature import smallest_curvature
 from fea_reference.march import March
-from fea_reference.model import Model
+from fea_reference.model import BeamLoadPart, Model
 from fea_reference.stops import acting_stops
 from fea_reference.supports import grounded, held, support
 from fea_reference.system import System, assemble
@@ -37,7 +37,7 @@ def certify(march: March) -> Certificate:
     floor = system.floor / system.scale
     violation = float(np.abs(system.residual[~free]).max())
     violation = max(violation, *(-stop.room(system.z)[0] for stop in model.stops), 0.0)
-    penetration = max((one.penetration / one.pair.scale for one in system.touches), default=0.0)
+    penetration = max((one.penetration / one.pair.measure for one in system.touches), default=0.0)
     force, moment = _balance(model, march.values, system)
     # What is left over all is the sum of what is left at every node; round-off adds up like a random walk.
     balance = max(_BALANCE, floor * float(np.sqrt(model.node_dofs.shape[1])))
@@ -54,7 +54,7 @@ def certify(march: March) -> Certificate:
             failures.append(f"{stop.known_as} holds with {press * model.units.moment:.1e} N·m on the wrong side")
     for one in system.touches:
         allowed = settings.penetration if isinstance(one.pair, Pair) else max(settings.penetration, _RESOLVED)
-        overlap = one.penetration / one.pair.scale
+        overlap = one.penetration / (one.pair.scale if isinstance(one.pair, Pair) else one.pair.measure)
         if not overlap <= allowed:
             failures.append(f"what touches in {one.pair.name} overlaps by {overlap:.1e}; {allowed:.1e} was asked")
         elif one.closed and march.penalties[one.pair].stiffness < (1.0 - _SOFT) * one.pair.stiffest:
@@ -117,6 +117,8 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float]
         if stop.phi is None:
             moments.append(stop.moment(z))
     for part, value in zip(model.loads, values[: len(model.loads)], strict=True):
+        if isinstance(part, BeamLoadPart):
+            continue
         body = model.bodies[part.body]
         if part.direction is None:
             moments.append(float(value))
@@ -124,6 +126,9 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float]
             forces.append(value * part.direction)
             at = model.carried(body, part.arm, z)
             moments.append(float(at[0] * forces[-1][1] - at[1] * forces[-1][0]))
+    for load in system.loads:
+        forces.append(load.force.sum(axis=1))
+        moments.append(load.moment)
     for one in system.touches:
         if not isinstance(one.pair, Pair) and model.bodies[one.pair.body].dofs is None:
             forces.append(one.force.sum(axis=1))

@@ -46,6 +46,7 @@ from fea_reference.zones import Zones, ends_over, find, side_of
 from scene.statement import BeamContact, Scene
 
 _AT_END = 1e-6  # elements
+_SLENDER = 0.01  # of the longest beam: what stands for the thickness of beams that touch as lines
 _LAYERS = 32.0  # the widest in a beam's length
 
 
@@ -64,10 +65,10 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         first, second = model.beams[i], model.beams[j]
         mean = 0.5 * (first.thickness + second.thickness)
         side = side_of(model.line(first, model.start), model.line(second, model.start))
-        distance, scale = (mean, mean) if contact.thick else (0.0, 1.0)
+        distance, scale, measure = (mean, mean, mean) if contact.thick else (0.0, _SLENDER, 1.0)
         penalties = [_penalties(model, beam, mean) for beam in (first, second)]
         loosest, stiffness, stiffest = map(min, zip(*penalties, strict=True))
-        found.append(Pair(name, i, j, turned, side, distance, scale, loosest, stiffness, stiffest))
+        found.append(Pair(name, i, j, turned, side, distance, scale, measure, loosest, stiffness, stiffest))
     return tuple(found)
 
 

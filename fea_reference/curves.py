@@ -15,9 +15,9 @@ import math
 
 import numpy as np
 
-from fea_reference import polynomial
+from fea_reference import polynomial, spline
 from scene.answer import Array
-from scene.statement import Arc, Curve, Line, Polynomial
+from scene.statement import Arc, Curve, Line, Polynomial, Spline
 
 
 def length(curve: Curve) -> float:
@@ -29,6 +29,8 @@ def length(curve: Curve) -> float:
             return math.dist(curve.center, curve.start) * abs(_turning(curve))
         case Polynomial():
             return polynomial.length(curve)
+        case Spline():
+            return spline.length(curve)
 
 
 def sample(curve: Curve, fractions: Array) -> tuple[Array, Array]:
@@ -49,6 +51,8 @@ def sample(curve: Curve, fractions: Array) -> tuple[Array, Array]:
             return points, polar + math.copysign(math.pi / 2, turning)
         case Polynomial():
             return polynomial.sample(curve, fractions)
+        case Spline():
+            return spline.sample(curve, fractions)
 
 
 def _turning(arc: Arc) -> float:

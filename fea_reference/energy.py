@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from fea_reference.model import Model
+from fea_reference.beam_loads import beam_load
+from fea_reference.model import BeamLoadPart, Model
 from fea_reference.system import System
 from scene.answer import Array
 
@@ -15,6 +16,9 @@ def potential_energy(model: Model, system: System, values: Array) -> float:
     z = system.z
     energy = float(system.elements.energy.sum())
     for part, load in zip(model.loads, values[: len(model.loads)], strict=True):
+        if isinstance(part, BeamLoadPart):
+            energy -= beam_load(model, part, float(load), z).work
+            continue
         body = model.bodies[part.body]
         if part.direction is None:
             energy -= float(load * model.body_state(body, z)[2])

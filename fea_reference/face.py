@@ -22,6 +22,9 @@ Where n jumps, at a corner, intervals end, too: g is the same on both sides of s
 has no part of it; as the place moves with the beam, the second derivative has −ε g (Δδg)²/Δg', Δ being what is before
 less what is behind.
 
+A corner that presses on a beam's side, or a beam's end that presses on the edge, sinks in by the root of its force over
+ε, on however few elements: there the penalty goes by the penetration that is asked, as it does between beams.
+
 A beam's end that a joint holds on the edge is there whatever happens: it counts for no gap.  Where it is pinned, a stop
 keeps its tangent from turning into the edge (:mod:`fea_reference.own_pins`).  Along a straight edge an even beam's
 moment is constant: what presses it on acts at the ends of the zone, by a force where it lifts off, and at the pin by
@@ -43,6 +46,7 @@ from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, none
 from scene.answer import Array
 from scene.statement import EdgeContact, Scene
 
+_SLENDER = 0.01  # of the longest beam: what stands for the thickness of a beam that touches as a line
 _LAYERS = 32.0  # of the first penalty, in a beam's length
 _RESOLVED = 3.0  # layers in an element: what they leave is of second order in their width
 # as on a circle: what thinner layers in a beam's length would leave is below what makes them hard to find
@@ -50,6 +54,7 @@ _THINNEST, _STANDARD = 800.0, 1e-4
 _REACH = 2.0  # elements, from a corner to where what happens there is looked for
 _CROSSING_STEPS = 15
 _ARRIVED = 1e-10  # elements
+_AT_END = 1e-6  # elements
 _PARTS = 4  # of a way on which a beam must not have passed through
 
 
@@ -78,6 +83,7 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
                 outline,
                 tuple(float(elements) if end == "end" else 0.0 for end in own),
                 edge,
+                2.0 * edge.nearest if contact.thick else _SLENDER,
                 2.0 * edge.nearest if contact.thick else 1.0,
                 beam.softest / layer**4,
                 beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
@@ -135,7 +141,7 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     e, xi = line.locate(zeta)
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
-    x, x1, _ = line.at(zeta)
+    x = line.at(zeta)[0]
     near = face.outline.near(seen.place(zeta))
     n = seen.turned(near.normal)
     tau = np.stack([n[1], -n[0]])
@@ -155,6 +161,8 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
         g_qq[9, :9] += turning
         g_qq[9, 9] -= (n * r).sum(axis=0)
 
+    ends = np.isin(zones.intervals, [end for end in (0.0, float(line.n)) if end not in face.own])
+    bent = _bent(seen, zones, kinks, penalty.stiffness, quadrature, moves=moves)
     alike = together(quadrature, e)
     weight = penalty.stiffness * ds
     return Touch(
@@ -172,7 +180,8 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
         x_m=x - near.distance * n,
         normal=n,
         missing=0.0,
-        bent=_bent(seen, zones, kinks, penalty.stiffness, quadrature, moves=moves),
+        bent=bent,
+        sharp=bool(ends.any()) or bent is not None,
     )
 
 
@@ -247,9 +256,10 @@ class _Seen:
         borders, kinks = self._borders(even)
         zeta = np.unique(np.concatenate([even, face.edge.knots, borders]))
         there = self._at(zeta, np.zeros_like(zeta))
-        if face.own:
-            own = np.isin(zeta, face.own)
-            there = Gap(np.where(own, 0.0, there.g), there.slope, there.curvature, there.zeta_m, there.found)
+        for end in face.own:
+            # where it is zero by a joint, what is nearest is a matter of round-off: it goes on as beside it
+            own, beside = (0, 1) if end == 0.0 else (-1, -2)
+            there.g[own], there.slope[own], there.curvature[own] = 0.0, there.slope[beside], there.curvature[beside]
         if not there.found.any():
             return none(float(np.abs(there.g).min())), {}
         neighbours = there.found[:-1] & there.found[1:]
@@ -309,8 +319,10 @@ class _Seen:
             zeta, step = moved, zeta - moved
             if float(np.abs(step).max()) < _ARRIVED:
                 break
-        off = np.abs(((self.place(zeta) - P) * t).sum(axis=0))
-        return zeta, off < _ARRIVED
+        crosses = np.abs(((self.place(zeta) - P) * t).sum(axis=0)) < _ARRIVED
+        for end in self.face.own:
+            crosses &= np.abs(zeta - end) > _AT_END
+        return zeta, crosses
 
     def _back(self, vectors: Array) -> Array:
         """Vectors (2, k) as the body's frame sees them."""

@@ -26,6 +26,7 @@ _CORRECTED = 0.2  # the most by which the equilibrium may differ from its predic
 _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _TIGHTENINGS = 25
+_SETTLINGS = 8
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
 _NEARBY = (1e-3, 1e-2, 1e-1)  # of a step: where to look for a closing under tighter penalties
 _DEEPER = 1e-3  # of the shortest element: by how much a contact sinks that is about to be passed
@@ -366,24 +367,43 @@ class March:
             else:
                 most = max(most**0.4, 1.2)
 
+    def settle(self, load: int) -> None:
+        """Tighten penalties, and let stops change whose side is another with them, until all is as it should be.
+
+        Beside an end that a stop holds on an edge, the stop and the pressure share a moment by what penalties give way.
+        """
+        for _ in range(_SETTLINGS):
+            self.tighten()
+            changing = [stop for stop in self.model.stops if self.room(stop, self.system) < 0.0]
+            if not changing:
+                return
+            before, closing = self.acting, dict(self.closing)
+            for stop in changing:
+                self.turn(stop, load, self.system)
+            system = self.solve(load, float(self.values[load]), self.system.z)
+            if system is None or self.moved(system, self.system.z) > _CORRECTED:
+                self.acting, self.closing = before, closing
+                return
+            self.system = system
+
     def _wanted(self, one: Touch, fall: float) -> float:
         """The factor from a penalty to the one that leaves the penetration aimed at, or to the least for a station.
 
         The penetration falls with the penalty to the power −1/``fall``: −2/3 in a point between sides, −1/2 at a tip,
-        −1 in an area.  On a circle a penalty stiffer than the elements can follow spoils more than the overlap that it
-        leaves: its penalty is always the same.
+        −1 in an area.  On what is rigid and not sharp a penalty stiffer than the elements can follow spoils more than
+        the overlap that it leaves: its penalty is always the same.
         """
         least = one.pair.stiffest / self.penalties[one.pair].stiffness
         if not one.closed:
             return 1.0
-        if isinstance(one.pair, Rigid):
+        if isinstance(one.pair, Rigid) and not one.sharp:
             return max(1.0, least)
         aim = _AIM * self.settings.penetration * one.pair.scale
         return max(float((one.penetration / aim) ** fall), least)
 
     def _will_do(self, one: Touch, factor: float, tries: int) -> bool:
         """Whether a penalty is as wanted; after some tries that of beams may be stiffer."""
-        if isinstance(one.pair, Rigid):
+        if isinstance(one.pair, Rigid) and not one.sharp:
             return factor <= 1.0 + _SAME
         if abs(factor - 1.0) <= _EVEN:
             return True

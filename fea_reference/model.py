@@ -5,8 +5,8 @@ moments over EI/length: the same scene in other units is the same problem to the
 
 The unknowns z are, in this order: the nodes' (x, y, θ) and the elements' axial forces N, numbered by
 scikit-fem; (X, Y, φ) of every body that moves, its displacement and rotation; one multiplier per row of a joint, of a
-hinge between bodies (two), of a guide (a sliding body has two: no motion across, no rotation; a turning one two: its
-pivot stays), of a drive and of a stop.
+hinge between bodies (two), of a guide (a sliding body has two: no motion across, no rotation; with a pin in a slot the
+first alone; a turning one two: its pivot stays), of a drive and of a stop.
 """
 
 from __future__ import annotations
@@ -32,7 +32,9 @@ from scene.check_shapes import is_apart
 from scene.statement import (
     Beam,
     BeamEnd,
+    BeamForce,
     DisplacementDrive,
+    DistributedLoad,
     Force,
     FreeEnd,
     Material,
@@ -42,6 +44,8 @@ from scene.statement import (
     TurningBody,
     WeldedEnd,
 )
+
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # within an element: the neutral line is a cubic there
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,6 +153,28 @@ class LoadPart:
 
 
 @dataclass(frozen=True, slots=True)
+class BeamLoadPart:
+    """A load on a beam, by its number, of value one: ``forces`` (2, k) at places ``zeta`` (k,), element number plus ξ.
+
+    It acts from ``begin`` to ``end`` (places), the same for a force; ``density`` (2,) is the force or that per length.
+    """
+
+    name: str
+    beam: int
+    zeta: Array
+    forces: Array
+    begin: float
+    end: float
+    density: Array
+    unit: float
+
+    @property
+    def distributed(self) -> bool:
+        """Whether it is, or else a force."""
+        return self.begin < self.end
+
+
+@dataclass(frozen=True, slots=True)
 class DrivePart:
     """A row that prescribes a body's motion: direction·(X + R(φ) r − r) = value, or φ = value without a direction.
 
@@ -211,7 +237,7 @@ class Model:
     beams: tuple[BeamPart, ...]
     bodies: tuple[BodyPart, ...]
     joints: tuple[JointPart, ...]
-    loads: tuple[LoadPart, ...]
+    loads: tuple[LoadPart | BeamLoadPart, ...]
     hinges: tuple[HingePart, ...]
     guides: tuple[DrivePart, ...]
     drives: tuple[DrivePart, ...]
@@ -225,7 +251,7 @@ class Model:
     start: State
 
     @property
-    def stepped(self) -> tuple[LoadPart | DrivePart | SharePart, ...]:
+    def stepped(self) -> tuple[LoadPart | BeamLoadPart | DrivePart | SharePart, ...]:
         """What has a value that is stepped, in the order of the values: loads, drives, the assembly's two shares."""
         return (*self.loads, *self.drives, *((MOMENTS, WAY) if self.apart else ()))
 
@@ -367,13 +393,13 @@ def build(scene: Scene, settings: Settings) -> Model:
                 apart.append(ApartPart(joints[-1], scene.assembly.moments.get(part.name, 0.0) / units.moment))
 
     hinges: list[HingePart] = []
-    for pin in scene.pins.values():
-        one, other = (number[scene.body_of(point)] for point in pin.points)
-        arms = [bodies[i].points[point] - bodies[i].centre for i, point in zip((one, other), pin.points, strict=True)]
-        hinges.append(HingePart(pin.points, (one, other), (arms[0], arms[1]), np.arange(size, size + 2)))
+    for both in scene.pins.values():
+        one, other = (number[scene.body_of(point)] for point in both.points)
+        arms = [bodies[i].points[point] - bodies[i].centre for i, point in zip((one, other), both.points, strict=True)]
+        hinges.append(HingePart(both.points, (one, other), (arms[0], arms[1]), np.arange(size, size + 2)))
         size += 2
 
-    loads: list[LoadPart] = []
+    loads: list[LoadPart | BeamLoadPart] = []
     for name, load in scene.loads.items():
         match load:
             case Moment():
@@ -383,14 +409,19 @@ def build(scene: Scene, settings: Settings) -> Model:
                 arm = bodies[i].points[load.point] - bodies[i].centre
                 direction = np.array(load.direction) / np.hypot(*load.direction)
                 loads.append(LoadPart(name, i, arm, direction, units.force))
+            case BeamForce() | DistributedLoad():
+                loads.append(_on_beam(name, load, [part.name for part in beams].index(load.beam), beams, units))
 
     guides: list[DrivePart] = []
     for name, body in scene.bodies.items():
         if isinstance(body, SlidingBody):
-            along = np.array(body.along) / np.hypot(*body.along)
-            guides.append(DrivePart(name, number[name], size, np.zeros(2), turned(along, np.pi / 2), units.length))
-            guides.append(DrivePart(name, number[name], size + 1, np.zeros(2), None, 1.0))
-            size += 2
+            along, i = np.array(body.along) / np.hypot(*body.along), number[name]
+            pin = np.zeros(2) if body.pin is None else bodies[i].points[body.pin] - bodies[i].centre
+            guides.append(DrivePart(name, i, size, pin, turned(along, np.pi / 2), units.length))
+            size += 1
+            if body.pin is None:
+                guides.append(DrivePart(name, i, size, np.zeros(2), None, 1.0))
+                size += 1
         elif isinstance(body, TurningBody):
             i = number[name]
             arm = bodies[i].points[body.about] - bodies[i].centre
@@ -431,6 +462,25 @@ def build(scene: Scene, settings: Settings) -> Model:
         size,
         State.of(start),
     )
+
+
+def _on_beam(
+    name: str, load: BeamForce | DistributedLoad, number: int, beams: Sequence[BeamPart], units: Units
+) -> BeamLoadPart:
+    """A load on the beam of a ``number``."""
+    beam = beams[number]
+    n = beam.nodes.stop - 1 - beam.nodes.start
+    direction = np.array(load.direction) / np.hypot(*load.direction)
+    if isinstance(load, BeamForce):
+        at = load.at * n
+        return BeamLoadPart(name, number, np.array([at]), direction[:, None], at, at, direction, units.force)
+    begin, end = (share * n for share in load.along)
+    fence = np.unique(np.clip(np.arange(n + 1), begin, end))
+    half = 0.5 * np.diff(fence)
+    zeta = (fence[:-1] + half + half * _POINTS[:, None]).ravel()
+    weights = (half * _WEIGHTS[:, None]).ravel() * beam.length / n
+    forces = direction[:, None] * weights
+    return BeamLoadPart(name, number, zeta, forces, begin, end, direction, units.force / units.length)
 
 
 def _joint(end: BeamEnd, body: int, bodies: list[BodyPart], dofs: Index, angle: float, row: int) -> JointPart:

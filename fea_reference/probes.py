@@ -48,8 +48,7 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
         case "angle":
             return frozen_array(_stop(model, probe.of).angle(z))
         case "moment":
-            stops = [stop for stop in model.stops if stop.known_as == probe.of]
-            return frozen_array(sum(abs(stop.moment(z)) for stop in stops) * units.moment)
+            return frozen_array(abs(_moment(march, probe.of)) * units.moment)
         case "force":
             touch = _touch(march, probe.of)
             return frozen_array(0.0 if touch is None else np.hypot(*touch.force.sum(axis=1)) * units.force)
@@ -92,6 +91,20 @@ def touching(march: March) -> dict[str, Array]:
 
 def _stop(model: Model, name: str) -> StopPart:
     return next(stop for stop in model.stops if stop.name == name)
+
+
+def _moment(march: March, name: str) -> float:
+    """Moment of a stop, or of all that a contact exerts on a beam about the first of its pins on what it touches."""
+    model, z = march.model, march.system.z
+    stops = [stop for stop in model.stops if stop.known_as == name]
+    moment = sum(stop.moment(z) for stop in stops)
+    for one in march.system.touches:
+        if one.pair.name == name and stops:
+            beam = model.beam(stops[0].end[0])
+            pin = model.line(beam, z).points[:, 0 if stops[0].end[1] == "start" else -1]
+            arm = one.x - pin[:, None]
+            moment += float((arm[0] * one.force[1] - arm[1] * one.force[0]).sum())
+    return moment
 
 
 def _holding_ends(march: March, name: str) -> list[float]:

@@ -5,13 +5,14 @@ element's own end force and end moment there, and the contact's forces at the Ga
 forces follow from equilibrium of the whole and not from differentiated displacements, so the moment is as
 accurate as the nodes' positions (of fourth order), continuous across the nodes, and keeps the contact's kink
 where it is.  The contact's share of the nodal forces is taken out of the end forces first, for it acts within
-the element; what it has in the elements beside, by their shear, is balanced in each.
+the element; what it has in the elements beside, by their shear, is balanced in each.  So are loads on the beam.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from fea_reference.beam_loads import moment_before
 from fea_reference.model import BeamPart, Model
 from fea_reference.system import System
 from fea_reference.touch import Pair, Touch
@@ -35,6 +36,12 @@ def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Arra
                 for i in range(3):
                     np.add.at(ends[i], elements, gradient[row + i])
 
+    loads = [load for load in system.loads if load.part.beam == number]
+    for load in loads:
+        for _, row, elements in load.chain.shares:
+            for i in range(3):
+                np.add.at(ends[i], elements, -load.gradient[row + i])
+
     zeta = fractions * line.n
     e, _ = line.locate(zeta)
     x = line.at(zeta)[0]
@@ -43,6 +50,8 @@ def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Arra
     before = (owner[None, :] == e[:, None]) & (place[None, :] < zeta[:, None])
     lever = point[:, None, :] - x[:, :, None]
     moment -= ((lever[0] * force[1] - lever[1] * force[0]) * before).sum(axis=1)
+    for load in loads:
+        moment -= moment_before(load, line, zeta)
     return np.asarray(moment)
 
 

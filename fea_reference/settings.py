@@ -23,8 +23,9 @@ class Settings:
         kinematics: ``bending`` (exactly inextensible, no shear), ``stretch`` (with axial flexibility) or
             ``shear`` (with axial and shear flexibility).
         penetration: largest depth of overlap that the contact penalty may leave, as a fraction of the mean
-            thickness of the two beams (of the longest beam for contacts of lines). On a circle the penalty is as
-            stiff as the elements can follow, and the penetration asked only says how many of them are too many.
+            thickness of the two beams (of a hundredth of the longest beam for contacts of lines). On a circle or an
+            edge the penalty is as stiff as the elements can follow, and the penetration asked only says how many of
+            them are too many; where a beam's end or a corner presses, it counts as between beams.
         quadrature: Gauss points on each interval of a contact zone.
         residual: unbalanced generalised force at which an equilibrium is accepted, as a fraction of the
             largest.

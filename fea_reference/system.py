@@ -15,10 +15,11 @@ from scipy.sparse import csc_matrix
 from skfem.assembly.form.coo_data import COOData
 
 from fea_reference.acting import Acting
+from fea_reference.beam_loads import BeamLoad, beam_load, load_forces
 from fea_reference.contacts import touch
 from fea_reference.element import ElementForces, forces
 from fea_reference.hermite import Index
-from fea_reference.model import MOMENTS, WAY, DrivePart, Model, SharePart, turned
+from fea_reference.model import MOMENTS, WAY, BeamLoadPart, DrivePart, Model, SharePart, turned
 from fea_reference.state import State
 from fea_reference.stops import acting_stops
 from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
@@ -50,6 +51,7 @@ class System:
     tangent: csc_matrix
     elements: ElementForces
     touches: tuple[Touch, ...]
+    loads: tuple[BeamLoad, ...]
     scale: float
     floor: float
 
@@ -102,6 +104,14 @@ def assemble(
         if one.closed:
             vectors.append(_vector(one.dofs, one.gradient, model.size))
             matrices.append(_matrix(one.dofs, one.hessian(_pushes(one, foreseen.get(one.pair))), model.size))
+    loads = tuple(
+        beam_load(model, part, float(value), z)
+        for part, value in zip(model.loads, values[: len(model.loads)], strict=True)
+        if isinstance(part, BeamLoadPart)
+    )
+    for load in loads:
+        vectors.append(_vector(load.dofs, -load.gradient, model.size))
+        matrices.append(_matrix(load.dofs, -load.hessian, model.size))
     rigid, rows, columns, entries = _rigid(model, values, z, acting)
     matrices.append(COOData(np.array([rows, columns]), np.array(entries), (model.size, model.size), local_shape=None))
     residual = sum(vectors).toarray() + rigid
@@ -119,7 +129,7 @@ def assemble(
     floor = _ROUND_OFF * stiffest * float(np.spacing(angle))
     floor += sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
     scale = largest if largest > _NOTHING * floor else 1.0
-    return System(z, acting, residual, tangent, elements, touches, scale, floor)
+    return System(z, acting, residual, tangent, elements, touches, loads, scale, floor)
 
 
 def _pushes(one: Touch, foreseen: Array | None) -> Array:
@@ -158,6 +168,8 @@ def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
     """
     part = model.stepped[load]
     f = np.zeros(model.size)
+    if isinstance(part, BeamLoadPart):
+        return load_forces(model, part, z)
     if isinstance(part, SharePart):
         for i, one in enumerate(model.apart):
             if part is MOMENTS:
@@ -281,6 +293,8 @@ def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array
         if stop.name not in acting.limits:
             vanish(stop.row)
     for i, (part, value) in enumerate(zip(model.loads, acting_loads, strict=True)):
+        if isinstance(part, BeamLoadPart):
+            continue
         residual -= value * load_direction(model, i, z, acting)
         dofs = model.bodies[part.body].dofs
         if part.direction is not None and dofs is not None:

@@ -23,7 +23,9 @@ class Pair:
         turned: whether the first is the scene's second.
         side: of the second on which the first lies.
         distance: T, of the neutral lines when they touch.
-        scale: what penetration is measured by: the mean thickness, or the longest beam for lines.
+        scale: what the penetration asked is a share of: the mean thickness, or a hundredth of the longest beam for
+            lines, which have none.
+        measure: what penetration is reported by: the same, but the longest beam for lines.
         loosest, stiffness, stiffest: the penalty with which to look for a zone that is far from where it was, to
             begin with, and to end with if the penetration asks for no more: each the softer beam's EI over the
             fourth power of a layer's width.  The widest is a share of the beam's length, so that finer elements make
@@ -37,6 +39,7 @@ class Pair:
     side: float
     distance: float
     scale: float
+    measure: float
     loosest: float
     stiffness: float
     stiffest: float
@@ -74,6 +77,11 @@ class Circle:
         """The penalty to begin with."""
         return self.loosest
 
+    @property
+    def measure(self) -> float:
+        """What penetration is reported by."""
+        return self.scale
+
 
 @dataclass(frozen=True, slots=True)
 class Face:
@@ -85,7 +93,8 @@ class Face:
         outline: the edge, in a frame about the body's reference centre.
         own: ends ζ of the beam that joints hold on the edge.
         edge: T, distance of the neutral line from the edge where they touch.
-        scale, loosest, stiffest: as of a circle.
+        scale, measure: as of a pair.
+        loosest, stiffest: as of a circle.
     """
 
     name: str
@@ -95,6 +104,7 @@ class Face:
     own: tuple[float, ...]
     edge: Edge
     scale: float
+    measure: float
     loosest: float
     stiffest: float
 
@@ -134,7 +144,7 @@ class Touch:
     first beam's neutral line and ``x_m`` of the second's or of the rigid edge (2, k), the ``normal`` (2, k) away
     from what it touches.
     ``missing`` is the force that ends of the second beam leave out, ``bent`` (m, m, k) what else the energy's second
-    derivatives have, at some of the points.
+    derivatives have, at some of the points.  Where a contact is ``sharp``, something with an edge of its own presses.
     """
 
     pair: Contact
@@ -152,6 +162,7 @@ class Touch:
     normal: Array
     missing: float
     bent: Array | None = None
+    sharp: bool = False
 
     @property
     def pushes(self) -> Array:

@@ -68,7 +68,7 @@ def reach(march: March, course: Course, target: float) -> None:
     if march.far and march.values[load] != target:
         march.loosen(Circle, Face)
     _arrive(march, course, target)
-    march.tighten()
+    march.settle(load)
     same = len(march.critical) == len(origin.critical) and march.values[load] != origin.values[load]
     if same and not march.curvature > 0.0:
         # with the penalties of the way it was a minimum: the branch ends before, with those of its beginning
@@ -81,7 +81,7 @@ def reach(march: March, course: Course, target: float) -> None:
             _beyond(march, course, target, lost)
             march.iterations = 0
             _arrive(march, course, target)
-            march.tighten()
+            march.settle(load)
     after = march.zones()
     march.far = march.far and any(np.abs(after[one] - before[one]).max() > _FAR for one in before if one in after)
 

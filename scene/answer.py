@@ -21,8 +21,9 @@ reaction_moment    (1,)    moment of the ground there, about that point, N·m; o
                            drive the drive's moment
 potential_energy   (1,)    strain energy less the work of the dead loads from the initial state, J
 angle              (1,)    of a stop, from the line between its body's two points to the beam, rad
-moment             (1,)    magnitude of the moment by which a stop holds, or a contact about the beam's own pins on
-                           what it touches, N·m; 0 where no limit is reached
+moment             (1,)    magnitude of the moment by which a stop holds, N·m; 0 where no limit is reached;
+                           of a contact that of all it exerts on the beam, about the pin that holds the beam on what
+                           it touches (about the first of two)
 =================  ======  ====================================================================
 """
 

@@ -1,4 +1,4 @@
-"""Beams whose edges meet across the way: rings that close to less than a thickness.
+"""Beams whose edges meet across the way: rings that close to less than a thickness, splines that come back.
 
 ======  ====================================================================
 symbol  meaning
@@ -15,7 +15,8 @@ are therefore either neighbours, with Δs ≤ 1.05 d, or have Δs > 5 t.
 
 Of an arc the second kind's nearest places are its ends.  A polynomial has none: the way between them keeps within a
 strip of width d < t along the axis, and with Δs > 5 t its tangents spread by more than 2 arccos(1/5), 157°.  But a
-graph that turns so far moves along its axis by ∫ cos φ dφ/κ > 1.9 t.  A line has none either.
+graph that turns so far moves along its axis by ∫ cos φ dφ/κ > 1.9 t.  A line has none either.  A spline may have them
+anywhere: they are looked for among samples with Δs > 5 t, and refined.
 """
 
 from __future__ import annotations
@@ -27,22 +28,59 @@ import numpy as np
 
 from scene.check_overlaps import OVERLAP
 from scene.check_shapes import is_beam
-from scene.geometry import arc_angle, distance
-from scene.mistakes import Mistake
-from scene.statement import Arc, Scene
+from scene.geometry import arc_angle, arc_length, closest_pair, distance, points_on
+from scene.mistakes import Mistake, written_place
+from scene.statement import Arc, Beam, Scene, Spline
+
+NEIGHBOURS = 5.0  # thicknesses along the beam
+_SAMPLES = 1501
 
 
 def beside_themselves(scene: Scene) -> Iterator[Mistake]:
     """Beams that overlap themselves where they start."""
     for name, beam in scene.beams.items():
-        curve = beam.curve
-        if not (isinstance(curve, Arc) and is_beam(beam) and abs(arc_angle(curve)) > pi):
+        if isinstance(beam.curve, Arc) and is_beam(beam) and abs(arc_angle(beam.curve)) > pi:
+            mistake = _closed_ring(name, beam, beam.curve)
+        elif isinstance(beam.curve, Spline) and is_beam(beam):
+            mistake = _come_back(name, beam)
+        else:
             continue
-        apart = distance(curve.start, curve.end)
-        thickness = float(np.mean(beam.thickness_at(np.array([0.0, 1.0]))))
-        if thickness - apart > OVERLAP * thickness:
-            yield Mistake(
-                f"beams.{name}.curve",
-                f"a ring that overlaps itself: its ends are {apart:.3g} m apart, and they are {thickness:g} m thick",
-                "ends of an arc that are at least its thickness apart",
-            )
+        if mistake is not None:
+            yield mistake
+
+
+def _closed_ring(name: str, beam: Beam, curve: Arc) -> Mistake | None:
+    apart = distance(curve.start, curve.end)
+    thickness = float(np.mean(beam.thickness_at(np.array([0.0, 1.0]))))
+    if not thickness - apart > OVERLAP * thickness:
+        return None
+    return Mistake(
+        f"beams.{name}.curve",
+        f"a ring that overlaps itself: its ends are {apart:.3g} m apart, and they are {thickness:g} m thick",
+        "ends of an arc that are at least its thickness apart",
+    )
+
+
+def _come_back(name: str, beam: Beam) -> Mistake | None:
+    u = np.linspace(0.0, 1.0, _SAMPLES)
+    p, half = points_on(beam.curve, u) / arc_length(beam.curve), 0.5 * beam.thickness_at(u) / arc_length(beam.curve)
+    apart = np.hypot(*(p[:, None] - p[None, :]).transpose(2, 0, 1)) - half[:, None] - half
+    away = NEIGHBOURS * beam.thickest / arc_length(beam.curve)
+    apart[u - u[:, None] < away] = np.inf
+    i, j = np.unravel_index(np.argmin(apart), apart.shape)
+    if not np.isfinite(apart[i, j]):
+        return None
+    step = 2.0 / (_SAMPLES - 1)
+    ranges = ((max(0.0, at - step), min(1.0, at + step)) for at in (float(u[i]), float(u[j])))
+    nearest = closest_pair(beam.curve, beam.curve, *ranges)
+    places = np.array([nearest.u1, nearest.u2])
+    thickness = float(np.mean(beam.thickness_at(places)))
+    if not thickness - nearest.distance > OVERLAP * thickness:
+        return None
+    x, y = points_on(beam.curve, places[:1])[0]
+    return Mistake(
+        f"beams.{name}.curve",
+        f"a beam that overlaps itself: near {written_place((float(x), float(y)))} m it comes to "
+        f"{nearest.distance:.3g} m from itself, and is {thickness:g} m thick",
+        "a curve that keeps a thickness away from itself",
+    )

@@ -1,12 +1,12 @@
-"""Drives and guides: each has a direction or a pivot, drives what can move, and has its freedom to itself."""
+"""Drives and guides: each has a direction, a pivot or a pin, drives what can move, and has its freedom to itself."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from scene.freedoms import Row, body_of, guide_rows, has_guide, held, is_stated, row_of, same_point
+from scene.freedoms import Row, body_of, can_turn, guide_rows, has_guide, held, is_stated, row_of, same_point
 from scene.mistakes import Mistake, unknown_name
-from scene.statement import Drive, RotationDrive, Scene, SlidingBody, TurningBody
+from scene.statement import BodyLoad, Drive, RotationDrive, Scene, SlidingBody, TurningBody
 
 
 def wrong_guides(scene: Scene) -> Iterator[Mistake]:
@@ -14,8 +14,14 @@ def wrong_guides(scene: Scene) -> Iterator[Mistake]:
     for name, body in scene.bodies.items():
         if isinstance(body, SlidingBody) and body.along == (0.0, 0.0):
             yield Mistake(f"bodies.{name}.along", "[0, 0]", "a direction, at least one number not zero")
-        elif isinstance(body, TurningBody) and body.about not in body.points:
+        if isinstance(body, TurningBody | SlidingBody) and body.about is not None and body.about not in body.points:
             yield unknown_name(f"bodies.{name}.about", body.about, "point of this body", body.points)
+        elif isinstance(body, SlidingBody) and body.about is not None and not body.turns:
+            found = f"{body.about!r}, a point to turn about, of a body that does not turn"
+            yield Mistake(f"bodies.{name}.about", found, "turns = true, or no point")
+        elif isinstance(body, SlidingBody) and body.turns and body.about is None and len(body.points) > 1:
+            found = "nothing: of the points of a body that slides and turns, one stays in the slot"
+            yield Mistake(f"bodies.{name}.about", found, f"one of {', '.join(map(repr, body.points))}")
 
 
 def wrong_drives(scene: Scene) -> Iterator[Mistake]:
@@ -56,7 +62,7 @@ def wrong_drives(scene: Scene) -> Iterator[Mistake]:
 def _loads_on_driven(scene: Scene, taken: dict[str, dict[str, Row]]) -> Iterator[Mistake]:
     """Loads on freedoms that drives prescribe: they would do nothing but change the drive's reaction."""
     for name, load in scene.loads.items():
-        if not is_stated(scene, load) or body_of(scene, load) not in taken:
+        if not isinstance(load, BodyLoad) or not is_stated(scene, load) or body_of(scene, load) not in taken:
             continue
         owner = body_of(scene, load)
         drives = taken[owner]
@@ -78,7 +84,7 @@ def _listed(names: list[str] | dict[str, Row]) -> str:
 def _movable(scene: Scene, what: str) -> str:
     moving = {name: body for name, body in scene.bodies.items() if body.motion != "fixed"}
     if what == "body":
-        names = [name for name, body in moving.items() if body.motion in ("free", "turns")]
+        names = [name for name, body in moving.items() if can_turn(body)]
     else:
         names = [point for body in moving.values() for point in body.points]
     return ", ".join(map(repr, names)) or "there is none"

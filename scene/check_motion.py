@@ -8,7 +8,7 @@ from math import isclose
 from scene.check_names import point_names
 from scene.freedoms import body_of, guide_rows, has_guide, held, is_named, is_stated, rank, row_of
 from scene.mistakes import Mistake
-from scene.statement import Force, FreeEnd, Moment, PinnedEnd, Scene, TurningBody
+from scene.statement import BodyLoad, Force, FreeEnd, Moment, PinnedEnd, Scene, TurningBody
 
 FREEDOMS = 3  # of what is rigid in the plane
 
@@ -50,8 +50,10 @@ def wrong_supports(scene: Scene) -> Iterator[Mistake]:
 
 
 def wrong_loads(scene: Scene) -> Iterator[Mistake]:
-    """Loads on what cannot move, and forces without a direction."""
+    """Loads on bodies that cannot move, and forces without a direction."""
     for name, load in scene.loads.items():
+        if not isinstance(load, BodyLoad):
+            continue
         what = "body" if isinstance(load, Moment) else "point"
         if isinstance(load, Force) and load.direction == (0.0, 0.0):
             yield Mistake(f"loads.{name}.direction", "[0, 0]", "a direction, at least one number not zero")

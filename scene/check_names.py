@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from scene.mistakes import Mistake, unknown_name
-from scene.statement import FreeEnd, Moment, RigidContact, RotationDrive, Scene
+from scene.statement import BodyLoad, FreeEnd, Moment, RigidContact, RotationDrive, Scene
 
 RESERVED = "scene"
 
@@ -46,7 +46,7 @@ def unknown_names(scene: Scene) -> Iterator[Mistake]:
         for side, end in (("start", beam.start), ("end", beam.end)):
             if not isinstance(end, FreeEnd) and end.point not in points:
                 yield unknown_name(f"beams.{name}.{side}.point", end.point, "point", points)
-    acting = [(f"loads.{name}", load) for name, load in scene.loads.items()]
+    acting = [(f"loads.{name}", load) for name, load in scene.loads.items() if isinstance(load, BodyLoad)]
     driving = [(f"drives.{name}", drive) for name, drive in scene.drives.items()]
     for key, each in (*acting, *driving):
         if isinstance(each, Moment | RotationDrive):

@@ -17,7 +17,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from scene.check_motion import rows_stated
+from scene.check_motion import rows_stated, wrong_supports
 from scene.check_names import point_names
 from scene.check_shapes import MEETING
 from scene.freedoms import (
@@ -41,14 +41,14 @@ def wrong_pins(scene: Scene) -> Iterator[Mistake]:
         if not _named(scene, pin):
             continue
         one, other = (scene.body_of(point) for point in pin.points)
+        places = [scene.place_of(point) for point in pin.points]
+        apart = distance(places[0], places[1])
         if one == other:
             found = f"{pin.points[0]!r} and {pin.points[1]!r}, both of the body {one!r}"
             yield Mistake(f"pins.{name}.points", found, "points of two different bodies")
         elif scene.bodies[one].motion == scene.bodies[other].motion == "fixed":
             yield Mistake(f"pins.{name}.points", f"points of two fixed bodies, {one!r} and {other!r}", "one that moves")
-        places = [scene.place_of(point) for point in pin.points]
-        apart = distance(places[0], places[1])
-        if not apart <= MEETING * size:
+        elif not apart <= MEETING * size:
             found = f"points {apart:.3g} m apart: {' and '.join(f'{written_place(place)} m' for place in places)}"
             allowed = f"at most {MEETING:g} of the scene's extent between them"
             yield Mistake(f"pins.{name}.points", found, allowed)
@@ -57,7 +57,7 @@ def wrong_pins(scene: Scene) -> Iterator[Mistake]:
 
 def loose_bodies(scene: Scene) -> Iterator[Mistake]:
     """Bodies of a scene with pins that can move, at least a little, without bending a beam."""
-    if not scene.pins or not _sound(scene):
+    if not scene.pins or not _sound(scene) or any(wrong_supports(scene)):
         return
     columns = {key: i for i, key in enumerate((*_keys("body", scene.bodies), *_keys("beam", scene.beams)))}
     rows = _rigid_rows(scene, columns)

@@ -37,9 +37,9 @@ _SAID = {
     "body": "a body",
     "contact": "a contact",
     "beam": "a beam",
-    "support": "a point of a fixed body at which a beam ends or that is pinned to another, a pivot, or a driven point",
+    "support": "a point of a fixed body at which a beam ends, a pivot, or a driven point",
     "stop": "a stop",
-    "holding": "a stop, or a contact with a line, a half-plane or a function",
+    "holding": "a stop, or a contact with a line, a half-plane or a function of the body that the beam is pinned to",
     "turned": "a point of a fixed body at which a beam ends, or a body whose rotation is driven",
     RESERVED: f"{RESERVED!r}, the scene itself",
 }

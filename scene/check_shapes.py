@@ -6,7 +6,9 @@ Bounds stand on dimensionless numbers only.  With thickness t, arc length L, cur
 * t κ / 2 < 0.5: the inner edge keeps at least half of the neutral line's length; where t varies, place by place;
 * L ≥ 1e-6 of the largest coordinate: nearer to nothing, positions lose the digits the other checks ask for;
   and of a polynomial's largest term, for the same reason;
-* |f'| ≤ 1e3 and degree ≤ 20 of a polynomial f: beyond, it is no good way to write the curve.
+* |f'| ≤ 1e3 and degree ≤ 20 of a polynomial f: beyond, it is no good way to write the curve;
+* a spline's points, at most 1001, lie at least 1e-6 of all their distances from the one before, and its speed against
+  them is at least 0.1: nearer to nothing it has a cusp.
 """
 
 from __future__ import annotations
@@ -16,17 +18,19 @@ from math import inf, isfinite
 
 import numpy as np
 
-from scene import polynomial
+from scene import polynomial, spline
 from scene.check_profiles import has_sizes
 from scene.geometry import arc_length, curvature_on, distance, largest_coordinate, largest_curvature
 from scene.mistakes import Mistake, written_place
-from scene.statement import Arc, Beam, Curve, FreeEnd, PinnedEnd, Polynomial, Scene
+from scene.statement import Arc, Beam, Curve, FreeEnd, PinnedEnd, Polynomial, Scene, Spline
 
 THINNEST, THICKEST = 1e-5, 0.2
 MOST_CURVED = 0.5
 SHORTEST = 1e-6
 STEEPEST = 1e3
 HIGHEST_DEGREE = 20
+MOST_POINTS = 1001
+SLOWEST = 0.1
 MEETING = 1e-6  # of the beam's length, or of the arc's radius
 _SAMPLES = 2001  # of a beam whose thickness varies
 
@@ -91,6 +95,8 @@ def wrong_curve(key: str, curve: Curve) -> Mistake | None:
     """What is wrong with the curve at ``key``, if anything is."""
     if isinstance(curve, Polynomial) and (mistake := wrong_polynomial(key, curve)) is not None:
         return mistake
+    if isinstance(curve, Spline) and (mistake := _wrong_spline(key, curve)) is not None:
+        return mistake
     if curve.start == curve.end:
         return Mistake(
             key, f"a start and an end at the same place {written_place(curve.start)} m", "two different places"
@@ -139,6 +145,31 @@ def wrong_polynomial(key: str, curve: Polynomial) -> Mistake | None:
             f"{key}.coefficients",
             f"a slope of up to {slope:.3g} in the range",
             f"a slope of at most {STEEPEST:g} (a steeper curve may be a function of {other})",
+        )
+    return None
+
+
+def _wrong_spline(key: str, curve: Spline) -> Mistake | None:
+    """What is wrong with a spline before its length can be asked."""
+    if len(curve.points) > MOST_POINTS:
+        return Mistake(f"{key}.points", f"{len(curve.points)} points", f"at most {MOST_POINTS} of them")
+    for name in ("start_direction", "end_direction"):
+        if getattr(curve, name) == (0.0, 0.0):
+            return Mistake(f"{key}.{name}", "[0, 0]", "a direction, at least one number not zero")
+    chords = spline.chords(curve)
+    for i, chord in enumerate(chords, start=1):
+        if not SHORTEST * sum(chords) <= chord < inf:
+            return Mistake(
+                f"{key}.points[{i}]",
+                f"{written_place(curve.points[i])} m, {chord:.3g} m from the point before",
+                f"a point at least {SHORTEST:g} of all the distances between the points away from the one before",
+            )
+    slowest, place = spline.slowest(curve)
+    if not slowest >= SLOWEST:
+        return Mistake(
+            f"{key}.points",
+            f"points through which a smooth line has to turn back on the spot, near {written_place(place)} m",
+            "points (and directions) that a smooth line follows; more of them where it turns sharply",
         )
     return None
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from scene.check_assembly import wrong_assembly
+from scene.check_beam_loads import wrong_beam_loads
 from scene.check_beside_itself import beside_themselves
 from scene.check_circles import circle_overlaps, wrong_circles
 from scene.check_drives import wrong_drives, wrong_guides
@@ -36,6 +37,7 @@ _CHECKS = (
     wrong_supports,
     loose_bodies,
     wrong_loads,
+    wrong_beam_loads,
     wrong_drives,
     wrong_contacts,
     thick_contacts,

@@ -21,7 +21,19 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from scene.statement import BodyPin, Drive, Force, Load, Moment, Point, RotationDrive, Scene, SlidingBody, TurningBody
+from scene.statement import (
+    Body,
+    BodyLoad,
+    BodyPin,
+    Drive,
+    Force,
+    Moment,
+    Point,
+    RotationDrive,
+    Scene,
+    SlidingBody,
+    TurningBody,
+)
 
 Row = NDArray[np.float64]
 NEGLIGIBLE = 1e-9
@@ -36,7 +48,7 @@ def unit(direction: Point) -> Row:
     return np.asarray(e / np.hypot(e[0], e[1]))
 
 
-def row_of(scene: Scene, acting: Load | Drive) -> Row:
+def row_of(scene: Scene, acting: BodyLoad | Drive) -> Row:
     """The motion (3,) that a drive prescribes or that a load does work in, its direction not zero.
 
     Raises:
@@ -52,12 +64,15 @@ def row_of(scene: Scene, acting: Load | Drive) -> Row:
 def guide_rows(scene: Scene, name: str) -> list[Row]:
     """The motions that a slide or a pivot prevents of the body of a ``name``; none where it has no guide.
 
-    A slide has a direction, and a pivot a point of the body.
+    A slide has a direction, and a pivot or a pin in a slot a point of the body.
     """
     body = scene.bodies[name]
     if isinstance(body, SlidingBody):
         e = unit(body.along)
-        return [np.array([-e[1], e[0], 0.0]), _TURN]
+        if body.pin is None:
+            return [np.array([-e[1], e[0], 0.0]), _TURN]
+        x, y = _offsets(scene)[name, body.pin]
+        return [np.array([-e[1], e[0], x * e[0] + y * e[1]])]
     if isinstance(body, TurningBody):
         x, y = _offsets(scene)[name, body.about]
         return [np.array([1.0, 0.0, -y]), np.array([0.0, 1.0, x])]
@@ -79,14 +94,21 @@ def pin_rows(scene: Scene, pin: BodyPin) -> dict[str, list[Row]]:
 
 
 def has_guide(scene: Scene, name: str) -> bool:
-    """Whether a slide's direction or a pivot's point is stated, if the body of a ``name`` has one."""
+    """Whether a slide's direction and a pivot's or pin's point are stated, if the body of a ``name`` has them."""
     body = scene.bodies[name]
     if isinstance(body, TurningBody):
         return body.about in body.points
-    return not isinstance(body, SlidingBody) or body.along != (0.0, 0.0)
+    if isinstance(body, SlidingBody):
+        return body.along != (0.0, 0.0) and (body.pin is None or body.pin in body.points)
+    return True
 
 
-def body_of(scene: Scene, acting: Load | Drive) -> str:
+def can_turn(body: Body) -> bool:
+    """Whether nothing but beams and drives keeps a body from turning."""
+    return body.motion in ("free", "turns") or (isinstance(body, SlidingBody) and body.turns)
+
+
+def body_of(scene: Scene, acting: BodyLoad | Drive) -> str:
     """Name of the body that a load or drive acts on.
 
     Raises:
@@ -105,19 +127,19 @@ def held(row: Row, rows: Sequence[Row]) -> bool:
     return rank([*rows, row / np.linalg.norm(row)]) == rank(rows)
 
 
-def is_stated(scene: Scene, acting: Load | Drive) -> bool:
+def is_stated(scene: Scene, acting: BodyLoad | Drive) -> bool:
     """Whether a load or drive names what exists and has a direction: nothing else can be said of it otherwise."""
     return is_named(scene, acting) and (isinstance(acting, Moment | RotationDrive) or acting.direction != (0.0, 0.0))
 
 
-def is_named(scene: Scene, acting: Load | Drive) -> bool:
+def is_named(scene: Scene, acting: BodyLoad | Drive) -> bool:
     """Whether the body or point that a load or drive acts on exists."""
     if isinstance(acting, Moment | RotationDrive):
         return acting.body in scene.bodies
     return any(acting.point in body.points for body in scene.bodies.values())
 
 
-def same_point(scene: Scene, load: Load, drive: Drive) -> bool:
+def same_point(scene: Scene, load: BodyLoad, drive: Drive) -> bool:
     """Whether a force acts where a displacement is driven, and along it in part."""
     if not isinstance(load, Force) or isinstance(drive, RotationDrive):
         return False

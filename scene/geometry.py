@@ -20,8 +20,8 @@ from math import atan2, hypot, tau
 import numpy as np
 from numpy.typing import NDArray
 
-from scene import polynomial
-from scene.statement import Arc, Curve, Point, Polynomial
+from scene import polynomial, spline
+from scene.statement import Arc, Curve, Point, Polynomial, Spline
 
 Array = NDArray[np.float64]
 _SAMPLES = 1001  # per curve: 1e-3 of the length between neighbours, the rest is refinement
@@ -49,6 +49,8 @@ def arc_length(curve: Curve) -> float:
     """Arc length L of the neutral line, m."""
     if isinstance(curve, Polynomial):
         return polynomial.length(curve)
+    if isinstance(curve, Spline):
+        return spline.length(curve)
     if isinstance(curve, Arc):
         return abs(arc_angle(curve)) * _radius(curve)
     return distance(curve.start, curve.end)
@@ -58,6 +60,8 @@ def largest_curvature(curve: Curve) -> float:
     """Largest absolute curvature of the neutral line, 1/m."""
     if isinstance(curve, Polynomial):
         return polynomial.largest_curvature(curve)
+    if isinstance(curve, Spline):
+        return spline.largest_curvature(curve)
     return 1.0 / _radius(curve) if isinstance(curve, Arc) else 0.0
 
 
@@ -65,6 +69,8 @@ def curvature_on(curve: Curve, u: Array) -> Array:
     """Absolute curvature (n,), 1/m, at the fractions ``u`` (n,)."""
     if isinstance(curve, Polynomial):
         return polynomial.curvature(curve, u)
+    if isinstance(curve, Spline):
+        return spline.curvature(curve, u)
     return np.full(u.shape, 1.0 / _radius(curve) if isinstance(curve, Arc) else 0.0)
 
 
@@ -72,6 +78,8 @@ def points_on(curve: Curve, u: Array) -> Array:
     """p(u) (n, 2), m, at the fractions ``u`` (n,)."""
     if isinstance(curve, Polynomial):
         return polynomial.points(curve, u)
+    if isinstance(curve, Spline):
+        return spline.points(curve, u)
     if isinstance(curve, Arc):
         angle = _angle(curve, curve.start) + arc_angle(curve) * u
         radius = _radius(curve)
@@ -149,8 +157,12 @@ def distance(a: Point, b: Point) -> float:
 
 
 def largest_coordinate(curve: Curve) -> float:
-    """The largest magnitude of a coordinate among a curve's ends and an arc's center, m."""
-    places = [curve.start, curve.end, *([curve.center] if isinstance(curve, Arc) else [])]
+    """The largest magnitude of a coordinate among a curve's ends, an arc's center and a spline's points, m."""
+    places = [curve.start, curve.end]
+    if isinstance(curve, Arc):
+        places.append(curve.center)
+    elif isinstance(curve, Spline):
+        places.extend(curve.points)
     return max(abs(coordinate) for place in places for coordinate in place)
 
 
@@ -158,6 +170,8 @@ def distance_to(curve: Curve, point: Point) -> float:
     """Distance of the neutral line's nearest point from ``point``, m."""
     if isinstance(curve, Polynomial):
         return polynomial.distance_to(curve, point)
+    if isinstance(curve, Spline):
+        return spline.distance_to(curve, point)
     ends = min(distance(curve.start, point), distance(curve.end, point))
     if isinstance(curve, Arc):
         turn, towards = arc_angle(curve), _angle(curve, point)
@@ -175,6 +189,8 @@ def tangents_on(curve: Curve, u: Array) -> Array:
     """Unit tangents (n, 2) at the fractions ``u`` (n,), from start to end."""
     if isinstance(curve, Polynomial):
         return polynomial.tangents(curve, u)
+    if isinstance(curve, Spline):
+        return spline.tangents(curve, u)
     if isinstance(curve, Arc):
         turn = np.sign(arc_angle(curve))
         angle = _angle(curve, curve.start) + arc_angle(curve) * u
@@ -187,6 +203,8 @@ def scaled(curve: Curve, size: float) -> Curve:
     """The same curve with every coordinate divided by ``size``."""
     if isinstance(curve, Polynomial):
         return polynomial.scaled(curve, size)
+    if isinstance(curve, Spline):
+        return spline.scaled(curve, size)
     lengths = {
         name: (getattr(curve, name)[0] / size, getattr(curve, name)[1] / size)
         for name in (("start", "end", "center") if isinstance(curve, Arc) else ("start", "end"))

@@ -11,8 +11,7 @@ u        fraction of the arc length
 κ        |g''|/(D S'³), absolute curvature, 1/m
 =======  =====================================================================================
 
-S is a sum of Gauss–Legendre integrals over even panels of w, halved until no knot's arc length moves any more;
-u is inverted by Newton's method from the panel's ends.
+How S is integrated and inverted stands in :mod:`scene.by_arc_length`.
 """
 
 from __future__ import annotations
@@ -22,18 +21,14 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import polynomial
-from numpy.polynomial.legendre import leggauss
 from numpy.typing import NDArray
 
+from scene.by_arc_length import ByArcLength, by_arc_length
 from scene.sampling import least
 from scene.statement import Point, Polynomial
 
 Array = NDArray[np.float64]
-_NODES, _WEIGHTS = leggauss(12)
-_FIRST_PANELS, _MOST_PANELS = 32, 1 << 16
-_SETTLED = 1e-14  # of the length
-_NEWTON_STEPS = 30
-_CLOSE = 1e-10  # a Newton step of this part of the range leaves nothing for a further one
+_FIRST_PANELS = 32
 _SAMPLES = 2001
 _NOTHING = 1e-14  # of the largest coefficient: a higher power that does not count
 _REAL = 1e-6  # imaginary part of a root that is taken as real
@@ -41,15 +36,14 @@ _REAL = 1e-6  # imaginary part of a root that is taken as real
 
 @dataclass(frozen=True, slots=True)
 class _Graph:
-    """``g`` and its first two derivatives' coefficients, D, σ, the knots of w and S there."""
+    """``g`` and its first two derivatives' coefficients, D, σ, and S(w)."""
 
     g: Array
     g1: Array
     g2: Array
     extent: float
     sense: float
-    w: Array
-    S: Array
+    arc: ByArcLength
 
 
 def terms(curve: Polynomial) -> float:
@@ -71,7 +65,7 @@ def steepest(curve: Polynomial) -> float:
 def length(curve: Polynomial) -> float:
     """Arc length, m."""
     graph = _graph(curve)
-    return float(graph.S[-1]) * graph.extent
+    return graph.arc.whole * graph.extent
 
 
 def largest_curvature(curve: Polynomial) -> float:
@@ -95,13 +89,13 @@ def largest_curvature(curve: Polynomial) -> float:
 def curvature(curve: Polynomial, u: Array) -> Array:
     """κ (n,), 1/m, at the fractions ``u`` (n,)."""
     graph = _graph(curve)
-    return _curvature(graph, _places(graph, u)) / graph.extent
+    return _curvature(graph, graph.arc.places(u)) / graph.extent
 
 
 def points(curve: Polynomial, u: Array) -> Array:
     """Points (n, 2), m, at the fractions ``u`` (n,)."""
     graph = _graph(curve)
-    w = _places(graph, u)
+    w = graph.arc.places(u)
     across = np.asarray(polynomial.polyval(w, graph.g), dtype=np.float64)
     return np.asarray(np.array(curve.start) + graph.extent * _in_plane(curve, graph.sense * w, across))
 
@@ -109,8 +103,8 @@ def points(curve: Polynomial, u: Array) -> Array:
 def tangents(curve: Polynomial, u: Array) -> Array:
     """Unit tangents (n, 2) at the fractions ``u`` (n,), from start to end."""
     graph = _graph(curve)
-    w = _places(graph, u)
-    speed = _speed(graph, w)
+    w = graph.arc.places(u)
+    speed = _speed(graph.g1, w)
     return _in_plane(curve, graph.sense / speed, np.asarray(polynomial.polyval(w, graph.g1) / speed, dtype=np.float64))
 
 
@@ -123,7 +117,7 @@ def distance_to(curve: Polynomial, point: Point) -> float:
     def distance(w: Array) -> Array:
         return np.asarray(np.hypot(graph.sense * w - along, polynomial.polyval(w, graph.g) - across))
 
-    return least(distance, _places(graph, np.linspace(0.0, 1.0, _SAMPLES))) * graph.extent
+    return least(distance, graph.arc.places(np.linspace(0.0, 1.0, _SAMPLES))) * graph.extent
 
 
 def scaled(curve: Polynomial, size: float) -> Polynomial:
@@ -159,46 +153,17 @@ def _graph(curve: Polynomial) -> _Graph:
     g = _local(curve)
     g1 = np.asarray(polynomial.polyder(g), dtype=np.float64)
     g2 = np.asarray(polynomial.polyder(g1), dtype=np.float64)
-    panels = _FIRST_PANELS
-    S = _knots(g1, panels)
-    while panels < _MOST_PANELS:
-        panels *= 2
-        S, before = _knots(g1, panels), S
-        if np.max(np.abs(S[::2] - before)) <= _SETTLED * S[-1]:
-            break
-    return _Graph(g, g1, g2, abs(last - first), float(np.sign(last - first)), np.linspace(0.0, 1.0, panels + 1), S)
+    arc = by_arc_length(lambda w: _speed(g1, w), np.linspace(0.0, 1.0, _FIRST_PANELS + 1))
+    return _Graph(g, g1, g2, abs(last - first), float(np.sign(last - first)), arc)
 
 
-def _knots(g1: Array, panels: int) -> Array:
-    """S at the ends of even panels."""
-    w = (np.arange(panels)[:, None] + 0.5 * (1.0 + _NODES)) / panels
-    parts = np.hypot(1.0, polynomial.polyval(w, g1)) @ _WEIGHTS * (0.5 / panels)
-    return np.concatenate(([0.0], np.cumsum(parts)))
-
-
-def _speed(graph: _Graph, w: Array) -> Array:
-    return np.asarray(np.hypot(1.0, polynomial.polyval(w, graph.g1)))
+def _speed(g1: Array, w: Array) -> Array:
+    return np.asarray(np.hypot(1.0, polynomial.polyval(w, g1)))
 
 
 def _curvature(graph: _Graph, w: Array) -> Array:
     """κ·D."""
-    return np.asarray(np.abs(polynomial.polyval(w, graph.g2)) / _speed(graph, w) ** 3)
-
-
-def _places(graph: _Graph, u: Array) -> Array:
-    """w at fractions u of the arc length."""
-    S = np.clip(u, 0.0, 1.0) * graph.S[-1]
-    panel = np.clip(np.searchsorted(graph.S, S, side="right") - 1, 0, len(graph.w) - 2)
-    from_w, to_w, missing = graph.w[panel], graph.w[panel + 1], S - graph.S[panel]
-    w = from_w + (to_w - from_w) * missing / (graph.S[panel + 1] - graph.S[panel])
-    for _ in range(_NEWTON_STEPS):
-        half = 0.5 * (w - from_w)
-        integral = _speed(graph, from_w[:, None] + half[:, None] * (1.0 + _NODES)) @ _WEIGHTS * half
-        step = (missing - integral) / _speed(graph, w)
-        w = np.clip(w + step, from_w, to_w)
-        if np.max(np.abs(step), initial=0.0) <= _CLOSE:
-            break
-    return np.asarray(w)
+    return np.asarray(np.abs(polynomial.polyval(w, graph.g2)) / _speed(graph.g1, w) ** 3)
 
 
 def _in_plane(curve: Polynomial, along: Array, across: Array) -> Array:

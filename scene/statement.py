@@ -97,7 +97,32 @@ class Polynomial(Record):
         return (variable, value) if self.axis == "x" else (value, variable)
 
 
-Curve = Annotated[Line | Arc | Polynomial, Field(discriminator="kind")]
+class Spline(Record):
+    """A smooth neutral line through ``points`` (at least three), metres, from the first to the last.
+
+    x and y are cubic splines of t, which is zero at the first point and grows from each to the next by their distance:
+    cubic in between, with two continuous derivatives, so that tangent and curvature have no jumps.  At an end that has
+    a direction the derivative is its unit vector (in the sense in which the beam runs); at one that has none the
+    outer two pieces are one cubic.  Of three points without directions it is the parabola through them.
+    """
+
+    kind: Literal["spline"]
+    points: Annotated[tuple[Point, ...], Field(min_length=3)]
+    start_direction: Point | None = None
+    end_direction: Point | None = None
+
+    @property
+    def start(self) -> Point:
+        """Where the line begins, metres."""
+        return self.points[0]
+
+    @property
+    def end(self) -> Point:
+        """Where the line ends, metres."""
+        return self.points[-1]
+
+
+Curve = Annotated[Line | Arc | Polynomial | Spline, Field(discriminator="kind")]
 
 
 class WeldedEnd(Record):
@@ -217,12 +242,22 @@ class FreeBody(Record):
 class SlidingBody(Record):
     """A rigid body that the ground guides without friction: it moves ``along`` a direction and does not turn.
 
-    ``along`` is made a unit vector; ``points`` in metres, initial position.
+    Where it ``turns``, one of its points stays in the slot and it turns about that: ``about``, which a body with one
+    point need not say.  ``along`` is made a unit vector; ``points`` in metres, initial position.
     """
 
     motion: Literal["slides"]
     along: Point
+    turns: bool = False
+    about: Name | None = None
     points: Points
+
+    @property
+    def pin(self) -> Name | None:
+        """The point that stays in the slot as the body turns; None of a body that does not turn."""
+        if not self.turns:
+            return None
+        return next(iter(self.points)) if self.about is None else self.about
 
 
 class TurningBody(Record):
@@ -288,7 +323,35 @@ class Force(Record):
     direction: Point
 
 
-Load = Annotated[Moment | Force, Field(discriminator="kind")]
+Share = Annotated[float, Field(ge=0.0, le=1.0)]
+
+
+class BeamForce(Record):
+    """A dead force on a ``beam``, N, ``at`` a fraction of its arc length from the start.
+
+    Its ``direction`` (made a unit vector) stays as the beam turns.
+    """
+
+    kind: Literal["beam_force"]
+    beam: Name
+    at: Share
+    direction: Point
+
+
+class DistributedLoad(Record):
+    """A dead load on a ``beam``, N per metre of its arc length, the same ``along`` it from one fraction to another.
+
+    Its ``direction`` (made a unit vector) stays as the beam turns: a weight, not a pressure.
+    """
+
+    kind: Literal["distributed"]
+    beam: Name
+    direction: Point
+    along: tuple[Share, Share] = (0.0, 1.0)
+
+
+Load = Annotated[Moment | Force | BeamForce | DistributedLoad, Field(discriminator="kind")]
+BodyLoad = Moment | Force
 
 
 class DisplacementDrive(Record):

@@ -16,7 +16,7 @@ from exact.settings import Settings
 from exact.spectral import Law, UnsolvableError, piece, rule
 from exact.way import Way
 from scene.reading import scene_from
-from scene.statement import Arc, Line, Polynomial
+from scene.statement import Arc, Line, Polynomial, Spline
 from tests.exact import scenes
 from tests.references.hinge import PAPER
 
@@ -38,9 +38,10 @@ def integrated(law, q):
 
     def slope(s, e):
         kappa, c = law.curvature(np.array(s)), law.compliance(np.array(s))
-        return [np.cos(e[2]), np.sin(e[2]), kappa + c * e[3], q[4] * np.sin(e[2]) - q[5] * np.cos(e[2])]
+        F = q[4:6] - q[8:] * (s - q[6])
+        return [np.cos(e[2]), np.sin(e[2]), kappa + c * e[3], F[0] * np.sin(e[2]) - F[1] * np.cos(e[2])]
 
-    return solve_ivp(slope, q[6:], q[:4], "DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
+    return solve_ivp(slope, q[6:8], q[:4], "DOP853", rtol=1e-13, atol=1e-14).y[:, -1]
 
 
 def solved(law, q, nodes=24):
@@ -51,26 +52,26 @@ def solved(law, q, nodes=24):
 
 @seed(5)
 @settings(max_examples=12, deadline=None)
-@given(st.tuples(*[number] * 3), st.tuples(*[number] * 6), st.floats(0.0, 0.4), st.floats(0.5, 1.0))
+@given(st.tuples(*[number] * 3), st.tuples(*[number] * 8), st.floats(0.0, 0.4), st.floats(0.5, 1.0))
 def test_a_piece_ends_where_integration_does(shape, state, begin, end):
-    law, q = law_of(*shape), np.array([*state[:4], 3.0 * state[4], 3.0 * state[5], begin, end])
+    law, q = law_of(*shape), np.array([*state[:4], *(3.0 * np.array(state[4:6])), begin, end, *state[6:]])
     assert solved(law, q).end == pytest.approx(integrated(law, q), abs=1e-11)
 
 
 @seed(7)
 @settings(max_examples=12, deadline=None)
-@given(st.tuples(*[number] * 3), st.tuples(*[number] * 6), st.floats(0.0, 0.4), st.floats(0.5, 1.0))
+@given(st.tuples(*[number] * 3), st.tuples(*[number] * 8), st.floats(0.0, 0.4), st.floats(0.5, 1.0))
 def test_the_slopes_of_a_piece_are_those_of_its_end(shape, state, begin, end):
-    # reference: central differences of the end with respect to all eight, the two arc lengths among them
-    law, q = law_of(*shape), np.array([*state[:4], 3.0 * state[4], 3.0 * state[5], begin, end])
+    # reference: central differences of the end with respect to all ten, the two arc lengths among them
+    law, q = law_of(*shape), np.array([*state[:4], *(3.0 * np.array(state[4:6])), begin, end, *state[6:]])
     step = 1e-5
-    differences = [(solved(law, q + d).end - solved(law, q - d).end) / (2.0 * step) for d in step * np.eye(8)]
+    differences = [(solved(law, q + d).end - solved(law, q - d).end) / (2.0 * step) for d in step * np.eye(10)]
     assert solved(law, q).slopes == pytest.approx(np.stack(differences, axis=1), abs=2e-8)
 
 
 def test_a_piece_is_right_to_twice_its_points():
     # reference: superconvergence of Gauss's collocation (Hairer, Nørsett and Wanner, II.7), order 2p
-    law, q = law_of(0.3, 0.8, 0.4), np.array([0.1, -0.2, 0.4, 0.7, 1.2, -2.0, 0.1, 0.0])
+    law, q = law_of(0.3, 0.8, 0.4), np.array([0.1, -0.2, 0.4, 0.7, 1.2, -2.0, 0.1, 0.0, 0.0, 0.0])
     for p, lengths in ((2, (0.1, 0.05)), (3, (0.2, 0.1))):
         errors = []
         for length in lengths:
@@ -82,9 +83,9 @@ def test_a_piece_is_right_to_twice_its_points():
 
 def test_what_cannot_be_integrated_says_so():
     with pytest.raises(UnsolvableError):
-        solved(law_of(0.0, 0.0, 0.0), np.array([0.0, 0.0, 0.0, np.nan, 0.0, 0.0, 0.0, 1.0]))
+        solved(law_of(0.0, 0.0, 0.0), np.array([0.0, 0.0, 0.0, np.nan, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0]))
     with pytest.raises(UnsolvableError):
-        solved(law_of(0.0, 0.0, 0.0), np.array([0.0, 0.0, 0.0, 1.0, 1e9, 3e8, 0.0, 1.0]))
+        solved(law_of(0.0, 0.0, 0.0), np.array([0.0, 0.0, 0.0, 1.0, 1e9, 3e8, 0.0, 1.0, 0.0, 0.0]))
 
 
 CURVES = {
@@ -98,6 +99,9 @@ CURVES = {
         for axis in "xy"
         for way, span in (("+", (-0.01, 0.06)), ("-", (0.06, -0.01)))
     },
+    "spline": Spline(
+        kind="spline", points=((0.0, 0.0), (0.02, 0.011), (0.05, 0.01), (0.06, -0.01)), end_direction=(-1.0, -3.0)
+    ),
 }
 
 

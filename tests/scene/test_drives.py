@@ -83,6 +83,19 @@ def test_a_driven_slide_needs_no_beam():
     assert not mistakes(("bodies/punch", punch), ("drives/p", drive), base=DRIVEN)
 
 
+SLOTTED = edited(("bodies/BD/turns", True), ("bodies/BD/about", "B"), base=SLIDING)
+
+
+def test_a_pin_in_a_slot_leaves_the_rest_free():
+    assert not mistakes(base=SLOTTED)
+    assert not mistakes(("drives/t", TURN), base=SLOTTED)
+    assert not mistakes(("loads/M", {"kind": "moment", "body": "BD"}), base=SLOTTED)
+    # along the slot the other point has a motion of its own, across it the first has none
+    along, across = ({**PUSH, "point": "D", "direction": direction} for direction in ([1.0, 0.0], [0.0, 1.0]))
+    assert not mistakes(("drives/e", along), base=SLOTTED)
+    assert "across the slide" in mistakes(("drives/e", across), base=SLOTTED)["drives.e.direction"]
+
+
 WRONG = [
     (DRIVEN, ("drives/d/kind", "push"), "drives.d.kind", "one of 'displacement', 'rotation'"),
     (DRIVEN, ("drives/d/value", 1.0), "drives.d.value", "'kind', 'point', 'direction'"),
@@ -101,6 +114,11 @@ WRONG = [
     (SLIDING, ("bodies/BD/along", [0, 0]), "bodies.BD.along", "at least one number not zero"),
     (SLIDING, ("bodies/BD/along", REMOVED), "bodies.BD.along", "required"),
     (SLIDING, ("bodies/BD/alon", [0, 0]), "bodies.BD.alon", "is 'along' meant"),
+    (SLIDING, ("bodies/BD/turns", True), "bodies.BD.about", "nothing: of the points of a body that slides and turns"),
+    (SLIDING, ("bodies/BD/turns", 1), "bodies.BD.turns", "1; true or false"),
+    (SLIDING, ("bodies/BD/about", "B"), "bodies.BD.about", "'B', a point to turn about, of a body that does not turn"),
+    (SLOTTED, ("bodies/BD/about", "A"), "bodies.BD.about", "'A', which names no point of this body"),
+    (SLOTTED, ("drives/d/direction", [0.0, 1.0]), "drives.d.direction", "across the slide of 'BD'"),
     (SLIDING, ("bodies/BD/motion", "slide"), "bodies.BD.motion", "one of 'fixed', 'free', 'slides'"),
     (WITH_FORCE, ("loads/F/direction", [0.0, 1.0]), "loads.F.direction", "across the slide of 'BD'"),
     (WITH_FORCE, ("loads/F", {"kind": "moment", "body": "BD"}), "loads.F.body", "slides and does not turn"),

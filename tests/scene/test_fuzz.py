@@ -21,7 +21,22 @@ scalars = st.one_of(
     st.sampled_from([1e-308, 1e-200, 1e-9, 1e9, 1e154, 1e308, 10**400]),
     st.text(max_size=6),
     st.sampled_from(
-        ["A", "B", "AC", "beam1", "beam2", "scene", "contact", "line", "arc", "polynomial", "free", "force", "M"]
+        [
+            "A",
+            "B",
+            "AC",
+            "beam1",
+            "beam2",
+            "scene",
+            "contact",
+            "line",
+            "arc",
+            "polynomial",
+            "spline",
+            "free",
+            "force",
+            "M",
+        ]
     ),
     st.dates(),
 )

@@ -20,7 +20,7 @@ from fea_reference import curves
 from fea_reference.model import build
 from fea_reference.projection import project
 from fea_reference.section import compliance
-from scene import Arc, Line, Polynomial
+from scene import Arc, Line, Polynomial, Spline
 from tests.cprbm.scenes import hinge, hinge_data
 
 RANDOM = np.random.default_rng(20261121)
@@ -43,7 +43,18 @@ def random_curves():
             yield Polynomial(kind="polynomial", axis=axis, coefficients=tuple(map(float, coefficients)), range=span)
 
 
-@pytest.mark.parametrize("curve", list(random_curves()))
+def random_splines():
+    random = np.random.default_rng(20261122)
+    for count in (3, 3, 4, 4, 5, 6, 8, 13):
+        size, steps = random.uniform(0.01, 3.0), np.cumsum(random.uniform(0.4, 1.0, count))
+        places = size * np.column_stack((steps, 0.15 * random.normal(size=count))) @ random.normal(size=(2, 2))
+        given = [tuple(map(float, places[k + 1] - places[k])) for k in (0, -2)]
+        start, end = (direction if random.uniform() < 0.5 else None for direction in given)
+        points = tuple((float(x), float(y)) for x, y in places)
+        yield Spline(kind="spline", points=points, start_direction=start, end_direction=end)
+
+
+@pytest.mark.parametrize("curve", [*random_curves(), *random_splines()])
 def test_curves(curve):
     ours, fractions = neutral_line(curve), RANDOM.uniform(0.0, 1.0, 17)
     s = fractions * ours.length

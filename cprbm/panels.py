@@ -1,0 +1,79 @@
+"""Arc length along a line that is known by a variable, and the variable by arc length.
+
+======  ==========================================================================
+v       the variable, ascending along the line
+s(v)    arc length, ds/dv the speed
+======  ==========================================================================
+
+ds/dv is integrated over panels of v by Gauss's rule, which are halved until their ends' arc lengths settle.  v(s) is
+Newton's: it begins at the cubic through its panel's ends with the slopes there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from scene.answer import Array
+
+ABSCISSAE, WEIGHTS = (0.5 * part for part in np.polynomial.legendre.leggauss(8))  # on [−½, ½]
+MOST_PANELS = 1 << 15
+SETTLED = 1e-14  # of the length: eight points err by 2⁻¹⁶ of this after a further halving
+NEWTON_ITERATIONS = 20
+CLOSE = 1e-9  # of the length: a step whose square is nothing
+
+
+@dataclass(frozen=True, slots=True)
+class Panels:
+    """Ends ``v`` of the panels, arc length ``s`` there, and the ``speed`` ds/dv at places of any shape."""
+
+    v: Array
+    s: Array
+    speed: Callable[[Array], Array]
+
+    @property
+    def length(self) -> float:
+        """s at the end."""
+        return float(self.s[-1])
+
+    def inverted(self, s: Array) -> Array:
+        """v(s) (k,); beyond the ends the end itself."""
+        s = np.clip(s, 0.0, self.length)
+        panel = np.minimum(np.searchsorted(self.s, s, side="right") - 1, len(self.v) - 2)
+        v0, v1, s0, s1 = self.v[panel], self.v[panel + 1], self.s[panel], self.s[panel + 1]
+        size = s1 - s0
+        t = (s - s0) / size
+        d0, d1 = size / self.speed(v0), size / self.speed(v1)
+        rise = v1 - v0
+        v = v0 + t * (d0 + t * (3.0 * rise - 2.0 * d0 - d1 + t * (d0 + d1 - 2.0 * rise)))
+        for _ in range(NEWTON_ITERATIONS):
+            v = np.clip(v, v0, v1)
+            step = (s - s0 - _arc(self.speed, v0, v)) / self.speed(v)
+            v = v + step
+            if np.max(np.abs(step), initial=0.0) <= CLOSE * self.length:
+                break
+        return np.asarray(v)
+
+
+def panelled(speed: Callable[[Array], Array], ends: Array) -> Panels:
+    """Panels that begin with those between ``ends`` and are halved until they are enough."""
+    v, s = ends, _summed(speed, ends)
+    while len(v) <= MOST_PANELS:
+        before, finer = s, np.empty(2 * len(v) - 1)
+        finer[::2], finer[1::2] = v, 0.5 * (v[1:] + v[:-1])
+        v, s = finer, _summed(speed, finer)
+        if np.max(np.abs(s[::2] - before)) <= SETTLED * s[-1]:
+            break
+    return Panels(v, s, speed)
+
+
+def _summed(speed: Callable[[Array], Array], v: Array) -> Array:
+    return np.concatenate(([0.0], np.cumsum(_arc(speed, v[:-1], v[1:]))))
+
+
+def _arc(speed: Callable[[Array], Array], v0: Array, v1: Array) -> Array:
+    """Arc lengths (k,) between places v (k,) of one panel."""
+    points = 0.5 * (v0 + v1)[:, None] + (v1 - v0)[:, None] * ABSCISSAE
+    return np.asarray((v1 - v0) * (speed(points) @ WEIGHTS))

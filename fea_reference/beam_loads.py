@@ -1,0 +1,176 @@
+"""Dead loads on beams, consistent with the neutral line: their work, and its derivatives by the unknowns.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+ζ_g     places of a load on its beam, element number plus ξ; f_g the force there
+x(ζ)    place on the neutral line, :mod:`fea_reference.hermite`; ψ its tangent angle at a node
+ξ*      where the line's arc length from the element's first node is ξ L
+l, α    length and angle of an element's chord; n = (−sin α, cos α), t = (cos α, sin α)
+c       give of the place of a force across an element whose ends are held, u³v³/(3 EI L³), u + v = L
+W       Σ f_g·(x(ζ_g) − x⁰(ζ_g)), and of a force ½ c (f·n)²
+======  =====================================================================================
+
+A force within an element and a distributed load act on the nodes by the cubic shape functions, as if these held what
+they do in between.  In small deflections the nodes are then where they would be (P. Tong, Exact solution of certain
+problems by finite-element method, AIAA Journal 7 (1969) 178-180).  What the shape functions lack is a bubble: under a
+distributed load its energy is of fifth order in each element, but of third under a force, so that this one is added.
+It moves the place by c (f·n) n; that two forces in one element have a share in each other's is left out.
+
+A cubic over an arc is slower in the middle, by α²/8 of its speed with the element's turning 2α, so that a force acts at
+
+    ξ* = ξ − (ψ₂ − ψ₁)² ξ (1 − ξ)(1 − 2ξ)/48
+
+    ∂(½ c (f·n)²)/∂α = −c (f·n)(f·t),    ∂²/∂α² = c ((f·t)² − (f·n)²)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea_reference.hermite import Index, NeutralLine, along, shape_slopes, shapes, twice_along
+from fea_reference.leaning import Chain
+from fea_reference.model import BeamLoadPart, Model
+from fea_reference.state import State
+from scene.answer import Array
+
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+_LINE = 7  # unknowns of an element's line
+
+
+@dataclass(frozen=True, slots=True)
+class BeamLoad:
+    """A load in one state.
+
+    Attributes:
+        part, value, force: the load, its value and forces (2, k).
+        place: where they act (2, k); work: W.
+        chain: from what its elements' lines go by to the unknowns.
+        gradient, hessian: derivatives of W by the unknowns ``dofs`` (M, k), (M, k) and (M, M, k).
+    """
+
+    part: BeamLoadPart
+    value: float
+    force: Array
+    place: Array
+    work: float
+    chain: Chain
+    gradient: Array
+    hessian: Array
+
+    @property
+    def dofs(self) -> Index:
+        """Unknowns that its places depend on."""
+        return self.chain.dofs
+
+    @property
+    def moment(self) -> float:
+        """About the origin."""
+        return float((self.place[0] * self.force[1] - self.place[1] * self.force[0]).sum())
+
+
+def beam_load(model: Model, part: BeamLoadPart, value: float, z: State) -> BeamLoad:
+    """A load of a ``value`` in state ``z``."""
+    beam = model.beams[part.beam]
+    line = model.line(beam, z)
+    force = value * part.forces
+    placed = _placed(part, line)
+    place, start = placed.place, _placed(part, model.line(beam, model.start)).place
+    local, twice = placed.along(force)
+    done = float((force * (place - start)).sum())
+    if not part.distributed:
+        give = (placed.xi * (1.0 - placed.xi) * line.lengths[placed.e]) ** 3 / (3.0 * beam.bending(part.zeta / line.n))
+        bubble = _bubble(line, placed.e, give, force)
+        local, twice, place = local + bubble.local, twice + bubble.twice, place + bubble.moved
+        done += 0.5 * float((bubble.moved * force).sum())
+    chain = model.chain([(beam, placed.e)], z)
+    return BeamLoad(part, value, force, place, done, chain, chain.gradient(local), chain.hessian(twice, local))
+
+
+@dataclass(frozen=True, slots=True)
+class _Placed:
+    """Where a load acts on its ``line``: elements ``e``, ξ* and ξ (k,), and ∂ξ* and ∂²ξ* by the nodes' ψ (2, k)."""
+
+    line: NeutralLine
+    e: Index
+    at: Array
+    xi: Array
+    slope: Array
+    second: Array
+
+    @property
+    def place(self) -> Array:
+        """x (2, k)."""
+        return self.line.at(self.e + self.at)[0]
+
+    def along(self, f: Array) -> tuple[Array, Array]:
+        """Derivatives of f·x(ξ*) for forces (2, k) by what the elements' lines go by: (7, k) and (7, 7, k)."""
+        line, e, H, H1 = self.line, self.e, shapes(self.at), shape_slopes(self.at)
+        _, x1, x2 = line.at(e + self.at)
+        ahead, bent = (f * x1).sum(axis=0), (f * x2).sum(axis=0)
+        moved, turned = np.zeros((_LINE, e.size)), np.zeros((_LINE, _LINE, e.size))
+        moved[[2, 5]] = -self.slope, self.slope
+        turned[2, 2] = turned[5, 5] = self.second
+        turned[2, 5] = turned[5, 2] = -self.second
+        both = along(f, H1, line, e)[:, None] * moved[None, :]
+        twice = twice_along(f, H, line, e) + both + both.transpose(1, 0, 2)
+        return along(f, H, line, e) + ahead * moved, twice + bent * moved[:, None] * moved[None, :] + ahead * turned
+
+
+def _placed(part: BeamLoadPart, line: NeutralLine) -> _Placed:
+    """A distributed load's places need no ξ*: what one half of an element gains the other loses."""
+    e, xi = line.locate(part.zeta)
+    g = np.zeros_like(xi) if part.distributed else xi * (1.0 + xi * (2.0 * xi - 3.0)) / 48.0
+    turned = line.angles[e + 1] - line.angles[e]
+    return _Placed(line, e, xi - g * turned**2, xi, -2.0 * g * turned, -2.0 * g)
+
+
+@dataclass(frozen=True, slots=True)
+class _Bubble:
+    """What ½ c (f·n)² adds to the derivatives of W, ``local`` (7, k) and ``twice`` (7, 7, k), and to x (2, k)."""
+
+    local: Array
+    twice: Array
+    moved: Array
+
+
+def _bubble(line: NeutralLine, e: Index, give: Array, f: Array) -> _Bubble:
+    dx, dy = line.points[:, e + 1] - line.points[:, e]
+    l = np.hypot(dx, dy)  # noqa: E741 - the chord's length
+    t, n = np.stack([dx, dy]) / l, np.stack([-dy, dx]) / l
+    across, ahead = (f * n).sum(axis=0), (f * t).sum(axis=0)
+    turn, stretch = np.zeros((_LINE, l.size)), np.zeros((_LINE, l.size))
+    turn[:2], turn[3:5] = -n / l, n / l
+    stretch[:2], stretch[3:5] = -t / l, t / l
+    both = stretch[:, None] * turn[None, :]
+    twice = (ahead**2 - across**2) * turn[:, None] * turn[None, :] + across * ahead * (both + both.transpose(1, 0, 2))
+    return _Bubble(-give * across * ahead * turn, give * twice, give * across * n)
+
+
+def load_forces(model: Model, part: BeamLoadPart, z: State) -> Array:
+    """Generalised forces (size,) of a load of value one, without the bubbles."""
+    beam = model.beams[part.beam]
+    placed = _placed(part, model.line(beam, z))
+    chain = model.chain([(beam, placed.e)], z)
+    f = np.zeros(model.size)
+    np.add.at(f, chain.dofs, chain.gradient(placed.along(part.forces)[0]))
+    return f
+
+
+def moment_before(load: BeamLoad, line: NeutralLine, zeta: Array) -> Array:
+    """Moment about places ``zeta`` (k,) of the load's ``line`` of what acts before them in their own elements, (k,)."""
+    part, (e, _) = load.part, line.locate(zeta)
+    x = line.at(zeta)[0]
+    if not part.distributed:
+        owner, _ = line.locate(part.zeta)
+        arm = (load.place - x) * ((e == owner) & (part.zeta < zeta))
+        return np.asarray(arm[0] * load.force[1] - arm[1] * load.force[0])
+    first = np.clip(part.begin, e, zeta)
+    half = 0.5 * (np.clip(part.end, first, zeta) - first)
+    at = first + half * (1.0 + _POINTS[:, None])
+    arm = line.at(at.ravel())[0].reshape(2, *at.shape) - x[:, None]
+    share = half * line.lengths[e] * _WEIGHTS[:, None]
+    force = load.value * part.density[:, None, None] * share
+    return np.asarray((arm[0] * force[1] - arm[1] * force[0]).sum(axis=0))
