@@ -81,7 +81,8 @@ def holds_of(scene: Scene, model: Model) -> tuple[Hold, ...]:
         if isinstance(body, SlidingBody):
             body_itself = Attachment(model.free_bodies.index(name), (0.0, 0.0), welded=False)
             ex, ey = _unit(body.along)
-            found.append(Hold("", body_itself if body.pin is None else at(body.pin), (-ey, ex), 0.0, 0.0))
+            guided = body_itself if body.pin is None else attached(scene, model, body.pin)
+            found.append(Hold("", guided, (-ey, ex), 0.0, 0.0))
             if body.pin is None:
                 found.append(Hold("", body_itself, (0.0, 0.0), 1.0, 0.0))
         elif isinstance(body, TurningBody):
