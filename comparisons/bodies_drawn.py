@@ -18,10 +18,19 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from comparisons.geometry import length
+from comparisons.geometry import length, points
 from scene import PinnedEnd, Scene, StationAnswer, WeldedEnd
 from scene.answer import Array
-from scene.statement import FixedBody, FreeEnd, Point, TurningBody
+from scene.statement import (
+    EdgeContact,
+    FixedBody,
+    FreeEnd,
+    FunctionContact,
+    HalfPlaneContact,
+    LineContact,
+    Point,
+    TurningBody,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,11 +52,18 @@ def joined_ends(scene: Scene) -> Iterator[tuple[str, PinnedEnd | WeldedEnd, Lite
 
 
 def places_at(scene: Scene, station: StationAnswer) -> dict[str, Point]:
-    """Where a station has the points at which beams end, and the pivots."""
+    """Where a station has the points at which beams end, the pivots, and what is pinned to either."""
     found = {body.about: body.points[body.about] for body in scene.bodies.values() if isinstance(body, TurningBody)}
     for beam, end, place in joined_ends(scene):
         shape = station.shapes[beam]
         found[end.point] = (float(shape.x[place]), float(shape.y[place]))
+    ground = [body for body in scene.bodies.values() if isinstance(body, FixedBody)]
+    known = {point: at for body in ground for point, at in body.points.items()}
+    for _ in scene.pins:
+        for pin in scene.pins.values():
+            for one, other in (pin.points, pin.points[::-1]):
+                if one in found or one in known:
+                    found.setdefault(other, found[one] if one in found else known[one])
     return found
 
 
@@ -91,6 +107,33 @@ def draw_stops(axes: Axes, scene: Scene, places: Places) -> None:
             if limit is not None:
                 way = base + limit
                 axes.plot([x, x + ray * np.cos(way)], [y, y + ray * np.sin(way)], "-.", color="black", linewidth=0.8)
+
+
+def draw_edges(axes: Axes, scene: Scene, places: Places, colour: str) -> None:
+    """Lines, half-planes and functions that beams may touch; dashed where they began, if no more is known."""
+    reach = max(length(beam.curve) for beam in scene.beams.values())
+    for contact in scene.contacts.values():
+        if not isinstance(contact, EdgeContact):
+            continue
+        body = scene.bodies[contact.body]
+        edge, rotation = _edge(contact, reach), _rotation(scene, contact.body, places)
+        if rotation is not None and not isinstance(body, FixedBody):
+            known = next(point for point in body.points if point in places)
+            cos, sin = np.cos(rotation), np.sin(rotation)
+            edge = (edge - body.points[known]) @ np.array([[cos, sin], [-sin, cos]]) + places[known]
+        axes.plot(*(1e3 * edge.T), "--" if rotation is None else "-", color=colour, linewidth=0.9, zorder=0)
+
+
+def _edge(contact: EdgeContact, reach: float) -> Array:
+    """Places (k, 2) along an edge as drawn, m; of a half-plane ``reach`` to either side of its point."""
+    match contact:
+        case LineContact():
+            return np.array(contact.points)
+        case HalfPlaneContact():
+            n = np.array(contact.normal) / np.hypot(*contact.normal)
+            return np.array(contact.point) + np.outer([-reach, reach], [-n[1], n[0]])
+        case FunctionContact():
+            return points(contact.curve, np.linspace(0.0, length(contact.curve), 100))
 
 
 def draw_names(axes: Axes, scene: Scene) -> None:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from comparisons.bodies_drawn import draw_bodies, draw_names, draw_stops, joined_ends, places_at
+from comparisons.bodies_drawn import draw_bodies, draw_edges, draw_names, draw_stops, joined_ends, places_at
 from comparisons.formats import number, scaled_unit
 from comparisons.geometry import length, points
 from comparisons.measures import Row, load_unit
@@ -142,6 +142,7 @@ def _mechanism(axes: Axes, scene: Scene, runs: Runs, stage: str, value: float) -
             )
     cprbm, fea = (station_of(answer, stage, value) for answer in (runs.cprbm[0], runs.reference))
     places = places_at(scene, fea)
+    draw_edges(axes, scene, places, GREY)
     draw_bodies(axes, scene, places, "-", "black")
     draw_stops(axes, scene, places)
     for place, beam_name in enumerate(scene.beams):

@@ -19,7 +19,7 @@ from fea_reference.settings import Settings
 from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
-from fea_reference.touch import Contact, Pair, Penalty, Rigid, Touch
+from fea_reference.touch import Contact, Face, Pair, Penalty, Rigid, Touch
 from scene.answer import Array, Critical, Ending
 
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
@@ -170,6 +170,8 @@ class March:
         """What must not have happened on the way from the state ``before`` to a system; a sentence says ``where``."""
         pressing = {one.pair for one in system.touches if one.closed}
         for pair in (*self.open, *self.penalties):
+            if isinstance(pair, Face):
+                continue  # its straight way is one in the frame of its body
             closing = zones_of(self.model, pair, system.z).least <= _CLOSED * pair.scale
             if not closing and pair not in pressing and self._overlapped_between(pair, before, system.z):
                 return Ending.BEAMS_CROSSED, f"{where} what may touch in {pair.name} passes through each other"

@@ -36,6 +36,7 @@ _FAR = 4.0  # elements: a zone that goes farther from station to station is soug
 _ASIDE = 0.15  # of a step's own way: by which it may end aside of the mean of its rates
 _UNEVEN = 0.6  # of the way by which its rates differ
 _NOWHERE = 1e-6  # rad (and lengths): a way that is none
+_RISES = 10.0  # times what had sunk in: the way of something else
 _HALF = 0.5  # of the way to where the curvature is foreseen to vanish
 _NEAR = 1e-2  # of the span: a step shorter than this is left to following the branch
 _TIRED = 3  # cuts in a row after which that is tried
@@ -185,6 +186,9 @@ def _aside(saved: March, march: March, load: int, rate: Array, ahead: Array) -> 
         return False  # one of the tangents is singular, and says nothing
     gone = (march.system.z.values - saved.system.z.values)[moving]
     aside = float(np.abs(gone - 0.5 * (first + last)).max())
+    if saved.loose and not march.loose:
+        # what had sunk into loose penalties has come out of tight ones
+        aside -= _RISES * max((one.penetration for one in saved.system.touches), default=0.0)
     way, uneven = max(np.abs(first).max(), np.abs(last).max()), np.abs(last - first).max()
     return bool(aside > _UNEVEN * uneven + _ASIDE * way + _NOWHERE)
 

@@ -8,6 +8,7 @@ from scene.check_assembly import wrong_assembly
 from scene.check_beam_loads import wrong_beam_loads
 from scene.check_beside_itself import beside_themselves
 from scene.check_circles import circle_overlaps, wrong_circles
+from scene.check_closing import open_linkages
 from scene.check_drives import wrong_drives, wrong_guides
 from scene.check_edges import edge_overlaps, wrong_edges
 from scene.check_motion import wrong_loads, wrong_stages, wrong_supports
@@ -53,10 +54,15 @@ _CHECKS = (
     wrong_claims,
 )
 
+_LAST = (open_linkages,)
+"""What is asked of a scene in which nothing else is wrong."""
+
 
 def mistakes_in(scene: Scene) -> list[Mistake]:
     """Every mistake in what ties the records of ``scene`` together; empty where it is a good question.
 
     A check that needs what another one found wrong keeps silent, so that one slip is named once.
     """
-    return [replace(mistake, file=scene.file) for check in _CHECKS for mistake in check(scene)]
+    found = [mistake for check in _CHECKS for mistake in check(scene)]
+    found = found or [mistake for check in _LAST for mistake in check(scene)]
+    return [replace(mistake, file=scene.file) for mistake in found]
