@@ -46,7 +46,7 @@ def freed(scene: Scene, mechanism: Mechanism, point: Point) -> Part:
     moments, mechanism = _moments(scene), replace(mechanism, boundaries={})
     names = frozenset(_apart(scene, mechanism, point))
     problem = mechanism.without(*mechanism.stops)
-    free = replace(problem, closure=closure_of(problem.model, problem.closure.holds, names))
+    free = replace(problem, closure=closure_of(problem.model, problem.closure.hinges, problem.closure.holds, names))
     return Part(
         mechanism=replace(mechanism, problem=free),
         start=_as_in(free, point, {}),

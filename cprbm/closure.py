@@ -3,6 +3,7 @@
 ==========  =======================================================================
 Z_x, Z_y    beam's last joint less the point of the body it is joined to, less how far apart they are meant to be
 Z_w         angle of the first or last link, less its stress-free one, less φ
+Z_p         of pins between bodies, :mod:`cprbm.hinging`
 Z_h         of slides and drives, :mod:`cprbm.holding`
 μ           multipliers: force and moment of the beam on what its end is joined to
 ==========  =======================================================================
@@ -17,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm.hinging import Hinge
 from cprbm.holding import Hold
 from cprbm.kinematics import Positions, State, arm, place, position_rows
 from cprbm.model import Model
@@ -25,13 +27,14 @@ from scene.answer import Array, Ints
 
 @dataclass(frozen=True, slots=True)
 class Closure:
-    """Which equalities a mechanism has, in the order of their rows: closures x, y by beam, welds, slides, drives.
+    """Which equalities a mechanism has, in the order of their rows: ends' x, y, welds, pins' x, y, slides, drives.
 
     Attributes:
         ends: index of each beam whose end is joined to a point.
         end_joints: the last joints of those beams.
         welds: (link, body) of every welded link that is an unknown; body −1 is the ground.
         fixed: links that do not turn (ground welds at a beam's start).
+        hinges: pins between bodies.
         holds: slides and drives.
     """
 
@@ -39,6 +42,7 @@ class Closure:
     end_joints: Ints
     welds: tuple[tuple[int, int], ...]
     fixed: Ints
+    hinges: tuple[Hinge, ...]
     holds: tuple[Hold, ...]
 
     @property
@@ -47,12 +51,19 @@ class Closure:
         return self.first_hold + len(self.holds)
 
     @property
-    def first_hold(self) -> int:
-        """Row of the first slide or drive."""
+    def first_hinge(self) -> int:
+        """Row of the first pin between bodies."""
         return 2 * len(self.ends) + len(self.welds)
 
+    @property
+    def first_hold(self) -> int:
+        """Row of the first slide or drive."""
+        return self.first_hinge + 2 * len(self.hinges)
 
-def closure_of(model: Model, holds: tuple[Hold, ...], free: frozenset[str] = frozenset()) -> Closure:
+
+def closure_of(
+    model: Model, hinges: tuple[Hinge, ...], holds: tuple[Hold, ...], free: frozenset[str] = frozenset()
+) -> Closure:
     """The equalities of a mechanism; the ends of some beams are ``free`` as yet."""
     ends, welds, fixed = [], [], []
     for c, chain in enumerate(model.chains):
@@ -67,7 +78,9 @@ def closure_of(model: Model, holds: tuple[Hold, ...], free: frozenset[str] = fro
             if end.welded:
                 welds.append((chain.first_link + chain.n, end.body))
     last = [model.chains[c].first_joint + model.chains[c].n + 1 for c in ends]
-    return Closure(tuple(ends), np.array(last, dtype=np.intp), tuple(welds), np.array(fixed, dtype=np.intp), holds)
+    return Closure(
+        tuple(ends), np.array(last, dtype=np.intp), tuple(welds), np.array(fixed, dtype=np.intp), hinges, holds
+    )
 
 
 def apart_by(beam: str) -> tuple[str, str]:
@@ -87,6 +100,8 @@ def closure_values(model: Model, closure: Closure, state: State, at: Positions, 
     for link, body in closure.welds:
         turned = state.bodies[body, 2] if body >= 0 else 0.0
         values.append(state.theta[link] - model.rest[link] - turned)
+    for hinge in closure.hinges:
+        values += hinge.values(model, state)
     values += [hold.value(state, given) for hold in closure.holds]
     return np.array(values, dtype=float)
 
@@ -112,6 +127,10 @@ def closure_rows(model: Model, closure: Closure, state: State, at: Positions) ->
         rows[r, link] = 1.0
         if body >= 0:
             rows[r, n + 3 * body + 2] = -1.0
+    for p, hinge in enumerate(closure.hinges):
+        r = closure.first_hinge + 2 * p
+        for body, block in hinge.rows(state):
+            rows[r : r + 2, n + 3 * body : n + 3 * body + 3] += block
     for r, hold in enumerate(closure.holds, start=closure.first_hold):
         b = n + 3 * hold.at.body
         rows[r, b : b + 3] = hold.row(state)
@@ -136,6 +155,10 @@ def closure_second(model: Model, closure: Closure, state: State, multipliers: Ar
         if end.body >= 0:
             rx, ry = arm(end, state.bodies)
             second[end.body] += multipliers[2 * r] * rx + multipliers[2 * r + 1] * ry
+    for p, hinge in enumerate(closure.hinges):
+        r = closure.first_hinge + 2 * p
+        for body, bent in hinge.second(state, multipliers[r : r + 2]):
+            second[body] += bent
     for mu, hold in zip(multipliers[closure.first_hold :], closure.holds, strict=True):
         second[hold.at.body] += mu * hold.second(state)
     return second

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from cprbm.kinematics import Positions, State
-from scene.answer import Array, Ints
+from scene.answer import Array, Flags, Ints
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +56,11 @@ class Group:
     arc: Array
     reach: float = 0.0
 
+    @property
+    def holds_angles(self) -> bool:
+        """Whether the rows limit angles alone, so that their multipliers are moments."""
+        return self.joints.size == 0
+
 
 @dataclass(frozen=True)
 class Rows:
@@ -72,6 +77,11 @@ class Rows:
     def arc(self) -> Array:
         """Arc length on each contact's first beam (m,)."""
         return np.concatenate([group.arc for group in self.groups]) if self.groups else np.zeros(0)
+
+    @cached_property
+    def holds_angles(self) -> Flags:
+        """Which rows limit angles alone (m,)."""
+        return np.repeat([group.holds_angles for group in self.groups], [len(group.values) for group in self.groups])
 
     @cached_property
     def reach(self) -> Array:

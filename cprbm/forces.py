@@ -53,7 +53,7 @@ def contact_pressure(point: Point, contact: str, chain: Chain) -> tuple[Array, A
     """Of the rows of a contact that press: arc length on its first beam, ``chain``, and the force there, (k,) each."""
     arcs, forces = [np.zeros(0)], [np.zeros(0)]
     for group, lam in point.rows.shares(point.lam):
-        if group.contact != contact:
+        if group.contact != contact or group.holds_angles:
             continue
         p = group.joints.shape[1]
         on_first = (group.joints >= chain.joints.start) & (group.joints < chain.joints.stop)
@@ -93,9 +93,14 @@ def supports(problem: Problem, point: Point) -> tuple[Support, ...]:
 
 
 def holding(problem: Problem, point: Point) -> tuple[Held, ...]:
-    """What slides and drives do to the bodies, in the order of the closure's."""
-    closure = problem.closure
-    return held(problem.model, closure.holds, point.state, point.mu[closure.first_hold :])
+    """What slides, drives and pins of the ground do to the bodies, in the order of the closure's."""
+    closure, model = problem.closure, problem.model
+    found = list(held(model, closure.holds, point.state, point.mu[closure.first_hold :]))
+    for hinge, mu in zip(
+        closure.hinges, point.mu[closure.first_hinge : closure.first_hold].reshape(-1, 2), strict=True
+    ):
+        found += hinge.held(model, point.state, mu)
+    return tuple(found)
 
 
 def contact_imbalance(problem: Problem, point: Point, contact_name: str) -> float:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.kinematics import State, arm
-from cprbm.model import Attachment, Model
+from cprbm.model import Attachment, Model, attached
 from scene import Scene
 from scene.answer import Array
 from scene.statement import DisplacementDrive, SlidingBody, TurningBody
@@ -76,26 +76,25 @@ class Held:
 
 def holds_of(scene: Scene, model: Model) -> tuple[Hold, ...]:
     """The scene's slides, pivots and drives."""
-
-    def at(point: str) -> Attachment:
-        owner = scene.body_of(point)
-        b = model.free_bodies.index(owner)
-        x, y = np.array(scene.bodies[owner].points[point]) / model.unit_length - model.references[b]
-        return Attachment(b, (float(x), float(y)), welded=False)
-
     found = []
     for name, body in scene.bodies.items():
         if isinstance(body, SlidingBody):
             body_itself = Attachment(model.free_bodies.index(name), (0.0, 0.0), welded=False)
             ex, ey = _unit(body.along)
-            found.append(Hold("", body_itself if body.pin is None else at(body.pin), (-ey, ex), 0.0, 0.0))
+            guided = body_itself if body.pin is None else attached(scene, model, body.pin)
+            found.append(Hold("", guided, (-ey, ex), 0.0, 0.0))
             if body.pin is None:
                 found.append(Hold("", body_itself, (0.0, 0.0), 1.0, 0.0))
         elif isinstance(body, TurningBody):
-            found += [Hold(body.about, at(body.about), axis, 0.0, 0.0) for axis in ((1.0, 0.0), (0.0, 1.0))]
+            found += [
+                Hold(body.about, attached(scene, model, body.about), axis, 0.0, 0.0)
+                for axis in ((1.0, 0.0), (0.0, 1.0))
+            ]
     for name, drive in scene.drives.items():
         if isinstance(drive, DisplacementDrive):
-            found.append(Hold(name, at(drive.point), _unit(drive.direction), 0.0, 1.0 / model.unit_length))
+            found.append(
+                Hold(name, attached(scene, model, drive.point), _unit(drive.direction), 0.0, 1.0 / model.unit_length)
+            )
         else:
             driven = Attachment(model.free_bodies.index(drive.body), (0.0, 0.0), welded=False)
             found.append(Hold(name, driven, (0.0, 0.0), 1.0, 1.0))

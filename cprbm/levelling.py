@@ -33,6 +33,7 @@ LEVEL = 1e-7  # of a slope: the slopes beside the kinks are those of the state b
 FIRST = 0.02  # elements: the first move of a place
 LONGEST = 0.5  # elements: the longest
 MOVES = 12
+PASSES = 4  # with the same places: what faces them on the second beam is that of the state before
 
 
 def levelled(
@@ -40,7 +41,7 @@ def levelled(
 ) -> tuple[Mechanism, Equilibrium] | None:
     """The equilibrium in which contacts in points press where the beams are parallel; None if none is found.
 
-    Rigid circles are no part of this: what is known of their places are minima.
+    Rigid circles and edges are no part of this: what is known of their places are minima.
 
     Args:
         scene, settings: the question, and the mesh.
@@ -53,12 +54,15 @@ def levelled(
         return None
     known: dict[str, tuple[Array, Array]] = {}
     for _ in range(MOVES):
-        target = mechanism_of(scene, settings, replace(fit, fixed=frozenset(between)))
-        start = carried_over(before, point, target, values)
-        solved = equilibrium(target.problem, values, start, settings.tolerance, settings.iterations)
-        if not solved.converged:
-            return None
-        before, point = target, solved.point
+        for _ in range(PASSES):
+            target = mechanism_of(scene, settings, replace(fit, fixed=frozenset(between)))
+            start = carried_over(before, point, target, values)
+            solved = equilibrium(target.problem, values, start, settings.tolerance, settings.iterations)
+            if not solved.converged:
+                return None
+            before, point = target, solved.point
+            here = {name: _kinks(target, point, name, target.fit.kinks[name][0].places) for name in between}
+            fit = replace(fit, kinks=frozendict({**fit.kinks, **here}))
         slopes = {name: _slopes(target, solved.point, name) for name in between}
         if all(np.all(np.abs(slope) <= LEVEL) for slope in slopes.values()):
             return target, solved
@@ -90,7 +94,12 @@ def _moved(
         change = slope - its
         step = np.where(change != 0.0, -slope * (places - last) / np.where(change != 0.0, change, 1.0), step)
     known[name] = places, slope
-    places = places + np.clip(step, -LONGEST * size, LONGEST * size)
+    return _kinks(mechanism, point, name, places + np.clip(step, -LONGEST * size, LONGEST * size))
+
+
+def _kinks(mechanism: Mechanism, point: Point, name: str, places: Array) -> tuple[Kinks, ...]:
+    """The kinks of a contact at ``places`` on its first beam and what faces them on its second."""
+    pair = mechanism.pairs[name]
     found = []
     for chain in pair.chains:
         pressed = pair.pressed(point.state, point.at, chain, places)

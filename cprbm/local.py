@@ -169,6 +169,11 @@ def local_system(
         entries.both(np.array([first_mu + r]), np.array([link]), np.ones(1))
         if body >= 0:
             entries.both(np.array([first_mu + r]), np.array([first_body + 3 * body + 2]), -np.ones(1))
+    for p, hinge in enumerate(closure.hinges):
+        pin_row = first_mu + closure.first_hinge + 2 * p
+        for body, block in hinge.rows(state):
+            columns_of = first_body + 3 * body + np.arange(3)
+            entries.both((pin_row + np.arange(2))[:, None], columns_of[None], block)
     for r, hold in enumerate(closure.holds, start=first_mu + closure.first_hold):
         entries.both(np.full(3, r), first_body + 3 * hold.at.body + np.arange(3), np.array(hold.row(state)))
 

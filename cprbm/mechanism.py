@@ -11,20 +11,23 @@ from cprbm.boundary import FittedBoundary, fitted_boundary
 from cprbm.circle import Circle, circle_of
 from cprbm.closure import closure_of
 from cprbm.contact import Formulation, Group, Rows
+from cprbm.edge import Edge, edge_of
 from cprbm.energy import dead_loads, end_moments
 from cprbm.equilibrium import Point, Problem
+from cprbm.hinging import hinges_of
 from cprbm.holding import holds_of
 from cprbm.kinematics import Positions, State, positions
-from cprbm.model import EVEN, Fit, build
+from cprbm.model import EVEN, Fit, Model, build
 from cprbm.nearest import Pair, pair_of
 from cprbm.rigid import RigidCircle, rigid_circle
 from cprbm.settings import Settings
 from cprbm.stops import AngleStop, stop_of
-from scene import BeamContact, EdgeContact, Mistake, Scene, SceneError
+from scene import BeamContact, CircleContact, EdgeContact, Mistake, Scene, SceneError
 
 BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle or another
 SHALLOW = 0.05  # of the radius: an overlap between rows of a coarse mesh
 WAY = 0.02  # of the longest beam, by which a way of one radian may differ from the unknowns' even one
+EDGE_WAY = 0.2  # the same of an edge, behind which what is rigid never ends: pinned ends leave their points meanwhile
 
 Groups = Callable[[State, Positions], tuple[Group, ...]]
 
@@ -42,7 +45,7 @@ class Mechanism:
     """
 
     problem: Problem
-    pairs: dict[str, Pair | Circle]
+    pairs: dict[str, Pair | Circle | Edge]
     boundaries: dict[str, FittedBoundary | RigidCircle]
     stops: dict[str, AngleStop]
     fit: Fit
@@ -64,9 +67,11 @@ class Mechanism:
         for pair in self.pairs.values():
             if isinstance(pair, Circle):
                 across = pair.passed(before.at, after.at) or self._overlapped_between(pair, before.state, after.state)
+            elif isinstance(pair, Edge):
+                across = self._crossed_between(pair, before, after, EDGE_WAY)
             else:
                 # without having been there a beam comes to lie beyond another by its end or through it
-                across = pair.gone_round(after.state, after.at) and self._crossed_between(pair, before, after)
+                across = pair.gone_round(after.state, after.at) and self._crossed_between(pair, before, after, WAY)
             if across:
                 return pair.name
         return ""
@@ -82,9 +87,9 @@ class Mechanism:
                 return True
         return False
 
-    def _crossed_between(self, pair: Pair, before: Point, after: Point) -> bool:
-        """Whether a beam lay across the other, by more than the way is known, on the way from one state to another."""
-        allowed = pair.offset + WAY * _turned(before.state, after.state) ** 2
+    def _crossed_between(self, pair: Pair | Edge, before: Point, after: Point, way: float) -> bool:
+        """Whether a beam lay across what it may touch between two states, by more than the way between is known."""
+        allowed = pair.offset + way * _turned(before.state, after.state) ** 2
         return any(
             pair.least_gap(state, positions(self.problem.model, state)) + pair.offset < -allowed
             for state in _between(before.state, after.state)
@@ -105,13 +110,13 @@ def _between(before: State, after: State) -> Iterator[State]:
 
 
 def _groups(
-    contact: str, pairs: Mapping[str, Pair | Circle], boundaries: Mapping[str, FittedBoundary | RigidCircle]
+    contact: str, pairs: Mapping[str, Pair | Circle | Edge], boundaries: Mapping[str, FittedBoundary | RigidCircle]
 ) -> Groups:
     return boundaries[contact].groups if boundaries else pairs[contact].groups
 
 
 def _formulations(
-    pairs: Mapping[str, Pair | Circle],
+    pairs: Mapping[str, Pair | Circle | Edge],
     boundaries: Mapping[str, FittedBoundary | RigidCircle],
     stops: Mapping[str, AngleStop],
 ) -> tuple[Formulation, Formulation]:
@@ -129,21 +134,28 @@ def _formulation(parts: dict[str, Groups]) -> Formulation:
     return rows
 
 
-def _offered(scene: Scene) -> None:
-    """Refuse what there are no constraints for.
+def _pair(scene: Scene, model: Model, name: str, fit: Fit) -> Pair | Circle | Edge:
+    match scene.contacts[name]:
+        case BeamContact():
+            return pair_of(scene, model, name, fit)
+        case CircleContact():
+            return circle_of(scene, model, name, fit)
+    return edge_of(scene, model, name, fit)
+
+
+def _boundary(scene: Scene, model: Model, name: str, settings: Settings) -> FittedBoundary | RigidCircle:
+    """A contact in the paper's form.
 
     Raises:
-        SceneError: a contact with a line, a half-plane or a function, or a pin between bodies.
+        SceneError: the form lacks what it must be told, or is not offered for the contact's kind.
     """
-    mistakes = [
-        Mistake(f"contacts.{name}.kind", repr(contact.kind), "a kind that this method offers so far", scene.file)
-        for name, contact in scene.contacts.items()
-        if isinstance(contact, EdgeContact)
-    ]
-    allowed = "bodies that beams join, or another solver: this method does not offer pins between bodies so far"
-    mistakes += [Mistake(f"pins.{name}", "a pin between two bodies", allowed, scene.file) for name in scene.pins]
-    if mistakes:
-        raise SceneError(mistakes)
+    contact = scene.contacts[name]
+    if isinstance(contact, EdgeContact):
+        allowed = "a kind that the formulation 'paper' offers so far, or the formulation 'auto'"
+        raise SceneError([Mistake(f"contacts.{name}.kind", repr(contact.kind), allowed, scene.file)])
+    if isinstance(contact, BeamContact):
+        return fitted_boundary(scene, model, name, settings.degree)
+    return rigid_circle(scene, model, name)
 
 
 def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism:
@@ -152,22 +164,13 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism
     Raises:
         SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
     """
-    _offered(scene)
     model = build(scene, settings, fit)
-    pairs = {
-        name: (pair_of if isinstance(contact, BeamContact) else circle_of)(scene, model, name, fit)
-        for name, contact in scene.contacts.items()
-    }
+    pairs = {name: _pair(scene, model, name, fit) for name in scene.contacts}
     boundaries: dict[str, FittedBoundary | RigidCircle] = {}
     if settings.formulation == "paper":
-        boundaries = {
-            name: fitted_boundary(scene, model, name, settings.degree)
-            if isinstance(contact, BeamContact)
-            else rigid_circle(scene, model, name)
-            for name, contact in scene.contacts.items()
-        }
+        boundaries = {name: _boundary(scene, model, name, settings) for name in scene.contacts}
     stops = {name: stop_of(scene, model, name) for name in scene.stops}
-    closure = closure_of(model, holds_of(scene, model))
+    closure = closure_of(model, hinges_of(scene, model), holds_of(scene, model))
     loads = dead_loads(scene, model) | end_moments(scene, model)
     problem = Problem(model, closure, loads, *_formulations(pairs, boundaries, stops))
     return Mechanism(problem, pairs, boundaries, stops, fit)

@@ -29,7 +29,17 @@ from cprbm.pieces import Pieces, pieces
 from cprbm.section import Section, largest_rigidity, section_of
 from cprbm.settings import Settings
 from cprbm.spacing import spaced
-from scene import BeamEnd, CircleContact, FreeEnd, Scene, WeldedEnd
+from scene import (
+    BeamEnd,
+    CircleContact,
+    FreeEnd,
+    FunctionContact,
+    HalfPlaneContact,
+    LineContact,
+    RigidContact,
+    Scene,
+    WeldedEnd,
+)
 from scene.answer import Array
 
 
@@ -123,7 +133,8 @@ class Model:
         rest_turns: θ⁰_{i+1} − θ⁰_i in the same places.
         lengths: of all links, units of length.
         rest: stress-free angles of all links.
-        marks: centres of circles on bodies that move, by contact; they are numbered behind all joints.
+        marks: centres of circles and first places of edges on bodies that move, by contact; they are numbered behind
+            all joints.
     """
 
     chains: tuple[Chain, ...]
@@ -163,7 +174,7 @@ class Model:
         return self.unit_moment / self.unit_length
 
     def mark_of(self, contact: str) -> int:
-        """Number of the centre of a contact's circle among the joints; −1 where the circle does not move."""
+        """Number of a contact's mark among the joints; −1 where what the beam may touch does not move."""
         return self.first_mark + list(self.marks).index(contact) if contact in self.marks else -1
 
     def chain(self, name: str) -> Chain:
@@ -305,14 +316,41 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
     )
 
 
+def attached(scene: Scene, model: Model, point: str) -> Attachment:
+    """A body's ``point``, as something that nothing welds.
+
+    Raises:
+        KeyError: no body has a point of that name.
+    """
+    owner = scene.body_of(point)
+    x, y = np.array(scene.place_of(point)) / model.unit_length
+    body = model.free_bodies.index(owner) if owner in model.free_bodies else -1
+    if body >= 0:
+        x, y = (x, y) - model.references[body]
+    return Attachment(body, (float(x), float(y)), welded=False)
+
+
 def _marks(scene: Scene, free_bodies: tuple[str, ...], references: Array, unit_length: float) -> dict[str, Attachment]:
     marks = {}
     for name, contact in scene.contacts.items():
-        if isinstance(contact, CircleContact) and contact.body in free_bodies:
+        if isinstance(contact, RigidContact) and contact.body in free_bodies:
             body = free_bodies.index(contact.body)
-            x, y = (np.array(contact.center) - references[body]) / unit_length
+            x, y = (np.array(anchor(contact)) - references[body]) / unit_length
             marks[name] = Attachment(body, (float(x), float(y)), welded=False)
     return marks
+
+
+def anchor(contact: RigidContact) -> tuple[float, float]:
+    """A place of what a beam may touch, m: the centre of a circle, the first place of an edge."""
+    match contact:
+        case CircleContact():
+            return contact.center
+        case LineContact():
+            return contact.points[0]
+        case HalfPlaneContact():
+            return contact.point
+    assert isinstance(contact, FunctionContact)
+    return contact.curve.start
 
 
 def _loose(beam: str) -> str:

@@ -59,7 +59,8 @@ def _value(
         case "angle":
             return mechanism.stops[probe.of].angle(point.state)
         case "moment":
-            held = [lam for lam, name in zip(point.lam, point.rows.contact, strict=True) if name == probe.of]
+            shares = point.rows.shares(point.lam)
+            held = [lam.sum() for group, lam in shares if group.contact == probe.of and group.holds_angles]
             return float(sum(held)) * model.unit_moment
 
 

@@ -37,7 +37,7 @@ def rate(problem: Problem, point: Point, change: Mapping[str, float]) -> Array:
     driven = [
         change.get(name, 0.0) / model.unit_length for c in closure.ends for name in apart_by(model.chains[c].name)
     ]
-    driven += [0.0 for _ in closure.welds]
+    driven += [0.0] * (closure.first_hold - len(driven))
     driven += [hold.unit * change.get(hold.drive, 0.0) for hold in closure.holds]
     try:
         solve = _local if many(point.rows) else _bordered

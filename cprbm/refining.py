@@ -272,7 +272,7 @@ def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict
     for group in rows.groups:
         name, mine = group.contact, slice(first, first + len(group.values))
         first = mine.stop
-        if name in zones:
+        if name in zones and not group.holds_angles:
             lam[mine] = _pressure(point, name, zones[name], (before.pairs[name].a, after.pairs[name].a), group.arc)
     _add_single(point, zones, rows, lam, 2.0 * max(chain.h for chain in old.chains))
     return point_at(after.problem, values, state, point.mu, lam, rows)
@@ -282,7 +282,9 @@ def _pressure(point: Point, contact: str, zones: tuple[Zone, ...], chains: tuple
     """Forces on rows at ``arc`` within the zones, from the pressures of an earlier mesh; its and the new chain."""
     source, target = chains
     lam = np.zeros(len(arc))
-    mine = np.array([name == contact for name in point.rows.contact], dtype=bool)
+    mine = np.array([name == contact for name in point.rows.contact], dtype=bool) & ~point.rows.holds_angles
+    if not np.any(mine):
+        return lam
     order = np.argsort(point.rows.arc[mine])
     places, forces = point.rows.arc[mine][order], point.lam[mine][order]
     pressure = np.interp(arc, places, forces / source.size_at(places))
@@ -295,8 +297,13 @@ def _pressure(point: Point, contact: str, zones: tuple[Zone, ...], chains: tuple
 
 
 def _add_single(point: Point, zones: Mapping[str, tuple[Zone, ...]], rows: Rows, lam: Array, reach: float) -> None:
-    """Add the forces outside of zones to the nearest rows of the same contact."""
-    for force, arc, contact in zip(point.lam, point.rows.arc, point.rows.contact, strict=True):
+    """Add the forces outside of zones to the nearest rows of the same contact, and moments to their own."""
+    numbers = {key: i for i, key in enumerate(rows.keys)}
+    for force, arc, key, angle in zip(point.lam, point.rows.arc, point.rows.keys, point.rows.holds_angles, strict=True):
+        contact = key[0]
+        if angle:
+            lam[numbers[key]] += force
+            continue
         if force <= 0.0 or any(zone.begin - reach <= arc <= zone.end + reach for zone in zones.get(contact, ())):
             continue
         lam[rows.nearest(contact, arc)] += force

@@ -143,7 +143,7 @@ def _kinks(mechanism: Mechanism, point: Point, chain: Chain) -> tuple[Array, Arr
         pressed = np.flatnonzero(normal)
         return chain.s[pressed], normal[pressed]
     for group, lam in point.rows.shares(point.lam):
-        if group.contact in mechanism.stops:
+        if group.holds_angles:
             continue  # a moment at an end is the moment there
         pair = mechanism.pairs[group.contact]
         pressing = np.flatnonzero(lam)

@@ -8,6 +8,9 @@ D″          curvature with which the beam parts from what it touched, zero in 
 
 Forces act on joints, so that the last that press tell an end only to one element.  Beyond it the moment is
 smooth and D″ grows from zero: continued backwards from the next three joints, it says where it began.
+
+Next to a pin on the edge that presses, a moment holds the beam's end.  More of it than bends the beam along the edge is
+what forces at joints do on their way to the pin: there is a zone, however few elements long, and D″ says how long.
 """
 
 from __future__ import annotations
@@ -24,6 +27,7 @@ from scene.answer import Array
 CLOSE = 1.6  # elements between joints that are close; farther, a joint between them is not
 SHORTEST = 1.9  # elements between the outer forces of a zone; two neighbours share the force of one place
 CONTINUED = 3  # joints
+FLAT = 0.01  # of D″ times the length squared: a beam that is held at one end and pressed at the other arches by 1/27
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +41,14 @@ class Zone:
 
 def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     """The zones of one contact in ascending order, none while it is open."""
-    chain = pair.a
-    mine = np.array([name == pair.name for name in point.rows.contact], dtype=bool)
-    arcs, forces, overlaps = point.rows.arc[mine], point.lam[mine], point.rows.values[mine]
-    reach = point.rows.reach[mine]
+    chain, rows = pair.a, point.rows
+    mine = np.array([name == pair.name for name in rows.contact], dtype=bool)
+    arcs, forces, overlaps, reach = rows.arc[mine], point.lam[mine], rows.values[mine], rows.reach[mine]
     if not np.any(forces > 0.0):
         return ()
-    largest = forces.max()
+    moments = rows.holds_angles[mine]
+    pinned = arcs[moments & (forces > 0.0)]
+    largest = np.max(forces[~moments], initial=0.0)
     # ends that are clamped in touch: no force is needed there
     clamped = chain.s[[0, -1]][list(pair.clamped)]
     arcs, forces = np.append(arcs, clamped), np.append(forces, np.full(len(clamped), largest))
@@ -57,8 +62,13 @@ def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     apart = np.diff(arcs) > CLOSE * np.maximum(h[1:], h[:-1]) + reach[1:] + reach[:-1]
     breaks = np.concatenate(([0], np.cumsum(apart | arched[1:] | arched[:-1])))
     runs = np.split(arcs[pressed], np.flatnonzero(np.diff(breaks[pressed])) + 1)
+    runs = _with_pins(pair, point, runs, pinned, arcs, -overlaps)
     runs = [_without_idle_clamp(chain, run, clamped) for run in runs]
-    return tuple(_zone(pair, point, chain, run) for run in runs if len(run) > 1 or run[0] not in clamped)
+    return tuple(
+        _zone(pair, point, chain, run, run[np.isin(run, pinned)])
+        for run in runs
+        if len(run) > 1 or run[0] not in clamped
+    )
 
 
 def _without_idle_clamp(chain: Chain, run: Array, clamped: Array) -> Array:
@@ -71,18 +81,50 @@ def _without_idle_clamp(chain: Chain, run: Array, clamped: Array) -> Array:
     return inner if beside and np.ptp(inner) < SHORTEST * h else run
 
 
-def _zone(pair: Touching, point: Point, chain: Chain, run: Array) -> Zone:
-    """The zone whose forces act at arc lengths ``run``, ascending."""
+def _with_pins(pair: Touching, point: Point, runs: list[Array], pinned: Array, arcs: Array, gaps: Array) -> list[Array]:
+    """The ``runs`` in which those that begin or end at an own pin go on to the next if the beam lies flat between."""
+    joined = [runs[0]]
+    for run in runs[1:]:
+        low, high = float(joined[-1][-1]), float(run[0])
+        beside = np.isin((low, high), pinned).any()
+        if beside and _flat(pair, point, low, high, gaps[(arcs > low) & (arcs < high)]):
+            joined[-1] = np.concatenate((joined[-1], run))
+        else:
+            joined.append(run)
+    return joined
+
+
+def _flat(pair: Touching, point: Point, low: float, high: float, gaps: Array) -> bool:
+    """Whether a beam lies on what it touches between two arc lengths, but for what it bends by near them."""
+    chain = pair.a
+    h = float(np.max(chain.size_at(np.array([low, high]) + np.array([[-1.0], [1.0]]) * 0.5 * chain.sizes.min())))
+    joints = chain.s[(chain.s >= low - 2.0 * h) & (chain.s <= high + 2.0 * h)]
+    bent = float(np.max(np.abs(pair.parting(point.state, point.at, joints))))
+    return bool(np.max(gaps, initial=-np.inf) < bent * max(h**2, FLAT * (high - low) ** 2))
+
+
+def _zone(pair: Touching, point: Point, chain: Chain, run: Array, pins: Array) -> Zone:
+    """The zone whose forces act at arc lengths ``run``, ascending, own ``pins`` among them."""
     first, last = float(run[0]), float(run[-1])
     h = chain.size_at(run[[0, -1]])
     springs = chain.s[1:-1]
     before, after = springs[springs < first - 0.25 * h[0]][::-1], springs[springs > last + 0.25 * h[1]]
     whole = run.size > 1 and (not before.size or not after.size)
-    if not whole and last - first < SHORTEST * h.max():
+    if not whole and not pins.size and last - first < SHORTEST * h.max():
         return Zone(first, last, long=False)
+    if pins.size:  # the first spring may lie within
+        before, after = (_parting(pair, point, springs) for springs in (before, after))
     begin = _continued(pair, point, before[:CONTINUED], first, h[0]) if before.size else 0.0
     end = _continued(pair, point, after[:CONTINUED], last, h[1]) if after.size else float(chain.s[-1])
-    return Zone(begin, max(begin, end), long=True)
+    if pins.size:
+        begin, end = min(begin, float(pins[0])), max(end, float(pins[-1]))
+    return Zone(begin, max(begin, end), long=not pins.size or end > begin)
+
+
+def _parting(pair: Touching, point: Point, joints: Array) -> Array:
+    """Those of some ``joints``, the nearest first, from which on the beam parts; all where it does not."""
+    parts = np.flatnonzero(pair.parting(point.state, point.at, joints) > 0.0)
+    return joints[parts[0] :] if parts.size else joints
 
 
 def _continued(pair: Touching, point: Point, joints: Array, last: float, h: float) -> float:

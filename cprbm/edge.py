@@ -1,0 +1,464 @@
+"""Contact of a beam with a rigid edge, fixed to the ground or to a body that moves: the formulation ``auto``.
+
+==========  ===================================================================================
+C           smooth neutral line of the beam, :mod:`cprbm.smooth`; ψ its tangent angle
+m, φ        a place of the edge, and its body's rotation; zero for the ground
+r           C − m
+n, τ, k     normal, tangent and bend of the piece as C sees it, :mod:`cprbm.faces`, turned with the body
+T           t/2, half the thickness at s, zero for a line
+D           distance from the piece less T − T₀, what the beam is thicker at s than 2 T₀ where it is thinnest;
+            constraint c = T₀ − D ≤ 0
+J           turns by a right angle, counter-clockwise
+z           local numbers of the beam (5), and m (2) and φ where the body moves
+v_z         how C moves against the body: C_z for the beam, −I for m, −J r for φ
+==========  ===================================================================================
+
+Rows stand as for a circle (:mod:`cprbm.circle`): where D has a minimum with a place of its own (:mod:`cprbm.wells`),
+at every joint that is close but not beside such a minimum, and where zones end on this mesh; each for the piece that
+it is next to.  At a minimum s moves with it, D_s = 0:
+
+    D_z = n·v_z,    D_zz = n·C_zz + k (τ·v_z)(τ·v_z)ᵀ + E − D_zs D_sz / D_ss        (last term only where s moves)
+    E: J n·C_z and −J n between φ and the beam, φ and m; −n·r at φ
+    D_s = n·C_s − T_s,    D_sz = n·C_sz + k (τ·C_s)(τ·v_z) + (J n·C_s at φ),    D_ss = n·C_ss + k (τ·C_s)²
+
+A beam that is pinned to the edge's own body on the edge, or to a body that is itself pinned there, is in touch at its
+end whatever happens (:mod:`cprbm.own_pins`).  There the edge holds the direction in which the beam leaves: a stop
+(:mod:`cprbm.stops`), whose moment is what the pressure over a length that goes to nothing comes to.  The end is no row
+then, nor is the first spring: where the first link lies along the edge, so does that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cprbm import smooth, wells
+from cprbm.contact import Blocks, Group
+from cprbm.faces import Face, Seen, faces_of
+from cprbm.kinematics import Positions, State, positions, rest_state
+from cprbm.kinks import missed
+from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model, anchor
+from cprbm.own_pins import ON_IT as PIN_ON_IT
+from cprbm.own_pins import own_pins
+from cprbm.stops import AngleStop
+from scene import EdgeContact, Scene
+from scene.answer import Array, Flags
+
+# local numbers (x, y, θθθ, m, φ) to (x of joints, y of joints, θθθ φ)
+ALONE, WITH_BODY = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4, 7])
+CLOSEST_ITERATIONS = 12
+LEAST_CURVATURE = 1e-6  # of D, 1/ℓ, below which its minimum has no place of its own
+REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
+ON_IT = 1e-9  # gap and slope of a clamped end that is in touch with the edge
+ARCHING = 0.2  # of what the largest force bends one element by: where a zone ends within one it arches by less
+JOINT_REACH = 2.0  # joints farther than this many h²·(κ + 1/ℓ) are none
+FLAT = 0.01  # of D″ times the length squared, as for zones
+NEAREST = 1e-9  # of ℓ: pieces whose distances differ by less are equally near
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """Where an edge's body is: m (2,), and φ."""
+
+    m: Array
+    phi: float
+
+    def inwards(self, places: Array) -> Array:
+        """Places (k, 2) as the body sees them."""
+        return self.turned(places - self.m, -self.phi)
+
+    def outwards(self, places: Array) -> Array:
+        """Places (k, 2) on the body as they are."""
+        return self.m + self.turned(places, self.phi)
+
+    @staticmethod
+    def turned(vectors: Array, angle: float) -> Array:
+        """Vectors (k, 2) turned counter-clockwise."""
+        cos, sin = np.cos(angle), np.sin(angle)
+        return np.asarray(vectors @ np.array([[cos, sin], [-sin, cos]]))
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """A beam and a rigid edge.
+
+    Attributes:
+        name: of the contact.
+        a: the beam's chain.
+        body: that the edge is fixed to, −1 for the ground; ``mark`` the number of m among the joints, and ``turning``
+            that of φ among the unknowns, if that is a body that moves.
+        faces: its pieces.
+        offset: T₀, zero for a line; units of length.
+        unit_length: ℓ, m.
+        held: whether the beam's start and end cannot move against the edge's body.
+        pins: stops where these are pinned on the edge.
+        ruled: whether the first and the last link cannot move either, or lie along the edge where it presses them.
+        clamped: whether the start and the end are clamped in touch with the edge and along it.
+        ends: arc lengths at which zones end on this mesh, where element borders are; rows stand there too.
+        own_places: whether minima of D have rows of their own.
+        kinks: of the beam where the contact is in points.
+    """
+
+    name: str
+    a: Chain
+    body: int
+    mark: int
+    turning: int
+    faces: tuple[Face, ...]
+    offset: float
+    unit_length: float
+    held: tuple[bool, bool]
+    pins: tuple[AngleStop | None, AngleStop | None]
+    ruled: tuple[bool, bool]
+    clamped: tuple[bool, bool] = (False, False)
+    ends: tuple[float, ...] = ()
+    own_places: bool = True
+    kinks: Kinks = NO_KINKS
+
+    @property
+    def chains(self) -> tuple[Chain, ...]:
+        """The beam."""
+        return (self.a,)
+
+    @property
+    def arching(self) -> float:
+        """By how much a zone arches at most, of what the largest force can bend one element by."""
+        return ARCHING
+
+    @property
+    def thickness(self) -> float:
+        """What an overlap is measured by: the thickness, for a line the longest beam; units of length."""
+        return 2.0 * self.offset if self.offset > 0.0 else 1.0
+
+    def line(self, state: State, at: Positions) -> smooth.SmoothLine:
+        """The beam's smooth line in a state."""
+        return smooth.smooth_line(self.a, self.unit_length, state, at)
+
+    def frame(self, state: State, at: Positions) -> Frame:
+        """Where the edge is in a state."""
+        if self.body < 0:
+            return Frame(np.zeros(2), 0.0)
+        return Frame(np.array([at.x[self.mark], at.y[self.mark]]), float(state.bodies[self.body, 2]))
+
+    def _half(self, s: Array) -> Array:
+        """T at arc lengths ``s``."""
+        return 0.5 * self.a.section.thickness_at(s) if self.offset > 0.0 else np.zeros_like(s)
+
+    def _widening(self, s: Array) -> Array:
+        """T_s at arc lengths ``s``."""
+        return 0.5 * self.a.section.thinning_at(s) if self.offset > 0.0 else np.zeros_like(s)
+
+    def _seen(self, face: Face, A: smooth.Points, frame: Frame) -> Seen:
+        """A piece from points of the beam, with D in the place of the distance and n as it is turned."""
+        seen = face.seen(frame.inwards(np.stack((A.x, A.y), axis=1)))
+        return replace(
+            seen,
+            distance=seen.distance - (self._half(A.s) - self.offset),
+            normal=frame.turned(seen.normal, frame.phi),
+        )
+
+    def _next_to(self, face: Face, A: smooth.Points, frame: Frame) -> Flags:
+        """Which points face a piece: before it, or behind it and behind no other more closely."""
+        q = frame.inwards(np.stack((A.x, A.y), axis=1))
+        mine = face.seen(q)
+        facing = mine.within & (mine.distance >= 0.0)
+        nearest = mine.within.copy()
+        for other in self.faces:
+            if other is not face:
+                seen = other.seen(q)
+                nearest &= ~seen.within | (np.abs(mine.distance) <= np.abs(seen.distance) + NEAREST)
+        return np.asarray(facing | nearest)
+
+    def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
+        """The constraints at a state, with exact derivatives."""
+        line, frame = self.line(state, at), self.frame(state, at)
+        found = [group for pin in self.pins if pin is not None for group in self._stopped(pin, state, at)]
+        for number, face in enumerate(self.faces):
+            s, free = self._places(face, line, frame)
+            if s.size:
+                found.append(self._pressing(number, line, frame, s, free))
+        return tuple(found)
+
+    def _stopped(self, pin: AngleStop, state: State, at: Positions) -> tuple[Group, ...]:
+        # rows of this contact, whose own have no keys below −1
+        first = -2 if pin.arc == 0.0 else -4
+        return tuple(replace(group, keys=tuple(first - key for key in group.keys)) for group in pin.groups(state, at))
+
+    def _pressing(self, number: int, line: smooth.SmoothLine, frame: Frame, s: Array, free: Flags) -> Group:
+        """Rows at arc lengths ``s`` (k,) against one piece."""
+        A = line.at(s)
+        seen = self._seen(self.faces[number], A, frame)
+        n, k = seen.normal, seen.bend
+        tau = np.stack((n[:, 1], -n[:, 0]), axis=1)
+        C_z, C_sz = smooth.position_slopes(A), smooth.tangent_slopes(A)
+        second, g = smooth.position_curvature(A, n), self._across(A, n)
+        v_z = C_z
+        if self.body >= 0:
+            r, turned = np.stack((A.x, A.y), axis=1) - frame.m, -tau  # J n
+            swung = np.stack((r[:, 1], -r[:, 0]), axis=1)  # −J r
+            moves = np.tile(-np.eye(2), (len(s), 1, 1))
+            v_z = np.concatenate((C_z, moves, swung[:, :, None]), axis=2)
+            C_sz = np.pad(C_sz, ((0, 0), (0, 0), (0, 3)))
+            second = np.pad(second, ((0, 0), (0, 3), (0, 3)))
+            swinging = np.einsum("mi,mik->mk", turned, np.concatenate((C_z, moves), axis=2))
+            second[:, 7, :7] += swinging
+            second[:, :7, 7] += swinging
+            second[:, 7, 7] -= np.sum(n * r, axis=1)
+        D_z, along = np.einsum("mi,mik->mk", n, v_z), np.einsum("mi,mik->mk", tau, v_z)
+        second += k[:, None, None] * along[:, :, None] * along[:, None, :]
+        D_sz = np.einsum("mi,mik->mk", n, C_sz) + (k * g)[:, None] * along
+        if self.body >= 0:
+            D_sz[:, 7] += -g  # J n·C_s
+        beyond, leading = missed(self.a, self.kinks, s), self._leading(A, n)
+        D_ss = self._convexity(A, seen) + leading * beyond.bend
+        moving = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
+        second -= moving[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
+
+        link = A.link
+        joints = (self.a.first_joint + link)[:, None]
+        angles = self.a.first_link + np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n)), axis=1)
+        order = ALONE
+        if self.body >= 0:
+            joints = np.stack((joints[:, 0], np.full(len(s), self.mark)), axis=1)
+            angles = np.concatenate((angles, np.full((len(s), 1), self.turning)), axis=1)
+            order = WITH_BODY
+        second = second[:, order[:, None], order]
+
+        def curvature(multipliers: Array) -> Blocks:
+            pressing = np.flatnonzero(multipliers)
+            weights = -multipliers[pressing, None, None]
+            return Blocks(joints[pressing], angles[pressing], weights * second[pressing])
+
+        return Group(
+            contact=self.name,
+            values=self.offset - seen.distance - np.where(free, leading * beyond.integral, 0.0),
+            joints=joints,
+            angles=np.asarray(angles, dtype=np.intp),
+            slopes=-D_z[:, order],
+            curvature=curvature,
+            keys=self._keys(number, s, free),
+            arc=s,
+        )
+
+    def _keys(self, number: int, s: Array, free: Flags) -> tuple[int, ...]:
+        own = self.a.n + 2 + len(self.ends)  # keys of one piece
+        keys = np.searchsorted(self.a.s, s)
+        at_ends = np.isin(s, self.ends)
+        keys[at_ends] = self.a.n + 2 + np.searchsorted(np.sort(self.ends), s[at_ends])
+        return tuple(np.where(free, -1, keys + number * own).tolist())
+
+    @staticmethod
+    def _leading(A: smooth.Points, n: Array) -> Array:
+        """By how much D_s grows as the tangent leads, ±1: whether the edge is on the beam's right or left."""
+        return np.where(n[:, 1] * np.cos(A.psi) > n[:, 0] * np.sin(A.psi), 1.0, -1.0)
+
+    @staticmethod
+    def _across(A: smooth.Points, n: Array) -> Array:
+        """τ·C_s."""
+        return np.asarray(A.speed * (n[:, 1] * np.cos(A.psi) - n[:, 0] * np.sin(A.psi)))
+
+    def _slope(self, A: smooth.Points, n: Array) -> Array:
+        """D_s."""
+        return np.asarray(A.speed * (n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi)) - self._widening(A.s))
+
+    def _convexity(self, A: smooth.Points, seen: Seen) -> Array:
+        """D_ss."""
+        n = seen.normal
+        cos, sin = np.cos(A.psi), np.sin(A.psi)
+        facing, leaning = n[:, 1] * cos - n[:, 0] * sin, n[:, 0] * cos + n[:, 1] * sin
+        return np.asarray(facing * A.speed * A.bend + leaning * A.gain + seen.bend * self._across(A, n) ** 2)
+
+    def _ruled(self, s: Array) -> Flags:
+        """What lies on the first or the last link, where that is ruled."""
+        start, end = self.ruled
+        return np.asarray((start & (s <= self.a.s[1])) | (end & (s >= self.a.s[-2])))
+
+    def _places(self, face: Face, line: smooth.SmoothLine, frame: Frame) -> tuple[Array, Flags]:
+        """Arc lengths of the rows against one piece, and which of them move with a minimum."""
+        A = line.sampled
+        s, mine = A.s, self._next_to(face, A, frame)
+        seen = self._seen(face, A, frame)
+        D = seen.distance - self.offset
+        near = np.zeros(len(s), dtype=bool)
+        near[::2] = D[::2] < JOINT_REACH * self.a.h**2 * (face.sharpest + 1.0)
+        near &= mine & ~self._ruled(s)
+        # an end that the edge's own body holds cannot move against it: its gap is no unknown
+        near[[0, -1]] &= ~np.array(self.held)
+        # at an end that is lowest the minimum lies within if the way to it rises
+        slope = self._slope(A, seen.normal)
+        fence = [
+            np.inf if inwards and not fixed else -np.inf
+            for inwards, fixed in zip((slope[0] < 0.0, slope[-1] > 0.0), self.held, strict=True)
+        ]
+        lowest = wells.lowest(np.concatenate((fence[:1], D, fence[1:])), REACH) - 1
+        lowest = lowest[self.own_places & ~self._ruled(s[lowest])]
+        parting = self._convexity(A, seen)[::2]
+        found = wells.wells(self.a, D, parting, lowest, LEAST_CURVATURE, self.kinks.places)
+        places, settled = self._refined(face, line, frame, s[found.samples])
+        B = line.at(places)
+        settled &= found.held(self._seen(face, B, frame).distance - self.offset)
+        settled &= self._next_to(face, B, frame) & ~self._ruled(places)
+        places = places[settled & ~self._lying(places, D, parting)]
+        for place in places:
+            near &= np.abs(s - place) > wells.BESIDE * self.a.size_at(place)
+        ends = np.array(self.ends)
+        if ends.size:
+            ends = ends[self._next_to(face, line.at(ends), frame) & ~self._ruled(ends)]
+        fixed = np.concatenate((s[near], ends))
+        return np.concatenate((fixed, places)), np.arange(len(fixed) + len(places)) >= len(fixed)
+
+    def _lying(self, places: Array, D: Array, parting: Array) -> Flags:
+        """At which ``places`` (k,) the beam lies on the edge from an own pin on: it is the end of a zone.
+
+        Args:
+            places: minima of D.
+            D: at the samples (2N+3,).
+            parting: D″ at the joints (N+2,).
+        """
+        s, joints = smooth.halves(self.a), self.a.s
+        lying = np.zeros(len(places), dtype=bool)
+        for end in joints[[0, -1]][[pin is not None for pin in self.pins]]:
+            for i, place in enumerate(places):
+                low, high = sorted((float(end), float(place)))
+                h = float(np.max(self.a.size_at(place + np.array([-0.5, 0.5]) * self.a.sizes.min())))
+                bent = np.max(np.abs(parting[(joints >= low - 2.0 * h) & (joints <= high + 2.0 * h)]))
+                arched = np.max(D[(s > low) & (s < high)], initial=-np.inf)
+                lying[i] |= arched < bent * max(h**2, FLAT * (high - low) ** 2)
+        return lying
+
+    def _refined(self, face: Face, line: smooth.SmoothLine, frame: Frame, s: Array) -> tuple[Array, Flags]:
+        """Newton's method on D_s = 0; the flags say where it settled at a minimum nearby."""
+        start = s
+        if not s.size:
+            return s, np.zeros(0, dtype=bool)
+        for _ in range(CLOSEST_ITERATIONS):
+            A, beyond = line.at(s), missed(self.a, self.kinks, s)
+            seen = self._seen(face, A, frame)
+            leading = self._leading(A, seen.normal)
+            D_ss = self._convexity(A, seen) + leading * beyond.bend
+            slope = self._slope(A, seen.normal) + leading * beyond.angle
+            step = -slope / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
+            s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
+            if np.max(np.abs(step)) < 1e-13:
+                break
+        settled = (D_ss > LEAST_CURVATURE) & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
+        return s, settled
+
+    def _nearest(self, A: smooth.Points, frame: Frame) -> tuple[Array, Array, Array]:
+        """Of the pieces that some points face, the nearest: D (k,), infinite where there is none, n (k, 2), k (k,)."""
+        least, normal, bend = np.full(len(A.s), np.inf), np.zeros((len(A.s), 2)), np.zeros(len(A.s))
+        for face in self.faces:
+            seen = self._seen(face, A, frame)
+            nearer = self._next_to(face, A, frame) & (seen.distance < least)
+            least = np.where(nearer, seen.distance, least)
+            normal, bend = np.where(nearer[:, None], seen.normal, normal), np.where(nearer, seen.bend, bend)
+        return least, normal, bend
+
+    def in_touch(self, state: State, at: Positions) -> tuple[bool, bool]:
+        """Whether the beam's start and end touch the edge and lie along it."""
+        ends = self.line(state, at).at(self.a.s[[0, -1]])
+        distance, n, _ = self._nearest(ends, self.frame(state, at))
+        start, end = (np.abs(distance - self.offset) <= ON_IT) & (np.abs(self._slope(ends, n)) <= ON_IT)
+        return bool(start), bool(end)
+
+    def parting(self, state: State, at: Positions, s: Array) -> Array:
+        """D_ss at arc lengths ``s`` if the beam touched there along the edge: the curvature with which it parts."""
+        A = self.line(state, at).at(s)
+        _, n, bend = self._nearest(A, self.frame(state, at))
+        return np.asarray(self._leading(A, n) * A.bend + bend)
+
+    def touching(self, state: State, at: Positions, s: Array) -> Array:
+        """Where the edge touches that touches at arc lengths ``s``, (k, 2), units of length."""
+        A = self.line(state, at).at(s)
+        distance, n, _ = self._nearest(A, self.frame(state, at))
+        away = np.where(np.isfinite(distance), distance + self._half(s) - self.offset, 0.0)
+        return np.stack((A.x, A.y), axis=1) - away[:, None] * n
+
+    def pressed(self, state: State, at: Positions, chain: Chain, s: Array) -> tuple[float, Array, Array] | None:
+        """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s``."""
+        return (1.0, s, self.line(state, at).at(s).psi) if chain is self.a else None
+
+    def presses_an_end(self, state: State, at: Positions, s: Array) -> bool:
+        """Whether what presses at arc lengths ``s`` does so next to an end of a piece that stands out.
+
+        There the edge has a corner, which presses in a point between joints; an own pin's is none.
+        """
+        A, frame = self.line(state, at).at(s), self.frame(state, at)
+        h = self.a.size_at(s)
+        own = [self.a.joints.start] if self.pins[0] is not None else []
+        own += [self.a.joints.stop - 1] if self.pins[1] is not None else []
+        pins = np.stack((at.x[own], at.y[own]), axis=1)
+        for face in self.faces:
+            seen = self._seen(face, A, frame)
+            distance = seen.distance + self._half(A.s) - self.offset
+            feet = np.stack((A.x, A.y), axis=1) - distance[:, None] * seen.normal
+            near = self._next_to(face, A, frame) & (np.abs(seen.distance - self.offset) <= h**2)
+            for end in face.ends:
+                if end is None or self._goes_on(face, end):
+                    continue
+                place = frame.outwards(end[None])[0]
+                at_pin = np.hypot(*(pins - place).T) <= self.offset + PIN_ON_IT
+                if not np.any(at_pin) and np.any(near & (np.hypot(*(feet - place).T) < h)):
+                    return True
+        return False
+
+    def _goes_on(self, face: Face, end: Array) -> bool:
+        """Whether another piece goes on at an ``end``, straight or into the free side."""
+        for other in self.faces:
+            if other is not face and any(
+                there is not None and np.hypot(*(there - end)) <= NEAREST for there in other.ends
+            ):
+                farther = max((there for there in other.ends if there is not None), key=lambda p: np.hypot(*(p - end)))
+                return bool(face.seen(farther[None]).distance[0] >= -NEAREST)
+        return False
+
+    def least_gap(self, state: State, at: Positions) -> float:
+        """Least gap anywhere along the beam, units of length; negative where it overlaps."""
+        line, frame = self.line(state, at), self.frame(state, at)
+        least = [self._nearest(line.sampled, frame)[0].min()]
+        for face in self.faces:
+            s, _ = self._places(face, line, frame)
+            least.append(self._nearest(line.at(s), frame)[0].min(initial=np.inf))
+        return float(min(least)) - self.offset
+
+
+def edge_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Edge:
+    """One of the scene's contacts with an edge."""
+    contact = scene.contacts[name]
+    assert isinstance(contact, EdgeContact)
+    chain = model.chain(contact.beam)
+    offset = 0.5 * float(chain.section.thickness.min()) if contact.thick else 0.0
+    moves = name in model.marks
+    body = model.marks[name].body if moves else -1
+    x, y = np.array(anchor(contact)) / model.unit_length if moves else (0.0, 0.0)
+    pins = own_pins(scene, model, name)
+    held = (chain.start.body == body, chain.end is not None and chain.end.body == body)
+    welded = (chain.start.welded, chain.end is not None and chain.end.welded)
+    edge = Edge(
+        name=name,
+        a=chain,
+        body=body,
+        mark=model.mark_of(name),
+        turning=model.n_links + 3 * body + 2,
+        faces=faces_of(contact, model.unit_length, (float(x), float(y))),
+        offset=offset,
+        unit_length=model.unit_length,
+        held=(held[0] or pins[0] is not None, held[1] or pins[1] is not None),
+        pins=pins,
+        ruled=(
+            pins[0] is not None or (held[0] and welded[0]),
+            pins[1] is not None or (held[1] and welded[1]),
+        ),
+        ends=tuple((chain.s[-1] * fit.ends.get(name, np.zeros(0))).tolist()),
+        kinks=fit.kinks.get(name, (NO_KINKS,))[0],
+    )
+    return replace(edge, clamped=_clamped(model, edge, (held[0] and welded[0], held[1] and welded[1])))
+
+
+def _clamped(model: Model, edge: Edge, welded: tuple[bool, bool]) -> tuple[bool, bool]:
+    """Which ends ``welded`` to the edge's own body are so in touch with the edge and along it."""
+    state = rest_state(model)
+    at = positions(model, state)
+    touch = edge.in_touch(state, at)
+    return welded[0] and touch[0], welded[1] and touch[1]

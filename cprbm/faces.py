@@ -1,0 +1,179 @@
+"""Pieces of a rigid edge: straight ones, and graphs of polynomials.
+
+==========  ==================================================================================
+q           place, in the frame of the body that the edge is fixed to
+τ, n        unit vector along the piece, and its normal towards the free side
+D           distance of q from the piece, negative behind it
+k           curvature with which the free side's distance bends: ∂²D/∂q² = k τ τᵀ
+κ           curvature of the edge itself where q is seen, positive where the rigid side bulges; k = κ/(1 + κ D)
+==========  ==================================================================================
+
+Beyond its ends a piece is continued straight: so D has derivatives everywhere, and ``within`` says where it is the
+piece that is seen.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Protocol
+
+import numpy as np
+from numpy.polynomial import polynomial
+
+from scene import EdgeContact, HalfPlaneContact, LineContact
+from scene.answer import Array, Flags
+
+NEWTON_STEPS = 30
+SAMPLES = 65  # of a graph, from which the nearest place is sought
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """A piece as it is seen from some places: D (k,), n (k, 2), k (k,), and whether it is the piece itself (k,)."""
+
+    distance: Array
+    normal: Array
+    bend: Array
+    within: Flags
+
+
+class Face(Protocol):
+    """One piece of an edge."""
+
+    @property
+    def ends(self) -> tuple[Array | None, Array | None]:
+        """Where it begins and ends, (2,) each, with the free side on the left; None where it goes on for ever."""
+
+    @property
+    def sharpest(self) -> float:
+        """The largest |κ|."""
+
+    def seen(self, q: Array) -> Seen:
+        """The piece from places ``q`` (k, 2)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Straight:
+    """A straight piece from ``begin`` (2,) on along ``tau`` (2,), ``length`` long (inf for a half-plane's edge)."""
+
+    begin: tuple[float, float]
+    tau: tuple[float, float]
+    normal: tuple[float, float]
+    length: float
+
+    @property
+    def ends(self) -> tuple[Array | None, Array | None]:
+        """Where it begins and ends."""
+        if self.length == np.inf:
+            return None, None
+        (tx, ty), (nx, ny) = self.tau, self.normal
+        begin, end = np.array(self.begin), np.array(self.begin) + self.length * np.array(self.tau)
+        return (begin, end) if tx * ny - ty * nx > 0.0 else (end, begin)
+
+    @property
+    def sharpest(self) -> float:
+        """Nothing."""
+        return 0.0
+
+    def seen(self, q: Array) -> Seen:
+        """The piece from places ``q`` (k, 2)."""
+        r, none = q - np.array(self.begin), np.zeros(len(q))
+        along = r @ np.array(self.tau)
+        within = (self.length == np.inf) | ((along >= 0.0) & (along <= self.length))
+        return Seen(r @ np.array(self.normal), np.tile(self.normal, (len(q), 1)), none, within)
+
+
+@dataclass(frozen=True, slots=True)
+class Graph:
+    """w = f(v) for v from ``low`` to ``high``; ``side`` is +1 where w is larger on the free side.
+
+    ``swapped`` where w is x and v is y; ``coefficients`` of f, ``origin`` of the frame in (v, w).
+    """
+
+    coefficients: tuple[float, ...]
+    low: float
+    high: float
+    side: float
+    swapped: bool
+    origin: tuple[float, float]
+
+    @property
+    def ends(self) -> tuple[Array | None, Array | None]:
+        """Where it begins and ends."""
+        low, high = (self._placed(np.array([v]))[0] for v in (self.low, self.high))
+        return (low, high) if (self.side > 0.0) != self.swapped else (high, low)
+
+    @property
+    def sharpest(self) -> float:
+        """The largest |κ| at some samples."""
+        return float(np.max(np.abs(self._curvature(np.linspace(self.low, self.high, SAMPLES)))))
+
+    def _placed(self, v: Array) -> Array:
+        w = polynomial.polyval(v, self.coefficients)
+        places = np.stack((v - self.origin[0], w - self.origin[1]), axis=1)
+        return np.asarray(places[:, ::-1] if self.swapped else places)
+
+    def _curvature(self, v: Array) -> Array:
+        f1, f2 = (polynomial.polyval(v, polynomial.polyder(self.coefficients, m)) for m in (1, 2))
+        return np.asarray(-self.side * f2 / (1.0 + f1 * f1) ** 1.5)
+
+    def seen(self, q: Array) -> Seen:
+        """The piece from places ``q`` (k, 2)."""
+        v, w = (q[:, ::-1] if self.swapped else q).T + np.array(self.origin)[:, None]
+        f, f1, f2 = (polynomial.polyder(self.coefficients, m) for m in range(3))
+        samples = np.linspace(self.low, self.high, SAMPLES)
+        heights = polynomial.polyval(samples, f)
+        at = samples[np.argmin((samples - v[:, None]) ** 2 + (heights - w[:, None]) ** 2, axis=1)]
+        for _ in range(NEWTON_STEPS):
+            slope, rest = polynomial.polyval(at, f1), polynomial.polyval(at, f) - w
+            bent = 1.0 + slope**2 + rest * polynomial.polyval(at, f2)
+            # beyond the centre of curvature the place is farthest; it stays at its sample
+            step = np.where(bent > 0.0, (at - v + rest * slope) / np.where(bent > 0.0, bent, 1.0), 0.0)
+            moved = np.clip(at - step, self.low, self.high)
+            if np.max(np.abs(moved - at), initial=0.0) < 1e-15:
+                break
+            at = moved
+        slope = polynomial.polyval(at, f1)
+        size = np.hypot(1.0, slope)
+        tau = np.stack((1.0 / size, slope / size), axis=1)
+        n = self.side * np.stack((-slope / size, 1.0 / size), axis=1)
+        rv, rw = v - at, w - polynomial.polyval(at, f)
+        along, distance = rv * tau[:, 0] + rw * tau[:, 1], rv * n[:, 0] + rw * n[:, 1]
+        within = ~(((at <= self.low) & (along < 0.0)) | ((at >= self.high) & (along > 0.0)))
+        kappa = self._curvature(at)
+        bend = np.where(within, kappa / (1.0 + kappa * distance), 0.0)
+        return Seen(distance, n[:, ::-1] if self.swapped else n, bend, within)
+
+
+def faces_of(contact: EdgeContact, unit_length: float, origin: tuple[float, float]) -> tuple[Face, ...]:
+    """The pieces of a contact's edge, units of length from an ``origin`` (2,), in order."""
+    match contact:
+        case LineContact():
+            points = np.array(contact.points) / unit_length - np.array(origin)
+            sign = 1.0 if contact.side == "left" else -1.0
+            found = []
+            for one, other in pairwise(points):
+                length = float(np.hypot(*(other - one)))
+                tx, ty = (other - one) / length
+                begin = (float(one[0]), float(one[1]))
+                found.append(Straight(begin, (float(tx), float(ty)), (float(-sign * ty), float(sign * tx)), length))
+            return tuple(found)
+        case HalfPlaneContact():
+            x, y = np.array(contact.point) / unit_length - np.array(origin)
+            nx, ny = np.array(contact.normal) / np.hypot(*contact.normal)
+            return (Straight((float(x), float(y)), (float(ny), float(-nx)), (float(nx), float(ny)), np.inf),)
+    swapped = contact.axis == "y"
+    low, high = sorted(contact.range)
+    # f and its variable in units of length
+    powers = unit_length ** (np.arange(len(contact.coefficients)) - 1.0)
+    return (
+        Graph(
+            coefficients=tuple((np.array(contact.coefficients) * powers).tolist()),
+            low=low / unit_length,
+            high=high / unit_length,
+            side=1.0 if contact.side == "above" else -1.0,
+            swapped=swapped,
+            origin=origin[::-1] if swapped else origin,
+        ),
+    )
