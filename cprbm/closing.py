@@ -21,6 +21,7 @@ from scipy.optimize import brentq
 
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import Point, equilibrium, point_at
+from cprbm.kinematics import most_turned
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.refining import all_zones, carried_over, fits, fitted
 from cprbm.settings import Settings
@@ -140,7 +141,7 @@ class Gap:
         start = self.nearest(value)
         most = min(self.settings.iterations, SOON)
         found = equilibrium(self.mechanism.problem, self.at(value), start, self.settings.tolerance, most)
-        turned = float(np.max(np.abs(found.point.state.theta - start.state.theta)))
+        turned = most_turned(start.state, found.point.state)
         if not found.converged or turned > SEEN:
             return None
         self.solved[value] = found.point

@@ -17,10 +17,12 @@ import numpy as np
 from cprbm.certifying import certify
 from cprbm.critical import Minimum, foreseen
 from cprbm.equilibrium import Equilibrium, Point, equilibrium
+from cprbm.kinematics import most_turned
 from cprbm.mechanism import Mechanism
 from cprbm.rate import rate, strayed
 from cprbm.settings import Settings
 from scene import Certificate, Ending
+from scene.answer import Array
 
 GROWTH = 2.0
 SETTLE = 0.1  # of the way: in shorter steps steady rows may settle which places there are
@@ -102,20 +104,23 @@ class Follower:
         """Go all the way, directly or in steps; ``accept`` sees every next minimum before it is the present one."""
         done, step, iterations, refused = 0.0, 1.0, 0, False
         self.values = dict(way.begin)
+        here = there = rate(self.mechanism.problem, self.point, way.change)
         while True:
-            step = min(step, 1.0 - done, self._longest(way))
+            step = min(step, 1.0 - done, self._longest(here))
             fraction = 1.0 if done + step >= 1.0 else done + step
             values = way.at(fraction)
             found = self._solved(values, settle=step <= SETTLE)
             iterations += found.iterations
             certificate, ending = certify(self.mechanism, self.settings, found)
             if ending is Ending.COMPLETED:
-                ending, sentence = self._strayed(way, found.point, values)
+                there = rate(self.mechanism.problem, found.point, way.change)
+                part = fraction - done
+                ending, sentence = self._strayed(found.point, part * here, part * there)
             else:
                 sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
             if ending is Ending.COMPLETED:
                 accept(found.point, values)
-                self.point, self.values, done = found.point, values, fraction
+                self.point, self.values, done, here = found.point, values, fraction, there
                 self.trail = [*self.trail[-TRAIL:], Minimum(way.value(fraction), self.point, certificate)]
                 if fraction == 1.0:
                     return Reached(ending, "", replace(certificate, iterations=iterations))
@@ -130,29 +135,31 @@ class Follower:
                 ending = ending if found.converged else Ending.STEP_TOO_SMALL
                 return Reached(ending, sentence, certificate=None)
 
-    def _longest(self, way: Way) -> float:
-        """The largest part of the way that may be taken at once."""
+    def _longest(self, here: Array) -> float:
+        """The largest part of the way that may be taken at once, on which links turn at the rate ``here``."""
         if not self.careful:
             return 1.0
-        turn = float(np.max(np.abs(rate(self.mechanism.problem, self.point, way.change))))
+        turn = float(np.max(np.abs(here)))
         return max(SHORT / turn, self.settings.smallest_step) if turn > SHORT else 1.0
 
     def _solved(self, values: dict[str, float], *, settle: bool) -> Equilibrium:
         problem, settings = self.mechanism.problem, self.settings
         return equilibrium(problem, values, self.point, settings.tolerance, settings.iterations, settle=settle)
 
-    def _strayed(self, way: Way, found: Point, values: dict[str, float]) -> tuple[Ending, str]:
-        """Why a minimum is not on the branch; COMPLETED where it is."""
-        turned = float(np.max(np.abs(found.state.theta - self.point.state.theta)))
+    def _strayed(self, found: Point, start: Array, end: Array) -> tuple[Ending, str]:
+        """Why a minimum is not on the branch; COMPLETED where it is.
+
+        ``start`` and ``end`` are the ways that the rates at both ends of the step make of it, (n_links,).
+        """
+        turned = most_turned(self.point.state, found.state)
         if turned > self.settings.largest_turn:
             return Ending.STEP_TOO_SMALL, f"a link turned by {turned:.2f} rad in one load step"
         if crossed := self.mechanism.passed(self.point, found):
             return Ending.BEAMS_CROSSED, f"in contact '{crossed}' the beam went across what it may touch"
-        if self.careful and turned > ISOLATED and _pressing(found) != _pressing(self.point):
+        if self.careful and turned > ISOLATED and pressing(found) != pressing(self.point):
             return Ending.STEP_TOO_SMALL, "a contact or stop closes or opens on the way"
-        problem, change = self.mechanism.problem, {name: value - self.values[name] for name, value in values.items()}
-        ways = (rate(problem, point, change) for point in (self.point, found))
-        if strayed(problem.model.lengths, found.state.theta - self.point.state.theta, *ways):
+        change = found.state.theta - self.point.state.theta
+        if strayed(self.mechanism.problem.model.lengths, change, start, end):
             return Ending.STEP_TOO_SMALL, "the links went another way than their rates say, to another branch"
         return Ending.COMPLETED, ""
 
@@ -166,6 +173,6 @@ class Follower:
         return left if left > smallest else min(step, JUST * smallest)
 
 
-def _pressing(point: Point) -> frozenset[str]:
+def pressing(point: Point) -> frozenset[str]:
     """Names of the contacts and stops that press."""
     return frozenset(name for lam, name in zip(point.lam, point.rows.contact, strict=True) if lam > 0.0)

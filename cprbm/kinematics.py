@@ -30,6 +30,11 @@ class State:
         return State(self.theta + step[:n_links], self.bodies + step[n_links:].reshape(-1, 3))
 
 
+def most_turned(before: State, after: State) -> float:
+    """The most that a link turns by between two states, rad."""
+    return float(np.max(np.abs(after.theta - before.theta)))
+
+
 def rest_state(model: Model) -> State:
     """The stress-free state."""
     return State(model.rest.copy(), np.zeros((len(model.free_bodies), 3)))

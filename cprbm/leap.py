@@ -23,7 +23,7 @@ import numpy as np
 
 from cprbm.certifying import certify
 from cprbm.equilibrium import Drag, Equilibrium, Point, equilibrium, point_at, potential_energy
-from cprbm.kinematics import State
+from cprbm.kinematics import State, most_turned
 from cprbm.mechanism import Mechanism
 from cprbm.settings import Settings
 from scene import Certificate, Ending
@@ -74,7 +74,7 @@ def leap(
             if strength > MOST:
                 return None
             continue
-        turned = _turned(point, ahead)
+        turned = most_turned(point.state, ahead.state)
         point = ahead
         if turned < STILL and (landed := _landed(mechanism, settings, values, point)) is not None:
             return landed
@@ -94,7 +94,11 @@ def _step(
     """One step with the drag ``strength``; None where it is too long, goes through something or up."""
     slowed = replace(mechanism.problem, drag=Drag(point.state.theta, strength))
     found = equilibrium(slowed, values, point, settings.tolerance, settings.iterations, settle=True)
-    if not found.converged or _turned(point, found.point) > STEP or mechanism.passed(point, found.point):
+    if (
+        not found.converged
+        or most_turned(point.state, found.point.state) > STEP
+        or mechanism.passed(point, found.point)
+    ):
         return None
     # as the energy of the problem without drag has it
     return _undragged(mechanism, values, found)
@@ -109,11 +113,16 @@ def _landed(mechanism: Mechanism, settings: Settings, values: dict[str, float], 
     """The certified minimum near a state, if there is one and it is not higher."""
     found = equilibrium(mechanism.problem, values, point, settings.tolerance, settings.iterations, settle=True)
     certificate, ending = certify(mechanism, settings, found)
-    if ending is not Ending.COMPLETED or _turned(point, found.point) > STEP or mechanism.passed(point, found.point):
+    if (
+        ending is not Ending.COMPLETED
+        or most_turned(point.state, found.point.state) > STEP
+        or mechanism.passed(point, found.point)
+    ):
         return None
     before, after = (potential_energy(mechanism.problem, each) for each in (point, found.point))
     return Landed(found.point, certificate) if after <= before + ROUNDED * abs(before) else None
 
 
-def _turned(before: Point, after: Point) -> float:
-    return float(np.max(np.abs(after.state.theta - before.state.theta)))
+def _too_far(mechanism: Mechanism, before: Point, after: Point) -> bool:
+    """Whether a step is too long, or goes through something."""
+    return most_turned(before.state, after.state) > STEP or bool(mechanism.passed(before, after))

@@ -18,9 +18,9 @@ from cprbm.closing import Closings, Stood
 from cprbm.contact import NO_ROWS
 from cprbm.critical import BranchEnd, Minimum, branch_end, told
 from cprbm.equilibrium import Point, equilibrium, point_at, potential_energy
-from cprbm.following import Follower, Reached, Way, to
+from cprbm.following import Follower, Reached, Way, pressing, to
 from cprbm.forces import contact_imbalance
-from cprbm.kinematics import rest_state
+from cprbm.kinematics import most_turned, rest_state
 from cprbm.leap import Landed, leap
 from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of
@@ -90,7 +90,7 @@ class March:
             if self.opened:
                 self._note_closings(stage.name, stage.steps, point, values[stage.steps])
             for name, opened in self.opened.items():
-                if not _presses(point, name):
+                if name not in pressing(point):
                     opened.append((values[stage.steps], point))
 
         for _ in range(ENDS):
@@ -181,7 +181,7 @@ class March:
             start = carried_over(on.mechanism, landed.point, self.whole, values)
             found = equilibrium(self.whole.problem, values, start, settings.tolerance, settings.iterations, settle=True)
             certificate, ending = certify(self.whole, settings, found)
-            turned = float(np.max(np.abs(found.point.state.theta - start.state.theta)))
+            turned = most_turned(start.state, found.point.state)
             if ending is Ending.COMPLETED and turned <= FOLLOWED:
                 stood = Minimum(landed.value, found.point, certificate)
                 return Follower(self.whole, settings, found.point, values, [stood], careful=careful)
@@ -200,7 +200,7 @@ class March:
                 sentence = reached.sentence if end is None else told(end.loss, end.what)
                 return ending, f"{ending.value}: as {part.sentence}, {sentence}"
         on.mechanism, on.values = self.whole, {}
-        self.closed_at |= {name: 0.0 for name in self.asked_events if _presses(on.point, name)}
+        self.closed_at |= {name: 0.0 for name in self.asked_events if name in pressing(on.point)}
         return Ending.COMPLETED, ""
 
     def _station(self, stage: Stage, value: float, certificate: Certificate) -> StationAnswer | None:
@@ -249,7 +249,7 @@ class March:
                 if fit.kinks and (level := levelled(self.scene, settings, mechanism, point, fit, values)) is not None:
                     target, solved = level
                     break
-            turned = float(np.max(np.abs(solved.point.state.theta - start.state.theta)))
+            turned = most_turned(start.state, solved.point.state)
             if not solved.converged or turned > FOLLOWED:
                 if now is asked:  # on a mesh that fits a little less it stands already
                     break
@@ -287,7 +287,7 @@ class March:
 
     def _note_closings(self, stage: str, load: str, after: Point, value: float) -> None:
         """Note which contacts have closed on the way to ``after``, and where, if the scene asks."""
-        for name in [name for name in self.opened if _presses(after, name)]:
+        for name in [name for name in self.opened if name in pressing(after)]:
             closings = Closings(self.scene, self.family[-1], self.on.mechanism, self.asked, load, self.on.values)
             closing = closings.first(name, self.opened[name], value)
             if closing is not None:
@@ -303,7 +303,3 @@ class March:
 
 def _unseen(point: Point, values: dict[str, float]) -> None:
     """Of minima on the way that nobody asks for."""
-
-
-def _presses(point: Point, contact: str) -> bool:
-    return any(lam > 0.0 for lam, name in zip(point.lam, point.rows.contact, strict=True) if name == contact)

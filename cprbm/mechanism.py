@@ -16,7 +16,7 @@ from cprbm.energy import dead_loads, end_moments
 from cprbm.equilibrium import Point, Problem
 from cprbm.hinging import hinges_of
 from cprbm.holding import holds_of
-from cprbm.kinematics import Positions, State, positions
+from cprbm.kinematics import Positions, State, most_turned, positions
 from cprbm.model import EVEN, Fit, Model, build
 from cprbm.nearest import Pair, pair_of
 from cprbm.rigid import RigidCircle, rigid_circle
@@ -79,7 +79,7 @@ class Mechanism:
     def _overlapped_between(self, circle: Circle, before: State, after: State) -> bool:
         """Whether the beam lay deep in the circle on the way from one state to another, the unknowns going evenly."""
         # the real way differs by the square of the step
-        allowed = 0.5 * circle.offset + SHALLOW * circle.radius + WAY * _turned(before, after) ** 2
+        allowed = 0.5 * circle.offset + SHALLOW * circle.radius + WAY * most_turned(before, after) ** 2
         for state in _between(before, after):
             at = positions(self.problem.model, state)
             places = circle.line(state, at).sampled
@@ -89,16 +89,11 @@ class Mechanism:
 
     def _crossed_between(self, pair: Pair | Edge, before: Point, after: Point, way: float) -> bool:
         """Whether a beam lay across what it may touch between two states, by more than the way between is known."""
-        allowed = pair.offset + way * _turned(before.state, after.state) ** 2
+        allowed = pair.offset + way * most_turned(before.state, after.state) ** 2
         return any(
             pair.least_gap(state, positions(self.problem.model, state)) + pair.offset < -allowed
             for state in _between(before.state, after.state)
         )
-
-
-def _turned(before: State, after: State) -> float:
-    """The most that a link turns by, rad."""
-    return float(np.max(np.abs(after.theta - before.theta)))
 
 
 def _between(before: State, after: State) -> Iterator[State]:

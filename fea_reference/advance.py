@@ -19,7 +19,7 @@ import numpy as np
 
 from fea_reference.model import Model
 from fea_reference.state import State
-from scene.answer import Array
+from scene.answer import Array, Ints
 
 
 def advance(model: Model, z: State, step: Array) -> State:
@@ -27,11 +27,7 @@ def advance(model: Model, z: State, step: Array) -> State:
     way = step.copy()
     for beam in model.beams:
         dofs = model.node_dofs[:2, beam.nodes]
-        dx, dy = z.difference(dofs[:, 1:], dofs[:, :-1])
-        step_x, step_y = np.diff(step[dofs], axis=1)
-        square = dx * dx + dy * dy
-        turn = (dx * step_y - dy * step_x) / square
-        stretch = (dx * step_x + dy * step_y) / square
+        dx, dy, turn, stretch = _chords(dofs, z, step)
         # What each chord changes by, with all digits however small it is: (1 + stretch) R(turn) less one.
         along, across = stretch * np.cos(turn) - 2.0 * np.sin(0.5 * turn) ** 2, (1.0 + stretch) * np.sin(turn)
         changes = np.stack([along * dx - across * dy, across * dx + along * dy])
@@ -44,12 +40,16 @@ def carried(model: Model, before: State, now: State, rate: Array) -> Array:
     same = rate.copy()
     for beam in model.beams:
         dofs = model.node_dofs[:2, beam.nodes]
-        dx, dy = before.difference(dofs[:, 1:], dofs[:, :-1])
-        rate_x, rate_y = np.diff(rate[dofs], axis=1)
-        square = dx * dx + dy * dy
-        turn = (dx * rate_y - dy * rate_x) / square
-        stretch = (dx * rate_x + dy * rate_y) / square
+        _, _, turn, stretch = _chords(dofs, before, rate)
         dx, dy = now.difference(dofs[:, 1:], dofs[:, :-1])
         changes = np.stack([stretch * dx - turn * dy, turn * dx + stretch * dy])
         same[dofs[:, 1:]] = rate[dofs[:, :1]] + np.cumsum(changes, axis=1)
     return same
+
+
+def _chords(dofs: Ints, z: State, step: Array) -> tuple[Array, Array, Array, Array]:
+    """The chords (n,) between a beam's nodes, ``dofs`` (2, n + 1), along x and y, and their turn and stretch."""
+    dx, dy = z.difference(dofs[:, 1:], dofs[:, :-1])
+    step_x, step_y = np.diff(step[dofs], axis=1)
+    square = dx * dx + dy * dy
+    return dx, dy, (dx * step_y - dy * step_x) / square, (dx * step_x + dy * step_y) / square

@@ -57,8 +57,9 @@ class Slsqp:
         task = _Task(problem, alpha, self.units, differences=self.differences)
         lower, upper = bounds(problem, alpha)
         clock = _Clock(seconds)
-        try:
-            found = optimize.minimize(
+
+        def minimised() -> optimize.OptimizeResult:
+            return optimize.minimize(
                 task.energy,
                 np.clip(start, lower, upper),
                 jac=task.energy_slope,
@@ -71,11 +72,8 @@ class Slsqp:
                 callback=clock,
                 options={"maxiter": 1500, "ftol": self.stops_at},
             )
-        except _TimeIsUpError as up:
-            return Answered(up.z, _broken(problem, alpha, up.z), clock.iterations, timed_out=True)
-        except np.linalg.LinAlgError:
-            return Answered(start, "lost: no curve can be fitted", clock.iterations)
-        return Answered(found.x, _broken(problem, alpha, found.x), int(found.nit))
+
+        return _answered(problem, alpha, start, clock, minimised)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,10 +95,11 @@ class TrustConstr:
         ]
         if len(held):
             constraints.append(optimize.LinearConstraint(rows, lower[held], upper[held]))
-        try:
+
+        def minimised() -> optimize.OptimizeResult:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", UserWarning)  # an update that is skipped is of no interest here
-                found = optimize.minimize(
+                return optimize.minimize(
                     task.energy,
                     start,
                     jac=task.energy_slope,
@@ -110,11 +109,8 @@ class TrustConstr:
                     callback=clock,
                     options={"maxiter": 1000},
                 )
-        except _TimeIsUpError as up:
-            return Answered(up.z, _broken(problem, alpha, up.z), clock.iterations, timed_out=True)
-        except np.linalg.LinAlgError:
-            return Answered(start, "lost: no curve can be fitted", clock.iterations)
-        return Answered(found.x, _broken(problem, alpha, found.x), int(found.nit))
+
+        return _answered(problem, alpha, start, clock, minimised)
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,6 +199,19 @@ def _forward(values: Callable[[Array], Array], z: Array) -> Array:
     """Differences by √ε, as fmincon takes them."""
     steps = np.sqrt(np.finfo(float).eps) * np.maximum(1.0, np.abs(z))
     return np.asarray((values(z + np.diag(steps)) - values(z)).T / steps)
+
+
+def _answered(
+    problem: Problem, alpha: float, start: Array, clock: _Clock, minimised: Callable[[], optimize.OptimizeResult]
+) -> Answered:
+    """What one of SciPy's solves found, or where it stood when the time was up."""
+    try:
+        found = minimised()
+    except _TimeIsUpError as up:
+        return Answered(up.z, _broken(problem, alpha, up.z), clock.iterations, timed_out=True)
+    except np.linalg.LinAlgError:
+        return Answered(start, "lost: no curve can be fitted", clock.iterations)
+    return Answered(found.x, _broken(problem, alpha, found.x), int(found.nit))
 
 
 def _broken(problem: Problem, alpha: float, z: Array) -> str:
