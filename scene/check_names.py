@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from scene.mistakes import Mistake, unknown_name
-from scene.statement import BodyLoad, FreeEnd, Moment, RigidContact, RotationDrive, Scene
+from scene.statement import BeamContact, BodyLoad, FreeEnd, Moment, RigidContact, RotationDrive, Scene
 
 RESERVED = "scene"
 
@@ -55,10 +55,10 @@ def unknown_names(scene: Scene) -> Iterator[Mistake]:
         elif each.point not in points:
             yield unknown_name(f"{key}.point", each.point, "point", points)
     for name, contact in scene.contacts.items():
-        rigid = isinstance(contact, RigidContact)
+        paired = isinstance(contact, BeamContact)
         for i, beam_name in enumerate(contact.beams):
             if beam_name not in scene.beams:
-                key = "beam" if rigid else f"between[{i}]"
+                key = f"between[{i}]" if paired else "beam"
                 yield unknown_name(f"contacts.{name}.{key}", beam_name, "beam", scene.beams)
         if isinstance(contact, RigidContact) and contact.body not in scene.bodies:
             yield unknown_name(f"contacts.{name}.body", contact.body, "body", scene.bodies)

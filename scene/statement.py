@@ -411,6 +411,24 @@ class BeamContact(Record):
         return self.between
 
 
+class SelfContact(Record):
+    """A beam that may touch itself, without friction, once it has turned far enough to come back to itself.
+
+    A ``thick`` beam touches by its edges, half of the thickness of either place from its neutral line, another as a
+    line.  Which of its sides meet is not told: it is the one on which a part of the beam comes near another.
+    """
+
+    kind: Literal["beam-self"]
+    beam: Name
+    thick: bool = True
+    paper: None = None
+
+    @property
+    def beams(self) -> tuple[str, ...]:
+        """The beam that may touch itself."""
+        return (self.beam,)
+
+
 class RigidContact(Record):
     """What contacts of a beam with something rigid have in common.  They are without friction.
 
@@ -483,7 +501,7 @@ class FunctionContact(RigidContact):
 EdgeContact = LineContact | HalfPlaneContact | FunctionContact
 """Contacts with what a beam may lie on up to its own pin, where it is held like by a stop."""
 
-Contact = Annotated[BeamContact | CircleContact | EdgeContact, Field(discriminator="kind")]
+Contact = Annotated[BeamContact | SelfContact | CircleContact | EdgeContact, Field(discriminator="kind")]
 
 
 class Stage(Record):
