@@ -107,7 +107,7 @@ def errors_of(links, **changes):
         [
             np.hypot(*(values["T.displacement"] + CURVED.drawn - CURVED.tip)) / LENGTH,
             abs(values["scene.potential_energy"][0] / CURVED.energy - 1.0),
-            abs(values["edge.moment"][0] / CURVED.moment - 1.0),
+            abs(values["edge.moment"][0] / CURVED.about_start - 1.0),
             np.hypot(*(values["T.reaction"] - [0.0, -CURVED.force])) / CURVED.force,
             abs(values["edge.force"][0] / CURVED.force - 1.0),
             abs(end - CURVED.flat) / LENGTH,
@@ -135,7 +135,7 @@ def test_every_kind_of_edge_is_the_same_straight_one(edge, thick):
 def test_an_edge_and_a_pin_on_a_body_that_turns(monkeypatch):
     # reference: tests.references.flattened, seen from the wheel; and both forms of Newton's system give one answer
     values = solved(arch(turn=0.7, edge="line"), 40)
-    assert values["edge.moment"][0] == pytest.approx(CURVED.moment, rel=2.0 / 40**2)
+    assert values["edge.moment"][0] == pytest.approx(CURVED.about_start, rel=2.0 / 40**2)
     assert values["edge.force"][0] == pytest.approx(CURVED.force, rel=2.0 / 40**2)
     assert values["edge.ends"][1] == pytest.approx(CURVED.flat, abs=2.0 / 40**2 * LENGTH)
     assert values["scene.potential_energy"][0] == pytest.approx(CURVED.energy, rel=2.0 / 40**2)
