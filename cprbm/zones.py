@@ -111,7 +111,8 @@ def _flat(pair: Touching, point: Point, low: float, high: float, arch: float) ->
 def _zone(pair: Touching, point: Point, chain: Chain, run: Array, pins: Array) -> Zone:
     """The zone whose forces act at arc lengths ``run``, ascending, own ``pins`` among them."""
     first, last = float(run[0]), float(run[-1])
-    h = chain.size_at(run[[0, -1]])
+    # of the elements beside the zone; at a border a place says by round-off alone in which of two it is
+    h = chain.size_at(np.clip(run[[0, -1]] + 0.25 * chain.sizes.min() * np.array([-1.0, 1.0]), 0.0, chain.s[-1]))
     springs = chain.s[1:-1]
     before, after = springs[springs < first - 0.25 * h[0]][::-1], springs[springs > last + 0.25 * h[1]]
     whole = run.size > 1 and (not before.size or not after.size)
