@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cprbm import smooth
+from cprbm.edge import Edge
 from cprbm.equilibrium import Point, Problem, potential_energy
 from cprbm.forces import contact_forces, contact_pressure, holding, supports
 from cprbm.mechanism import Mechanism
@@ -59,9 +60,21 @@ def _value(
         case "angle":
             return mechanism.stops[probe.of].angle(point.state)
         case "moment":
-            shares = point.rows.shares(point.lam)
-            held = [lam.sum() for group, lam in shares if group.contact == probe.of and group.holds_angles]
-            return float(sum(held)) * model.unit_moment
+            return abs(_moment(mechanism, point, probe.of)) * model.unit_moment
+
+
+def _moment(mechanism: Mechanism, point: Point, name: str) -> float:
+    """Moment of a stop, or of all that a contact exerts on a beam about the first of its pins on what it touches."""
+    model, forces = mechanism.problem.model, contact_forces(mechanism.problem, point, name)
+    if name in mechanism.stops:
+        return float(np.sum(forces.moments[: model.n_links]))
+    edge = mechanism.pairs[name]
+    if not isinstance(edge, Edge) or edge.pins == (None, None):
+        return 0.0
+    chain = edge.a
+    pin, j = chain.joints.start if edge.pins[0] is not None else chain.joints.stop - 1, chain.joints
+    rx, ry = point.at.x[j] - point.at.x[pin], point.at.y[j] - point.at.y[pin]
+    return float(np.sum(forces.moments[chain.links]) + rx @ forces.fy[j] - ry @ forces.fx[j])
 
 
 def _displacement(scene: Scene, problem: Problem, point: Point, name: str) -> Array:

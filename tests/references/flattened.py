@@ -60,8 +60,8 @@ class Flattened:
 
     @property
     def moment(self) -> float:
-        """That which holds the start."""
-        return self.rigidity / self.radius
+        """Of all that the plane does about the start: that which holds it there, EI κ₀, and of F at the lift-off."""
+        return self.rigidity / self.radius + self.force * self.flat
 
     @property
     def drawn(self) -> tuple[float, float]:
