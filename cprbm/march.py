@@ -26,6 +26,7 @@ from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.probing import probed, shapes, touching
 from cprbm.refining import all_zones, carried_over, fits, fitted, long_ones
+from cprbm.rigid_edge import RigidEdge
 from cprbm.settings import Settings
 from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAnswer
 
@@ -61,6 +62,8 @@ class March:
         # where contacts stood open in this stage, of those that have not closed yet
         self.opened: dict[str, list[Stood]] = {}
         self.critical: list[Critical] = []
+        # where joints of the formulation paper first pressed beside the beam's own pin, by contact
+        self.beside_pins: dict[str, str] = {}
 
     def run(self) -> tuple[Ending, str]:
         """Assemble, and march through every stage; the Ending and its sentence."""
@@ -213,6 +216,9 @@ class March:
         mechanism, point, certificate = found
         # what is open on the march's mesh may be closed on this one
         self._note_closings(stage.name, stage.steps, point, value)
+        for name, boundary in mechanism.boundaries.items():
+            if isinstance(boundary, RigidEdge) and boundary.presses_beside_own_pin(point):
+                self.beside_pins.setdefault(name, f"{stage.name} {value:.6g}")
         return StationAnswer(
             stage=stage.name,
             value=value,
@@ -267,6 +273,11 @@ class March:
             f"contact '{name}' never closed at a station"
             for name in self.scene.contacts
             if not any(name in station.touching for station in self.reached)
+        ]
+        said += [
+            f"in contact '{name}', from {first} on, the joint next to the beam's own pin presses: it holds the chord "
+            "there and not the tangent, so that energy and moments are of first order in 1/N, and its force grows with N"
+            for name, first in self.beside_pins.items()
         ]
         for name, boundary in self.on.mechanism.boundaries.items():
             if not isinstance(boundary, FittedBoundary):

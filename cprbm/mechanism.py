@@ -114,9 +114,7 @@ def _between(before: State, after: State) -> Iterator[State]:
         )
 
 
-def _groups(
-    contact: str, pairs: Mapping[str, Pair | Circle | Edge], boundaries: Mapping[str, Boundary]
-) -> Groups:
+def _groups(contact: str, pairs: Mapping[str, Pair | Circle | Edge], boundaries: Mapping[str, Boundary]) -> Groups:
     return boundaries[contact].groups if boundaries else pairs[contact].groups
 
 

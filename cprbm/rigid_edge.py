@@ -20,9 +20,11 @@ circle (:mod:`cprbm.rigid`); and the edge ends where the scene's does, where a l
 goes on for ever: a joint that no piece faces is held by none.
 
 Joints are places in the chain, half an element from the beam's ends at the nearest.  Where a beam is pinned on the
-edge and lies on it up to the pin, the last of them holds the chord between the two and not the tangent.  What presses
-there is the moment of :mod:`cprbm.stops` over half an element: a force that grows with N without limit.  And the beam
-turns about its pin by what it bends within half an element: all else is of first order in 1/N.
+edge and lies on it up to the pin, the last of them holds the chord between the two and not the tangent.  The first
+spring then turns by three quarters of what the arc of an element does (the link before it is half as long as the one
+behind), and its moment, ¾ E·I κ₀ for an arc that is pressed flat, is that of the last joint's force at half an element
+from the pin: it grows with N without limit.  What the beam's end lacks in turning and in energy is of first order in
+1/N, and so is all that depends on it.
 """
 
 from __future__ import annotations
@@ -33,6 +35,7 @@ import numpy as np
 
 from cprbm.contact import Blocks, Group
 from cprbm.edge import Edge
+from cprbm.equilibrium import Point
 from cprbm.faces import Seen
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
@@ -67,6 +70,13 @@ class RigidEdge:
                 seen = Seen(seen.distance, frame.turned(seen.normal, frame.phi), seen.bend, seen.within)
                 found.append(self._held(number, p - frame.m, seen, facing))
         return tuple(found)
+
+    def presses_beside_own_pin(self, point: Point) -> bool:
+        """Whether a joint presses that is next to where the beam is pinned on the edge."""
+        pins, chain, rows = self.edge.pins, self.edge.a, point.rows
+        beside = chain.s[[1, -2]][[pin is not None for pin in pins]]
+        mine = np.array([name == self.edge.name for name in rows.contact], dtype=bool)
+        return bool(np.any(np.isin(rows.arc[mine & (point.lam > 0.0)], beside)))
 
     def _held(self, number: int, every: Array, seen: Seen, facing: Flags) -> Group:
         """Rows of the joints ``facing`` one piece; ``every`` is r of all, (m, 2)."""
