@@ -276,7 +276,7 @@ class March:
         ]
         said += [
             f"in contact '{name}', from {first} on, the joint next to the beam's own pin presses: it holds the chord "
-            "there and not the tangent, so that energy and moments are of first order in 1/N, and its force grows with N"
+            "there and not the tangent, so that energy and moments are of first order in 1/N and its force grows with N"
             for name, first in self.beside_pins.items()
         ]
         for name, boundary in self.on.mechanism.boundaries.items():

@@ -1,5 +1,7 @@
 """The rotational hinge against the boundary-value problem of its elastica, contact at a point."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -108,6 +110,9 @@ def test_paper_joint_beyond_the_boundary_ends_by_name():
     data |= {"claims": [], "stages": [{"name": "load", "steps": "M", "stations": [0.2, 0.67]}]}
     answer = cprbm.answer(scene_from(data), cprbm.Settings(formulation="paper"))
     assert answer.ending is Ending.LEFT_BOUNDARY
+    assert re.search(
+        r"in contact 'contact' joint 2\d of beam1 presses .* m beyond the end of the range", answer.sentence
+    )
     assert [station.value for station in answer.stations] == [0.2]
 
 
