@@ -71,7 +71,7 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
         ask(
             beyond.max() <= BEYOND * max(chain.h for chain in problem.model.chains),
             Ending.LEFT_BOUNDARY,
-            _left(problem.model, boundary, beyond),
+            _left(problem.model, boundary, point, beyond),
         )
     for name, pair in mechanism.pairs.items():
         if isinstance(pair, Edge) and not mechanism.boundaries:
@@ -121,15 +121,19 @@ def _pressed_beyond(boundary: FittedBoundary, point: Point) -> Array:
     return np.where(pressing, boundary.range_left(point.state, point.at), -np.inf)
 
 
-def _left(model: Model, boundary: FittedBoundary, beyond: Array) -> str:
-    """Which joint presses beyond the range, and by how much."""
+def _left(model: Model, boundary: FittedBoundary, point: Point, beyond: Array) -> str:
+    """Which joint presses beyond the range, by how much, and how far the beam is that it was fitted to."""
     worst = int(np.argmax(beyond))
     joint = int(boundary.joints[worst])
-    chain = next(each for each in model.chains if each.joints.start <= joint < each.joints.stop)
+    own, other = (
+        next(chain for chain in model.chains if chain.joints.start <= each < chain.joints.stop)
+        for each in (joint, int(boundary.points[0]))
+    )
+    apart = np.hypot(point.at.x[other.joints] - point.at.x[joint], point.at.y[other.joints] - point.at.y[joint]).min()
     return (
-        f"in contact '{boundary.name}' joint {joint - chain.first_joint} of {chain.name} presses "
+        f"in contact '{boundary.name}' joint {joint - own.first_joint} of {own.name} presses "
         f"{beyond[worst] * model.unit_length:.2g} m beyond the end of the range that the polynomial was fitted on, "
-        "where it says nothing of the beam"
+        f"about {(apart - boundary.offset) * model.unit_length:.2g} m from {other.name}"
     )
 
 
