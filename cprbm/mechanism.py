@@ -29,7 +29,7 @@ BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam i
 SHALLOW = 0.05  # of the radius: an overlap between rows of a coarse mesh
 WAY = 0.02  # of the longest beam, by which a way of one radian may differ from the unknowns' even one
 EDGE_WAY = 0.2  # the same of an edge, behind which what is rigid never ends: pinned ends leave their points meanwhile
-DIP = 0.25  # of an element times what links turn by at its spring: twice the sag of an even bend
+SAG = 0.25  # of an element times what links turn by at its spring: twice the sag of an even bend
 
 Boundary = FittedBoundary | RigidCircle | RigidEdge
 
@@ -93,17 +93,17 @@ class Mechanism:
 
     def _crossed_between(self, pair: Pair | Edge, before: Point, after: Point, way: float) -> bool:
         """Whether a beam lay across what it may touch between two states, by more than the way between is known."""
-        allowed = pair.offset + way * most_turned(before.state, after.state) ** 2 + self._dips(pair, after.state)
+        allowed = pair.offset + way * most_turned(before.state, after.state) ** 2 + self._sag(pair, after.state)
         return any(
             pair.least_gap(state, positions(self.problem.model, state)) + pair.offset < -allowed
             for state in _between(before.state, after.state)
         )
 
-    def _dips(self, pair: Pair | Edge, state: State) -> float:
-        """By how much beams may dip between their joints, which are all that ``paper`` holds; units of length."""
+    def _sag(self, pair: Pair | Edge, state: State) -> float:
+        """By how much beams may sag between their joints, which are all that ``paper`` holds; units of length."""
         if not self.boundaries:
             return 0.0
-        return max(DIP * chain.h * float(np.max(np.abs(np.diff(state.theta[chain.links])))) for chain in pair.chains)
+        return max(SAG * chain.h * float(np.max(np.abs(np.diff(state.theta[chain.links])))) for chain in pair.chains)
 
 
 def _between(before: State, after: State) -> Iterator[State]:

@@ -7,7 +7,7 @@ import numpy as np
 from cprbm import smooth
 from cprbm.edge import Edge
 from cprbm.equilibrium import Point, Problem, potential_energy
-from cprbm.forces import contact_forces, contact_pressure, holding, supports
+from cprbm.forces import contact_forces, contact_moment, contact_pressure, holding, supports
 from cprbm.mechanism import Mechanism
 from cprbm.stress import bending_stress
 from cprbm.zones import zones_of
@@ -60,21 +60,16 @@ def _value(
         case "angle":
             return mechanism.stops[probe.of].angle(point.state)
         case "moment":
-            return abs(_moment(mechanism, point, probe.of)) * model.unit_moment
+            return abs(_holding_moment(mechanism, point, probe.of)) * model.unit_moment
 
 
-def _moment(mechanism: Mechanism, point: Point, name: str) -> float:
-    """Moment of a stop, or of all that a contact exerts on a beam about the first of its pins on what it touches."""
-    model, forces = mechanism.problem.model, contact_forces(mechanism.problem, point, name)
-    if name in mechanism.stops:
-        return float(np.sum(forces.moments[: model.n_links]))
-    edge = mechanism.pairs[name]
-    if not isinstance(edge, Edge) or edge.pins == (None, None):
-        return 0.0
-    chain = edge.a
-    pin, j = chain.joints.start if edge.pins[0] is not None else chain.joints.stop - 1, chain.joints
-    rx, ry = point.at.x[j] - point.at.x[pin], point.at.y[j] - point.at.y[pin]
-    return float(np.sum(forces.moments[chain.links]) + rx @ forces.fy[j] - ry @ forces.fx[j])
+def _holding_moment(mechanism: Mechanism, point: Point, name: str) -> float:
+    """Moment of a stop, or of all that an edge exerts on a beam about the first of its pins on it; zero without one."""
+    pair = mechanism.pairs.get(name)
+    if pair is None:
+        return float(sum(lam.sum() for group, lam in point.rows.shares(point.lam) if group.contact == name))
+    pin = next((pin for pin in pair.pins if pin is not None), None) if isinstance(pair, Edge) else None
+    return 0.0 if pin is None else contact_moment(mechanism.problem, point, name, pair.a, pin.arc)
 
 
 def _displacement(scene: Scene, problem: Problem, point: Point, name: str) -> Array:
