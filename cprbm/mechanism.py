@@ -23,7 +23,8 @@ from cprbm.rigid import RigidCircle, rigid_circle
 from cprbm.rigid_edge import RigidEdge, rigid_edge
 from cprbm.settings import Settings
 from cprbm.stops import AngleStop, stop_of
-from scene import BeamContact, CircleContact, Scene
+from scene import BeamContact, CircleContact, Mistake, Scene, SceneError
+from scene.statement import SelfContact
 
 BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle or another
 SHALLOW = 0.05  # of the radius: an overlap between rows of a coarse mesh
@@ -150,8 +151,12 @@ def _boundary(scene: Scene, model: Model, pair: Pair | Circle | Edge, settings: 
     """A contact in the paper's form.
 
     Raises:
-        SceneError: the form lacks what it must be told.
+        SceneError: the form lacks what it must be told, or is not offered for the contact's kind.
     """
+    contact = scene.contacts[pair.name]
+    if isinstance(contact, SelfContact):
+        allowed = "a kind that the formulation 'paper' offers, or the formulation 'auto'"
+        raise SceneError([Mistake(f"contacts.{pair.name}.kind", repr(contact.kind), allowed, scene.file)])
     match pair:
         case Pair():
             return fitted_boundary(scene, model, pair.name, settings.degree)
