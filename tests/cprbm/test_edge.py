@@ -306,3 +306,15 @@ def test_related_joints_are_all_that_the_papers_form_holds():
     answer = cprbm.answer(few, cprbm.Settings(links=20, formulation="paper"))
     assert answer.ending is Ending.BEAMS_CROSSED
     assert "in contact 'edge'" in answer.sentence
+
+
+@pytest.mark.parametrize(
+    ("joint", "end", "held"),
+    [("pin", "start", (1, 20)), ("pin", "end", (1, 20)), ("weld", "start", (2, 20)), ("weld", "end", (1, 19))],
+)
+@pytest.mark.parametrize("turn", [0.0, 0.7])
+def test_the_papers_form_holds_every_joint_that_can_move_against_the_edge(joint, end, held, turn):
+    # neither the beam's ends nor the joint on a link that is welded to the edge's own body, which stays where it is
+    scene = arch(joint=joint, end=end, turn=turn)
+    boundary = mechanism_of(scene, cprbm.Settings(links=20, formulation="paper")).boundaries["edge"]
+    assert (boundary.joints[0], boundary.joints[-1]) == held
