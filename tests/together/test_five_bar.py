@@ -62,7 +62,9 @@ def test_the_way_does_not_matter(ways, way):
         energy = first[at]["scene.potential_energy"]
         assert other[at]["scene.potential_energy"] == pytest.approx(energy, rel=1e-6)
         for probe in ("OA.reaction_moment", "CD.reaction_moment"):
-            assert other[at][probe] == pytest.approx(first[at][probe], abs=1e-5 * first[20, 70]["CD.reaction_moment"][0])
+            assert other[at][probe] == pytest.approx(
+                first[at][probe], abs=1e-5 * first[20, 70]["CD.reaction_moment"][0]
+            )
 
 
 def test_it_comes_home(ways):
