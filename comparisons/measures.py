@@ -105,6 +105,7 @@ LOAD_UNITS = {
     "moment": "N·m",
     "force": "N",
     "beam_force": "N",
+    "beam_moment": "N·m",
     "distributed": "N/m",
     "displacement": "m",
     "rotation": "rad",

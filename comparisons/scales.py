@@ -52,7 +52,7 @@ SMALLEST_EVENT = 1e-7
 VANISHING = 1e-2
 """A reference below this share of its probe's scale counts as one that may vanish."""
 
-Kind = Literal["moment", "force", "beam_force", "displacement", "rotation"]
+Kind = Literal["moment", "force", "beam_force", "beam_moment", "displacement", "rotation"]
 """Of a load or drive."""
 
 _OWN_NORM = frozenset({"displacement", "rotation", "potential_energy", "closing_load"})
@@ -73,7 +73,7 @@ def probe_scale(scene: Scene, probe: Probe, stage: Stage, answers: tuple[Answer,
         return family
     if probe.quantity == "reaction_moment":
         supports = tuple(other for other in scene.probes if other.quantity == "reaction_moment")
-        moments = max(_largest(supports, stage, answers), _stepped(scene, stage, "moment"))
+        moments = max(_largest(supports, stage, answers), _stepped_moment(scene, stage))
         return max(moments, SMALLEST_SHARE * family)
     return max(_largest((probe,), stage, answers), SMALLEST_SHARE * family)
 
@@ -101,6 +101,7 @@ def natural_scale(scene: Scene, quantity: Quantity, stage: Stage, *, contact: st
                 "moment": S,
                 "force": S / lever,
                 "beam_force": S / lever,
+                "beam_moment": S,
                 "distributed": S / lever**2,
                 "displacement": lever,
                 "rotation": 1.0,
@@ -133,12 +134,12 @@ def family_size(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[A
                 largest("force", "reaction"),
                 _stepped_force(scene, stage),
                 largest("reaction_moment", "moment") / lever,
-                _stepped(scene, stage, "moment") / lever,
+                _stepped_moment(scene, stage) / lever,
             )
         case "reaction_moment" | "moment":
             return max(
                 largest("reaction_moment", "moment"),
-                _stepped(scene, stage, "moment"),
+                _stepped_moment(scene, stage),
                 largest("force", "reaction") * lever,
                 _stepped_force(scene, stage) * lever,
             )
@@ -187,6 +188,11 @@ def _stepped_force(scene: Scene, stage: Stage) -> float:
         stretch = (load.along[1] - load.along[0]) * length(scene.beams[load.beam].curve)
         return stretch * max(abs(station) for station in stage.stations)
     return max(_stepped(scene, stage, "force"), _stepped(scene, stage, "beam_force"))
+
+
+def _stepped_moment(scene: Scene, stage: Stage) -> float:
+    """Largest magnitude, N·m, of a moment on a body or a beam, if the stage steps one."""
+    return max(_stepped(scene, stage, "moment"), _stepped(scene, stage, "beam_moment"))
 
 
 def _stepped(scene: Scene, stage: Stage, kind: Kind) -> float:

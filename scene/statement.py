@@ -338,6 +338,14 @@ class BeamForce(Record):
     direction: Point
 
 
+class BeamMoment(Record):
+    """A moment on a ``beam``, counter-clockwise positive, N·m, ``at`` a fraction of its arc length from the start."""
+
+    kind: Literal["beam_moment"]
+    beam: Name
+    at: Share
+
+
 class DistributedLoad(Record):
     """A dead load on a ``beam``, N per metre of its arc length, the same ``along`` it from one fraction to another.
 
@@ -350,7 +358,7 @@ class DistributedLoad(Record):
     along: tuple[Share, Share] = (0.0, 1.0)
 
 
-Load = Annotated[Moment | Force | BeamForce | DistributedLoad, Field(discriminator="kind")]
+Load = Annotated[Moment | Force | BeamForce | BeamMoment | DistributedLoad, Field(discriminator="kind")]
 BodyLoad = Moment | Force
 
 

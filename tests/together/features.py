@@ -85,7 +85,7 @@ def cantilever(curve: Data | None = None, asked: tuple[str, ...] = ASKED, **chan
         "beam_force": 2.0 * FORCE,
         "distributed": 3.0 * FORCE / LENGTH,
     }
-    amount |= {"displacement": 0.3 * LENGTH, "rotation": 0.8}
+    amount |= {"beam_moment": 1.5 * MOMENT, "displacement": 0.3 * LENGTH, "rotation": 0.8}
     kind = ((changes.get("drives") or changes.get("loads") or {"F": DOWN})[stepped])["kind"]
     return {
         "name": "feature",
@@ -286,6 +286,16 @@ FEATURES = (
         "loads",
         "force at a point of a beam",
         cantilever(loads={"F": {"kind": "beam_force", "beam": "beam", "at": 0.7, "direction": [1.0, -1.0]}}),
+    ),
+    Feature(
+        "loads",
+        "moment at a point of a beam",
+        cantilever(
+            arc(0.7),
+            loads={"M": {"kind": "beam_moment", "beam": "beam", "at": 0.63}},
+            asked=(*ASKED, "R.reaction_moment", "beam.bending_stress"),
+        ),
+        NOT_EXACT,
     ),
     Feature(
         "loads",

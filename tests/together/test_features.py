@@ -43,7 +43,7 @@ def test_a_cell(feature: Feature, solver: str) -> None:
             assert answer.ending is Ending.NOT_COVERED
             assert len(answer.sentence) > 20
         else:
-            with pytest.raises(SceneError, match="found .* allowed"):
+            with pytest.raises(SceneError, match=r"found .* allowed"):
                 answered(number, solver)
         return
     answer = answered(number, solver)
