@@ -41,7 +41,7 @@ import numpy as np
 from comparisons.geometry import length
 from scene import Answer, Beam, Probe, Scene, Stage
 from scene.answer import Array
-from scene.statement import DistributedLoad, Quantity
+from scene.statement import STRESSES, DistributedLoad, Quantity
 
 SMALLEST_SHARE = 1e-3
 """Least scale of a probe as a share of its family's."""
@@ -63,7 +63,7 @@ def norm(quantity: Quantity, values: Array) -> float:
     """Euclidean norm of ``values`` (k,); of a stress along a beam the largest magnitude."""
     if values.size == 0:
         return 0.0
-    return float(np.max(np.abs(values)) if quantity == "bending_stress" else np.linalg.norm(values))
+    return float(np.max(np.abs(values)) if quantity in STRESSES else np.linalg.norm(values))
 
 
 def probe_scale(scene: Scene, probe: Probe, stage: Stage, answers: tuple[Answer, ...]) -> float:
@@ -106,7 +106,7 @@ def natural_scale(scene: Scene, quantity: Quantity, stage: Stage, *, contact: st
                 "displacement": lever,
                 "rotation": 1.0,
             }[scene.stepped(stage).kind]
-        case "bending_stress":
+        case "bending_stress" | "combined_stress":
             return max(E * beam.thickest for beam, E in beams) / (2.0 * lever)
         case "centre" | "ends":
             return length(scene.beams[scene.contacts[contact].beams[0]].curve)

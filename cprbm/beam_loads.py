@@ -167,6 +167,12 @@ def beam_work(model: Model, load: BeamLoad, state: State, at: Positions) -> Beam
     return BeamWork(float(np.sum(load.forces * moved)), fx, fy, gradient[1:-1], diagonal[1:-1], off[1:-1])
 
 
+def spread_from(load: BeamLoad, s: Array) -> Array:
+    """Length (k,) of a distributed load that lies beyond arc lengths ``s`` (k,)."""
+    begin, end = load.ends
+    return np.asarray(end - np.clip(s, begin, end))
+
+
 def kinks(model: Model, load: BeamLoad, state: State, at: Positions) -> tuple[Array, Array]:
     """Where the bending moment has a kink or a bend by a load of value one: places (k,) and jumps (k,).
 

@@ -208,6 +208,19 @@ def load_forces(model: Model, part: OnBeam, z: State) -> Array:
     return f
 
 
+def force_before(load: BeamLoad, line: NeutralLine, zeta: Array) -> Array:
+    """Force of what acts before places ``zeta`` (k,) of the load's ``line`` in their own elements, (2, k)."""
+    part, (e, _) = load.part, line.locate(zeta)
+    if isinstance(part, BeamMomentPart):
+        return np.zeros((2, zeta.size))
+    if not part.distributed:
+        owner, _ = line.locate(part.zeta)
+        return np.asarray(load.force * ((e == owner) & (part.zeta < zeta)))
+    first = np.clip(part.begin, e, zeta)
+    length = (np.clip(part.end, first, zeta) - first) * line.lengths[e]
+    return np.asarray(load.value * part.density[:, None] * length)
+
+
 def moment_before(load: BeamLoad, line: NeutralLine, zeta: Array) -> Array:
     """Moment about places ``zeta`` (k,) of the load's ``line`` of what acts before them in their own elements, (k,)."""
     part, (e, _) = load.part, line.locate(zeta)

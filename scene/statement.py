@@ -542,12 +542,17 @@ Quantity = Literal[
     "ends",
     "closing_load",
     "bending_stress",
+    "combined_stress",
     "reaction",
     "reaction_moment",
     "potential_energy",
     "angle",
     "moment",
 ]
+
+
+STRESSES: frozenset[Quantity] = frozenset({"bending_stress", "combined_stress"})
+"""Quantities that are wanted at places along a beam."""
 
 
 class Probe(Record):

@@ -66,7 +66,7 @@ def probes(*names: str) -> list[Data]:
     found: list[Data] = []
     for name in names:
         of, quantity = name.split(".")
-        found.append({"of": of, "quantity": quantity} | ({"points": 9} if quantity == "bending_stress" else {}))
+        found.append({"of": of, "quantity": quantity} | ({"points": 9} if quantity.endswith("stress") else {}))
     return found
 
 
@@ -233,6 +233,17 @@ def two_beams(**contact: Any) -> Data:
     return data
 
 
+def pulled() -> Data:
+    """A beam on a circle, with a weight of its own, a force at a place and one at its end."""
+    data = held_by({**CIRCLE, "center": [0.07, -0.0115]}) | {"probes": probes("beam.combined_stress")}
+    weight = {"kind": "distributed", "beam": "beam", "direction": [1.0, -2.0], "along": [0.1, 0.7]}
+    pull = {"kind": "beam_force", "beam": "beam", "at": 0.3, "direction": [1.0, 0.2]}
+    data["loads"] = data["loads"] | {"q": weight, "P": pull, "H": {**DOWN, "direction": [1.0, 0.0]}}
+    values = {"H": 40.0 * FORCE, "P": 30.0 * FORCE, "q": 50.0 * FORCE / LENGTH, "F": 4.0 * FORCE}
+    data["stages"] = [{"name": f"by_{name}", "steps": name, "stations": [value]} for name, value in values.items()]
+    return data
+
+
 def lying_on_its_pin() -> Data:
     """An arc pinned to the plane that it lies on from its pin on."""
     data = cantilever(arc(0.9), asked=("T.displacement", "c.force", "scene.potential_energy", "T.reaction"))
@@ -333,6 +344,7 @@ FEATURES = (
         "bending stress along a beam",
         held_by(CIRCLE) | {"probes": probes("beam.bending_stress")},
     ),
+    Feature("probes", "combined stress along a beam", pulled()),
     Feature("probes", "ends of a contact's zone", held_by(CIRCLE) | {"probes": probes("c.ends")}),
     Feature("probes", "load at which a contact closes", held_by(CIRCLE) | {"probes": probes("c.closing_load")}),
 )
