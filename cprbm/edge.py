@@ -174,6 +174,9 @@ class Edge:
             if other is not face:
                 seen = other.seen(q)
                 nearest &= ~seen.within | (np.abs(mine.distance) <= np.abs(seen.distance) + NEAREST)
+        for corner in self.corners:
+            seen = corner.seen(q)
+            nearest &= ~seen.within | (np.abs(mine.distance) <= seen.distance + NEAREST)
         return np.asarray(facing | nearest)
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:

@@ -467,12 +467,18 @@ class LineContact(RigidContact):
     """A beam that may touch a rigid line of straight pieces between ``points``.
 
     The beam lies on the free ``side``, seen along the points.  What is rigid lies behind the line, and ends where it
-    does: at right angles to its first and its last piece.
+    does: at right angles to its first and its last piece.  A line whose last point is its first goes round and has no
+    ends.
     """
 
     kind: Literal["beam-line"]
     points: Annotated[tuple[Point, ...], Field(min_length=2)]
     side: Literal["left", "right"]
+
+    @property
+    def closed(self) -> bool:
+        """Whether it goes round."""
+        return len(self.points) > 2 and self.points[0] == self.points[-1]
 
 
 class HalfPlaneContact(RigidContact):

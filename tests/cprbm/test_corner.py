@@ -16,6 +16,7 @@ from tests.references.cornered import Cornered
 AT, FORCE = (0.5, -0.02), 3.0
 ROOF = ((0.2, -0.3), AT, (0.8, -0.3))
 SHELF = ((0.0, -0.02), AT)
+CLOSED = (AT, (0.8, -0.3), (0.2, -0.3), AT)
 SHARP = ((0.5, -0.6), AT, (0.7, -0.5))
 
 
@@ -48,7 +49,7 @@ def test_the_errors_fall_with_the_square_of_the_number_of_links(thick):
         assert each == pytest.approx(scaled[0], rel=0.15)
 
 
-@pytest.mark.parametrize("points", [SHELF, SHARP, ROOF[::-1]])
+@pytest.mark.parametrize("points", [SHELF, SHARP, CLOSED, ROOF[::-1]])
 def test_a_corner_is_the_same_whatever_lies_behind_it(points):
     side = "right" if points == ROOF[::-1] else "left"
     scene = cantilever_over({"kind": "beam-line", "points": points, "side": side, "thick": True}, force=FORCE)

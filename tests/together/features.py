@@ -215,6 +215,7 @@ CIRCLE: Data = {"kind": "beam-circle", "center": [0.06, -0.012], "radius": 0.01}
 PLANE: Data = {"kind": "beam-half-plane", "point": [0.0, -0.012], "normal": [0.1, 1.0]}
 TABLE: Data = {"kind": "beam-line", "points": [[0.02, -0.01], [0.2, -0.012]], "side": "left"}
 ROOF: Data = {"kind": "beam-line", "points": [[0.03, -0.03], [0.05, -0.003], [0.08, -0.03]], "side": "left"}
+BLOCK: Data = ROOF | {"points": [[0.05, -0.003], [0.08, -0.03], [0.03, -0.03], [0.05, -0.003]]}
 HILL: Data = {
     "kind": "beam-function", "axis": "x", "coefficients": [-0.04, 1.3, -11.5], "range": [0.02, 0.09], "side": "above",
 }  # fmt: skip
@@ -239,7 +240,7 @@ def pulled() -> Data:
     weight = {"kind": "distributed", "beam": "beam", "direction": [1.0, -2.0], "along": [0.1, 0.7]}
     pull = {"kind": "beam_force", "beam": "beam", "at": 0.3, "direction": [1.0, 0.2]}
     data["loads"] = data["loads"] | {"q": weight, "P": pull, "H": {**DOWN, "direction": [1.0, 0.0]}}
-    values = {"H": 40.0 * FORCE, "P": 30.0 * FORCE, "q": 50.0 * FORCE / LENGTH, "F": 4.0 * FORCE}
+    values = {"H": 15.0 * FORCE, "P": 15.0 * FORCE, "q": 25.0 * FORCE / LENGTH, "F": 4.0 * FORCE}
     data["stages"] = [{"name": f"by_{name}", "steps": name, "stations": [value]} for name, value in values.items()]
     return data
 
@@ -333,6 +334,7 @@ FEATURES = (
     Feature("contacts", "half-plane", held_by(PLANE), BOTH),
     Feature("contacts", "line", held_by(TABLE), BOTH),
     Feature("contacts", "polyline with a corner that stands out", held_by(ROOF), BOTH),
+    Feature("contacts", "polyline that goes round", held_by(BLOCK), BOTH),
     Feature("contacts", "function", held_by(HILL), BOTH),
     Feature("contacts", "half-plane on a body that moves", moved(PLANE), BOTH),
     Feature("contacts", "polyline on a body that moves", moved(ROOF), BOTH),
