@@ -19,6 +19,7 @@ from comparisons.verdict import Comparison
 from comparisons.work_energy import Reaction
 from scene import Answer, Certificate, Critical, Probe, Scene
 from scene.answer import Array
+from scene.statement import STRESSES
 
 Plain = dict[str, Any]
 
@@ -209,7 +210,7 @@ def values(probe: Probe, found: Array) -> Any:  # noqa: ANN401 - a number, a lis
     """A probe's values: a number, a list where it has several, None where there is none."""
     if found.size == 0:
         return None
-    if found.size == 1 and probe.quantity != "bending_stress":
+    if found.size == 1 and probe.quantity not in STRESSES:
         return plain(float(found[0]))
     return [plain(float(value)) for value in found]
 
@@ -334,4 +335,4 @@ def _reaction(found: Reaction) -> Plain:
 
 
 def _places(scene: Scene, probe: Probe) -> Plain:
-    return {"arc_length": arc_lengths(scene, probe).tolist()} if probe.quantity == "bending_stress" else {}
+    return {"arc_length": arc_lengths(scene, probe).tolist()} if probe.quantity in STRESSES else {}

@@ -76,7 +76,7 @@ from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, Stage, StationAnswer
 from scene.answer import Array
-from scene.statement import Quantity
+from scene.statement import STRESSES, Quantity
 
 SAFETY = 1.25
 SHARE_OF_LARGEST = SAFETY - 1.0
@@ -94,6 +94,7 @@ UNITS: Mapping[Quantity, str] = {
     "centre": "m",
     "ends": "m",
     "bending_stress": "Pa",
+    "combined_stress": "Pa",
     "reaction": "N",
     "reaction_moment": "N·m",
     "potential_energy": "J",
@@ -105,6 +106,7 @@ LOAD_UNITS = {
     "moment": "N·m",
     "force": "N",
     "beam_force": "N",
+    "beam_moment": "N·m",
     "distributed": "N/m",
     "displacement": "m",
     "rotation": "rad",
@@ -302,7 +304,7 @@ def bare_row(
         fea=v_f,
         scale=scale,
         denominator=denominator(probe, v_f, scale),
-        arc_length=arc_lengths(scene, probe) if probe.quantity == "bending_stress" else None,
+        arc_length=arc_lengths(scene, probe) if probe.quantity in STRESSES else None,
     )
 
 
@@ -313,7 +315,7 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, spot: Spot, unset
     values = {name: station.values[probe.name] for name, station in stations.items()}
     chosen = f"fea {runs.kinematics}"
     v_c, v_f, v_b = values["cprbm"], values[chosen], values["fea bending"]
-    is_stress = probe.quantity == "bending_stress"
+    is_stress = probe.quantity in STRESSES
     exact = _exact_station(runs, stage.name, spot)
     row = replace(bare_row(scene, compared, probe, stage, value, scale), place=spot.place, branch=spot.branch)
     if spot.branch is None:
@@ -472,7 +474,7 @@ def direction(quantity: Quantity, way: Array) -> Array:
     """
     if not way.any():
         return np.zeros_like(way)
-    if quantity == "bending_stress":
+    if quantity in STRESSES:
         along = np.zeros_like(way)
         worst = int(np.argmax(np.abs(way)))
         along[worst] = np.sign(way[worst])

@@ -24,6 +24,7 @@ from comparisons.stations import station_of
 from comparisons.writing import write
 from scene import Answer, Probe, Scene
 from scene.answer import Array
+from scene.statement import STRESSES
 
 TOLERANCE = 1e-6
 """Of a probe's largest kept value: what another processor's rounding may change, and no change of method."""
@@ -127,7 +128,7 @@ def _kept(scene: Scene, answer: Answer) -> dict[str, dict[str, list[float]]]:
 
 
 def _thinned(probe: Probe, values: Array) -> Array:
-    return values[::_EVERY] if probe.quantity == "bending_stress" else values
+    return values[::_EVERY] if probe.quantity in STRESSES else values
 
 
 def _size(values: list[float]) -> float:

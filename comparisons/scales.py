@@ -41,7 +41,7 @@ import numpy as np
 from comparisons.geometry import length
 from scene import Answer, Beam, Probe, Scene, Stage
 from scene.answer import Array
-from scene.statement import DistributedLoad, Quantity
+from scene.statement import STRESSES, DistributedLoad, Quantity
 
 SMALLEST_SHARE = 1e-3
 """Least scale of a probe as a share of its family's."""
@@ -52,7 +52,7 @@ SMALLEST_EVENT = 1e-7
 VANISHING = 1e-2
 """A reference below this share of its probe's scale counts as one that may vanish."""
 
-Kind = Literal["moment", "force", "beam_force", "displacement", "rotation"]
+Kind = Literal["moment", "force", "beam_force", "beam_moment", "displacement", "rotation"]
 """Of a load or drive."""
 
 _OWN_NORM = frozenset({"displacement", "rotation", "potential_energy", "closing_load"})
@@ -63,7 +63,7 @@ def norm(quantity: Quantity, values: Array) -> float:
     """Euclidean norm of ``values`` (k,); of a stress along a beam the largest magnitude."""
     if values.size == 0:
         return 0.0
-    return float(np.max(np.abs(values)) if quantity == "bending_stress" else np.linalg.norm(values))
+    return float(np.max(np.abs(values)) if quantity in STRESSES else np.linalg.norm(values))
 
 
 def probe_scale(scene: Scene, probe: Probe, stage: Stage, answers: tuple[Answer, ...]) -> float:
@@ -73,7 +73,7 @@ def probe_scale(scene: Scene, probe: Probe, stage: Stage, answers: tuple[Answer,
         return family
     if probe.quantity == "reaction_moment":
         supports = tuple(other for other in scene.probes if other.quantity == "reaction_moment")
-        moments = max(_largest(supports, stage, answers), _stepped(scene, stage, "moment"))
+        moments = max(_largest(supports, stage, answers), _stepped_moment(scene, stage))
         return max(moments, SMALLEST_SHARE * family)
     return max(_largest((probe,), stage, answers), SMALLEST_SHARE * family)
 
@@ -101,11 +101,12 @@ def natural_scale(scene: Scene, quantity: Quantity, stage: Stage, *, contact: st
                 "moment": S,
                 "force": S / lever,
                 "beam_force": S / lever,
+                "beam_moment": S,
                 "distributed": S / lever**2,
                 "displacement": lever,
                 "rotation": 1.0,
             }[scene.stepped(stage).kind]
-        case "bending_stress":
+        case "bending_stress" | "combined_stress":
             return max(E * beam.thickest for beam, E in beams) / (2.0 * lever)
         case "centre" | "ends":
             return length(scene.beams[scene.contacts[contact].beams[0]].curve)
@@ -133,12 +134,12 @@ def family_size(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[A
                 largest("force", "reaction"),
                 _stepped_force(scene, stage),
                 largest("reaction_moment", "moment") / lever,
-                _stepped(scene, stage, "moment") / lever,
+                _stepped_moment(scene, stage) / lever,
             )
         case "reaction_moment" | "moment":
             return max(
                 largest("reaction_moment", "moment"),
-                _stepped(scene, stage, "moment"),
+                _stepped_moment(scene, stage),
                 largest("force", "reaction") * lever,
                 _stepped_force(scene, stage) * lever,
             )
@@ -187,6 +188,11 @@ def _stepped_force(scene: Scene, stage: Stage) -> float:
         stretch = (load.along[1] - load.along[0]) * length(scene.beams[load.beam].curve)
         return stretch * max(abs(station) for station in stage.stations)
     return max(_stepped(scene, stage, "force"), _stepped(scene, stage, "beam_force"))
+
+
+def _stepped_moment(scene: Scene, stage: Stage) -> float:
+    """Largest magnitude, N·m, of a moment on a body or a beam, if the stage steps one."""
+    return max(_stepped(scene, stage, "moment"), _stepped(scene, stage, "beam_moment"))
 
 
 def _stepped(scene: Scene, stage: Stage, kind: Kind) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 from comparisons.branches import begins_at, span_of
 from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, StationAnswer
+from scene.statement import STRESSES
 
 _COMPONENTS = {"displacement": 2, "reaction": 2, "ends": 2}
 ABSENT_WHILE_OPEN = frozenset({"centre", "ends", "closing_load"})
@@ -106,7 +107,7 @@ def _station_complaints(scene: Scene, station: StationAnswer) -> list[str]:
 
 
 def _shapes(probe: Probe) -> tuple[tuple[int, ...], ...]:
-    if probe.quantity == "bending_stress":
+    if probe.quantity in STRESSES:
         return ((probe.points,),)
     closed = (_COMPONENTS.get(probe.quantity, 1),)
     return (closed, (0,)) if probe.quantity in ABSENT_WHILE_OPEN else (closed,)

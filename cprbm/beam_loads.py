@@ -27,7 +27,7 @@ from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
 from scene import Scene
 from scene.answer import Array
-from scene.statement import BeamForce, DistributedLoad
+from scene.statement import BeamForce, BeamMoment, DistributedLoad
 
 ABSCISSAE, WEIGHTS = np.polynomial.legendre.leggauss(3)
 
@@ -57,6 +57,32 @@ class BeamLoad:
 
 
 @dataclass(frozen=True, slots=True)
+class MomentOnBeam:
+    """A moment on one beam, in numbers without units, per unit (SI) of the scene's load value.
+
+    Its work is what the smooth line turns by at its place, between the borders of an element as even as the beam does,
+    and what the jump of the curvature turns the place by besides: a constant, since the element's mean has no share.
+
+    Attributes:
+        chain: number of the beam's chain.
+        s: its place; links: the two that turn with it, in the shared numbering, by the ``weights`` (2,).
+        moment: of value one, in units of S; give: M f(1 − f) h/(E·I), of the place by a moment of one.
+    """
+
+    chain: int
+    s: float
+    links: tuple[int, int]
+    weights: Array
+    moment: float
+    give: float
+
+    def work(self, value: float, turned: Array) -> float:
+        """W at links ``turned`` (n_links,) from rest, under a ``value`` (SI)."""
+        M = value * self.moment
+        return float(M * (self.weights @ turned[list(self.links)]) + 0.5 * M**2 * self.give)
+
+
+@dataclass(frozen=True, slots=True)
 class BeamWork:
     """W and what it is by: forces on joints fx, fy (n_joints,), and beside them over θ.
 
@@ -78,6 +104,23 @@ def beam_loads(scene: Scene, model: Model) -> dict[str, BeamLoad]:
         for name, load in scene.loads.items()
         if isinstance(load, BeamForce | DistributedLoad)
     }
+
+
+def beam_moments(scene: Scene, model: Model) -> dict[str, MomentOnBeam]:
+    """The scene's moments on beams by name."""
+    return {name: _moment(model, load) for name, load in scene.loads.items() if isinstance(load, BeamMoment)}
+
+
+def _moment(model: Model, load: BeamMoment) -> MomentOnBeam:
+    number = [chain.name for chain in model.chains].index(load.beam)
+    chain = model.chains[number]
+    s = load.at * float(chain.s[-1])
+    e = int(np.clip(np.searchsorted(chain.borders, s) - 1, 0, chain.n - 1))
+    h = float(chain.sizes[e])
+    part = min(max((s - float(chain.borders[e])) / h, 0.0), 1.0)
+    give = part * (1.0 - part) * h / float(chain.section.rigidity_at(np.array([s]))[0])
+    links = (chain.first_link + e, chain.first_link + e + 1)
+    return MomentOnBeam(number, s, links, np.array([1.0 - part, part]), 1.0 / model.unit_moment, give)
 
 
 def _beam_load(model: Model, load: BeamForce | DistributedLoad) -> BeamLoad:
@@ -122,6 +165,12 @@ def beam_work(model: Model, load: BeamLoad, state: State, at: Positions) -> Beam
     moved = np.stack((points.x, points.y), axis=1) - load.rest
     fx, fy = on_joints[:, 0], on_joints[:, 1]
     return BeamWork(float(np.sum(load.forces * moved)), fx, fy, gradient[1:-1], diagonal[1:-1], off[1:-1])
+
+
+def spread_from(load: BeamLoad, s: Array) -> Array:
+    """Length (k,) of a distributed load that lies beyond arc lengths ``s`` (k,)."""
+    begin, end = load.ends
+    return np.asarray(end - np.clip(s, begin, end))
 
 
 def kinks(model: Model, load: BeamLoad, state: State, at: Positions) -> tuple[Array, Array]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from cprbm.boundary import FittedBoundary
-from cprbm.edge import Edge
 from cprbm.equilibrium import Equilibrium, Point
 from cprbm.forces import balances
 from cprbm.mechanism import Mechanism
@@ -73,15 +72,6 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
             Ending.LEFT_BOUNDARY,
             _left(problem.model, boundary, point, beyond),
         )
-    for name, pair in mechanism.pairs.items():
-        if isinstance(pair, Edge) and not mechanism.boundaries:
-            mine = np.array([c == name for c in point.rows.contact], dtype=bool)
-            pressed = point.rows.arc[mine & (point.lam > 0.0) & ~point.rows.holds_angles]
-            ask(
-                not pressed.size or not pair.presses_an_end(point.state, point.at, pressed),
-                Ending.NOT_CERTIFIED,
-                f"in contact '{name}' the beam presses a corner of the edge, which this method has no force for so far",
-            )
     force_balance, moment_balance = balances(problem, point)
     balance_asked = max(BALANCE, 100.0 * measure.floor)
     ask(

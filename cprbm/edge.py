@@ -25,6 +25,9 @@ A beam that is pinned to the edge's own body on the edge, or to a body that is i
 end whatever happens (:mod:`cprbm.own_pins`).  There the edge holds the direction in which the beam leaves: a stop
 (:mod:`cprbm.stops`), whose moment is what the pressure over a length that goes to nothing comes to.  The end is no row
 then, nor is the first spring: where the first link lies along the edge, so does that.
+
+A corner that stands out has one row where the beam is closest to it, at a place of its own always, whose normal is
+between those of its pieces (:mod:`cprbm.corner`).  Of the pieces on either side it is the other that has one then.
 """
 
 from __future__ import annotations
@@ -35,6 +38,7 @@ import numpy as np
 
 from cprbm import smooth, wells
 from cprbm.contact import Blocks, Group
+from cprbm.corner import Corner, corners_of
 from cprbm.faces import Face, Seen, faces_of
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed
@@ -54,6 +58,7 @@ ON_IT = 1e-9  # gap and slope of a clamped end that is in touch with the edge
 ARCHING = 0.2  # of what the largest force bends one element by: where a zone ends within one it arches by less
 JOINT_REACH = 2.0  # joints farther than this many h²·(κ + 1/ℓ) are none
 FLAT = 0.01  # of D″ times the length squared, as for zones
+FACING = 1e-9  # by which a normal may miss those of the corner that it is of
 NEAREST = 1e-9  # of ℓ: pieces whose distances differ by less are equally near
 
 
@@ -88,7 +93,7 @@ class Edge:
         a: the beam's chain.
         body: that the edge is fixed to, −1 for the ground; ``mark`` the number of m among the joints, and ``turning``
             that of φ among the unknowns, if that is a body that moves.
-        faces: its pieces.
+        faces: its pieces; ``corners`` between them and at their ends, but for those at which the beam is pinned.
         offset: T₀, zero for a line; units of length.
         unit_length: ℓ, m.
         held: whether the beam's start and end cannot move against the edge's body.
@@ -106,6 +111,7 @@ class Edge:
     mark: int
     turning: int
     faces: tuple[Face, ...]
+    corners: tuple[Corner, ...]
     offset: float
     unit_length: float
     held: tuple[bool, bool]
@@ -149,7 +155,7 @@ class Edge:
         """T_s at arc lengths ``s``."""
         return 0.5 * self.a.section.thinning_at(s) if self.offset > 0.0 else np.zeros_like(s)
 
-    def _seen(self, face: Face, A: smooth.Points, frame: Frame) -> Seen:
+    def _seen(self, face: Face | Corner, A: smooth.Points, frame: Frame) -> Seen:
         """A piece from points of the beam, with D in the place of the distance and n as it is turned."""
         seen = face.seen(frame.inwards(np.stack((A.x, A.y), axis=1)))
         return replace(
@@ -167,6 +173,9 @@ class Edge:
             if other is not face:
                 seen = other.seen(q)
                 nearest &= ~seen.within | (np.abs(mine.distance) <= np.abs(seen.distance) + NEAREST)
+        for corner in self.corners:
+            seen = corner.seen(q)
+            nearest &= ~seen.within | (np.abs(mine.distance) <= seen.distance + NEAREST)
         return np.asarray(facing | nearest)
 
     def _next_to(self, face: Face, A: smooth.Points, frame: Frame) -> Flags:
@@ -177,11 +186,23 @@ class Edge:
         """The constraints at a state, with exact derivatives."""
         line, frame = self.line(state, at), self.frame(state, at)
         found = [group for pin in self.pins if pin is not None for group in self._stopped(pin, state, at)]
-        for number, face in enumerate(self.faces):
-            s, free = self._places(face, line, frame)
+        placed = [self._places(face, line, frame) for face in self.faces]
+        own = np.concatenate([s[free] for s, free in placed])
+        standing = [self._closest(corner, line, frame, own) for corner in self.corners]
+        beside = np.concatenate([np.zeros(0), *standing])
+        for number, (s, free) in enumerate(placed):
+            mine = free | ~self._beside(s, beside)
+            if np.any(mine):
+                found.append(self._pressing(number, line, frame, s[mine], free[mine]))
+        for number, s in enumerate(standing):
             if s.size:
-                found.append(self._pressing(number, line, frame, s, free))
+                found.append(self._cornering(number, line, frame, s))
         return tuple(found)
+
+    def _beside(self, s: Array, places: Array) -> Flags:
+        """Which arc lengths ``s`` (k,) are so close to some ``places`` (j,) that what presses is left to those."""
+        reach = wells.BESIDE * self.a.size_at(places)
+        return np.asarray(np.any(np.abs(s[:, None] - places) <= reach, axis=1))
 
     def _stopped(self, pin: AngleStop, state: State, at: Positions) -> tuple[Group, ...]:
         # rows of this contact, whose own have no keys below −1
@@ -193,14 +214,45 @@ class Edge:
         A = line.at(s)
         seen = self._seen(self.faces[number], A, frame)
         n, k = seen.normal, seen.bend
+        D_z, along, D_sz, second = self._slopes(A, n, frame)
+        g, beyond, leading = self._across(A, n), missed(self.a, self.kinks, s), self._leading(A, n)
+        second += k[:, None, None] * along[:, :, None] * along[:, None, :]
+        D_sz += (k * g)[:, None] * along
+        D_ss = self._convexity(A, n, k) + leading * beyond.bend
+        moving = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
+        second -= moving[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
+        values = self.offset - seen.distance - np.where(free, leading * beyond.integral, 0.0)
+        return self._group(A, values, D_z, second, self._keys(number, s, free))
+
+    def _cornering(self, number: int, line: smooth.SmoothLine, frame: Frame, s: Array) -> Group:
+        """Rows at arc lengths ``s`` (k,) against one corner."""
+        A, corner = line.at(s), self.corners[number]
+        m = self._away(corner, A, frame)
+        D_z, b, a, second = self._slopes(A, m, frame)
+        g, beyond, leading = self._across(A, m), missed(self.a, self.kinks, s), self._leading(A, m)
+        rho = np.sum(m * self._from(corner, A, frame), axis=1)
+        M = self._convexity(A, m, np.zeros(len(s))) + leading * beyond.bend
+        mixed = a[:, :, None] * b[:, None, :]
+        turned = (
+            M[:, None, None] * b[:, :, None] * b[:, None, :]
+            - rho[:, None, None] * a[:, :, None] * a[:, None, :]
+            - g[:, None, None] * (mixed + mixed.transpose(0, 2, 1))
+        )
+        second += turned / (rho * M + g**2)[:, None, None]
+        values = self._half(s) - rho - leading * beyond.integral
+        own = len(self.faces) * self._own_keys + number
+        return self._group(A, values, D_z, second, (own,) * len(s))
+
+    def _slopes(self, A: smooth.Points, n: Array, frame: Frame) -> tuple[Array, Array, Array, Array]:
+        """n·v_z, τ·v_z and n·C_sz (k, p), and n·C_zz + E (k, p, p), over the local numbers."""
         tau = np.stack((n[:, 1], -n[:, 0]), axis=1)
         C_z, C_sz = smooth.position_slopes(A), smooth.tangent_slopes(A)
-        second, g = smooth.position_curvature(A, n), self._across(A, n)
+        second = smooth.position_curvature(A, n)
         v_z = C_z
         if self.body >= 0:
             r, turned = np.stack((A.x, A.y), axis=1) - frame.m, -tau  # J n
             swung = np.stack((r[:, 1], -r[:, 0]), axis=1)  # −J r
-            moves = np.tile(-np.eye(2), (len(s), 1, 1))
+            moves = np.tile(-np.eye(2), (len(A.s), 1, 1))
             v_z = np.concatenate((C_z, moves, swung[:, :, None]), axis=2)
             C_sz = np.pad(C_sz, ((0, 0), (0, 0), (0, 3)))
             second = np.pad(second, ((0, 0), (0, 3), (0, 3)))
@@ -208,23 +260,21 @@ class Edge:
             second[:, 7, :7] += swinging
             second[:, :7, 7] += swinging
             second[:, 7, 7] -= np.sum(n * r, axis=1)
-        D_z, along = np.einsum("mi,mik->mk", n, v_z), np.einsum("mi,mik->mk", tau, v_z)
-        second += k[:, None, None] * along[:, :, None] * along[:, None, :]
-        D_sz = np.einsum("mi,mik->mk", n, C_sz) + (k * g)[:, None] * along
+        n_z, along = np.einsum("mi,mik->mk", n, v_z), np.einsum("mi,mik->mk", tau, v_z)
+        n_sz = np.einsum("mi,mik->mk", n, C_sz)
         if self.body >= 0:
-            D_sz[:, 7] += -g  # J n·C_s
-        beyond, leading = missed(self.a, self.kinks, s), self._leading(A, n)
-        D_ss = self._convexity(A, seen) + leading * beyond.bend
-        moving = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
-        second -= moving[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
+            n_sz[:, 7] -= self._across(A, n)  # J n·C_s
+        return n_z, along, n_sz, second
 
+    def _group(self, A: smooth.Points, values: Array, D_z: Array, second: Array, keys: tuple[int, ...]) -> Group:
+        """Rows with these values, slopes −D_z (k, p) and second derivatives −``second`` (k, p, p)."""
         link = A.link
         joints = (self.a.first_joint + link)[:, None]
         angles = self.a.first_link + np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n)), axis=1)
         order = ALONE
         if self.body >= 0:
-            joints = np.stack((joints[:, 0], np.full(len(s), self.mark)), axis=1)
-            angles = np.concatenate((angles, np.full((len(s), 1), self.turning)), axis=1)
+            joints = np.stack((joints[:, 0], np.full(len(link), self.mark)), axis=1)
+            angles = np.concatenate((angles, np.full((len(link), 1), self.turning)), axis=1)
             order = WITH_BODY
         second = second[:, order[:, None], order]
 
@@ -235,21 +285,25 @@ class Edge:
 
         return Group(
             contact=self.name,
-            values=self.offset - seen.distance - np.where(free, leading * beyond.integral, 0.0),
+            values=values,
             joints=joints,
             angles=np.asarray(angles, dtype=np.intp),
             slopes=-D_z[:, order],
             curvature=curvature,
-            keys=self._keys(number, s, free),
-            arc=s,
+            keys=keys,
+            arc=A.s,
         )
 
+    @property
+    def _own_keys(self) -> int:
+        """Keys of one piece."""
+        return self.a.n + 2 + len(self.ends)
+
     def _keys(self, number: int, s: Array, free: Flags) -> tuple[int, ...]:
-        own = self.a.n + 2 + len(self.ends)  # keys of one piece
         keys = np.searchsorted(self.a.s, s)
         at_ends = np.isin(s, self.ends)
         keys[at_ends] = self.a.n + 2 + np.searchsorted(np.sort(self.ends), s[at_ends])
-        return tuple(np.where(free, -1, keys + number * own).tolist())
+        return tuple(np.where(free, -1, keys + number * self._own_keys).tolist())
 
     @staticmethod
     def _leading(A: smooth.Points, n: Array) -> Array:
@@ -265,12 +319,11 @@ class Edge:
         """D_s."""
         return np.asarray(A.speed * (n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi)) - self._widening(A.s))
 
-    def _convexity(self, A: smooth.Points, seen: Seen) -> Array:
+    def _convexity(self, A: smooth.Points, n: Array, k: Array) -> Array:
         """D_ss."""
-        n = seen.normal
         cos, sin = np.cos(A.psi), np.sin(A.psi)
         facing, leaning = n[:, 1] * cos - n[:, 0] * sin, n[:, 0] * cos + n[:, 1] * sin
-        return np.asarray(facing * A.speed * A.bend + leaning * A.gain + seen.bend * self._across(A, n) ** 2)
+        return np.asarray(facing * A.speed * A.bend + leaning * A.gain + k * self._across(A, n) ** 2)
 
     def _ruled(self, s: Array) -> Flags:
         """What lies on the first or the last link, where that is ruled."""
@@ -296,7 +349,7 @@ class Edge:
         ]
         lowest = wells.lowest(np.concatenate((fence[:1], D, fence[1:])), REACH) - 1
         lowest = lowest[self.own_places & ~self._ruled(s[lowest])]
-        parting = self._convexity(A, seen)[::2]
+        parting = self._convexity(A, seen.normal, seen.bend)[::2]
         found = wells.wells(self.a, D, parting, lowest, LEAST_CURVATURE, self.kinks.places)
         places, settled = self._refined(face, line, frame, s[found.samples])
         B = line.at(places)
@@ -339,7 +392,7 @@ class Edge:
             A, beyond = line.at(s), missed(self.a, self.kinks, s)
             seen = self._seen(face, A, frame)
             leading = self._leading(A, seen.normal)
-            D_ss = self._convexity(A, seen) + leading * beyond.bend
+            D_ss = self._convexity(A, seen.normal, seen.bend) + leading * beyond.bend
             slope = self._slope(A, seen.normal) + leading * beyond.angle
             step = -slope / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
             s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
@@ -348,12 +401,52 @@ class Edge:
         settled = (D_ss > LEAST_CURVATURE) & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
         return s, settled
 
+    def _from(self, corner: Corner, A: smooth.Points, frame: Frame) -> Array:
+        """C − P (k, 2)."""
+        return np.asarray(np.stack((A.x, A.y), axis=1) - frame.outwards(np.array([corner.place])))
+
+    def _away(self, corner: Corner, A: smooth.Points, frame: Frame) -> Array:
+        """m (k, 2)."""
+        cos, sin = np.cos(A.psi), np.sin(A.psi)
+        ahead = frame.turned(corner.ahead[None], frame.phi)[0]
+        sign = np.where(ahead[1] * cos > ahead[0] * sin, 1.0, -1.0)
+        lean = np.clip(self._widening(A.s) / A.speed, -1.0, 1.0)
+        level = sign * np.sqrt(1.0 - lean**2)
+        return np.stack((lean * cos - level * sin, lean * sin + level * cos), axis=1)
+
+    def _closest(self, corner: Corner, line: smooth.SmoothLine, frame: Frame, taken: Array) -> Array:
+        """Arc lengths where the beam is closest to a corner that it faces; none beside places that are ``taken``."""
+        A = line.sampled
+        away = np.hypot(*self._from(corner, A, frame).T)
+        s = A.s[wells.lowest(away - self._half(A.s), REACH)]
+        start, F_s, step = s, np.zeros(0), np.zeros(0)
+        for _ in range(CLOSEST_ITERATIONS if s.size else 0):
+            A, beyond = line.at(s), missed(self.a, self.kinks, s)
+            m, r = self._away(corner, A, frame), self._from(corner, A, frame)
+            g, leading, rho = self._across(A, m), self._leading(A, m), np.sum(m * r, axis=1)
+            F_s = g**2 + rho * (self._convexity(A, m, np.zeros(len(s))) + leading * beyond.bend)
+            F = g * (m[:, 1] * r[:, 0] - m[:, 0] * r[:, 1]) + leading * rho * beyond.angle
+            step = -F / np.where(F_s > LEAST_CURVATURE, F_s, np.inf)
+            s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
+            if np.max(np.abs(step)) < 1e-13:
+                break
+        settled = (F_s > LEAST_CURVATURE) & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
+        settled &= (s > 0.0) & (s < self.a.s[-1]) & ~self._ruled(s) & ~self._beside(s, taken)
+        s = np.unique(s[settled])
+        facing = corner.beyond(frame.turned(self._away(corner, line.at(s), frame), -frame.phi))
+        return np.asarray(s[facing >= -FACING])
+
     def _nearest(self, A: smooth.Points, frame: Frame) -> tuple[Array, Array, Array]:
         """Of the pieces that some points face, the nearest: D (k,), infinite where there is none, n (k, 2), k (k,)."""
         least, normal, bend = np.full(len(A.s), np.inf), np.zeros((len(A.s), 2)), np.zeros(len(A.s))
         for face in self.faces:
             seen = self._seen(face, A, frame)
             nearer = self._next_to(face, A, frame) & (seen.distance < least)
+            least = np.where(nearer, seen.distance, least)
+            normal, bend = np.where(nearer[:, None], seen.normal, normal), np.where(nearer, seen.bend, bend)
+        for corner in self.corners:
+            seen = self._seen(corner, A, frame)
+            nearer = seen.within & (seen.distance < least)
             least = np.where(nearer, seen.distance, least)
             normal, bend = np.where(nearer[:, None], seen.normal, normal), np.where(nearer, seen.bend, bend)
         return least, normal, bend
@@ -382,40 +475,6 @@ class Edge:
         """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s``."""
         return (1.0, s, self.line(state, at).at(s).psi) if chain is self.a else None
 
-    def presses_an_end(self, state: State, at: Positions, s: Array) -> bool:
-        """Whether what presses at arc lengths ``s`` does so next to an end of a piece that stands out.
-
-        There the edge has a corner, which presses in a point between joints; an own pin's is none.
-        """
-        A, frame = self.line(state, at).at(s), self.frame(state, at)
-        h = self.a.size_at(s)
-        own = [self.a.joints.start] if self.pins[0] is not None else []
-        own += [self.a.joints.stop - 1] if self.pins[1] is not None else []
-        pins = np.stack((at.x[own], at.y[own]), axis=1)
-        for face in self.faces:
-            seen = self._seen(face, A, frame)
-            distance = seen.distance + self._half(A.s) - self.offset
-            feet = np.stack((A.x, A.y), axis=1) - distance[:, None] * seen.normal
-            near = self._next_to(face, A, frame) & (np.abs(seen.distance - self.offset) <= h**2)
-            for end in face.ends:
-                if end is None or self._goes_on(face, end):
-                    continue
-                place = frame.outwards(end[None])[0]
-                at_pin = np.hypot(*(pins - place).T) <= self.offset + PIN_ON_IT
-                if not np.any(at_pin) and np.any(near & (np.hypot(*(feet - place).T) < h)):
-                    return True
-        return False
-
-    def _goes_on(self, face: Face, end: Array) -> bool:
-        """Whether another piece goes on at an ``end``, straight or into the free side."""
-        for other in self.faces:
-            if other is not face and any(
-                there is not None and np.hypot(*(there - end)) <= NEAREST for there in other.ends
-            ):
-                farther = max((there for there in other.ends if there is not None), key=lambda p: np.hypot(*(p - end)))
-                return bool(face.seen(farther[None]).distance[0] >= -NEAREST)
-        return False
-
     def least_gap(self, state: State, at: Positions) -> float:
         """Least gap anywhere along the beam, units of length; negative where it overlaps."""
         line, frame = self.line(state, at), self.frame(state, at)
@@ -423,6 +482,10 @@ class Edge:
         for face in self.faces:
             s, _ = self._places(face, line, frame)
             least.append(self._nearest(line.at(s), frame)[0].min(initial=np.inf))
+        for corner in self.corners:
+            A = line.at(self._closest(corner, line, frame, np.zeros(0)))
+            rho = np.sum(self._away(corner, A, frame) * self._from(corner, A, frame), axis=1)
+            least.append((rho - (self._half(A.s) - self.offset)).min(initial=np.inf))
         return float(min(least)) - self.offset
 
 
@@ -438,13 +501,15 @@ def edge_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Edge:
     pins = own_pins(scene, model, name)
     held = (chain.start.body == body, chain.end is not None and chain.end.body == body)
     welded = (chain.start.welded, chain.end is not None and chain.end.welded)
+    faces = faces_of(contact, model.unit_length, (float(x), float(y)))
     edge = Edge(
         name=name,
         a=chain,
         body=body,
         mark=model.mark_of(name),
         turning=model.n_links + 3 * body + 2,
-        faces=faces_of(contact, model.unit_length, (float(x), float(y))),
+        faces=faces,
+        corners=_corners(faces, _pinned_at(scene, model, contact, pins, (float(x), float(y))), offset),
         offset=offset,
         unit_length=model.unit_length,
         held=(held[0] or pins[0] is not None, held[1] or pins[1] is not None),
@@ -457,6 +522,28 @@ def edge_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Edge:
         kinks=fit.kinks.get(name, (NO_KINKS,))[0],
     )
     return replace(edge, clamped=_clamped(model, edge, (held[0] and welded[0], held[1] and welded[1])))
+
+
+def _pinned_at(
+    scene: Scene,
+    model: Model,
+    contact: EdgeContact,
+    pins: tuple[AngleStop | None, AngleStop | None],
+    origin: tuple[float, float],
+) -> Array:
+    """Where the beam is pinned on the edge, (k, 2), units of length from an ``origin`` (2,)."""
+    curve = scene.beams[contact.beam].curve
+    places = [place for pin, place in zip(pins, (curve.start, curve.end), strict=True) if pin is not None]
+    return np.asarray(np.array(places, dtype=float).reshape(-1, 2) / model.unit_length - np.array(origin))
+
+
+def _corners(faces: tuple[Face, ...], pinned: Array, offset: float) -> tuple[Corner, ...]:
+    """The corners but for those at which the beam is ``pinned`` (k, 2): they hold it as its pin does."""
+    return tuple(
+        corner
+        for corner in corners_of(faces)
+        if not np.any(np.hypot(*(pinned - np.array(corner.place)).T) <= offset + PIN_ON_IT)
+    )
 
 
 def _clamped(model: Model, edge: Edge, welded: tuple[bool, bool]) -> tuple[bool, bool]:

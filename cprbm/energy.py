@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm.beam_loads import BeamLoad, beam_loads, beam_work
+from cprbm.beam_loads import BeamLoad, MomentOnBeam, beam_loads, beam_moments, beam_work
 from cprbm.kinematics import Positions, State, pulled_back
 from cprbm.model import Model
 from scene import Scene
@@ -42,12 +42,12 @@ class EndMoment:
     moment: float
 
 
-AnyLoad = DeadLoad | EndMoment | BeamLoad
+AnyLoad = DeadLoad | EndMoment | BeamLoad | MomentOnBeam
 
 
-def dead_loads(scene: Scene, model: Model) -> dict[str, DeadLoad | BeamLoad]:
+def dead_loads(scene: Scene, model: Model) -> dict[str, DeadLoad | BeamLoad | MomentOnBeam]:
     """The scene's loads by name."""
-    loads: dict[str, DeadLoad | BeamLoad] = {**beam_loads(scene, model)}
+    loads: dict[str, DeadLoad | BeamLoad | MomentOnBeam] = {**beam_loads(scene, model), **beam_moments(scene, model)}
     for name, load in scene.loads.items():
         if isinstance(load, Moment):
             body = model.free_bodies.index(load.body)
@@ -117,7 +117,7 @@ class LoadWork:
         second: second derivatives over φ of the bodies (B,).
         diagonal, off: the same over θ, (n_links,) and (n_links−1,).
         fx, fy: what of the loads on beams is forces on joints (n_joints,), all of their resultants.
-        on_beams: loads on beams that act, with their values (SI).
+        on_beams: forces on beams that act, with their values (SI); moments: likewise.
     """
 
     value: float
@@ -128,6 +128,7 @@ class LoadWork:
     fx: Array
     fy: Array
     on_beams: tuple[tuple[BeamLoad, float], ...]
+    moments: tuple[tuple[MomentOnBeam, float], ...]
 
 
 def load_work(
@@ -140,7 +141,7 @@ def load_work(
     second = np.zeros(len(model.free_bodies))
     diagonal, off = np.zeros(model.n_links), np.zeros(model.n_links - 1)
     on_x, on_y = np.zeros(model.n_joints), np.zeros(model.n_joints)
-    on_beams = []
+    on_beams, moments = [], []
     for name, load in loads.items():
         value = values.get(name, 0.0)
         if isinstance(load, BeamLoad):
@@ -159,6 +160,11 @@ def load_work(
             total += value * load.moment * (state.theta[load.link] - model.rest[load.link])
             gradient[load.link] += value * load.moment
             continue
+        if isinstance(load, MomentOnBeam):
+            total += load.work(value, state.theta - model.rest)
+            gradient[list(load.links)] += value * load.moment * load.weights
+            moments.append((load, value))
+            continue
         u, v, phi = state.bodies[load.body]
         fx, fy = value * load.force[0], value * load.force[1]
         px, py = load.point
@@ -172,4 +178,4 @@ def load_work(
         gradient += np.concatenate((over_theta, bodies))
         diagonal += twice
         second += twice_bodies
-    return LoadWork(float(total), gradient, second, diagonal, off, on_x, on_y, tuple(on_beams))
+    return LoadWork(float(total), gradient, second, diagonal, off, on_x, on_y, tuple(on_beams), tuple(moments))

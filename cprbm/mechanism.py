@@ -30,6 +30,7 @@ BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam i
 SHALLOW = 0.05  # of the radius: an overlap between rows of a coarse mesh
 WAY = 0.02  # of the longest beam, by which a way of one radian may differ from the unknowns' even one
 EDGE_WAY = 0.2  # the same of an edge, behind which what is rigid never ends: pinned ends leave their points meanwhile
+DIP = 1e-3  # of the longest beam, by which a line may dip into an edge on the way, that goes round it or along it
 SAG = 0.25  # of an element times what links turn by at its spring: twice the sag of an even bend
 
 Boundary = FittedBoundary | RigidCircle | RigidEdge
@@ -84,7 +85,7 @@ class Mechanism:
     def _overlapped_between(self, circle: Circle, before: State, after: State) -> bool:
         """Whether the beam lay deep in the circle on the way from one state to another, the unknowns going evenly."""
         # the real way differs by the square of the step
-        allowed = 0.5 * circle.offset + SHALLOW * circle.radius + WAY * most_turned(before, after) ** 2
+        allowed = 0.5 * circle.offset + SHALLOW * circle.radius + WAY * _turned(before, after) ** 2
         for state in _between(before, after):
             at = positions(self.problem.model, state)
             places = circle.line(state, at).sampled
@@ -94,7 +95,9 @@ class Mechanism:
 
     def _crossed_between(self, pair: Pair | Edge, before: Point, after: Point, way: float) -> bool:
         """Whether a beam lay across what it may touch between two states, by more than the way between is known."""
-        allowed = pair.offset + way * most_turned(before.state, after.state) ** 2 + self._sag(pair, after.state)
+        slack = max(pair.offset, DIP) if isinstance(pair, Edge) else pair.offset
+        slack += self._sag(pair, after.state)
+        allowed = slack + way * _turned(before.state, after.state) ** 2
         return any(
             pair.least_gap(state, positions(self.problem.model, state)) + pair.offset < -allowed
             for state in _between(before.state, after.state)
@@ -105,6 +108,12 @@ class Mechanism:
         if not self.boundaries:
             return 0.0
         return max(SAG * chain.h * float(np.max(np.abs(np.diff(state.theta[chain.links])))) for chain in pair.chains)
+
+
+def _turned(before: State, after: State) -> float:
+    """The most that a link or a body turns by between two states, rad."""
+    bodies = np.max(np.abs(after.bodies[:, 2] - before.bodies[:, 2]), initial=0.0)
+    return max(most_turned(before, after), float(bodies))
 
 
 def _between(before: State, after: State) -> Iterator[State]:

@@ -41,6 +41,7 @@ from scene import (
     WeldedEnd,
 )
 from scene.answer import Array
+from scene.statement import BeamMoment
 
 
 @dataclass(frozen=True, slots=True)
@@ -269,7 +270,7 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
         if settings.formulation == "paper" and beam.paper is not None:
             edges, springs = spaced(line, n, beam.paper.uniform)
         else:
-            edges = line.length * fit.borders.get(name, np.arange(n + 1) / n)
+            edges = line.length * fit.borders.get(name, _borders(scene, name, n))
             springs = 0.5 * (edges[1:] + edges[:-1])
         s = np.concatenate(([0.0], springs, [line.length]))
         chords, directions = line.chords(s)
@@ -314,6 +315,16 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
         rest=rest,
         marks=_marks(scene, free_bodies, references, unit_length),
     )
+
+
+def _borders(scene: Scene, beam: str, n: int) -> Array:
+    """Where even elements of a beam end, (n+1,) from 0 to 1; at moments on it, where its curvature jumps."""
+    loads = [load for load in scene.loads.values() if isinstance(load, BeamMoment) and load.beam == beam]
+    marks = np.array(sorted({load.at for load in loads if 0.0 < load.at < 1.0}))
+    numbers = np.concatenate(([0.0], np.round(n * marks), [float(n)]))
+    if np.any(np.diff(numbers) < 1.0):
+        return np.arange(n + 1) / n
+    return np.interp(np.arange(n + 1), numbers, np.concatenate(([0.0], marks, [1.0])))
 
 
 def attached(scene: Scene, model: Model, point: str) -> Attachment:

@@ -9,6 +9,7 @@ from cprbm.edge import Edge
 from cprbm.equilibrium import Point, Problem, potential_energy
 from cprbm.forces import contact_forces, contact_moment, contact_pressure, holding, supports
 from cprbm.mechanism import Mechanism
+from cprbm.normal_force import normal_force
 from cprbm.stress import bending_stress
 from cprbm.zones import zones_of
 from scene import Probe, Scene, Shape
@@ -52,6 +53,12 @@ def _value(
             return [closed_at[probe.of]] if probe.of in closed_at and pressing.size else []
         case "bending_stress":
             return bending_stress(mechanism, point, model.chain(probe.of), probe.points)
+        case "combined_stress":
+            beam, u = scene.beams[probe.of], np.linspace(0.0, 1.0, probe.points)
+            chain = model.chain(probe.of)
+            normal = normal_force(mechanism, point, chain, probe.points) * model.unit_force
+            bent = np.abs(bending_stress(mechanism, point, chain, probe.points))
+            return np.asarray(bent + np.abs(normal) / (beam.thickness_at(u) * beam.width_at(u)))
         case "reaction" | "reaction_moment":
             force, moment = _reaction(scene, problem, point, probe.of)
             return force * model.unit_force if probe.quantity == "reaction" else moment * model.unit_moment

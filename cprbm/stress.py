@@ -21,6 +21,8 @@ and of the shape, goes evenly with N.
 Where a distributed load begins or ends at s_q, d²M/ds² jumps by J, its part along the left normal.  The kinks of that,
 ¼ J (s − s_q)|s − s_q|, are taken out and added back likewise, by their own mean over each element.
 
+At a moment on the beam M itself jumps, down by the moment: ½ M sgn(s − s_q) is taken out and added back likewise.
+
 Where a beam lies on something, the pressure is shared by joints and what they carry next to the zone's end is no
 force of the place.  Elements end where such zones do: there M is continued from the springs on the same side alone.
 """
@@ -55,6 +57,10 @@ def bending_stress(mechanism: Mechanism, point: Point, chain: Chain, points: int
     for c, J in zip(*distributed, strict=True):
         springs += 0.25 * J * np.diff(np.abs(chain.borders - c) ** 3) / (3.0 * chain.sizes)
         known += 0.25 * J * (s - c) * np.abs(s - c)
+    for q, M in _moments(mechanism, point, chain):
+        even = np.clip((chain.borders[1:] + chain.borders[:-1] - 2.0 * q) / chain.sizes, -1.0, 1.0)
+        springs -= 0.5 * M * even
+        known -= 0.5 * M * np.sign(s - q)
     moment = _joined(chain, moments - springs, _parted(mechanism, chain), s) + known
     curvature = moment / chain.section.rigidity_at(s)
     return np.asarray(0.5 * chain.youngs_modulus * chain.section.thickness_at(s) * curvature)
@@ -73,6 +79,12 @@ def _loads(mechanism: Mechanism, point: Point, chain: Chain) -> tuple[tuple[Arra
         for each in (found[False], found[True])
     )
     return forces, distributed
+
+
+def _moments(mechanism: Mechanism, point: Point, chain: Chain) -> list[tuple[float, float]]:
+    """s_q and M of moments on a beam."""
+    chains, found = mechanism.problem.model.chains, point.work.moments
+    return [(load.s, value * load.moment) for load, value in found if chains[load.chain] is chain]
 
 
 def _parted(mechanism: Mechanism, chain: Chain) -> Array:

@@ -28,7 +28,7 @@ from exact.state import State
 from exact.structure import Meeting, Wrap
 from exact.way import Way
 from scene import Answer, Ending, Scene, StationAnswer
-from scene.statement import EdgeContact, TurningBody
+from scene.statement import BeamMoment, EdgeContact, TurningBody
 
 _OVERLAP = 1e-10  # of the unit of length
 _FIRST_STEP = 0.2  # of the way to the first station
@@ -76,8 +76,8 @@ def _covered(scene: Scene) -> None:
     """Refuse what has no equations here.
 
     Raises:
-        NotCoveredError: the scene has stops, an assembly, a body on a pivot, bodies that are pinned to each other, or
-            contact with a line, a half-plane or a function.
+        NotCoveredError: the scene has stops, an assembly, a body on a pivot, bodies that are pinned to each other,
+            contact with a line, a half-plane or a function, or a moment on a beam.
     """
     pivots = any(isinstance(body, TurningBody) for body in scene.bodies.values())
     edges = any(isinstance(contact, EdgeContact) for contact in scene.contacts.values())
@@ -87,6 +87,7 @@ def _covered(scene: Scene) -> None:
         ("bodies on pivots", pivots),
         ("pins between bodies", scene.pins),
         ("contact with lines, half-planes and functions", edges),
+        ("moments on beams", any(isinstance(load, BeamMoment) for load in scene.loads.values())),
     ):
         if there:
             raise NotCoveredError(f"there are no equations for {what} here")

@@ -84,6 +84,15 @@ def _value(
             E = scene.materials[strip.beam.material].youngs_modulus
             change = strip.compliance(s) * state.along(probe.of, s)[3] / model.unit_length
             return np.asarray(0.5 * E * strip.beam.thickness_at(s / strip.length) * change)
+        case "combined_stress":
+            strip = model.strips[probe.of]
+            s = np.linspace(0.0, strip.length, probe.points)
+            beam, E = strip.beam, scene.materials[strip.beam.material].youngs_modulus
+            _, _, theta, m, Fx, Fy = state.along(probe.of, s)
+            t, b = (size(s / strip.length) for size in (beam.thickness_at, beam.width_at))
+            bent = 0.5 * E * t * strip.compliance(s) * m / model.unit_length
+            normal = (Fx * np.cos(theta) + Fy * np.sin(theta)) * model.unit_force
+            return np.asarray(np.abs(bent) + np.abs(normal) / (t * b))
         case "reaction" | "reaction_moment":
             force, moment = _reaction(scene, state, probe.of)
             return force * model.unit_force if probe.quantity == "reaction" else moment * model.unit_moment

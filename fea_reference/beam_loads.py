@@ -22,6 +22,14 @@ A cubic over an arc is slower in the middle, by α²/8 of its speed with the ele
     ξ* = ξ − (ψ₂ − ψ₁)² ξ (1 − ξ)(1 − 2ξ)/48
 
     ∂(½ c (f·n)²)/∂α = −c (f·n)(f·t),    ∂²/∂α² = c ((f·t)² − (f·n)²)
+
+A moment M does the work M (ψ − ψ⁰) of the tangent angle ψ at its place, which by x' = ∂x/∂ξ, its size g and the normal
+and tangent n', t' there has
+
+    dψ = n'·dx'/g,    d²ψ = n'·d²x'/g − 2 (n'·dx')(t'·dx')/g²
+
+and, as a force has, a give of its place in an element whose ends are held, c' = (u v/L)(1 − 3 u v/L²)/EI: a constant
+½ c' M².
 """
 
 from __future__ import annotations
@@ -32,7 +40,7 @@ import numpy as np
 
 from fea_reference.hermite import Index, NeutralLine, along, shape_slopes, shapes, twice_along
 from fea_reference.leaning import Chain
-from fea_reference.model import BeamLoadPart, Model
+from fea_reference.model import BeamLoadPart, BeamMomentPart, Model, OnBeam
 from fea_reference.state import State
 from scene.answer import Array
 
@@ -45,13 +53,13 @@ class BeamLoad:
     """A load in one state.
 
     Attributes:
-        part, value, force: the load, its value and forces (2, k).
+        part, value, force: the load, its value and forces (2, k), of a moment zero.
         place: where they act (2, k); work: W.
         chain: from what its elements' lines go by to the unknowns.
         gradient, hessian: derivatives of W by the unknowns ``dofs`` (M, k), (M, k) and (M, M, k).
     """
 
-    part: BeamLoadPart
+    part: OnBeam
     value: float
     force: Array
     place: Array
@@ -68,11 +76,14 @@ class BeamLoad:
     @property
     def moment(self) -> float:
         """About the origin."""
-        return float((self.place[0] * self.force[1] - self.place[1] * self.force[0]).sum())
+        own = self.value if isinstance(self.part, BeamMomentPart) else 0.0
+        return own + float((self.place[0] * self.force[1] - self.place[1] * self.force[0]).sum())
 
 
-def beam_load(model: Model, part: BeamLoadPart, value: float, z: State) -> BeamLoad:
+def beam_load(model: Model, part: OnBeam, value: float, z: State) -> BeamLoad:
     """A load of a ``value`` in state ``z``."""
+    if isinstance(part, BeamMomentPart):
+        return _beam_moment(model, part, value, z)
     beam = model.beams[part.beam]
     line = model.line(beam, z)
     force = value * part.forces
@@ -87,6 +98,39 @@ def beam_load(model: Model, part: BeamLoadPart, value: float, z: State) -> BeamL
         done += 0.5 * float((bubble.moved * force).sum())
     chain = model.chain([(beam, placed.e)], z)
     return BeamLoad(part, value, force, place, done, chain, chain.gradient(local), chain.hessian(twice, local))
+
+
+def _beam_moment(model: Model, part: BeamMomentPart, value: float, z: State) -> BeamLoad:
+    """A moment of a ``value`` in state ``z``."""
+    beam, zeta = model.beams[part.beam], np.array([part.zeta])
+    line = model.line(beam, z)
+    e, xi = line.locate(zeta)
+    psi, local, twice = _turning(line, zeta)
+    rest, _, _ = _turning(model.line(beam, model.start), zeta)
+    L, part_of = line.lengths[e], xi * (1.0 - xi)
+    give = float((L * part_of * (1.0 - 3.0 * part_of) / beam.bending(zeta / line.n))[0])
+    chain = model.chain([(beam, e)], z)
+    local, twice = value * local, value * twice
+    work = value * float(psi[0] - rest[0]) + 0.5 * value**2 * give
+    none = np.zeros((2, 1))
+    return BeamLoad(
+        part, value, none, line.at(zeta)[0], work, chain, chain.gradient(local), chain.hessian(twice, local)
+    )
+
+
+def _turning(line: NeutralLine, zeta: Array) -> tuple[Array, Array, Array]:
+    """ψ at places (k,), counted on from the nodes', and its derivatives by what the elements' lines go by."""
+    e, xi = line.locate(zeta)
+    x1 = line.at(zeta)[1]
+    first = line.angles[e]
+    cos, sin = np.cos(first), np.sin(first)
+    psi = first + np.arctan2(cos * x1[1] - sin * x1[0], cos * x1[0] + sin * x1[1])
+    g = np.hypot(*x1)
+    t, H1 = x1 / g, shape_slopes(xi)
+    n = np.stack([-t[1], t[0]])
+    across, ahead = along(n / g, H1, line, e), along(t / g, H1, line, e)
+    both = across[:, None] * ahead[None, :]
+    return psi, across, twice_along(n / g, H1, line, e) - both - both.transpose(1, 0, 2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,9 +193,14 @@ def _bubble(line: NeutralLine, e: Index, give: Array, f: Array) -> _Bubble:
     return _Bubble(-give * across * ahead * turn, give * twice, give * across * n)
 
 
-def load_forces(model: Model, part: BeamLoadPart, z: State) -> Array:
+def load_forces(model: Model, part: OnBeam, z: State) -> Array:
     """Generalised forces (size,) of a load of value one, without the bubbles."""
     beam = model.beams[part.beam]
+    if isinstance(part, BeamMomentPart):
+        one = _beam_moment(model, part, 1.0, z)
+        f = np.zeros(model.size)
+        np.add.at(f, one.dofs, one.gradient)
+        return f
     placed = _placed(part, model.line(beam, z))
     chain = model.chain([(beam, placed.e)], z)
     f = np.zeros(model.size)
@@ -159,9 +208,25 @@ def load_forces(model: Model, part: BeamLoadPart, z: State) -> Array:
     return f
 
 
+def force_before(load: BeamLoad, line: NeutralLine, zeta: Array) -> Array:
+    """Force of what acts before places ``zeta`` (k,) of the load's ``line`` in their own elements, (2, k)."""
+    part, (e, _) = load.part, line.locate(zeta)
+    if isinstance(part, BeamMomentPart):
+        return np.zeros((2, zeta.size))
+    if not part.distributed:
+        owner, _ = line.locate(part.zeta)
+        return np.asarray(load.force * ((e == owner) & (part.zeta < zeta)))
+    first = np.clip(part.begin, e, zeta)
+    length = (np.clip(part.end, first, zeta) - first) * line.lengths[e]
+    return np.asarray(load.value * part.density[:, None] * length)
+
+
 def moment_before(load: BeamLoad, line: NeutralLine, zeta: Array) -> Array:
     """Moment about places ``zeta`` (k,) of the load's ``line`` of what acts before them in their own elements, (k,)."""
     part, (e, _) = load.part, line.locate(zeta)
+    if isinstance(part, BeamMomentPart):
+        owner, _ = line.locate(np.array([part.zeta]))
+        return np.where((e == owner) & (part.zeta < zeta), load.value, 0.0)
     x = line.at(zeta)[0]
     if not part.distributed:
         owner, _ = line.locate(part.zeta)

@@ -6,7 +6,7 @@ import numpy as np
 
 from fea_reference.curvature import smallest_curvature
 from fea_reference.march import March
-from fea_reference.model import BeamLoadPart, Model
+from fea_reference.model import Model, OnBeam
 from fea_reference.stops import acting_stops
 from fea_reference.supports import grounded, held, support
 from fea_reference.system import System, assemble
@@ -117,7 +117,7 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float]
         if stop.phi is None:
             moments.append(stop.moment(z))
     for part, value in zip(model.loads, values[: len(model.loads)], strict=True):
-        if isinstance(part, BeamLoadPart):
+        if isinstance(part, OnBeam):
             continue
         body = model.bodies[part.body]
         if part.direction is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fea_reference.beam_loads import beam_load
-from fea_reference.model import BeamLoadPart, Model
+from fea_reference.model import Model, OnBeam
 from fea_reference.system import System
 from scene.answer import Array
 
@@ -16,7 +16,7 @@ def potential_energy(model: Model, system: System, values: Array) -> float:
     z = system.z
     energy = float(system.elements.energy.sum())
     for part, load in zip(model.loads, values[: len(model.loads)], strict=True):
-        if isinstance(part, BeamLoadPart):
+        if isinstance(part, OnBeam):
             energy -= beam_load(model, part, float(load), z).work
             continue
         body = model.bodies[part.body]

@@ -33,6 +33,7 @@ from scene.statement import (
     Beam,
     BeamEnd,
     BeamForce,
+    BeamMoment,
     DisplacementDrive,
     DistributedLoad,
     Force,
@@ -175,6 +176,19 @@ class BeamLoadPart:
 
 
 @dataclass(frozen=True, slots=True)
+class BeamMomentPart:
+    """A moment on a beam, by its number, at the place ``zeta``, element number plus ξ."""
+
+    name: str
+    beam: int
+    zeta: float
+    unit: float
+
+
+OnBeam = BeamLoadPart | BeamMomentPart
+
+
+@dataclass(frozen=True, slots=True)
 class DrivePart:
     """A row that prescribes a body's motion: direction·(X + R(φ) r − r) = value, or φ = value without a direction.
 
@@ -237,7 +251,7 @@ class Model:
     beams: tuple[BeamPart, ...]
     bodies: tuple[BodyPart, ...]
     joints: tuple[JointPart, ...]
-    loads: tuple[LoadPart | BeamLoadPart, ...]
+    loads: tuple[LoadPart | OnBeam, ...]
     hinges: tuple[HingePart, ...]
     guides: tuple[DrivePart, ...]
     drives: tuple[DrivePart, ...]
@@ -251,7 +265,7 @@ class Model:
     start: State
 
     @property
-    def stepped(self) -> tuple[LoadPart | BeamLoadPart | DrivePart | SharePart, ...]:
+    def stepped(self) -> tuple[LoadPart | OnBeam | DrivePart | SharePart, ...]:
         """What has a value that is stepped, in the order of the values: loads, drives, the assembly's two shares."""
         return (*self.loads, *self.drives, *((MOMENTS, WAY) if self.apart else ()))
 
@@ -399,7 +413,7 @@ def build(scene: Scene, settings: Settings) -> Model:
         hinges.append(HingePart(both.points, (one, other), (arms[0], arms[1]), np.arange(size, size + 2)))
         size += 2
 
-    loads: list[LoadPart | BeamLoadPart] = []
+    loads: list[LoadPart | OnBeam] = []
     for name, load in scene.loads.items():
         match load:
             case Moment():
@@ -409,6 +423,10 @@ def build(scene: Scene, settings: Settings) -> Model:
                 arm = bodies[i].points[load.point] - bodies[i].centre
                 direction = np.array(load.direction) / np.hypot(*load.direction)
                 loads.append(LoadPart(name, i, arm, direction, units.force))
+            case BeamMoment():
+                i = [part.name for part in beams].index(load.beam)
+                n = beams[i].nodes.stop - 1 - beams[i].nodes.start
+                loads.append(BeamMomentPart(name, i, load.at * n, units.moment))
             case BeamForce() | DistributedLoad():
                 loads.append(_on_beam(name, load, [part.name for part in beams].index(load.beam), beams, units))
 

@@ -103,7 +103,10 @@ class HalfPlane:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Broken:
-    """An edge of straight pieces: the free side is to the left of what runs along ``points`` (2, m+1)."""
+    """An edge of straight pieces: the free side is to the left of what runs along ``points`` (2, m+1).
+
+    Where the last is the first it goes round and has no ends.
+    """
 
     points: Array
 
@@ -111,6 +114,9 @@ class Broken:
     def corners(self) -> Corners:
         """Its corners, and those at its ends."""
         tau = self._tangents
+        if self.closed:
+            before = np.roll(tau, 1, axis=1)
+            return Corners(self.points[:, :-1], (before, tau), (_left(before), _left(tau)))
         before = np.column_stack([_left(tau[:, :1]), tau])
         behind = np.column_stack([tau, -_left(tau[:, -1:])])
         return Corners(self.points, (before, behind), (_left(before), _left(behind)))
@@ -134,6 +140,8 @@ class Broken:
         first = np.column_stack([self.points[:, :1], self.points[:, :-1], self.points[:, -1:]])
         low = np.concatenate([[-np.inf], np.zeros(length.size), [0.0]])
         high = np.concatenate([[0.0], length, [np.inf]])
+        if self.closed:
+            tangents, first, low, high = tau, self.points[:, :-1], low[1:-1], high[1:-1]
         r = y[:, None, :] - first[:, :, None]
         t = np.clip((r * tangents[:, :, None]).sum(axis=0), low[:, None], high[:, None])
         away = r - t * tangents[:, :, None]
@@ -144,7 +152,8 @@ class Broken:
         corner = (t <= low[nearest]) | (t >= high[nearest])
         d = (side * away[:, nearest, every]).sum(axis=0)
         # at a corner both of its sides say on which of them a place is
-        neighbour = np.clip(np.where(t <= low[nearest], nearest - 1, nearest + 1), 0, length.size + 1)
+        neighbour = np.where(t <= low[nearest], nearest - 1, nearest + 1)
+        neighbour = neighbour % length.size if self.closed else np.clip(neighbour, 0, length.size + 1)
         both = side + np.where(corner, _left(tangents[:, neighbour]), 0.0)
         away = away[:, nearest, every]
         r_corner = np.hypot(away[0], away[1])
@@ -157,6 +166,11 @@ class Broken:
             np.where(corner, sign / np.where(corner, r_corner, 1.0), 0.0),
             corner,
         )
+
+    @property
+    def closed(self) -> bool:
+        """Whether the edge goes round."""
+        return bool(np.all(self.points[:, 0] == self.points[:, -1]))
 
     @property
     def _tangents(self) -> Array:
@@ -282,9 +296,10 @@ def ends_at(outline: Outline, place: Array, near: float) -> tuple[Array | None, 
     if at.size == 0:
         return ahead, -ahead
     corner, last = int(at[0]), corners.points.shape[1] - 1
+    round_it = isinstance(outline, Broken) and outline.closed
     return (
-        corners.tangents[1][:, corner] if corner < last else None,
-        -corners.tangents[0][:, corner] if corner > 0 else None,
+        corners.tangents[1][:, corner] if round_it or corner < last else None,
+        -corners.tangents[0][:, corner] if round_it or corner > 0 else None,
     )
 
 

@@ -9,7 +9,7 @@ from fea_reference.energy import potential_energy
 from fea_reference.march import March
 from fea_reference.model import Model
 from fea_reference.projection import project
-from fea_reference.recovery import bending_moment
+from fea_reference.recovery import bending_moment, normal_force
 from fea_reference.stops import StopPart, acting_stops
 from fea_reference.supports import grounded, held, support
 from fea_reference.touch import Pair, Touch
@@ -40,6 +40,12 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
             moment = bending_moment(model, march.system, model.beam(probe.of), u)
             # M t/(2I), with I of the rectangle that is there
             return frozen_array(moment * units.moment * 6.0 / (beam.width_at(u) * beam.thickness_at(u) ** 2))
+        case "combined_stress":
+            u, beam = np.linspace(0.0, 1.0, probe.points), scene.beams[probe.of]
+            width, thickness, part = beam.width_at(u), beam.thickness_at(u), model.beam(probe.of)
+            moment = bending_moment(model, march.system, part, u) * units.moment
+            normal = normal_force(model, march.system, part, u) * units.force
+            return frozen_array(np.abs(moment) * 6.0 / (width * thickness**2) + np.abs(normal) / (width * thickness))
         case "potential_energy":
             return frozen_array(potential_energy(model, march.system, march.values) * units.moment)
         case "closing_load":

@@ -1,4 +1,4 @@
-"""The bending moment along a beam, by statics.
+"""The bending moment and the normal force along a beam, by statics.
 
 The moment at s is what balances the forces on the piece of an element between its first node and s: the
 element's own end force and end moment there, and the contact's forces at the Gauss points in between.  End
@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea_reference.beam_loads import moment_before
+from fea_reference.beam_loads import force_before, moment_before
 from fea_reference.model import BeamPart, Model
 from fea_reference.system import System
 from fea_reference.touch import Pair, Touch
@@ -21,27 +21,26 @@ from scene.answer import Array
 _NOTHING = (np.empty(0), np.empty((2, 0)), np.empty((2, 0)))
 
 
+def normal_force(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:
+    """N at ``fractions`` (k,) of the arc length, without units, positive in tension."""
+    line, zeta = model.line(beam, system.z), fractions * (beam.elements.stop - beam.elements.start)
+    ends, place, _, force = _cut(model, system, beam)
+    e, _ = line.locate(zeta)
+    owner, _ = line.locate(place)
+    before = (owner[None, :] == e[:, None]) & (place[None, :] < zeta[:, None])
+    pull = -ends[:2, e] - force @ before.T
+    for load in system.loads:
+        if load.part.beam == model.beams.index(beam):
+            pull -= force_before(load, line, zeta)
+    tangent = line.at(zeta)[1]
+    return np.asarray((pull * tangent).sum(axis=0) / np.hypot(*tangent))
+
+
 def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Array) -> Array:
     """EI (κ − κ⁰) at ``fractions`` (k,) of the arc length, in units of EI/length."""
     line = model.line(beam, system.z)
-    ends = system.elements.gradient[:3, beam.elements].copy()  # force and moment on every element's first node
-    number = model.beams.index(beam)
-    parts = [_NOTHING, *(_on_beam(touch, number) for touch in system.touches)]
-    place, point, force = (np.concatenate(arrays, axis=-1) for arrays in zip(*parts, strict=True))
+    ends, place, point, force = _cut(model, system, beam)
     owner, _ = line.locate(place)
-    for touch in system.touches:
-        gradient = touch.gradient
-        for of_line, row, elements in touch.chain.shares:
-            if number == (touch.pair.second if of_line == 1 and isinstance(touch.pair, Pair) else touch.pair.first):
-                for i in range(3):
-                    np.add.at(ends[i], elements, gradient[row + i])
-
-    loads = [load for load in system.loads if load.part.beam == number]
-    for load in loads:
-        for _, row, elements in load.chain.shares:
-            for i in range(3):
-                np.add.at(ends[i], elements, -load.gradient[row + i])
-
     zeta = fractions * line.n
     e, _ = line.locate(zeta)
     x = line.at(zeta)[0]
@@ -50,9 +49,34 @@ def bending_moment(model: Model, system: System, beam: BeamPart, fractions: Arra
     before = (owner[None, :] == e[:, None]) & (place[None, :] < zeta[:, None])
     lever = point[:, None, :] - x[:, :, None]
     moment -= ((lever[0] * force[1] - lever[1] * force[0]) * before).sum(axis=1)
-    for load in loads:
-        moment -= moment_before(load, line, zeta)
+    for load in system.loads:
+        if load.part.beam == model.beams.index(beam):
+            moment -= moment_before(load, line, zeta)
     return np.asarray(moment)
+
+
+def _cut(model: Model, system: System, beam: BeamPart) -> tuple[Array, Array, Array, Array]:
+    """Force and moment on every element's first node (3, n) without the shares of what acts within, and of contacts
+    places (k,), points and forces (2, k).
+    """
+    ends = system.elements.gradient[:3, beam.elements].copy()  # force and moment on every element's first node
+    number = model.beams.index(beam)
+    parts = [_NOTHING, *(_on_beam(touch, number) for touch in system.touches)]
+    place, point, force = (np.concatenate(arrays, axis=-1) for arrays in zip(*parts, strict=True))
+    for touch in system.touches:
+        gradient = touch.gradient
+        for of_line, row, elements in touch.chain.shares:
+            if number == (touch.pair.second if of_line == 1 and isinstance(touch.pair, Pair) else touch.pair.first):
+                for i in range(3):
+                    np.add.at(ends[i], elements, gradient[row + i])
+
+    for load in system.loads:
+        if load.part.beam != number:
+            continue
+        for _, row, elements in load.chain.shares:
+            for i in range(3):
+                np.add.at(ends[i], elements, -load.gradient[row + i])
+    return ends, place, point, force
 
 
 def _on_beam(touch: Touch, number: int) -> tuple[Array, Array, Array]:

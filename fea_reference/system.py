@@ -19,7 +19,7 @@ from fea_reference.beam_loads import BeamLoad, beam_load, load_forces
 from fea_reference.contacts import touch
 from fea_reference.element import ElementForces, forces
 from fea_reference.hermite import Index
-from fea_reference.model import MOMENTS, WAY, BeamLoadPart, DrivePart, Model, SharePart, turned
+from fea_reference.model import MOMENTS, WAY, DrivePart, Model, OnBeam, SharePart, turned
 from fea_reference.state import State
 from fea_reference.stops import acting_stops
 from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
@@ -107,7 +107,7 @@ def assemble(
     loads = tuple(
         beam_load(model, part, float(value), z)
         for part, value in zip(model.loads, values[: len(model.loads)], strict=True)
-        if isinstance(part, BeamLoadPart)
+        if isinstance(part, OnBeam)
     )
     for load in loads:
         vectors.append(_vector(load.dofs, -load.gradient, model.size))
@@ -168,7 +168,7 @@ def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
     """
     part = model.stepped[load]
     f = np.zeros(model.size)
-    if isinstance(part, BeamLoadPart):
+    if isinstance(part, OnBeam):
         return load_forces(model, part, z)
     if isinstance(part, SharePart):
         for i, one in enumerate(model.apart):
@@ -293,7 +293,7 @@ def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array
         if stop.name not in acting.limits:
             vanish(stop.row)
     for i, (part, value) in enumerate(zip(model.loads, acting_loads, strict=True)):
-        if isinstance(part, BeamLoadPart):
+        if isinstance(part, OnBeam):
             continue
         residual -= value * load_direction(model, i, z, acting)
         dofs = model.bodies[part.body].dofs

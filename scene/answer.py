@@ -16,6 +16,8 @@ closing_load       (1,)    value of the stepped load or drive at which a contact
 bending_stress     (P,)    signed: E·t/2 times the change of curvature along the beam, Pa, with t of the place,
                            at P equal arc-length steps from the beam's start to its end;
                            a positive change turns the tangent counter-clockwise
+combined_stress    (P,)    largest magnitude over the section at the same places, Pa: those of the bending stress
+                           and of the normal force over the section's area together
 reaction           (2,)    force of the ground on what is joined at a point, N; at a driven point the drive's force
 reaction_moment    (1,)    moment of the ground there, about that point, N·m; of a body that is turned by a
                            drive the drive's moment

@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from scene.mistakes import Mistake, unknown_name
-from scene.statement import BeamForce, DistributedLoad, FreeEnd, Scene
+from scene.statement import BeamForce, BeamMoment, DistributedLoad, FreeEnd, PinnedEnd, Scene
 
 SHORTEST_STRETCH = 1e-6  # of the beam's length
 
 
 def wrong_beam_loads(scene: Scene) -> Iterator[Mistake]:
-    """Loads on beams that do not exist, without a direction or a stretch, and forces at ends that cannot move."""
+    """Loads on beams that do not exist, without a direction or a stretch, and at ends that cannot move."""
     for name, load in scene.loads.items():
-        if not isinstance(load, BeamForce | DistributedLoad):
+        if not isinstance(load, BeamForce | BeamMoment | DistributedLoad):
             continue
         key = f"loads.{name}"
         if load.beam not in scene.beams:
             yield unknown_name(f"{key}.beam", load.beam, "beam", scene.beams)
-        if load.direction == (0.0, 0.0):
+        if not isinstance(load, BeamMoment) and load.direction == (0.0, 0.0):
             yield Mistake(f"{key}.direction", "[0, 0]", "a direction, at least one number not zero")
         if isinstance(load, DistributedLoad):
             begin, end = load.along
@@ -30,8 +30,10 @@ def wrong_beam_loads(scene: Scene) -> Iterator[Mistake]:
             yield Mistake(f"{key}.at", found, "a place of the beam that can move")
 
 
-def _held_at(scene: Scene, load: BeamForce) -> str | None:
-    """The point of a fixed body at which the end is held where a force acts."""
+def _held_at(scene: Scene, load: BeamForce | BeamMoment) -> str | None:
+    """The point of a fixed body at which the end is held where a force or moment acts; a pin lets the end turn."""
     end = scene.beams[load.beam].start if load.at == 0.0 else scene.beams[load.beam].end
     fixed = {point for body in scene.bodies.values() if body.motion == "fixed" for point in body.points}
-    return None if isinstance(end, FreeEnd) or end.point not in fixed else end.point
+    if isinstance(end, FreeEnd) or (isinstance(load, BeamMoment) and isinstance(end, PinnedEnd)):
+        return None
+    return end.point if end.point in fixed else None

@@ -91,7 +91,7 @@ def distance_from(contact: EdgeContact, size: float) -> Distance:
     match contact:
         case LineContact():
             points = np.array(contact.points) / size
-            return lambda p: _from_line(points, 1.0 if contact.side == "left" else -1.0, p)
+            return lambda p: _from_line(points, 1.0 if contact.side == "left" else -1.0, p, closed=contact.closed)
         case HalfPlaneContact():
             point, n = np.array(contact.point) / size, unit(contact.normal)
             return lambda p: np.asarray((p - point) @ n)
@@ -112,7 +112,7 @@ def _apart(contact: EdgeContact, beam: Beam, length: float) -> Distance:
     return apart
 
 
-def _from_line(points: Array, sign: float, p: Array) -> Array:
+def _from_line(points: Array, sign: float, p: Array, *, closed: bool) -> Array:
     along = np.diff(points, axis=0)
     length = np.hypot(along[:, 0], along[:, 1])
     tau = along / length[:, None]
@@ -125,6 +125,7 @@ def _from_line(points: Array, sign: float, p: Array) -> Array:
     away, t = away[every, nearest], t[every, nearest]
     # at a corner both of its pieces say on which side a place is
     other = np.where(t <= 0.0, nearest - 1, np.where(t >= length[nearest], nearest + 1, nearest))
+    other = other % len(tau) if closed else other
     beyond = (other < 0) | (other >= len(tau))
     towards = n[nearest] + n[np.clip(other, 0, len(tau) - 1)]
     behind = ~beyond & ((away * towards).sum(axis=1) < 0.0)
@@ -163,7 +164,7 @@ def _wrong(name: str, contact: EdgeContact, length: float) -> Mistake | None:
     key = f"contacts.{name}"
     match contact:
         case LineContact():
-            if (mistake := _wrong_line(f"{key}.points", contact.points, length)) is not None:
+            if (mistake := _wrong_line(f"{key}.points", contact, length)) is not None:
                 return mistake
             places = contact.points
         case HalfPlaneContact():
@@ -188,7 +189,8 @@ def _wrong(name: str, contact: EdgeContact, length: float) -> Mistake | None:
     return None
 
 
-def _wrong_line(key: str, points: tuple[Point, ...], length: float) -> Mistake | None:
+def _wrong_line(key: str, contact: LineContact, length: float) -> Mistake | None:
+    points = contact.points
     if len(points) > MOST_POINTS:
         return Mistake(key, f"{len(points)} points", f"at most {MOST_POINTS} of them")
     for i, (one, other) in enumerate(pairwise(points)):
@@ -196,11 +198,16 @@ def _wrong_line(key: str, points: tuple[Point, ...], length: float) -> Mistake |
             found = f"a point {distance(one, other):.3g} m from the one before"
             return Mistake(f"{key}[{i + 1}]", found, f"at least {SHORTEST:g} of the beam's length between them")
     tau = [unit((b[0] - a[0], b[1] - a[1])) for a, b in pairwise(points)]
-    for i, (before, behind) in enumerate(pairwise(tau)):
+    for i, (before, behind) in enumerate(pairwise([*tau, tau[0]] if contact.closed else tau)):
         if 1.0 + float(before @ behind) < BACKWARDS:
             return Mistake(f"{key}[{i + 1}]", "a point at which the line turns back on itself", "a line that goes on")
     for (i, (a, b)), (j, (c, d)) in combinations(enumerate(pairwise(points)), 2):
-        if j > i + 1 and _turn(a, b, c) * _turn(a, b, d) <= 0.0 and _turn(c, d, a) * _turn(c, d, b) <= 0.0:
+        if (
+            j > i + 1
+            and not (contact.closed and j - i == len(tau) - 1)
+            and _turn(a, b, c) * _turn(a, b, d) <= 0.0
+            and _turn(c, d, a) * _turn(c, d, b) <= 0.0
+        ):
             found = f"a piece from point {j} to {j + 1} that meets the one from {i} to {i + 1}"
             return Mistake(key, found, "a line that does not meet itself")
     return None

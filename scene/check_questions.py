@@ -8,6 +8,7 @@ from scene.check_names import RESERVED, point_names
 from scene.mistakes import Mistake, unknown_name
 from scene.statement import (
     CRITICAL,
+    STRESSES,
     DisplacementDrive,
     EdgeContact,
     FreeEnd,
@@ -26,6 +27,7 @@ _OF: dict[Quantity, str] = {
     "ends": "contact",
     "closing_load": "contact",
     "bending_stress": "beam",
+    "combined_stress": "beam",
     "reaction": "support",
     "reaction_moment": "turned",
     "potential_energy": RESERVED,
@@ -44,7 +46,7 @@ _SAID = {
     RESERVED: f"{RESERVED!r}, the scene itself",
 }
 
-_SEVERAL = frozenset({"displacement", "reaction", "ends", "bending_stress"})
+_SEVERAL = STRESSES | {"displacement", "reaction", "ends"}
 """Quantities of more than one number."""
 
 
@@ -65,8 +67,12 @@ def wrong_probes(scene: Scene) -> Iterator[Mistake]:
         if probe.name in seen:
             yield Mistake(key, f"{probe.name!r} again", "each probe once")
         seen.add(probe.name)
-        if "points" in probe.model_fields_set and probe.quantity != "bending_stress":
-            yield Mistake(f"{key}.points", f"places along {probe.name!r}", "points for 'bending_stress' only")
+        if "points" in probe.model_fields_set and probe.quantity not in STRESSES:
+            yield Mistake(
+                f"{key}.points",
+                f"places along {probe.name!r}",
+                "points for 'bending_stress' and 'combined_stress' only",
+            )
 
 
 def wrong_claims(scene: Scene) -> Iterator[Mistake]:

@@ -338,6 +338,14 @@ class BeamForce(Record):
     direction: Point
 
 
+class BeamMoment(Record):
+    """A moment on a ``beam``, counter-clockwise positive, N·m, ``at`` a fraction of its arc length from the start."""
+
+    kind: Literal["beam_moment"]
+    beam: Name
+    at: Share
+
+
 class DistributedLoad(Record):
     """A dead load on a ``beam``, N per metre of its arc length, the same ``along`` it from one fraction to another.
 
@@ -350,7 +358,7 @@ class DistributedLoad(Record):
     along: tuple[Share, Share] = (0.0, 1.0)
 
 
-Load = Annotated[Moment | Force | BeamForce | DistributedLoad, Field(discriminator="kind")]
+Load = Annotated[Moment | Force | BeamForce | BeamMoment | DistributedLoad, Field(discriminator="kind")]
 BodyLoad = Moment | Force
 
 
@@ -459,12 +467,18 @@ class LineContact(RigidContact):
     """A beam that may touch a rigid line of straight pieces between ``points``.
 
     The beam lies on the free ``side``, seen along the points.  What is rigid lies behind the line, and ends where it
-    does: at right angles to its first and its last piece.
+    does: at right angles to its first and its last piece.  A line whose last point is its first goes round and has no
+    ends.
     """
 
     kind: Literal["beam-line"]
     points: Annotated[tuple[Point, ...], Field(min_length=2)]
     side: Literal["left", "right"]
+
+    @property
+    def closed(self) -> bool:
+        """Whether it goes round."""
+        return len(self.points) > 2 and self.points[0] == self.points[-1]
 
 
 class HalfPlaneContact(RigidContact):
@@ -534,12 +548,17 @@ Quantity = Literal[
     "ends",
     "closing_load",
     "bending_stress",
+    "combined_stress",
     "reaction",
     "reaction_moment",
     "potential_energy",
     "angle",
     "moment",
 ]
+
+
+STRESSES: frozenset[Quantity] = frozenset({"bending_stress", "combined_stress"})
+"""Quantities that are wanted at places along a beam."""
 
 
 class Probe(Record):

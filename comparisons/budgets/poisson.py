@@ -34,6 +34,7 @@ from comparisons.scales import denominator, norm
 from comparisons.stations import station_of
 from scene import Answer, Claim, Scene
 from scene.answer import Array
+from scene.statement import STRESSES
 
 BOUNDS = (-1.0, 0.5)
 """Between which ν lies; the first is not reached."""
@@ -94,7 +95,7 @@ def rerun(found: ClaimedRatio, answers: Sequence[Answer]) -> ClaimedRatio:
 def _claimed(scene: Scene, runs: BudgetRuns, budget: Budget, own: float) -> ClaimedRatio | None:
     row = budget.row
     claim = claim_of(scene, row)
-    if claim is None or claim.value is not None or row.probe.quantity == "bending_stress":
+    if claim is None or claim.value is not None or row.probe.quantity in STRESSES:
         return None
     tightest = (runs.fea[theory][0] for theory in ("shear", "stretch"))
     shear, stretch = (station_of(each, row.stage, row.station).values[row.probe.name] for each in tightest)

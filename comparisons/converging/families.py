@@ -36,6 +36,7 @@ from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, Stage
 from scene.answer import Array
+from scene.statement import STRESSES
 
 SIZES = (10, 20, 40, 80, 160, 320)
 STANDARD_AT = 40
@@ -265,7 +266,7 @@ def _places(
     sizes reach, beside which the stress shows no order; where there are none, among all.  Of places that are equally
     large, as all are along a circle, it is the first.
     """
-    if probe.quantity != "bending_stress":
+    if probe.quantity not in STRESSES:
         return slice(None)
     stations = tuple(station_of(answer, stage.name, value) for answer in finest)
     largest = np.max([np.abs(station.values[probe.name]) for station in stations], axis=0)
@@ -334,7 +335,7 @@ def _family(
 
 
 def _components(scene: Scene, probe: Probe, places: slice) -> tuple[Component, ...]:
-    if probe.quantity == "bending_stress":
+    if probe.quantity in STRESSES:
         return (float(arc_lengths(scene, probe)[places][0]),)
     return _COMPONENTS.get(probe.quantity, (None,))
 

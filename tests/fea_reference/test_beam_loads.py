@@ -14,13 +14,14 @@ from tests.fea_reference.test_derivatives import bent
 from tests.together.test_beam_loads import FORCE, acting, point, scene_from, spread
 
 LOADS = [point(0.61, 2.0, 9.0), spread(0.3, -4.0, (0.1, 0.7)), point(1.0, 1.0, 0.0), point(0.5, -1.0, 2.0)]
+LOADS.append(({"kind": "beam_moment", "beam": "beam", "at": 0.43}, 3.0))
 
 
 @pytest.mark.parametrize("kinematics", ["bending", "stretch", "shear"])
 @pytest.mark.parametrize("bowed", [False, True])
 def test_the_whole_tangent(kinematics, bowed):
     model = build(scene_from(acting(LOADS, bowed=bowed)), Settings(elements=4, kinematics=kinematics))
-    z, values = bent(model), np.array([7.0, 5.0, -3.0, 11.0])
+    z, values = bent(model), np.array([7.0, 5.0, -3.0, 11.0, 4.0])
 
     def at(z):
         return assemble(model, {}, 6, values, State.of(z), model.drawn)

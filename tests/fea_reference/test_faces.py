@@ -19,6 +19,7 @@ from tests.fea_reference.test_circle import wrapped
 HALF_PLANE = {"kind": "beam-half-plane", "point": (0.0, 0.0), "normal": (0.0, 2.0)}
 ROOF = {"kind": "beam-line", "points": ((0.2, -0.1), (0.4, 0.0), (0.55, -0.001), (0.8, -0.2)), "side": "left"}
 SHELF = {"kind": "beam-line", "points": ((0.8, -0.2), (0.45, 0.0), (0.3, -0.08)), "side": "right"}
+BLOCK = {**ROOF, "points": ((0.55, -0.001), (0.8, -0.2), (0.4, -0.4), (0.2, -0.1), (0.4, 0.0), (0.55, -0.001))}
 VALLEY = {"kind": "beam-line", "points": ((0.2, 0.0), (0.5, -0.008), (0.8, 0.0)), "side": "left"}
 HILL = {"kind": "beam-function", "axis": "x", "coefficients": (-0.05, 0.2, -0.2), "range": (0.1, 0.9), "side": "above"}
 SIDEWAYS = {"kind": "beam-function", "axis": "y", "coefficients": (1.0, 2.0), "range": (-0.6, 0.0), "side": "below"}
@@ -38,7 +39,7 @@ def lowered(contact, by):
     return moved
 
 
-@pytest.mark.parametrize("contact", [HALF_PLANE, ROOF, SHELF, VALLEY, HILL, SIDEWAYS])
+@pytest.mark.parametrize("contact", [HALF_PLANE, ROOF, BLOCK, SHELF, VALLEY, HILL, SIDEWAYS])
 @pytest.mark.parametrize("thick", [True, False])
 @pytest.mark.parametrize("body", ["ground", "block"])
 @pytest.mark.parametrize("kinematics", ["bending", "shear"])
@@ -249,6 +250,7 @@ def over_a_corner(force, a, b):
         ((0.2, -0.3), (0.5, -0.02), (0.8, -0.3)),  # a roof
         ((0.0, -0.02), (0.5, -0.02)),  # the end of a shelf
         ((0.5, -0.6), (0.5, -0.02), (0.7, -0.5)),  # a sharp edge
+        ((0.5, -0.02), (0.8, -0.3), (0.2, -0.3), (0.5, -0.02)),  # a block, round
     ],
 )
 def test_a_corner_presses_on_the_side_of_a_beam(points):

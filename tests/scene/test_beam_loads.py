@@ -25,7 +25,12 @@ def test_ends_that_can_move_may_be_loaded():
 
 
 WRONG = [
-    ("loads/F/kind", "beamforce", "loads.F.kind", "one of 'moment', 'force', 'beam_force', 'distributed'"),
+    (
+        "loads/F/kind",
+        "beamforce",
+        "loads.F.kind",
+        "one of 'moment', 'force', 'beam_force', 'beam_moment', 'distributed'",
+    ),
     ("loads/F/beam", "lowr", "loads.F.beam", "'lowr', which names no beam (is 'lower' meant?)"),
     ("loads/q/beam", "Q", "loads.q.beam", "'Q', which names no beam"),
     ("loads/F/direction", [0, 0], "loads.F.direction", "at least one number not zero"),

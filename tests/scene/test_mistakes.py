@@ -118,7 +118,7 @@ TIES = [
         "probes[0]",
         "point of a fixed body at which a beam ends, a pivot, or a driven point: 'A', 'C'",
     ),
-    ("probes/0/points", 11, "probes[0].points", "'bending_stress' only"),
+    ("probes/0/points", 11, "probes[0].points", "'combined_stress' only"),
     ("probes/1/of", "B", "probes[1]", "'B.displacement' again"),
     ("claims/0/probe", "B.displacment", "claims[0].probe", "is 'B.displacement' meant"),
     ("claims/0/station", 0.68, "claims[0].station", "0.603, 0.67"),

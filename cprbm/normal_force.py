@@ -1,0 +1,69 @@
+"""The normal force along a beam: what all that acts beyond a place pulls along the beam there.
+
+==========  ==============================================================================
+F(s)        force on what follows s by what went before, and so less all that acts beyond
+f_c, s_c    forces on the beam and their places: of contacts, of loads, and at its end
+ψ           tangent angle of the smooth line, :mod:`cprbm.smooth`
+N           −F·t with t = (cos ψ, sin ψ), positive in tension
+==========  ==============================================================================
+
+Forces jump at their places and not at the joints that their rows go by.  Along a zone of contact they are those of its
+joints, across the beam, so that N goes on evenly there.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cprbm import smooth
+from cprbm.beam_loads import spread_from
+from cprbm.closure import closure_forces
+from cprbm.equilibrium import Point
+from cprbm.forces import contact_forces
+from cprbm.mechanism import Mechanism
+from cprbm.model import Chain
+from scene.answer import Array
+
+
+def normal_force(mechanism: Mechanism, point: Point, chain: Chain, points: int) -> Array:
+    """N (points,) at equal arc-length steps, in units of force."""
+    model = mechanism.problem.model
+    s = np.linspace(0.0, chain.s[-1], points)
+    psi = smooth.smooth_line(chain, model.unit_length, point.state, point.at).at(s).psi
+    force = np.zeros((points, 2))
+    for places, forces in _forces(mechanism, point, chain):
+        force += (places[None, :] > s[:, None]) @ forces
+    for load, value in point.work.on_beams:
+        if load.distributed and model.chains[load.chain] is chain:
+            force += value * spread_from(load, s)[:, None] * load.density
+    # the last end's force acts beyond all places
+    last = chain.joints.stop - 1
+    fx, fy = closure_forces(model, mechanism.problem.closure, point.mu)
+    force -= (fx[last], fy[last])
+    return np.asarray(force[:, 0] * np.cos(psi) + force[:, 1] * np.sin(psi))
+
+
+def _forces(mechanism: Mechanism, point: Point, chain: Chain) -> list[tuple[Array, Array]]:
+    """Places (k,) and forces (k, 2) on a beam, of contacts and of loads at places."""
+    model, found = mechanism.problem.model, []
+    if mechanism.boundaries:  # forces of a fitted boundary act on joints
+        on = contact_forces(mechanism.problem, point)
+        found.append((chain.s, np.stack((on.fx[chain.joints], on.fy[chain.joints]), axis=1)))
+    else:
+        for group, lam in point.rows.shares(point.lam):
+            pressing = np.flatnonzero(lam)
+            if group.holds_angles or not pressing.size:
+                continue
+            pair = mechanism.pairs[group.contact]
+            pressed = pair.pressed(point.state, point.at, chain, group.arc[pressing])
+            if pressed is None:
+                continue
+            p = group.joints.shape[1]
+            mine = (group.joints >= chain.joints.start) & (group.joints < chain.joints.stop)
+            weights = -lam[:, None] * mine
+            forces = [np.sum(weights * group.slopes[:, first : first + p], axis=1)[pressing] for first in (0, p)]
+            found.append((np.asarray(pressed[1]), np.stack(forces, axis=1)))
+    for load, value in point.work.on_beams:
+        if not load.distributed and model.chains[load.chain] is chain:
+            found.append((load.s, value * load.forces))
+    return found

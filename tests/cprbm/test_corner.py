@@ -1,0 +1,177 @@
+"""A beam that is pressed over corners of a rigid edge, against an elastica with a point force normal to it."""
+
+import math
+
+import numpy as np
+import pytest
+
+import cprbm
+from cprbm import equilibrium as newton
+from cprbm.corner import corners_of
+from cprbm.faces import faces_of
+from scene.statement import LineContact
+from tests.fea_reference.on_an_edge import T, cantilever_over, scene_of
+from tests.references.cornered import Cornered
+
+AT, FORCE = (0.5, -0.02), 3.0
+ROOF = ((0.2, -0.3), AT, (0.8, -0.3))
+SHELF = ((0.0, -0.02), AT)
+CLOSED = (AT, (0.8, -0.3), (0.2, -0.3), AT)
+SHARP = ((0.5, -0.6), AT, (0.7, -0.5))
+
+
+def solved(scene, links):
+    answer = cprbm.answer(scene, cprbm.Settings(links=links))
+    assert answer.completed, answer.sentence
+    return answer.stations[-1].values
+
+
+def errors_of(values, exact):
+    """Of the force, of its place, of the tip's place and of the energy."""
+    assert values["edge.ends"][0] == values["edge.ends"][1]
+    return np.array(
+        [
+            abs(values["edge.force"][0] / exact.pressed - 1.0),
+            abs(values["edge.ends"][0] - exact.place),
+            np.hypot(*(values["tip.displacement"] + [1.0, 0.0] - exact.tip)),
+            abs(values["scene.potential_energy"][0] / exact.potential_energy - 1.0),
+        ]
+    )
+
+
+@pytest.mark.parametrize("thick", [False, True])
+def test_the_errors_fall_with_the_square_of_the_number_of_links(thick):
+    exact = Cornered(FORCE, AT, 0.5 * T if thick else 0.0)
+    scene = cantilever_over({"kind": "beam-line", "points": ROOF, "side": "left", "thick": thick}, force=FORCE)
+    scaled = [errors_of(solved(scene, n), exact) * n**2 for n in (20, 41, 80, 160)]
+    assert np.all(scaled[0] < 1.5)
+    for each in scaled[1:]:
+        assert each == pytest.approx(scaled[0], rel=0.15)
+
+
+@pytest.mark.parametrize("points", [SHELF, SHARP, CLOSED, ROOF[::-1]])
+def test_a_corner_is_the_same_whatever_lies_behind_it(points):
+    side = "right" if points == ROOF[::-1] else "left"
+    scene = cantilever_over({"kind": "beam-line", "points": points, "side": side, "thick": True}, force=FORCE)
+    assert np.all(errors_of(solved(scene, 40), Cornered(FORCE, AT, 0.5 * T)) < 1.5 / 40**2)
+
+
+def turned(place, about, angle):
+    (x, y), (u, v) = place, about
+    cos, sin = math.cos(angle), math.sin(angle)
+    return (u + cos * (x - u) - sin * (y - v), v + sin * (x - u) + cos * (y - v))
+
+
+def on_a_wheel(*, thick, turn=0.4):
+    """The roof drawn turned back, and brought to where it is in :func:`cantilever_over` by its wheel."""
+    pivot = (0.6, -0.5)
+    points = tuple(turned(place, pivot, -turn) for place in ROOF)
+    return scene_of(
+        {"kind": "line", "start": (0.0, 0.0), "end": (1.0, 0.0)},
+        {"joint": "weld", "point": "root"},
+        {"joint": "weld", "point": "tip"},
+        {"kind": "beam-line", "body": "wheel", "points": points, "side": "left", "thick": thick},
+        bodies={
+            "ground": {"motion": "fixed", "points": {"root": (0.0, 0.0)}},
+            "wheel": {"motion": "turns", "about": "pivot", "points": {"pivot": pivot}},
+            "block": {"motion": "free", "points": {"tip": (1.0, 0.0)}},
+        },
+        loads={"P": {"kind": "force", "point": "tip", "direction": (0.0, -1.0)}},
+        drives={"r": {"kind": "rotation", "body": "wheel"}},
+        stages=(("P", (FORCE,)), ("r", (turn,))),
+        probes=(
+            ("tip", "displacement"),
+            ("edge", "force"),
+            ("edge", "ends"),
+            ("scene", "potential_energy"),
+            ("wheel", "reaction_moment"),
+        ),
+    )
+
+
+@pytest.mark.parametrize("thick", [False, True])
+def test_a_corner_on_a_body_that_turns(thick, monkeypatch):
+    # the corner arrives where the other one is; its moment about the pivot is that of N; and both forms of Newton's
+    # system give one answer
+    exact = Cornered(FORCE, AT, 0.5 * T if thick else 0.0)
+    values = solved(on_a_wheel(thick=thick), 40)
+    assert np.all(errors_of(values, exact) < 1.5 / 40**2)
+    push = -exact.pressed * np.array([-math.sin(exact.leaning), math.cos(exact.leaning)])
+    arm = np.array(AT) - (0.6, -0.5)
+    assert values["wheel.reaction_moment"][0] == pytest.approx(-(arm[0] * push[1] - arm[1] * push[0]), abs=2e-3)
+    monkeypatch.setattr(newton, "MANY", 0)
+    other = solved(on_a_wheel(thick=thick), 40)
+    for name, value in values.items():
+        assert other[name] == pytest.approx(value, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize("thick", [False, True])
+def test_from_a_face_to_a_corner_nothing_jumps(thick):
+    """A block with a flat top presses a beam that bulges towards it, and goes sideways from under it."""
+    top = -0.5 * T if thick else 0.0
+    h = 0.004
+    scene = scene_of(
+        {
+            "kind": "arc",
+            "center": (0.0, 1.0),
+            "start": (-math.sin(0.5), 1.0 - math.cos(0.5)),
+            "end": (math.sin(0.5), 1.0 - math.cos(0.5)),
+            "direction": "counterclockwise",
+        },
+        {"joint": "weld", "point": "root"},
+        {"joint": "free"},
+        {
+            "kind": "beam-line",
+            "body": "block",
+            "points": ((-0.1, top), (0.1, top), (0.15, top - 0.1)),
+            "side": "left",
+            "thick": thick,
+        },
+        bodies={
+            "ground": {"motion": "fixed", "points": {"root": (-math.sin(0.5), 1.0 - math.cos(0.5))}},
+            "block": {"motion": "free", "points": {"foot": (0.0, -0.5)}},
+        },
+        drives={
+            "up": {"kind": "displacement", "point": "foot", "direction": (0.0, 1.0)},
+            "aside": {"kind": "displacement", "point": "foot", "direction": (-1.0, 0.0)},
+            "turn": {"kind": "rotation", "body": "block"},
+        },
+        stages=(("up", (0.01,)), ("aside", tuple(0.11 + h * k for k in range(11)))),
+        probes=(("edge", "force"), ("edge", "centre"), ("foot", "reaction"), ("scene", "potential_energy")),
+    )
+    answer = cprbm.answer(scene, cprbm.Settings(links=20))
+    assert answer.completed, answer.sentence
+    values = [station.values for station in answer.stations[1:]]
+    energy, force, place = (
+        np.array([each[probe][0] for each in values])
+        for probe in ("scene.potential_energy", "foot.reaction", "edge.centre")
+    )
+    # on the flat top nothing pushes the block aside, on its corner it does
+    on_top = np.abs(force) < 1e-9
+    assert on_top[0]
+    assert not on_top[-1]
+    assert list(on_top) == sorted(on_top, reverse=True)
+    assert np.all(np.abs(np.diff(place)) < 2.0 * h)
+    # what the drive does is what the energy gains: the trapezium rule's error is of the size of force's change
+    done = -0.5 * h * (force[:-1] + force[1:])
+    assert np.diff(energy) == pytest.approx(done, abs=0.1 * h * np.max(np.abs(np.diff(force))))
+
+
+def test_where_an_edge_stands_out():
+    # a convex and a hollow corner, and the two ends, between the normals of what meets there
+    line = LineContact(
+        kind="beam-line",
+        beam="beam",
+        body="wall",
+        points=((0.0, 0.0), (1.0, 0.0), (2.0, -1.0), (3.0, -1.0)),
+        side="left",
+    )
+    corners = corners_of(faces_of(line, 1.0, (0.0, 0.0)))
+    assert [corner.place for corner in corners] == [(0.0, 0.0), (1.0, 0.0), (3.0, -1.0)]
+    half = math.sqrt(0.5)
+    assert corners[0].before == pytest.approx((-1.0, 0.0))
+    assert corners[0].behind == pytest.approx((0.0, 1.0))
+    assert corners[1].behind == pytest.approx((half, half))
+    assert corners[2].behind == pytest.approx((1.0, 0.0))
+    normals = np.array([[0.0, 1.0], [0.1, 1.0], [half, half], [-0.1, 1.0], [1.0, 0.9], [-0.3, -1.0]])
+    assert list(np.sign(np.round(corners[1].beyond(normals), 12))) == [0.0, 1.0, 0.0, -1.0, -1.0, -1.0]

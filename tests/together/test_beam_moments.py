@@ -1,0 +1,79 @@
+"""Moments at points of beams: a cantilever rolled up as far as that, and an arch that both solvers know alike."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import cprbm
+import fea_reference
+from scene import SceneError, StationAnswer
+from scene.reading import scene_from
+from tests.together.features import LENGTH, MODULUS, MOMENT, THICKNESS, Data, arc, cantilever, ended, probes, weld
+
+AT, FACTOR = 0.63, 1.3
+
+
+def station(data: Data, solver: str, n: int) -> StationAnswer:
+    scene = scene_from(data)
+    if solver == "cprbm":
+        answer = cprbm.answer(scene, cprbm.Settings(links=n))
+    else:
+        answer = fea_reference.answer(scene, fea_reference.Settings(elements=n, kinematics="bending"))
+    assert answer.completed, answer.sentence
+    return answer.stations[-1]
+
+
+def loaded(data: Data, at: float, value: float, *asked: str) -> Data:
+    loads = {"M": {"kind": "beam_moment", "beam": "beam", "at": at}}
+    stages = [{"name": "turn", "steps": "M", "stations": [value]}]
+    return data | {"loads": loads, "stages": stages, "probes": probes(*asked)}
+
+
+@pytest.mark.parametrize(("solver", "error"), [("cprbm", 0.1), ("fea", 1e-3)])
+def test_a_cantilever_is_an_arc_up_to_the_moment_and_straight_beyond(solver: str, error: float) -> None:
+    # closed form: κ = M/EI up to a, θ(a) = M a/EI, energy −½ M² a/EI
+    asked = ("T.displacement", "tip.rotation", "scene.potential_energy", "beam.bending_stress", "R.reaction_moment")
+    data = loaded(cantilever(), AT, FACTOR * MOMENT, *asked)
+    bent, theta = FACTOR / LENGTH, FACTOR * AT
+    rest = (1.0 - AT) * LENGTH
+    x, y = np.sin(theta) / bent + rest * np.cos(theta), (1.0 - np.cos(theta)) / bent + rest * np.sin(theta)
+    for n in (10, 20, 40):
+        values = station(data, solver, n).values
+        assert np.hypot(*(values["T.displacement"] - [x - LENGTH, y])) < error / n**2 * LENGTH
+        assert values["tip.rotation"][0] == pytest.approx(theta, rel=1e-5)
+        assert values["scene.potential_energy"][0] == pytest.approx(-0.5 * FACTOR * theta * MOMENT, rel=1e-5)
+        assert values["R.reaction_moment"][0] == pytest.approx(-FACTOR * MOMENT, rel=1e-9)
+        stress = values["beam.bending_stress"] / (0.5 * MODULUS * THICKNESS * bent)
+        assert stress == pytest.approx([1.0] * 6 + [0.0] * 3, abs=1e-9)
+
+
+def test_in_a_clamped_arch_both_go_to_the_same() -> None:
+    # reference: the other solver, by Richardson's extrapolation where the order is two
+    asked = ("R.reaction", "R.reaction_moment", "scene.potential_energy", "beam.bending_stress")
+    data = loaded(ended(weld("G")), AT, 4.0 * MOMENT, *asked)
+    coarse, fine, finest = (station(data, "cprbm", n).values for n in (40, 80, 160))
+    reference = station(data, "fea", 80).values
+    for name, value in reference.items():
+        size = 4.0 * MOMENT if name == "R.reaction_moment" else np.max(np.abs(value))
+        errors = [np.max(np.abs(each[name] - value)) / size for each in (coarse, fine, finest)]
+        assert 3.5 < errors[0] / errors[1] < 4.5
+        assert 3.5 < errors[1] / errors[2] < 4.5
+        assert np.max(np.abs(finest[name] + (finest[name] - fine[name]) / 3.0 - value)) < 2e-5 * size
+
+
+@pytest.mark.parametrize("at", [0.0, 1.0])
+def test_a_moment_on_a_clamp_is_a_mistake(at: float) -> None:
+    data = loaded(ended(weld("G")), at, MOMENT, "R.reaction")
+    with pytest.raises(SceneError, match=r"loads\.M\.at: found .* held at"):
+        scene_from(data)
+
+
+def test_at_the_end_it_is_one_on_what_the_end_holds() -> None:
+    asked = ("T.displacement", "tip.rotation", "scene.potential_energy")
+    on_the_body = cantilever(arc(0.7), asked=asked, loads={"M": {"kind": "moment", "body": "tip"}})
+    on_the_beam = loaded(cantilever(arc(0.7)), 1.0, on_the_body["stages"][0]["stations"][0], *asked)
+    for solver in ("cprbm", "fea"):
+        one, other = (station(data, solver, 12).values for data in (on_the_body, on_the_beam))
+        for name, value in one.items():
+            assert other[name] == pytest.approx(value, rel=1e-9)
