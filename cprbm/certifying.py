@@ -115,6 +115,7 @@ def penetration_of(mechanism: Mechanism, found: Equilibrium) -> float:
     """Largest overlap of the smooth beams of all contacts, over the mean thickness (the longest beam for lines)."""
     deepest = 0.0
     state, at = found.point.state, found.point.at
-    for pair in mechanism.pairs.values():
+    for name in mechanism.pairs:
+        pair = mechanism.seen(name, found.point.rows)
         deepest = max(deepest, -pair.least_gap(state, at) / pair.thickness)
     return deepest

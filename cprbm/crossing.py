@@ -12,12 +12,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from scene.answer import Array, Flags
+from scene.answer import Array, Flags, Ints
 
 
 def cross(P: Array, Q: Array) -> bool:
     """Whether the lines through the points P and Q cross, straight between the points."""
     return bool(np.any(_parted(P, Q) & _parted(Q, P).T))
+
+
+def crossings(P: Array) -> tuple[Ints, Ints]:
+    """Numbers of the pieces (k,) of a line that cross pieces (k,) further along, straight between the points P."""
+    parted = _parted(P, P)
+    here, there = np.nonzero(np.triu(parted & parted.T))
+    return here, there
 
 
 def _parted(P: Array, Q: Array) -> Flags:

@@ -41,6 +41,7 @@ from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model, anchor
 from cprbm.own_pins import ON_IT as PIN_ON_IT
 from cprbm.own_pins import own_pins
+from cprbm.pairs import Pressed
 from cprbm.stops import AngleStop
 from scene import EdgeContact, Scene
 from scene.answer import Array, Flags
@@ -375,9 +376,9 @@ class Edge:
         away = np.where(np.isfinite(distance), distance + self._half(s) - self.offset, 0.0)
         return np.stack((A.x, A.y), axis=1) - away[:, None] * n
 
-    def pressed(self, state: State, at: Positions, chain: Chain, s: Array) -> tuple[float, Array, Array] | None:
-        """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s``."""
-        return (1.0, s, self.line(state, at).at(s).psi) if chain is self.a else None
+    def pressed(self, state: State, at: Positions, s: Array) -> tuple[Pressed, ...]:
+        """On the beam what lies at ``s``."""
+        return ((1.0, s, self.line(state, at).at(s).psi),)
 
     def presses_an_end(self, state: State, at: Positions, s: Array) -> bool:
         """Whether what presses at arc lengths ``s`` does so next to an end of a piece that stands out.
