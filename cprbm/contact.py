@@ -98,7 +98,8 @@ class Rows:
     @cached_property
     def holds_angles(self) -> Flags:
         """Which rows limit angles alone (m,)."""
-        return np.repeat([group.holds_angles for group in self.groups], [len(group.values) for group in self.groups])
+        found = [np.full(len(group.values), group.holds_angles) for group in self.groups]
+        return np.concatenate([np.zeros(0, dtype=bool), *found])
 
     @cached_property
     def reach(self) -> Array:
