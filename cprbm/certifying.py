@@ -7,6 +7,7 @@ import numpy as np
 from cprbm.edge import Edge
 from cprbm.equilibrium import Equilibrium
 from cprbm.forces import balances
+from cprbm.itself import Itself
 from cprbm.mechanism import Mechanism
 from cprbm.settings import Settings
 from cprbm.stability import smallest_curvature
@@ -61,6 +62,12 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
         Ending.BEAMS_CROSSED,
         f"the beams of a contact overlap by {penetration:.1e} of the mean thickness, allowed {limit:.0e}",
     )
+    for name, pair in mechanism.pairs.items():
+        ask(
+            not isinstance(pair, Itself) or not pair.crosses(point.state, point.at),
+            Ending.BEAMS_CROSSED,
+            f"in contact '{name}' the beam passes through itself",
+        )
     for name, boundary in mechanism.boundaries.items():
         pressing = np.array([lam > 0.0 for lam, c in zip(point.lam, point.rows.contact, strict=True) if c == name])
         beyond = boundary.range_left(point.state, point.at)

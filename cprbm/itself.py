@@ -17,13 +17,14 @@ an end of the beam faces a part of it.  Arc lengths of the contact are those of 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cprbm import smooth
 from cprbm.contact import Group
-from cprbm.crossing import crossings
+from cprbm.crossing import own_crossings
 from cprbm.gathering import gathered
 from cprbm.kinematics import Positions, State
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
@@ -39,21 +40,32 @@ from cprbm.nearest import (
     places_along,
 )
 from cprbm.pairs import Pressed
-from cprbm.strands import NO_FACES, Faces, Strand, facing_samples, in_coil, sides, strands, turned_enough
+from cprbm.strands import NO_FACES, QUARTER, Faces, Strand, facing_samples, in_coil, sides, strands, turned_enough
 from scene import Scene, SelfContact
 from scene.answer import Array
 
-LEVEL = 2.0  # h times curvatures, 1/ℓ added: lines that lie on each other cross at no larger sines
+LEVEL = 1.0 / 16.0  # h² times curvatures, 1/ℓ added: lines that lie on each other cross no more deeply; it is twice
+# as much as chords of two arcs cross by, each over half an element
 
 
 @dataclass(frozen=True, slots=True)
 class Tip:
-    """The beam's end where it faces a part of the beam: from the left of that (``side`` +1) or the right, D, and s."""
+    """The beam's end where it faces a part of the beam: from the left of that (``side`` +1) or the right, D, and s.
+
+    ``turns`` is Θ/π to the nearest whole number, ``fresh`` the distance if it is not known from which side, else
+    infinite.
+    """
 
     side: float
     turns: int
     D: float
     s: float
+    fresh: float
+
+    @property
+    def across(self) -> float:
+        """a: about an even number of half turns both run the same way."""
+        return -self.side if self.turns % 2 == 0 else self.side
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,13 +76,15 @@ class Facing:
         lines: the beam's line, as A's and as B's.
         strands: parts that face others further along.
         tip: where the end does, if anywhere.
-        faces: what is known of coils' sides from here on.
+        faces: what is known of their sides from here on.
+        fresh: the least distance of a coil's parts whose side is not known from before; infinite where there are none.
     """
 
     lines: Lines
     strands: tuple[Strand, ...]
     tip: Tip | None
-    faces: Faces
+    faces: Faces = NO_FACES
+    fresh: float = np.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +98,7 @@ class Itself:
         unit_length: ℓ, m.
         own_places: whether minima of D have rows of their own.
         kinks: of the places s and σ where the contact is in points.
-        known: of coils' sides.
+        known: from which sides parts faced each other in a state before.
     """
 
     name: str
@@ -137,22 +151,26 @@ class Itself:
         plain = self._sided(1.0, 1.0)
         lines = plain.lines(state, at)
         G = lines[0].sampled
-        here, there = facing_samples(G.x, G.y, G.psi)
-        if not here.size:
-            return Facing(lines, (), self._tip(plain, lines, crossed=False), NO_FACES)
-        A = plain.on_a(lines, G.s[here])
-        distance, sigma, foot = feet_near(plain, lines, A, G.s[there])
-        turn = plain.on_b(lines, sigma).psi - A.psi
-        real = foot & turned_enough(turn) & (sigma > A.s)
-        here, distance, sigma, turn = here[real], distance[real], sigma[real], turn[real]
-        open_, crossed = in_coil(turn), self._crosses(lines)
-        side = sides(turn)
-        s = G.s[here]
-        side[open_] = self.known.of(s[open_], sigma[open_], np.sign(distance[open_]), crossed=crossed)
-        found = strands(G.s, here, sigma, distance, turn, side)
-        return Facing(
-            lines, found, self._tip(plain, lines, crossed=crossed), Faces(s[open_], sigma[open_], side[open_])
-        )
+        if np.ptp(G.psi) <= QUARTER:
+            return Facing(lines, (), None)
+        crossed = self._crosses(lines) > 0.0
+        tip = self._tip(plain, lines, crossed=crossed)
+        here, there = facing_samples(G.x, G.y)
+        if here.size:
+            A = plain.on_a(lines, G.s[here])
+            distance, sigma, foot = feet_near(plain, lines, A, G.s[there])
+            turn = plain.on_b(lines, sigma).psi - A.psi
+            real = foot & turned_enough(turn) & (sigma > A.s)
+            here, distance, sigma, turn = here[real], distance[real], sigma[real], turn[real]
+        else:
+            distance, sigma, turn = np.zeros((3, 0))
+        s, side, coiled = G.s[here], sides(turn), in_coil(turn)
+        side[coiled] = self.known.of(s[coiled], sigma[coiled], np.sign(distance[coiled]), crossed=crossed)
+        new = coiled & ~self.known.know(s, sigma)[0]
+        faces, fresh = Faces(s, sigma, side), float(np.min(np.abs(distance[new]), initial=np.inf))
+        if tip is not None:
+            faces, fresh = faces.joined(tip.s, float(G.s[-1]), tip.across), min(fresh, tip.fresh)
+        return Facing(lines, strands(G.s, here, sigma, distance, turn, side), tip, faces, fresh)
 
     def _tip(self, plain: Pair, lines: Lines, *, crossed: bool) -> Tip | None:
         """The beam's end, if it faces a part of the beam: of several the nearest."""
@@ -174,16 +192,23 @@ class Itself:
         side = np.where(coiled, seen, side)
         D = np.where(real, side * distance, np.inf)
         i = int(np.argmin(D))
-        return Tip(float(side[i]), round(float(turn[i] / np.pi)), float(D[i]), float(s[i])) if real[i] else None
+        if not real[i]:
+            return None
+        fresh = np.where(coiled & ~self.known.know(s, E.s)[0], np.abs(distance), np.inf)
+        return Tip(float(side[i]), round(float(turn[i] / np.pi)), float(D[i]), float(s[i]), float(fresh[i]))
 
-    def _crosses(self, lines: Lines) -> bool:
-        """Whether the line crosses itself, and not only where strands lie on each other."""
+    def _crosses(self, lines: Lines) -> float:
+        """How deeply the line crosses itself; nought where strands of a line only lie on each other."""
         G = lines[0].sampled
-        here, there = crossings(np.stack((G.x, G.y), axis=1))
+        here, there, depth = own_crossings(np.stack((G.x, G.y), axis=1))
         if not here.size or self.offset > 0.0:
-            return bool(here.size)
+            return float(np.max(depth, initial=0.0))
         bends = np.abs(G.bend[here]) + np.abs(G.bend[there]) + 1.0
-        return bool(np.any(np.abs(np.sin(G.psi[here] - G.psi[there])) > LEVEL * self.a.h * bends))
+        return float(np.max(depth, where=depth > LEVEL * self.a.h**2 * bends, initial=0.0))
+
+    def crosses(self, state: State, at: Positions) -> bool:
+        """Whether the beam has passed through itself."""
+        return self._crosses(self._sided(1.0, 1.0).lines(state, at)) > 0.0
 
     def seen(self, known: Faces) -> Itself:
         """The same, with what is known from a state before."""
@@ -221,17 +246,33 @@ class Itself:
         return replace(group, keys=keys, itself=True)
 
     def least_gap(self, state: State, at: Positions) -> float:
-        """Least gap anywhere, units of length; of a line that crosses itself no more than it overlaps by."""
-        facing = self.facing(state, at)
+        """Least gap anywhere, units of length; of a beam that crosses itself that of its neutral line at most."""
+        return self._least(self.facing(state, at))
+
+    def _least(self, facing: Facing) -> float:
         least = np.inf if facing.tip is None else facing.tip.D
         for strand in facing.strands:
             pair = self._pair(strand)
             s, sigma = minima(pair, facing.lines, strand.D, strand.sigma)
             D = feet_near(pair, facing.lines, pair.on_a(facing.lines, s), sigma)[0] if s.size else np.zeros(0)
             least = min(least, float(np.min(strand.D)), float(np.min(D, initial=np.inf)))
-        if self._crosses(facing.lines):
-            least = min(least, 0.0 if self.offset > 0.0 else -self.thickness)
-        return float(least) - self.offset
+        depth = self._crosses(facing.lines)
+        return float(min(least, -depth) if depth > 0.0 else least) - self.offset
+
+    def passed(self, way: Iterable[tuple[State, Positions]], end: tuple[State, Positions], allowed: float) -> bool:
+        """Whether the beam went through itself on a ``way`` from where its faces are known to an ``end``.
+
+        The way is known to ``allowed``.  Parts that begin to face each other at less than that may have met in it.
+        """
+        here = self
+        for state, at in way:
+            facing = here.facing(state, at)
+            if facing.fresh < allowed or here._least(facing) + self.offset < -allowed:
+                return True
+            here = here.seen(facing.faces)
+        facing = here.facing(*end)
+        dip = LEVEL * self.a.h**2 * (2.0 * np.max(np.abs(facing.lines[0].sampled.bend)) + 1.0)
+        return bool(facing.fresh < allowed or here._least(facing) + self.offset < -dip)
 
     def _faced(self, facing: Facing, s: Array) -> tuple[Array, Array]:
         """What faces the beam at arc lengths ``s`` most closely: a and σ (k,)."""
@@ -250,9 +291,8 @@ class Itself:
             side[better], sigma[better], least[better] = strand.side, feet[nearer], D[nearer]
         if facing.tip is not None:
             at_tip = (np.abs(s - facing.tip.s) <= SAME * self.a.h) & (least >= facing.tip.D - SAME * self.a.h)
-            across = facing.tip.side
             sigma = np.where(at_tip, self.a.s[-1], sigma)
-            side = np.where(at_tip, across if facing.tip.turns % 2 else -across, side)
+            side = np.where(at_tip, facing.tip.across, side)
         return side, sigma
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:

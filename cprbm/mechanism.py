@@ -79,7 +79,8 @@ class Mechanism:
             elif isinstance(pair, Edge):
                 across = self._crossed_between(pair, before, after, EDGE_WAY)
             elif isinstance(pair, Itself):
-                across = self._crossed_between(pair, before, after, WAY)
+                way = ((state, positions(self.problem.model, state)) for state in _between(before.state, after.state))
+                across = pair.passed(way, (after.state, after.at), WAY * most_turned(before.state, after.state) ** 2)
             else:
                 # without having been there a beam comes to lie beyond another by its end or through it
                 across = pair.gone_round(after.state, after.at) and self._crossed_between(pair, before, after, WAY)
@@ -98,7 +99,7 @@ class Mechanism:
                 return True
         return False
 
-    def _crossed_between(self, pair: Pair | Edge | Itself, before: Point, after: Point, way: float) -> bool:
+    def _crossed_between(self, pair: Pair | Edge, before: Point, after: Point, way: float) -> bool:
         """Whether a beam lay across what it may touch between two states, by more than the way between is known."""
         allowed = pair.offset + way * most_turned(before.state, after.state) ** 2
         return any(

@@ -34,11 +34,19 @@ LINKED = 8  # samples by which what faces a place may go on from one sample to t
 
 @dataclass(frozen=True, slots=True)
 class Faces:
-    """Places (k,) of a coil whose side is known: ``s``, ``sigma``, and ``side``, a."""
+    """Places (k,) that face each other, and from which side: ``s``, ``sigma``, and ``side``, a."""
 
     s: Array
     sigma: Array
     side: Array
+
+    def know(self, s: Array, sigma: Array) -> tuple[Flags, Array]:
+        """Whether places near by are known (k,), and a of the nearest (k,)."""
+        if not self.s.size:
+            return np.zeros(len(s), dtype=bool), np.zeros(len(s))
+        away = np.abs(s[:, None] - self.s) + np.abs(sigma[:, None] - self.sigma)
+        nearest = np.argmin(away, axis=1)
+        return np.asarray(away[np.arange(len(s)), nearest] <= NEAR), self.side[nearest]
 
     def of(self, s: Array, sigma: Array, seen: Array, *, crossed: bool) -> Array:
         """a at other places (k,): that of the nearest known, or as ``seen`` where none is near and nothing ``crossed``.
@@ -50,11 +58,12 @@ class Faces:
         """
         if not self.s.size:
             return seen
-        away = np.abs(s[:, None] - self.s) + np.abs(sigma[:, None] - self.sigma)
-        nearest = np.argmin(away, axis=1)
-        if crossed:
-            return np.asarray(self.side[nearest])
-        return np.where(away[np.arange(len(s)), nearest] <= NEAR, self.side[nearest], seen)
+        near, side = self.know(s, sigma)
+        return np.where(near | crossed, side, seen)
+
+    def joined(self, s: float, sigma: float, side: float) -> Faces:
+        """With one place more."""
+        return Faces(np.append(self.s, s), np.append(self.sigma, sigma), np.append(self.side, side))
 
 
 NO_FACES = Faces(np.zeros(0), np.zeros(0), np.zeros(0))
@@ -98,10 +107,8 @@ def sides(turn: Array) -> Array:
     return np.asarray(np.where(np.abs(turn) < 3.0 * QUARTER, 1.0, -1.0) * np.sign(turn))
 
 
-def facing_samples(x: Array, y: Array, psi: Array) -> tuple[Ints, Ints]:
+def facing_samples(x: Array, y: Array) -> tuple[Ints, Ints]:
     """Samples (k,) and those further along (k,) to which the distance is less than to their neighbours."""
-    if np.ptp(psi) <= QUARTER:
-        return np.zeros(0, dtype=np.intp), np.zeros(0, dtype=np.intp)
     d = np.hypot(x[:, None] - x, y[:, None] - y)
     low = np.zeros(d.shape, dtype=bool)
     low[:, 1:-1] = (d[:, 1:-1] <= d[:, :-2]) & (d[:, 1:-1] < d[:, 2:])
