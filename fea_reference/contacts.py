@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from fea_reference import circle, contact, face
 from fea_reference.crossing import cross
 from fea_reference.model import Model
@@ -15,6 +17,7 @@ def contacts(scene: Scene, model: Model, penetration: float) -> tuple[Contact, .
     """What may touch, in the scene's order."""
     every: tuple[Contact, ...] = (
         *contact.pairs(scene, model),
+        *contact.selves(scene, model),
         *circle.circles(scene, model, penetration),
         *face.faces(scene, model, penetration),
     )
@@ -56,6 +59,13 @@ def resting_pressure(model: Model, one: Touch, z: State) -> float:
             return circle.resting_pressure(model, one, one.pair, z)
         case Face():
             return 0.0
+
+
+def looked_at(model: Model, what: Contact, z: State) -> Contact:
+    """The same contact; of a beam and itself with the sides on which its places lie in state ``z``."""
+    if isinstance(what, Pair) and what.roles is not None:
+        return replace(what, roles=what.roles.renewed(model.line(model.beams[what.first], z)))
+    return what
 
 
 def passed_through(model: Model, what: Contact, before: State, after: State) -> bool:
