@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from fea_reference import circle, contact, face
-from fea_reference.crossing import cross
+from fea_reference.crossing import cross, crosses_itself
 from fea_reference.model import Model
 from fea_reference.state import State
 from fea_reference.touch import Circle, Contact, Face, Pair, Penalty, Touch
@@ -76,4 +76,5 @@ def passed_through(model: Model, what: Contact, before: State, after: State) -> 
         return face.passed(model, what, before, after)
     # Lines without thickness cross by what the penalty lets through; that is held, and measured.
     held = what.distance == 0.0 and contact.zones_of(model, what, after).least < 0.0
-    return not held and cross(*(model.line(model.beams[i], after) for i in (what.first, what.second)))
+    first, second = (model.line(model.beams[i], after) for i in (what.first, what.second))
+    return not held and (cross(first, second) if what.roles is None else crosses_itself(first))
