@@ -66,7 +66,7 @@ class Roles:
         """The same, with what is across from each node where the ``line`` lies now."""
         nodes = np.arange(line.n + 1)
         i, j = (index.ravel() for index in np.meshgrid(nodes, nodes[:-1], indexing="ij"))
-        zeta, zeta_m = _partners(line, nodes.astype(float), i, j, self.later)[:2]
+        zeta, zeta_m = _partners(line, nodes.astype(float), i, j, later=self.later)[:2]
         d = gap(line, line, 1.0, 0.0, zeta, zeta_m).g
         return Roles(self.later, np.stack([zeta, zeta_m], axis=1), self.sides(zeta, zeta_m, d))
 
@@ -91,7 +91,7 @@ def seen_itself(line: NeutralLine, roles: Roles, T: float) -> Survey:
     pairs = np.concatenate([near["i"] * (line.n + 1) + near["j"], near["i"] * (line.n + 1) + near["j"] - 1])
     i, j = np.divmod(np.unique(pairs), line.n + 1)
     inside = j < line.n
-    places, partners, i = _partners(line, zeta, i[inside], j[inside], roles.later)
+    places, partners, i = _partners(line, zeta, i[inside], j[inside], later=roles.later)
     there = at(places, partners)
     usable = there.found & (np.abs(there.g + T) < reach)
     places, there, i = places[usable], there.chosen(usable), i[usable]
@@ -101,7 +101,7 @@ def seen_itself(line: NeutralLine, roles: Roles, T: float) -> Survey:
     return survey(at, places[order], there.chosen(order), follows)
 
 
-def _partners(line: NeutralLine, zeta: Array, i: Ints, j: Ints, later: bool) -> tuple[Array, Array, Ints]:
+def _partners(line: NeutralLine, zeta: Array, i: Ints, j: Ints, *, later: bool) -> tuple[Array, Array, Ints]:
     """Of places ``zeta`` (k,), by number ``i`` (m,), and elements ``j`` (m,) those that hold a partner.
 
     Returns:

@@ -156,11 +156,6 @@ def ends_over(first: NeutralLine, second: NeutralLine) -> bool:
     return bool((found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)).any())
 
 
-def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zones:
-    """All intervals on which the first beam overlaps the second."""
-    return overlap(first, second, T, seen(first, second, side, T), 0.0)
-
-
 def seen(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Survey:
     """The gap of two beams wherever it is less than the second's longest element."""
 

@@ -17,7 +17,7 @@ AT, SHARES = (0.0, 0.3, 0.9, 1.0), (1.0, 0.75, 0.8, 0.4)
 
 
 def arch(thickness: float, clamps: list[float], *, thick: bool, backwards: bool = False) -> Scene:
-    """The clamps pushed together to distances ``clamps`` (m) from the mirror; ``backwards`` drawn from the other end."""
+    """The clamps pushed together to ``clamps`` (m) from the mirror; ``backwards`` drawn from the other end."""
     left, right, centre = [-START, 0.0], [START, 0.0], [0.0, -START / np.tan(BETA)]
     names = ("B", "A") if backwards else ("A", "B")
     ends = (right, left) if backwards else (left, right)

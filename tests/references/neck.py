@@ -11,8 +11,8 @@ m, H     bending moment; the push of the clamp, in units of EI over the half's l
 P, c     contact force, and where it acts; P goes along −x on the left half
 =======  ====================================================================================
 
-Source: Euler's elastica with a natural curvature.  Mirror symmetry leaves at the apex neither rotation nor a force across
-the mirror's normal, so that what the later part exerts on the earlier one is −H before c and P − H beyond it:
+Source: Euler's elastica with a natural curvature.  Mirror symmetry leaves at the apex neither rotation nor a force
+along the mirror, so that what the later part exerts on the earlier one is −H before c and P − H beyond it:
 
     x' = cos θ,  y' = sin θ,  θ' = −β + m,  m' = −H sin θ  (s < c),  (P − H) sin θ  (s > c)                (1)
 
@@ -89,9 +89,7 @@ def _upright(beta: float, clamp: float, u: Array) -> float:
         return 0.5
     # the neck: where it comes back from leaning inwards is the belly, so the first of the two
     low, high = s[past - 1], s[past]
-    return float(
-        brentq(lambda c: _half(beta, clamp, u[0], u[1], 0.0, c)[0][2] - 0.5 * np.pi, low, high, xtol=1e-13)
-    )
+    return float(brentq(lambda c: _half(beta, clamp, u[0], u[1], 0.0, c)[0][2] - 0.5 * np.pi, low, high, xtol=1e-13))
 
 
 def _half(beta: float, clamp: float, moment: float, push: float, force: float, place: float) -> tuple[Array, Array]:

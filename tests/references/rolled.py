@@ -12,8 +12,8 @@ s₁, s₂   where the outer and the inner lap touch;  x₁, x₂ these points o
 n, P     normal to the left at s₁, towards the inside of the roll; contact force P n on the inner lap
 =======  ====================================================================================
 
-Source: Euler's elastica.  Nothing but a moment acts from outside, so the clamp has no force.  The two contact forces are
-opposite on one line, so that only the lap between them feels them:
+Source: Euler's elastica.  Nothing but a moment acts from outside, so the clamp has no force.  The two contact
+forces are opposite on one line, so that only the lap between them feels them:
 
     B θ' = M + (x₂ − x) × P n  for s₁ < s < s₂,   B θ' = M  elsewhere                                      (1)
 
@@ -27,6 +27,7 @@ These three and θ(1) = Θ give M, P, s₁ and s₂.  At the first touch P is ze
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,6 +118,6 @@ def _along(strip: Strip, z: Array, begin: float, stop: float, moment: float, at:
         return [np.cos(z[2]), np.sin(z[2]), bent, 0.5 * m * bent]
 
     knots = [begin, *(s for s in strip.at if begin < s < stop), stop]
-    for a, b in zip(knots[:-1], knots[1:], strict=True):
+    for a, b in pairwise(knots):
         z = solve_ivp(slope, (a, b), z, "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
     return z
