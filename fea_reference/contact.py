@@ -194,13 +194,14 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
         return 0.0
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
     line, line_m = model.line(beam, z), model.line(beam_m, z)
-    intervals = touch.zones.intervals
+    along = np.argsort(touch.zones.intervals[:, 0])  # laps of one beam follow each other in no order
+    intervals = touch.zones.intervals[along]
     zone = np.cumsum(np.append(False, intervals[1:, 0] > intervals[:-1, 1]))
     at_end = np.array([intervals[0, 0] <= _AT_END, intervals[-1, 1] >= line.n - _AT_END])
     widths = [np.ptp(intervals[zone == one]) for one in (zone[[0, -1]][at_end] if at_end.any() else np.unique(zone))]
     if min(widths) < _LYING:
         return 0.0
-    middle, middle_m = intervals.mean(axis=1), touch.zones.zeta_m.mean(axis=1)
+    middle, middle_m = intervals.mean(axis=1), touch.zones.zeta_m[along].mean(axis=1)
     e = line.locate(middle)[0] + beam.elements.start
     e_m = line_m.locate(middle_m)[0] + beam_m.elements.start
     x_m, speed, bent = line_m.at(middle_m)

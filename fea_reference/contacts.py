@@ -74,7 +74,9 @@ def passed_through(model: Model, what: Contact, before: State, after: State) -> 
         return circle.passed(model, what, before, after)
     if isinstance(what, Face):
         return face.passed(model, what, before, after)
+    first, second = (model.line(model.beams[i], after) for i in (what.first, what.second))
+    if what.roles is not None:
+        return crosses_itself(first, contact.zones_of(model, what, after))
     # Lines without thickness cross by what the penalty lets through; that is held, and measured.
     held = what.distance == 0.0 and contact.zones_of(model, what, after).least < 0.0
-    first, second = (model.line(model.beams[i], after) for i in (what.first, what.second))
-    return not held and (cross(first, second) if what.roles is None else crosses_itself(first))
+    return not held and cross(first, second)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from fea_reference.hermite import NeutralLine
+from fea_reference.zones import Zones
 from scene.answer import Array, Flags
 
+_BESIDE = 1.5  # elements beside a zone in which it may cross
 _PARTS = 32  # of an element that are looked at as chords: what they leave of its bow is a thousandth
 
 
@@ -17,14 +19,22 @@ def cross(first: NeutralLine, second: NeutralLine) -> bool:
     return bool(_intersect(a[:, :, None], b[:, :, None], c[:, None], d[:, None]).any())
 
 
-def crosses_itself(line: NeutralLine) -> bool:
-    """Whether a line crosses itself.
+def crosses_itself(line: NeutralLine, held: Zones) -> bool:
+    """Whether a line crosses itself where nothing is ``held`` apart.
 
     Laps that lie in each other may be nearer than their elements bow.  Where chords of elements intersect, those of
-    their parts, and of the parts of the elements beside them, decide.
+    their parts, and of the parts of the elements beside them, decide.  What sinks into a penalty may cross by that,
+    and is held, and measured.
     """
     a, b = line.points[:, :-1], line.points[:, 1:]
     found = np.argwhere(np.triu(_intersect(a[:, :, None], b[:, :, None], a[:, None], b[:, None])))
+    if held.intervals.size and found.size:
+        places = np.sort(np.stack([held.intervals, held.zeta_m]), axis=0)  # of both the earlier, then the later
+        low, high = (
+            side[..., None] + _BESIDE * sign for side, sign in ((places.min(axis=2), -1), (places.max(axis=2), 1))
+        )
+        middle = found.T[:, None] + 0.5
+        found = found[~((low < middle) & (middle < high)).all(axis=0).any(axis=0)]
     if not found.size:
         return False
     around = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)

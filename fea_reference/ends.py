@@ -47,8 +47,9 @@ def ends(model: Model, system: System, touch: Touch) -> Array:
     # a clamped end that just touches overlaps by round-off, and presses by no more
     each = weight.reshape(len(touch.zones.intervals), -1).sum(axis=1)
     pressed = np.flatnonzero(each > _NOTHING * each.sum())
-    first = _continued(model, system, touch, int(pressed[0]), -1.0)
-    last = _continued(model, system, touch, int(pressed[-1]), 1.0)
+    begins, stops = touch.zones.intervals[pressed].T
+    first = _continued(model, system, touch, int(pressed[np.argmin(begins)]), -1.0)
+    last = _continued(model, system, touch, int(pressed[np.argmax(stops)]), 1.0)
     return np.array([first, last]) if first <= middle <= last else np.array([middle, middle])
 
 

@@ -19,7 +19,7 @@ several partners: those that follow each other along the beam are one sequence.
 
 On which side a place lies is not told by where it is once lines without thickness overlap.  It is what it was in the
 state that the march has reached last, for the places that were across from each other near by, and for others what is
-seen.
+seen.  Near by is less than halfway to another lap.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from fea_reference.hermite import NeutralLine
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Survey, gap, survey
 from scene.answer import Array, Ints
 
-_ALIKE = 4.0  # elements: by which the places may differ from those whose side is known
+_ALIKE = 0.5  # of the way between two places along the beam, by which they may differ from those whose side is known
 _FOLLOWS = 2.0  # elements: by which partners of places that follow each other differ at most
 _ITERATIONS = 60
 _NOTHING = 1e-9  # of an element's length, squared
@@ -60,7 +60,7 @@ class Roles:
         if not self.side.size or not zeta.size:
             return seen
         far, nearest = KDTree(self.across).query(np.stack([zeta, zeta_m], axis=1))
-        return np.asarray(np.where(far <= _ALIKE, self.side[nearest], seen))
+        return np.asarray(np.where(far <= _ALIKE * np.abs(zeta - zeta_m), self.side[nearest], seen))
 
     def renewed(self, line: NeutralLine) -> Roles:
         """The same, with what is across from each node where the ``line`` lies now."""

@@ -58,11 +58,18 @@ def arch(thickness: float, clamps: list[float], *, thick: bool, backwards: bool 
     )
 
 
-def strip(thickness: float, rotations: list[float], *, thick: bool = True, backwards: bool = False) -> Scene:
+def strip(
+    thickness: float,
+    rotations: list[float],
+    *,
+    thick: bool = True,
+    backwards: bool = False,
+    shares: tuple[float, ...] = SHARES,
+) -> Scene:
     """The strip of :mod:`tests.references.rolled` turned by ``rotations``; ``backwards`` drawn from its free end."""
     clamp, tip = [0.0, 0.0], [LENGTH, 0.0]
     at = [1.0 - one for one in reversed(AT)] if backwards else list(AT)
-    widths = [WIDTH * one for one in (reversed(SHARES) if backwards else SHARES)]
+    widths = [WIDTH * one for one in (reversed(shares) if backwards else shares)]
     names, ends = (("T", "C"), (tip, clamp)) if backwards else (("C", "T"), (clamp, tip))
     return scene_from(
         {
@@ -94,6 +101,52 @@ def strip(thickness: float, rotations: list[float], *, thick: bool = True, backw
                 {"of": "tip", "quantity": "reaction_moment"},
                 {"of": "C", "quantity": "reaction"},
                 {"of": "C", "quantity": "reaction_moment"},
+                {"of": "scene", "quantity": "potential_energy"},
+            ],
+        }
+    )
+
+
+def half(thickness: float, clamps: list[float]) -> Scene:
+    """The left half of the arch, as a line, against a rigid half-plane where the mirror is."""
+    top = [0.0, START * np.tan(0.5 * BETA)]
+    centre = [0.0, -START / np.tan(BETA)]
+    left = [-START, 0.0]
+    return scene_from(
+        {
+            "name": "half",
+            "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
+            "bodies": {
+                "wall": {"motion": "fixed", "points": {"O": [0.0, 0.0]}},
+                "clamp": {"motion": "slides", "along": [1.0, 0.0], "points": {"A": left}},
+                "apex": {"motion": "slides", "along": [0.0, 1.0], "points": {"S": top}},
+            },
+            "beams": {
+                "half": {
+                    "curve": {"kind": "arc", "center": centre, "start": left, "end": top, "direction": "clockwise"},
+                    "thickness": thickness,
+                    "width": WIDTH,
+                    "material": "m",
+                    "start": {"joint": "weld", "point": "A"},
+                    "end": {"joint": "weld", "point": "S"},
+                }
+            },
+            "drives": {"press": {"kind": "displacement", "point": "A", "direction": [1.0, 0.0]}},
+            "contacts": {
+                "mirror": {
+                    "kind": "beam-half-plane",
+                    "beam": "half",
+                    "body": "wall",
+                    "point": [0.0, 0.0],
+                    "normal": [-1.0, 0.0],
+                    "thick": False,
+                }
+            },
+            "stages": [{"name": "press", "steps": "press", "stations": [START - one for one in clamps]}],
+            "probes": [
+                {"of": "mirror", "quantity": "force"},
+                {"of": "mirror", "quantity": "centre"},
+                {"of": "A", "quantity": "reaction"},
                 {"of": "scene", "quantity": "potential_energy"},
             ],
         }

@@ -28,14 +28,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq, root
+from scipy.optimize import root
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class Neck:
-    """Equilibrium of a half without dimension: D, H, P, c, m(0), height of the apex, ½ ∫ m² ds."""
+    """Equilibrium of a half without dimension: D, H, P, c (no number while open), m(0), y(1), ½ ∫ m² ds."""
 
     clamp: float
     push: float
@@ -49,23 +49,26 @@ class Neck:
 def opened(beta: float, clamp: float) -> Neck:
     """Before it touches, the clamp brought from where it is without stress to D."""
     u = np.zeros(2)
-    for D in np.linspace(np.sin(beta) / beta, clamp, 40)[1:]:
+    for D in np.linspace(np.sin(beta) / beta, clamp, 25)[1:]:
         u = root(lambda u, D=D: _half(beta, D, u[0], u[1], 0.0, 0.5)[1][[0, 2]], u, tol=1e-13).x
-    return _answer(beta, clamp, u[0], u[1], 0.0, _upright(beta, clamp, u))
+    return _answer(beta, clamp, u[0], u[1], 0.0, np.nan)
 
 
-def first_touch(beta: float, T: float, low: float, high: float) -> Neck:
-    """Where the neck closes, between two D."""
+def first_touch(beta: float, T: float, near: float, place: float) -> Neck:
+    """Where the neck closes, from a D and a place near by: (2) without a force."""
+    start = opened(beta, near)
 
-    def room(D: float) -> float:
-        one = opened(beta, D)
-        at = _half(beta, D, one.moment, one.push, 0.0, one.place)[0]
-        return float(-at[0] - 0.5 * T)
+    def conditions(u: Array) -> Array:
+        at, end = _half(beta, u[3], u[0], u[1], 0.0, u[2])
+        return np.array([end[0], end[2], at[0] + 0.5 * T, at[2] - 0.5 * np.pi])
 
-    return opened(beta, float(brentq(room, low, high, xtol=1e-13)))
+    u = root(conditions, [start.moment, start.push, place, near], tol=1e-13).x
+    if not np.abs(conditions(u)).max() < 1e-10:
+        raise ValueError(f"the neck does not close near {near}")
+    return _answer(beta, u[3], u[0], u[1], 0.0, u[2])
 
 
-def closed(beta: float, T: float, start: Neck, clamp: float, steps: int = 8) -> Neck:
+def closed(beta: float, T: float, start: Neck, clamp: float, steps: int = 3) -> Neck:
     """The equilibrium at D, from another one that touches, in some ``steps``."""
     u = np.array([start.moment, start.push, start.force, start.place])
     for D in np.linspace(start.clamp, clamp, steps + 1)[1:]:
@@ -78,18 +81,6 @@ def closed(beta: float, T: float, start: Neck, clamp: float, steps: int = 8) -> 
         if not np.abs(conditions(u)).max() < 1e-10:
             raise ValueError(f"the branch is lost at {D}")
     return _answer(beta, clamp, *u)
-
-
-def _upright(beta: float, clamp: float, u: Array) -> float:
-    """Where the strip first stands upright, before it has touched."""
-    s = np.linspace(0.0, 1.0, 201)[1:-1]
-    theta = [_half(beta, clamp, u[0], u[1], 0.0, float(c))[0][2] for c in s]
-    past = int(np.argmax(np.array(theta) > 0.5 * np.pi))
-    if past == 0:
-        return 0.5
-    # the neck: where it comes back from leaning inwards is the belly, so the first of the two
-    low, high = s[past - 1], s[past]
-    return float(brentq(lambda c: _half(beta, clamp, u[0], u[1], 0.0, c)[0][2] - 0.5 * np.pi, low, high, xtol=1e-13))
 
 
 def _half(beta: float, clamp: float, moment: float, push: float, force: float, place: float) -> tuple[Array, Array]:
@@ -106,7 +97,7 @@ def _half(beta: float, clamp: float, moment: float, push: float, force: float, p
 
 
 def _answer(beta: float, clamp: float, moment: float, push: float, force: float, place: float) -> Neck:
-    _, end = _half(beta, clamp, moment, push, force, place)
+    _, end = _half(beta, clamp, moment, push, force, 0.5 if np.isnan(place) else place)
     if not (abs(end[0]) < 1e-10 and abs(end[2]) < 1e-10):
         raise ValueError(f"no equilibrium at {clamp}")
     return Neck(clamp, float(push), float(force), float(place), float(moment), float(end[1]), float(end[4]))

@@ -22,6 +22,7 @@ Without friction both edges are tangent to each other where they touch, one turn
     x₂ = x₁ + T n,   θ(s₂) = θ(s₁) + 2π                                                                   (2)
 
 These three and θ(1) = Θ give M, P, s₁ and s₂.  At the first touch P is zero, and Θ is what (2) makes it.
+Where the end itself touches, s₂ = 1 stands in the place of the angle in (2).
 """
 
 from __future__ import annotations
@@ -76,7 +77,7 @@ def first_touch(strip: Strip, moment: float, outer: float, inner: float) -> Roll
     return _answer(strip, found.x[0], 0.0, *found.x[1:])
 
 
-def touching(strip: Strip, start: Roll, rotation: float, steps: int = 8) -> Roll:
+def touching(strip: Strip, start: Roll, rotation: float, steps: int = 3) -> Roll:
     """The equilibrium at a ``rotation``, from another one that touches, in some ``steps``."""
     u = np.array([start.moment, start.force, start.outer, start.inner])
     for value in np.linspace(start.rotation, rotation, steps + 1)[1:]:
@@ -89,6 +90,20 @@ def touching(strip: Strip, start: Roll, rotation: float, steps: int = 8) -> Roll
         if not np.abs(conditions(u)).max() < 1e-10:
             raise ValueError(f"the branch is lost at {value} rad")
     return _answer(strip, *u)
+
+
+def tip_touching(strip: Strip, rotation: float, force: float, outer: float) -> Roll:
+    """Where the strip's end touches instead of a place before it: x(1) = x₁ + T n; from about a force and a place."""
+
+    def conditions(u: Array) -> Array:
+        parts, end = _shot(strip, *u, 1.0)
+        return np.array([parts[0], parts[1], end[2] - rotation])
+
+    u = root(conditions, [free(strip, rotation).moment, force, outer], tol=1e-13).x
+    if not np.abs(conditions(u)).max() < 1e-10:
+        raise ValueError(f"the end does not touch at {rotation} rad")
+    _, end = _shot(strip, *u, 1.0)
+    return Roll(float(end[2]), float(u[0]), float(u[1]), float(u[2]), 1.0, end[:2], float(end[3]))
 
 
 def _answer(strip: Strip, moment: float, force: float, outer: float, inner: float) -> Roll:
