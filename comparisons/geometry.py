@@ -87,13 +87,28 @@ def points(curve: Curve, s: Array) -> Array:
 
 def nearest(shape: Shape, places: Array) -> Array:
     """Arc lengths (k,), m, of the points of a deformed neutral line, a polyline, nearest to ``places`` (k, 2), m."""
+    s, away = _feet(shape, places)
+    return np.asarray(s[np.arange(len(s)), np.argmin(away, axis=1)])
+
+
+def nearest_of_two_laps(shape: Shape, places: Array) -> Array:
+    """The same (k, 2) where a line comes near to ``places`` twice: of its two least distances from each."""
+    s, away = _feet(shape, places)
+    beyond = np.full((len(s), 1), np.inf)
+    # a vertex that is nearest is so on both of its sides, and counts once
+    least = (away < np.hstack([beyond, away[:, :-1]])) & (away <= np.hstack([away[:, 1:], beyond]))
+    order = np.argsort(np.where(least, away, np.inf), axis=1, kind="stable")[:, :2]
+    return np.asarray(np.take_along_axis(s, order, axis=1))
+
+
+def _feet(shape: Shape, places: Array) -> tuple[Array, Array]:
+    """Of every piece of a polyline the nearest arc length to each place, and the square of its distance, (k, m)."""
     start = np.stack([shape.x[:-1], shape.y[:-1]], axis=1)
     step = np.stack([np.diff(shape.x), np.diff(shape.y)], axis=1)
     square = np.maximum(np.sum(step**2, axis=1), np.finfo(float).tiny)
     way = np.reshape(places, (-1, 1, 2)) - start
     share = np.clip(np.sum(way * step, axis=2) / square, 0.0, 1.0)
-    best = np.argmin(np.sum((way - share[..., None] * step) ** 2, axis=2), axis=1)
-    return np.asarray(shape.s[best] + share[np.arange(len(best)), best] * (shape.s[best + 1] - shape.s[best]))
+    return shape.s[:-1] + share * np.diff(shape.s), np.sum((way - share[..., None] * step) ** 2, axis=2)
 
 
 def _turn(arc: Arc) -> float:
