@@ -79,6 +79,7 @@ def whole(thickness: float, stations: list[float], *, thick: bool = True) -> Sce
         [
             {"of": "T", "quantity": "displacement"},
             {"of": "R", "quantity": "reaction_moment"},
+            {"of": "column", "quantity": "bending_stress", "points": 41},
         ],
     )
 

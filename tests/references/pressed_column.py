@@ -81,6 +81,17 @@ def closed(thickness: float, force: float) -> Neck:
     return _neck(delta, M, force, Q, place)
 
 
+def curvatures(found: Neck, s: Array) -> Array:
+    """κ at arc lengths ``s`` (k,) of the left half, which ascend."""
+    state, at = np.array([0.0, 0.0, 0.0, found.moment, 0.0]), 0.0
+    bent = []
+    for place in np.sort(np.append(s, found.place)):
+        force = found.force if at < found.place else found.force - found.contact
+        state, at = _part(force, state, place - at) if place > at else state, place
+        bent.append(state[3])
+    return np.array(bent)[np.searchsorted(np.sort(np.append(s, found.place)), s)]
+
+
 def _solved(residual, guess: Array, thickness: float) -> Array:
     found = root(residual, guess, args=(thickness,), method="hybr", options={"xtol": 1e-13})
     if not np.max(np.abs(residual(found.x, thickness))) < 1e-10:
