@@ -92,13 +92,26 @@ def nearest(shape: Shape, places: Array) -> Array:
 
 
 def nearest_of_two_laps(shape: Shape, places: Array) -> Array:
-    """The same (k, 2) where a line comes near to ``places`` twice: of its two least distances from each."""
+    """The same (k, 2) where a line lies beside itself: on the nearest lap, and on another one.
+
+    Between laps the tangents spread over more than a right angle, or a chord between them is not normal to either.
+    Where there is no other one, the first counts twice.
+    """
     s, away = _feet(shape, places)
-    beyond = np.full((len(s), 1), np.inf)
-    # a vertex that is nearest is so on both of its sides, and counts once
-    least = (away < np.hstack([beyond, away[:, :-1]])) & (away <= np.hstack([away[:, 1:], beyond]))
-    order = np.argsort(np.where(least, away, np.inf), axis=1, kind="stable")[:, :2]
-    return np.asarray(np.take_along_axis(s, order, axis=1))
+    angle = np.unwrap(np.arctan2(np.diff(shape.y), np.diff(shape.x)))
+    found = []
+    for at, distance in zip(s, away, strict=True):
+        first = int(np.argmin(distance))
+        spread = np.concatenate([_spread(angle[first::-1])[:0:-1], _spread(angle[first:])])
+        other = np.where(spread > 0.5 * math.pi, distance, np.inf)
+        second = int(np.argmin(other)) if np.isfinite(other).any() else first
+        found.append([at[first], at[second]])
+    return np.array(found).reshape(-1, 2)
+
+
+def _spread(angle: Array) -> Array:
+    """Over how much angles (k,) spread from the first up to each."""
+    return np.asarray(np.maximum.accumulate(angle) - np.minimum.accumulate(angle))
 
 
 def _feet(shape: Shape, places: Array) -> tuple[Array, Array]:
