@@ -273,7 +273,8 @@ def test_a_strip_drawn_from_its_other_end_is_the_same():
     # references: itself, and the shot place on the inner lap; a place is told from where the drawing begins
     forth, back = (rolled_values(20, backwards=backwards) for backwards in (False, True))
     for name in ("closing", "force", "moment", "energy", "x", "y"):
-        assert back[name] == pytest.approx(forth[name], rel=1e-8), name
+        # meshes are fitted until slopes of the curvature differ by 1e-6
+        assert back[name] == pytest.approx(forth[name], rel=1e-6), name
     first = rolled_strip.first_touch(STRIP, 5.3, 0.16, 0.95)
     found = rolled_strip.touching(STRIP, first, ROLL[-1])
     assert back["place"] == pytest.approx(1.0 - found.inner, abs=0.02)
