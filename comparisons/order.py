@@ -18,8 +18,8 @@ import math
 from collections.abc import Mapping
 from typing import Literal
 
-from scene import BeamContact, Probe, RigidContact, Scene
-from scene.statement import FreeEnd
+from scene import Probe, RigidContact, Scene
+from scene.statement import FreeEnd, SelfContact
 
 USUAL, BESIDE_A_HELD_END = 2, 1
 OWN: Mapping[Literal["cprbm", "fea"], int] = {"cprbm": 2, "fea": 4}
@@ -42,14 +42,14 @@ def _shared(scene: Scene, name: str) -> set[str]:
     contact = scene.contacts[name]
     if isinstance(contact, RigidContact):
         return set(_held(scene, contact.beam))
-    assert isinstance(contact, BeamContact)
-    one, other = (_held(scene, beam) for beam in contact.between)
-    near = BESIDE * 0.5 * sum(scene.beams[beam].thickest for beam in contact.between)
+    first, second = (contact.beam, contact.beam) if isinstance(contact, SelfContact) else contact.between
+    one, other = _held(scene, first), _held(scene, second)
+    near = BESIDE * 0.5 * (scene.beams[first].thickest + scene.beams[second].thickest)
     return {
         point
         for mine, a in one.items()
         for its, b in other.items()
-        if scene.body_of(mine) == scene.body_of(its) and math.dist(a, b) <= near
+        if mine != its and scene.body_of(mine) == scene.body_of(its) and math.dist(a, b) <= near
         for point in (mine, its)
     }
 

@@ -18,10 +18,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.geometry import length, nearest
+from comparisons.geometry import length, nearest, nearest_of_two_laps
 from scene import Scene, StationAnswer
 from scene.answer import Array
-from scene.statement import FreeEnd
+from scene.statement import FreeEnd, SelfContact
 
 _STEPS_APART = 3.0
 """Largest distance of neighbours in a zone, in steps of the coarsest line that an answer draws of the beam."""
@@ -49,7 +49,8 @@ def clear_of_spots(
     coarsest = max(float(np.max(np.diff(station.shapes[beam].s))) for station in stations)
     for name, contact in scene.contacts.items():
         if beam in contact.beams:
-            places = [nearest(station.shapes[beam], station.touching.get(name, _NOWHERE)) for station in stations]
+            near = nearest_of_two_laps if isinstance(contact, SelfContact) else nearest
+            places = [near(station.shapes[beam], station.touching.get(name, _NOWHERE)).ravel() for station in stations]
             spots += ends_of_zones(places, _STEPS_APART * coarsest)
     if not spots:
         return np.ones(arc_length.shape, dtype=bool)

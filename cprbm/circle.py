@@ -38,6 +38,7 @@ from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
+from cprbm.pairs import Pressed
 from scene import CircleContact, Scene
 from scene.answer import Array, Flags, Ints
 
@@ -296,9 +297,9 @@ class Circle:
         share = self.radius / np.hypot(rx, ry)
         return np.stack((here.x + share * rx, here.y + share * ry), axis=1)
 
-    def pressed(self, state: State, at: Positions, chain: Chain, s: Array) -> tuple[float, Array, Array] | None:
-        """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s``."""
-        return (1.0, s, self.line(state, at).at(s).psi) if chain is self.a else None
+    def pressed(self, state: State, at: Positions, s: Array) -> tuple[Pressed, ...]:
+        """On the beam what lies at ``s``."""
+        return ((1.0, s, self.line(state, at).at(s).psi),)
 
     def least_gap(self, state: State, at: Positions) -> float:
         """Least gap anywhere along the beam, units of length; negative where it overlaps."""

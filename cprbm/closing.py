@@ -156,7 +156,7 @@ class Gap:
 
     def _constraint(self, point: Point) -> float:
         # far away there are no rows
-        return max(self.mechanism.overlap(self.contact, point.state, point.at), -1.0)
+        return max(self.mechanism.overlap(self.contact, point), -1.0)
 
     def bracket(self, begin: float, target: float) -> tuple[float, float] | None:
         """Two values close to each other, v_c between them or at both; None where there is none up to ``target``."""

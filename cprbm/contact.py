@@ -7,13 +7,16 @@ on the unknowns is the same for all and lives in :mod:`cprbm.kinematics`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from frozendict import frozendict
 
 from cprbm.kinematics import Positions, State
+from cprbm.model import Chain
+from cprbm.strands import Faces
 from scene.answer import Array, Flags, Ints
 
 
@@ -44,6 +47,7 @@ class Group:
         keys: what each row is, to recognise it again in the next iteration; −1 for a place that moves.
         arc: arc length on the contact's first beam where each row acts (m,).
         reach: length of the first beam, before and behind ``arc``, whose joints have these rows and no others.
+        itself: whether a beam touches itself, at two places of which the first has the first joint.
     """
 
     contact: str
@@ -55,18 +59,31 @@ class Group:
     keys: tuple[int, ...]
     arc: Array
     reach: float = 0.0
+    itself: bool = False
 
     @property
     def holds_angles(self) -> bool:
         """Whether the rows limit angles alone, so that their multipliers are moments."""
         return self.joints.size == 0
 
+    def on_first(self, chain: Chain) -> tuple[Array, Array]:
+        """∂c over x and over y of the contact's first beam, which is ``chain``, (m,) each."""
+        p = self.joints.shape[1]
+        mine = (self.joints >= chain.joints.start) & (self.joints < chain.joints.stop)
+        if self.itself:
+            mine[:, 1:] = False
+        return np.sum(self.slopes[:, :p] * mine, axis=1), np.sum(self.slopes[:, p : 2 * p] * mine, axis=1)
+
 
 @dataclass(frozen=True)
 class Rows:
-    """All constraints at one state, group behind group."""
+    """All constraints at one state, group behind group.
+
+    ``faces`` are the sides by which beams face themselves, by contact; they go from state to state.
+    """
 
     groups: tuple[Group, ...]
+    faces: Mapping[str, Faces] = frozendict()
 
     @cached_property
     def values(self) -> Array:
@@ -81,7 +98,8 @@ class Rows:
     @cached_property
     def holds_angles(self) -> Flags:
         """Which rows limit angles alone (m,)."""
-        return np.repeat([group.holds_angles for group in self.groups], [len(group.values) for group in self.groups])
+        found = [np.full(len(group.values), group.holds_angles) for group in self.groups]
+        return np.concatenate([np.zeros(0, dtype=bool), *found])
 
     @cached_property
     def reach(self) -> Array:
@@ -127,6 +145,7 @@ class Rows:
         return fx, fy, moments
 
 
-Formulation = Callable[[State, Positions], Rows]
+Formulation = Callable[[State, Positions, Rows], Rows]
+"""The rows at a state, and those of a state before."""
 
 NO_ROWS = Rows(())

@@ -5,19 +5,44 @@ P, Q        points of the one line (m, 2) and of the other (n, 2)
 u × v       u_x v_y − u_y v_x
 ==========  ============================================================
 
-Two pieces cross where each has its ends on both sides of the other.
+Two pieces cross where each has its ends on both sides of the other.  Where lines touch, or one ends on the other, the
+straight pieces between their points may cross by what the lines are curved: how deeply they cross tells the difference.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from scene.answer import Array, Flags
+from scene.answer import Array, Flags, Ints
 
 
 def cross(P: Array, Q: Array) -> bool:
     """Whether the lines through the points P and Q cross, straight between the points."""
     return bool(np.any(_parted(P, Q) & _parted(Q, P).T))
+
+
+def own_crossings(P: Array) -> tuple[Ints, Ints, Array]:
+    """Where a line crosses itself: numbers of the pieces (k,), of those further along (k,), and how deeply (k,).
+
+    The depth is the way to the next crossing or to an end of the line, times the sine of the angle between the pieces:
+    by so much, about, one part lies beyond the other.
+    """
+    parted = _parted(P, P)
+    here, there = np.nonzero(np.triu(parted & parted.T))
+    if not here.size:
+        return here, there, np.zeros(0)
+    along, away = np.diff(P, axis=0), P[there] - P[here]
+    length = np.hypot(along[:, 0], along[:, 1])
+    s = np.concatenate(([0.0], np.cumsum(length)))
+    one, other = along[here], along[there]
+    across = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
+    t = (away[:, 0] * other[:, 1] - away[:, 1] * other[:, 0]) / across
+    u = (away[:, 0] * one[:, 1] - away[:, 1] * one[:, 0]) / across
+    first, second = s[here] + t * length[here], s[there] + u * length[there]
+    apart = np.maximum(np.abs(first[:, None] - first), np.abs(second[:, None] - second))
+    np.fill_diagonal(apart, np.inf)
+    way = np.minimum(np.minimum(first, s[-1] - second), np.min(apart, axis=1))
+    return here, there, np.abs(across) / (length[here] * length[there]) * way
 
 
 def _parted(P: Array, Q: Array) -> Flags:

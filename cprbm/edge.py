@@ -45,6 +45,7 @@ from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model, anchor
 from cprbm.own_pins import ON_IT as PIN_ON_IT
 from cprbm.own_pins import own_pins
+from cprbm.pairs import Pressed
 from cprbm.stops import AngleStop
 from scene import EdgeContact, Scene
 from scene.answer import Array, Flags
@@ -471,9 +472,9 @@ class Edge:
         away = np.where(np.isfinite(distance), distance + self._half(s) - self.offset, 0.0)
         return np.stack((A.x, A.y), axis=1) - away[:, None] * n
 
-    def pressed(self, state: State, at: Positions, chain: Chain, s: Array) -> tuple[float, Array, Array] | None:
-        """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s``."""
-        return (1.0, s, self.line(state, at).at(s).psi) if chain is self.a else None
+    def pressed(self, state: State, at: Positions, s: Array) -> tuple[Pressed, ...]:
+        """On the beam what lies at ``s``."""
+        return ((1.0, s, self.line(state, at).at(s).psi),)
 
     def least_gap(self, state: State, at: Positions) -> float:
         """Least gap anywhere along the beam, units of length; negative where it overlaps."""

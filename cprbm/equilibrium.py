@@ -130,7 +130,7 @@ def point_at(problem: Problem, values: dict[str, float], state: State, mu: Array
     """Evaluate a state; ``lam`` belongs to the rows ``before`` and is carried over to those found here."""
     model = problem.model
     at = positions(model, state)
-    rows = problem.formulation(state, at)
+    rows = problem.formulation(state, at, before)
     work = load_work(model, problem.loads, values, state, at)
     gradient = -work.gradient
     gradient[: model.n_links] += strain_gradient(model, state)

@@ -63,14 +63,21 @@ def contact_pressure(point: Point, contact: str, chain: Chain) -> tuple[Array, A
     for group, lam in point.rows.shares(point.lam):
         if group.contact != contact or group.holds_angles:
             continue
-        p = group.joints.shape[1]
-        on_first = (group.joints >= chain.joints.start) & (group.joints < chain.joints.stop)
-        fx = np.sum(group.slopes[:, :p] * on_first, axis=1)
-        fy = np.sum(group.slopes[:, p : 2 * p] * on_first, axis=1)
+        fx, fy = group.on_first(chain)
         pressing = lam > 0.0
         arcs.append(group.arc[pressing])
         forces.append((lam * np.hypot(fx, fy))[pressing])
     return np.concatenate(arcs), np.concatenate(forces)
+
+
+def resultant(point: Point, contact: str, chain: Chain) -> float:
+    """Magnitude of what a contact exerts on its first beam, ``chain``, units of force."""
+    fx = fy = 0.0
+    for group, lam in point.rows.shares(point.lam):
+        if group.contact == contact and not group.holds_angles:
+            over_x, over_y = group.on_first(chain)
+            fx, fy = fx + float(lam @ over_x), fy + float(lam @ over_y)
+    return float(np.hypot(fx, fy))
 
 
 def supports(problem: Problem, point: Point) -> tuple[Support, ...]:

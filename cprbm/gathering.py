@@ -46,6 +46,11 @@ class Touches:
         """Some of the places."""
         return Touches(self.values[these], self.slopes[these], self.second[these], self.links[:, these])
 
+    def exchanged(self) -> Touches:
+        """The same with the parts of A and B exchanged."""
+        turned = (np.arange(2 * smooth.LOCALS) + smooth.LOCALS) % (2 * smooth.LOCALS)
+        return Touches(self.values, self.slopes[:, turned], self.second[:, turned[:, None], turned], self.links[::-1])
+
 
 def gathered(
     name: str,

@@ -100,9 +100,5 @@ def _moved(
 def _kinks(mechanism: Mechanism, point: Point, name: str, places: Array) -> tuple[Kinks, ...]:
     """The kinks of a contact at ``places`` on its first beam and what faces them on its second."""
     pair = mechanism.pairs[name]
-    found = []
-    for chain in pair.chains:
-        pressed = pair.pressed(point.state, point.at, chain, places)
-        assert pressed is not None
-        found.append(kinks_at(chain, point.state, pressed[1]))
-    return tuple(found)
+    pressed = pair.pressed(point.state, point.at, places)
+    return tuple(kinks_at(chain, point.state, at) for chain, (_, at, _) in zip(pair.chains, pressed, strict=True))

@@ -16,6 +16,7 @@ from cprbm.energy import dead_loads, end_moments
 from cprbm.equilibrium import Point, Problem
 from cprbm.hinging import hinges_of
 from cprbm.holding import holds_of
+from cprbm.itself import Itself, itself_of
 from cprbm.kinematics import Positions, State, most_turned, positions
 from cprbm.model import EVEN, Fit, Model, build
 from cprbm.nearest import Pair, pair_of
@@ -23,8 +24,8 @@ from cprbm.rigid import RigidCircle, rigid_circle
 from cprbm.rigid_edge import RigidEdge, rigid_edge
 from cprbm.settings import Settings
 from cprbm.stops import AngleStop, stop_of
-from scene import BeamContact, CircleContact, Mistake, Scene, SceneError
-from scene.statement import SelfContact
+from cprbm.strands import NO_FACES
+from scene import BeamContact, CircleContact, Mistake, Scene, SceneError, SelfContact
 
 BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle or another
 SHALLOW = 0.05  # of the radius: an overlap between rows of a coarse mesh
@@ -36,6 +37,7 @@ SAG = 0.25  # of an element times what links turn by at its spring: twice the sa
 Boundary = FittedBoundary | RigidCircle | RigidEdge
 
 Groups = Callable[[State, Positions], tuple[Group, ...]]
+AnyPair = Pair | Circle | Edge | Itself
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +53,7 @@ class Mechanism:
     """
 
     problem: Problem
-    pairs: dict[str, Pair | Circle | Edge]
+    pairs: dict[str, AnyPair]
     boundaries: dict[str, Boundary]
     stops: dict[str, AngleStop]
     fit: Fit
@@ -60,21 +62,30 @@ class Mechanism:
         """The problem in which some contacts and stops hold nothing."""
         pairs = {name: pair for name, pair in self.pairs.items() if name not in names}
         stops = {name: stop for name, stop in self.stops.items() if name not in names}
-        formulation, steady = _formulations(pairs, self.boundaries, stops)
+        formulation, steady = _formulations(pairs, self.boundaries, stops, _alone(self.pairs))
         return replace(self.problem, formulation=formulation, steady=steady)
 
-    def overlap(self, contact: str, state: State, at: Positions) -> float:
+    def seen(self, contact: str, rows: Rows) -> AnyPair:
+        """The geometry of a contact, with what ``rows`` know of the sides by which a beam faces itself."""
+        pair = self.pairs[contact]
+        return pair.seen(rows.faces.get(contact, NO_FACES)) if isinstance(pair, Itself) else pair
+
+    def overlap(self, contact: str, point: Point) -> float:
         """Largest constraint value of ``contact``, units of length: positive where it is violated."""
-        groups = _groups(contact, self.pairs, self.boundaries)(state, at)
+        groups = _groups(contact, {contact: self.seen(contact, point.rows)}, self.boundaries)(point.state, point.at)
         return max((float(group.values.max()) for group in groups), default=float("-inf"))
 
     def passed(self, before: Point, after: Point) -> str:
         """Name of a contact whose beam went across the circle or the other beam between two states; empty if none."""
-        for pair in self.pairs.values():
+        for name in self.pairs:
+            pair = self.seen(name, before.rows)
             if isinstance(pair, Circle):
                 across = pair.passed(before.at, after.at) or self._overlapped_between(pair, before.state, after.state)
             elif isinstance(pair, Edge):
                 across = self._crossed_between(pair, before, after, EDGE_WAY)
+            elif isinstance(pair, Itself):
+                way = ((state, positions(self.problem.model, state)) for state in _between(before.state, after.state))
+                across = pair.passed(way, (after.state, after.at), WAY * most_turned(before.state, after.state) ** 2)
             else:
                 # without having been there a beam comes to lie beyond another by its end or through it
                 across = pair.gone_round(after.state, after.at) and self._crossed_between(pair, before, after, WAY)
@@ -124,54 +135,73 @@ def _between(before: State, after: State) -> Iterator[State]:
         )
 
 
-def _groups(contact: str, pairs: Mapping[str, Pair | Circle | Edge], boundaries: Mapping[str, Boundary]) -> Groups:
+def _groups(contact: str, pairs: Mapping[str, AnyPair], boundaries: Mapping[str, Boundary]) -> Groups:
     return boundaries[contact].groups if boundaries else pairs[contact].groups
 
 
+def _alone(pairs: Mapping[str, AnyPair]) -> dict[str, Itself]:
+    """Beams that may touch themselves, by contact."""
+    return {name: pair for name, pair in pairs.items() if isinstance(pair, Itself)}
+
+
 def _formulations(
-    pairs: Mapping[str, Pair | Circle | Edge],
+    pairs: Mapping[str, AnyPair],
     boundaries: Mapping[str, Boundary],
     stops: Mapping[str, AngleStop],
+    watched: Mapping[str, Itself],
 ) -> tuple[Formulation, Formulation]:
-    """The rows of some contacts and stops, and the steady ones."""
+    """The rows of some contacts and stops, and the steady ones; of beams ``watched`` it is known how they face."""
     steady = {name: replace(pair, own_places=False) for name, pair in pairs.items()}
     limits: dict[str, Groups] = {name: stop.groups for name, stop in stops.items()}
-    every, few = ({name: _groups(name, these, boundaries) for name in these} | limits for these in (pairs, steady))
-    return _formulation(every), _formulation(few)
+    others, few = (
+        {name: _groups(name, these, boundaries) for name, pair in these.items() if not isinstance(pair, Itself)}
+        | limits
+        for these in (pairs, steady)
+    )
+    return _formulation(others, _alone(pairs), watched), _formulation(few, _alone(steady), watched)
 
 
-def _formulation(parts: dict[str, Groups]) -> Formulation:
-    def rows(state: State, at: Positions) -> Rows:
-        return Rows(tuple(group for part in parts.values() for group in part(state, at)))
+def _formulation(parts: dict[str, Groups], alone: Mapping[str, Itself], watched: Mapping[str, Itself]) -> Formulation:
+    def rows(state: State, at: Positions, before: Rows) -> Rows:
+        groups = [group for part in parts.values() for group in part(state, at)]
+        faces = {}
+        for name, pair in watched.items():
+            facing = alone.get(name, pair).seen(before.faces.get(name, NO_FACES)).facing(state, at)
+            faces[name] = facing.faces
+            if name in alone:
+                groups += alone[name].rows(facing, at)
+        return Rows(tuple(groups), faces)
 
     return rows
 
 
-def _pair(scene: Scene, model: Model, name: str, fit: Fit) -> Pair | Circle | Edge:
+def _pair(scene: Scene, model: Model, name: str, fit: Fit) -> AnyPair:
     match scene.contacts[name]:
         case BeamContact():
             return pair_of(scene, model, name, fit)
+        case SelfContact():
+            return itself_of(scene, model, name, fit)
         case CircleContact():
             return circle_of(scene, model, name, fit)
     return edge_of(scene, model, name, fit)
 
 
-def _boundary(scene: Scene, model: Model, pair: Pair | Circle | Edge, settings: Settings) -> Boundary:
+def _boundary(scene: Scene, model: Model, pair: AnyPair, settings: Settings) -> Boundary:
     """A contact in the paper's form.
 
     Raises:
         SceneError: the form lacks what it must be told, or is not offered for the contact's kind.
     """
-    contact = scene.contacts[pair.name]
-    if isinstance(contact, SelfContact):
-        allowed = "a kind that the formulation 'paper' offers, or the formulation 'auto'"
-        raise SceneError([Mistake(f"contacts.{pair.name}.kind", repr(contact.kind), allowed, scene.file)])
     match pair:
         case Pair():
             return fitted_boundary(scene, model, pair.name, settings.degree)
         case Circle():
             return rigid_circle(scene, model, pair.name)
-    return rigid_edge(scene, model, pair)
+        case Edge():
+            return rigid_edge(scene, model, pair)
+    allowed = "a kind that the formulation 'paper' offers, or the formulation 'auto'"
+    kind = scene.contacts[pair.name].kind
+    raise SceneError([Mistake(f"contacts.{pair.name}.kind", repr(kind), allowed, scene.file)])
 
 
 def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism:
@@ -188,5 +218,5 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism
     stops = {name: stop_of(scene, model, name) for name in scene.stops}
     closure = closure_of(model, hinges_of(scene, model), holds_of(scene, model))
     loads = dead_loads(scene, model) | end_moments(scene, model)
-    problem = Problem(model, closure, loads, *_formulations(pairs, boundaries, stops))
+    problem = Problem(model, closure, loads, *_formulations(pairs, boundaries, stops, _alone(pairs)))
     return Mechanism(problem, pairs, boundaries, stops, fit)

@@ -49,6 +49,7 @@ from cprbm.gathering import Touches, gathered
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import kinked, missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
+from cprbm.pairs import Pressed
 from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
 
@@ -201,7 +202,7 @@ class Pair:
 
     def _distances(self, lines: Lines, gone: float = np.inf) -> tuple[Array, Array]:
         """D along A and at the ends of B, infinite where there is no foot, ``gone`` where that is round an end."""
-        s = np.concatenate((smooth.halves(self.a), _minima(self, lines, *_sampled(self, lines))[0]))
+        s = np.concatenate((smooth.halves(self.a), minima(self, lines, *_sampled(self, lines))[0]))
         D, _, foot = distance_along(self, lines, s)
         E, _, facing = distance_along(self.exchanged(), lines[::-1], self.b.s[[0, -1]])
         D, E = np.where(foot, D, np.inf), np.where(facing, E, np.inf)
@@ -220,15 +221,11 @@ class Pair:
         sigma = distance_along(self, lines, s)[1]
         return np.asarray(self.side * np.sin(self.on_a(lines, s).psi - self.on_b(lines, sigma).psi))
 
-    def pressed(self, state: State, at: Positions, chain: Chain, s: Array) -> tuple[float, Array, Array] | None:
-        """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s`` of A."""
+    def pressed(self, state: State, at: Positions, s: Array) -> tuple[Pressed, ...]:
+        """On A and on B what lies at ``s`` of A."""
         lines = self.lines(state, at)
-        if chain is self.a:
-            return 1.0, s, self.on_a(lines, s).psi
-        if chain is self.b:
-            sigma = distance_along(self, lines, s)[1]
-            return -1.0, sigma, self.on_b(lines, sigma).psi
-        return None
+        sigma = distance_along(self, lines, s)[1]
+        return (1.0, s, self.on_a(lines, s).psi), (-1.0, sigma, self.on_b(lines, sigma).psi)
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
@@ -241,6 +238,14 @@ class Pair:
     def _rows(self, lines: Lines, at: Positions) -> list[tuple[Group, Array]]:
         """Rows at A's joints, at minima along A and at both beams' ends; with each group the places on B."""
         along, across = closest_places(self, lines)
+        found = self.rows_along(lines, at, along)
+        if across.s.size:
+            rows = self.exchanged().rows_at(lines[::-1], at, across)
+            found.append((replace(rows, arc=across.sigma), across.s))
+        return found
+
+    def rows_along(self, lines: Lines, at: Positions, along: Places) -> list[tuple[Group, Array]]:
+        """Rows at places of A; with each group the places on B."""
         inner = (along.keys > 0) & (along.keys <= self.a.n)
         found = []
         if np.any(inner):
@@ -249,10 +254,7 @@ class Pair:
             found += [(replace(rows, values=rows.values - eased), sigma) for rows, sigma in means]
         if not np.all(inner):
             places = along.only(~inner)
-            found.append((self._rows_at(lines, at, places), places.sigma))
-        if across.s.size:
-            rows = self.exchanged()._rows_at(lines[::-1], at, across)
-            found.append((replace(rows, arc=across.sigma), across.s))
+            found.append((self.rows_at(lines, at, places), places.sigma))
         return found
 
     def _eased(self) -> float:
@@ -265,9 +267,9 @@ class Pair:
         jumps = (np.abs(kinks.behind - kinks.before).max(initial=0.0) for kinks in self.kinks)
         return sum(DIP * float(jump) * chain.h**3 for jump, chain in zip(jumps, self.chains, strict=True))
 
-    def _rows_at(self, lines: Lines, at: Positions, places: Places) -> Group:
+    def rows_at(self, lines: Lines, at: Positions, places: Places) -> Group:
         """Rows at single places."""
-        touches = self._touches(lines, places.s, places.sigma, places.keys < 0)
+        touches = self.touches(lines, places.s, places.sigma, places.keys < 0)
         weights = np.ones((len(places.s), 1))
         return gathered(self.name, (self.a, self.b), at, touches, weights, places.keys, places.s)
 
@@ -275,7 +277,7 @@ class Pair:
         """Rows of the mean gap around joints of A; those next to a clamp of both beams in one."""
         s, sigma, weights = self._around(lines, joints)
         (m, q), chains = s.shape, (self.a, self.b)
-        touches = self._touches(lines, s.ravel(), sigma.ravel(), np.zeros(m * q, dtype=bool))
+        touches = self.touches(lines, s.ravel(), sigma.ravel(), np.zeros(m * q, dtype=bool))
         number, alone, found = np.arange(m * q).reshape(m, q), np.ones(m, dtype=bool), []
         for key, beside in self._beside_clamps(joints.keys):
             alone[beside] = False
@@ -309,8 +311,8 @@ class Pair:
         off = np.concatenate((-half + (cut + half) * x, cut + (half - cut) * x), axis=1)
         weights = 0.5 * np.concatenate(((1.0 + cut / half) * w, (1.0 - cut / half) * w), axis=1)
         at_A = s[:, None] + off
-        _, feet, _ = _feet(self, lines, self.on_a(lines, at_A.ravel()), (sigma[:, None] + off / ratio[:, None]).ravel())
-        at_B = feet.reshape(at_A.shape)
+        guess = (sigma[:, None] + off / ratio[:, None]).ravel()
+        at_B = feet_near(self, lines, self.on_a(lines, at_A.ravel()), guess)[1].reshape(at_A.shape)
         # beside an end of B, where it faces no element of B, the joint alone
         alone = ~np.all((at_B > 0.0) & (at_B < self.b.s[-1]), axis=1)[:, None]
         return np.where(alone, s[:, None], at_A), np.where(alone, sigma[:, None], at_B), weights
@@ -327,7 +329,7 @@ class Pair:
                 found.append((self.a.n + 4 + end, these[:m] if end == 0 else these[m:]))
         return found
 
-    def _touches(self, lines: Lines, s: Array, sigma: Array, free: Flags) -> Touches:
+    def touches(self, lines: Lines, s: Array, sigma: Array, free: Flags) -> Touches:
         """The constraint at feet (s, σ); where ``free`` (k,) the place moves with the minimum."""
         A, B = self.on_a(lines, s), self.on_b(lines, sigma)
         m, k = len(s), smooth.LOCALS
@@ -374,10 +376,10 @@ def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Fl
     """Signed distance D of A from B at arc lengths ``s``: D, σ (k,), and whether a foot exists (k,)."""
     A, G = pair.on_a(lines, s), lines[1].sampled
     _, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(np.stack((A.x, A.y), axis=1))
-    return _feet(pair, lines, A, G.s[nearest])
+    return feet_near(pair, lines, A, G.s[nearest])
 
 
-def _feet(pair: Pair, lines: Lines, A: smooth.Points, sigma: Array) -> tuple[Array, Array, Flags]:
+def feet_near(pair: Pair, lines: Lines, A: smooth.Points, sigma: Array) -> tuple[Array, Array, Flags]:
     """D, σ and whether there is a foot, by Newton's method on (i) from the guess ``sigma``."""
     for _ in range(FOOT_ITERATIONS):
         B = pair.on_b(lines, sigma)
@@ -400,31 +402,32 @@ def _seen_from(B: smooth.Points, A: smooth.Points) -> tuple[Array, Array]:
 
 def closest_places(pair: Pair, lines: Lines) -> tuple[Places, Places]:
     """Where rows stand on A, and on B with the beams' parts exchanged."""
+    ends = _facing_ends(pair, lines)
+    return places_along(pair, lines, *_sampled(pair, lines), ends.sigma), ends
+
+
+def places_along(pair: Pair, lines: Lines, D: Array, sigma: Array, ends: Array) -> Places:
+    """Where rows stand on A, from D and the feet at its samples (2N+3,), and from where ``ends`` of B face it."""
     a, b, reach = pair.a, pair.b, pair.offset + REACH
-    D, sigma = _sampled(pair, lines)
     if pair.fixed:
         s = pair.kinks[0].places
         turned = distance_along(pair, lines, s)[1]
     else:
-        s, turned = _minima(pair, lines, D, sigma)
-    ends = _facing_ends(pair, lines)
+        s, turned = minima(pair, lines, D, sigma)
 
     # D and feet at the joints are every other sample
     bends = np.abs(pair.on_a(lines, a.s).bend) + np.abs(pair.on_b(lines, sigma[::2]).bend)
     near = D[::2] - pair.offset < JOINT_REACH * a.h**2 * (1.0 + bends)
-    for places, apart in ((s, wells.BESIDE), (ends.sigma, BESIDE_END)):
+    for places, apart in ((s, wells.BESIDE), (ends, BESIDE_END)):
         for place in places:
             near[1:-1] &= np.abs(a.s[1:-1] - place) > apart * a.size_at(place)
     for end in (0, -1):
-        near[end] = reach > D[end] and not _held_together(a, b, end, float(sigma[end]))
+        near[end] = reach > D[end] and not held_together(a, b, end, float(sigma[end]))
     joints = np.flatnonzero(near)
-    return (
-        Places(
-            np.concatenate((a.s[joints], s)),
-            np.concatenate((sigma[::2][joints], turned)),
-            np.concatenate((joints, a.n + 6 + np.arange(len(s)) if pair.fixed else np.full(len(s), -1))),
-        ),
-        ends,
+    return Places(
+        np.concatenate((a.s[joints], s)),
+        np.concatenate((sigma[::2][joints], turned)),
+        np.concatenate((joints, a.n + 6 + np.arange(len(s)) if pair.fixed else np.full(len(s), -1))),
     )
 
 
@@ -440,11 +443,11 @@ def _facing_ends(pair: Pair, lines: Lines) -> Places:
     E = _not_gone_round(pair.exchanged(), lines[::-1], E)
     facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
     for i, end in enumerate(near):
-        facing[i] &= not _held_together(b, a, int(-end), float(foot[i]))
+        facing[i] &= not held_together(b, a, int(-end), float(foot[i]))
     return Places(ends.s[near][facing], foot[facing], a.n + 2 + near[facing])
 
 
-def _held_together(one: Chain, other: Chain, end: int, foot: float) -> bool:
+def held_together(one: Chain, other: Chain, end: int, foot: float) -> bool:
     """Whether an end of ``one`` and what its foot on ``other`` lies on move with one body: their gap is no unknown."""
     mine = one.start if end == 0 else one.end
     if mine is None:
@@ -469,7 +472,7 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     close = np.flatnonzero(np.isfinite(rough))
     D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
     if close.size:
-        distance, sigma[close], foot = _feet(pair, lines, pair.on_a(lines, A.s[close]), G.s[nearest[close]])
+        distance, sigma[close], foot = feet_near(pair, lines, pair.on_a(lines, A.s[close]), G.s[nearest[close]])
         D[close] = np.where(foot, distance, np.inf)
     return _not_gone_round(pair, lines, D), sigma
 
@@ -483,7 +486,7 @@ def _not_gone_round(pair: Pair, lines: Lines, D: Array, gone: float = np.inf) ->
     return D if cross(A, B) else np.where(beyond, gone, D)
 
 
-def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:
+def minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:
     """(s, σ) of the minima of D within A that have a place of their own, from its samples.
 
     Newton's method on dD/ds = 0 and on (i), kept between the samples beside the lowest: where the curvature jumps
@@ -545,7 +548,7 @@ def _clamped(pair: Pair, lines: Lines) -> tuple[bool, bool]:
     at_end = np.minimum(sigma, pair.b.s[-1] - sigma)
     touching = foot & (np.abs(D - pair.offset) <= ON_IT) & (np.abs(turn) <= ON_IT) & (at_end <= ON_IT)
     start, end = (
-        bool(touching[i]) and _held_together(pair.a, pair.b, e, float(sigma[i])) for i, e in enumerate((0, -1))
+        bool(touching[i]) and held_together(pair.a, pair.b, e, float(sigma[i])) for i, e in enumerate((0, -1))
     )
     return start, end
 

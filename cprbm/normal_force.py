@@ -54,15 +54,12 @@ def _forces(mechanism: Mechanism, point: Point, chain: Chain) -> list[tuple[Arra
             pressing = np.flatnonzero(lam)
             if group.holds_angles or not pressing.size:
                 continue
-            pair = mechanism.pairs[group.contact]
-            pressed = pair.pressed(point.state, point.at, chain, group.arc[pressing])
-            if pressed is None:
-                continue
-            p = group.joints.shape[1]
-            mine = (group.joints >= chain.joints.start) & (group.joints < chain.joints.stop)
-            weights = -lam[:, None] * mine
-            forces = [np.sum(weights * group.slopes[:, first : first + p], axis=1)[pressing] for first in (0, p)]
-            found.append((np.asarray(pressed[1]), np.stack(forces, axis=1)))
+            pair, (fx, fy) = mechanism.pairs[group.contact], group.on_first(mechanism.pairs[group.contact].a)
+            pressed = pair.pressed(point.state, point.at, group.arc[pressing])
+            on_one = -lam[:, None] * np.stack((fx, fy), axis=1)
+            for of, (sign, places, _) in zip(pair.chains, pressed, strict=True):
+                if of is chain:
+                    found.append((np.asarray(places), sign * on_one[pressing]))
     for load, value in point.work.on_beams:
         if not load.distributed and model.chains[load.chain] is chain:
             found.append((load.s, value * load.forces))

@@ -9,6 +9,9 @@ from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
 from scene.answer import Array
 
+Pressed = tuple[float, Array, Array]
+"""On one beam: the sign of the force, and places and tangent angles."""
+
 
 class Touching(Protocol):
     """A beam and what it may touch; arc lengths are those of the first beam, all in units of length."""
@@ -46,8 +49,8 @@ class Touching(Protocol):
     def touching(self, state: State, at: Positions, s: Array) -> Array:
         """Where the edges touch that touch at arc lengths ``s``, (k, 2)."""
 
-    def pressed(self, state: State, at: Positions, chain: Chain, s: Array) -> tuple[float, Array, Array] | None:
-        """On ``chain``: the sign of the force, and places and tangent angles of what lies at ``s``."""
+    def pressed(self, state: State, at: Positions, s: Array) -> tuple[Pressed, ...]:
+        """On each of the beams what lies at ``s`` of the first."""
 
     def parting(self, state: State, at: Positions, s: Array) -> Array:
         """Curvature D″ with which the beam parts from what it touched, at arc lengths ``s``."""

@@ -7,7 +7,7 @@ import numpy as np
 from cprbm import smooth
 from cprbm.edge import Edge
 from cprbm.equilibrium import Point, Problem, potential_energy
-from cprbm.forces import contact_forces, contact_moment, contact_pressure, holding, supports
+from cprbm.forces import contact_moment, contact_pressure, holding, resultant, supports
 from cprbm.mechanism import Mechanism
 from cprbm.normal_force import normal_force
 from cprbm.stress import bending_stress
@@ -39,9 +39,8 @@ def _value(
                 else 0.0
             )
         case "force":
-            first = model.chain(scene.contacts[probe.of].beams[0]).joints
-            forces = contact_forces(problem, point, probe.of)
-            return float(np.hypot(forces.fx[first].sum(), forces.fy[first].sum())) * model.unit_force
+            first = model.chain(scene.contacts[probe.of].beams[0])
+            return resultant(point, probe.of, first) * model.unit_force
         case "centre":
             arc, pressing = contact_pressure(point, probe.of, model.chain(scene.contacts[probe.of].beams[0]))
             return float(pressing @ arc / pressing.sum()) * model.unit_length if pressing.size else []

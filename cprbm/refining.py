@@ -145,11 +145,7 @@ def _kinks(
         if any(zone.long for zone in mine):
             continue
         pair, middles = mechanism.pairs[name], np.array([0.5 * (zone.begin + zone.end) for zone in mine])
-        places = []
-        for chain in pair.chains:
-            pressed = pair.pressed(point.state, point.at, chain, middles)
-            assert pressed is not None
-            places.append(pressed[1])
+        places = [at for _, at, _ in pair.pressed(point.state, point.at, middles)]
         inner = np.all([within(chain, arc) for chain, arc in zip(pair.chains, places, strict=True)], axis=0)
         if np.any(inner):
             now = tuple(
@@ -169,10 +165,10 @@ def _places_on(
         if any(zone.long for zone in mine):
             continue
         middles = np.array([0.5 * (zone.begin + zone.end) for zone in mine])
-        pressed = mechanism.pairs[name].pressed(point.state, point.at, chain, middles)
-        if pressed is not None:
-            places = pressed[1] / chain.s[-1]
-            found += [(float(place), name) for place in places if 0.0 < place < 1.0]
+        pair = mechanism.pairs[name]
+        for of, (_, at, _) in zip(pair.chains, pair.pressed(point.state, point.at, middles), strict=True):
+            if of is chain:
+                found += [(float(place), name) for place in at / chain.s[-1] if 0.0 < place < 1.0]
     return found
 
 
@@ -265,7 +261,7 @@ def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict
         theta[target.links] += np.interp(target.borders, source.borders, turned)
     state = State(theta, point.state.bodies)
     at = positions(new, state)
-    rows = after.problem.formulation(state, at)
+    rows = after.problem.formulation(state, at, point.rows)
     lam = np.zeros(rows.size)
     zones = long_ones(all_zones(before, point))
     first = 0

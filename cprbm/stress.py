@@ -159,16 +159,16 @@ def _kinks(mechanism: Mechanism, point: Point, chain: Chain) -> tuple[Array, Arr
             continue  # a moment at an end is the moment there
         pair = mechanism.pairs[group.contact]
         pressing = np.flatnonzero(lam)
-        pressing = pressing[~_lies(mechanism, point, group.contact, chain, group.arc[pressing])]
-        found = pair.pressed(point.state, point.at, chain, group.arc[pressing]) if pressing.size else None
-        if found is None:
+        arc, (fx, fy) = group.arc[pressing], group.on_first(pair.a)
+        if not pressing.size or all(of is not chain for of in pair.chains):
             continue
-        sign, at, psi = found
-        p = group.joints.shape[1]
-        on_a = (group.joints >= pair.a.first_joint) & (group.joints < pair.a.first_joint + pair.a.n + 2)
-        weights = -sign * lam[:, None] * on_a
-        fx = np.sum(weights * group.slopes[:, :p], axis=1)[pressing]
-        fy = np.sum(weights * group.slopes[:, p : 2 * p], axis=1)[pressing]
-        places.extend(at)
-        jumps.extend(fy * np.cos(psi) - fx * np.sin(psi))
+        lies = _lies(mechanism, point, group.contact, chain, arc)
+        for of, (sign, at, psi) in zip(pair.chains, pair.pressed(point.state, point.at, arc), strict=True):
+            if of is not chain:
+                continue
+            # what lies on the first of two places does not on the second, whose elements end elsewhere
+            alone = ~lies if sign > 0.0 else np.ones(len(arc), dtype=bool)
+            across = fy[pressing] * np.cos(psi) - fx[pressing] * np.sin(psi)
+            places.extend(at[alone])
+            jumps.extend((-sign * lam[pressing] * across)[alone])
     return np.array(places), np.array(jumps)

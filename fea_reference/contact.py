@@ -1,4 +1,4 @@
-"""Frictionless contact of two beams by a penalty along the first one's neutral line.
+"""Frictionless contact of two beams, or of one and itself, by a penalty along the first one's neutral line.
 
 ======  =====================================================================================
 symbol  meaning
@@ -34,16 +34,18 @@ and δ = p/ε lets it act where the gap is zero; see :mod:`fea_reference.circle`
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
 from fea_reference.hermite import NeutralLine, along, apart, plane, shape_slopes, shapes, twice_along
+from fea_reference.itself import seen_itself, unseen
 from fea_reference.model import BeamPart, Model
 from fea_reference.projection import closest
 from fea_reference.state import State
 from fea_reference.touch import Pair, Penalty, Touch, gauss, together
-from fea_reference.zones import Zones, ends_over, find, overlap, seen, side_of
-from scene.statement import BeamContact, Scene
+from fea_reference.zones import Survey, Zones, ends_over, overlap, seen, side_of
+from scene.statement import BeamContact, FreeEnd, Scene, SelfContact
 
 _AT_END = 1e-6  # elements
 _SLENDER = 0.01  # of the longest beam: what stands for the thickness of beams that touch as lines
@@ -73,6 +75,28 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
     return tuple(found)
 
 
+def selves(scene: Scene, model: Model) -> tuple[Pair, ...]:
+    """The scene's contacts of beams with themselves."""
+    found = []
+    for name, contact in scene.contacts.items():
+        if not isinstance(contact, SelfContact):
+            continue
+        beam = model.beam(contact.beam)
+        number = model.beams.index(beam)
+        T, scale, measure = (beam.thickness,) * 3 if contact.thick else (0.0, _SLENDER, 1.0)
+        later = not (_grounded(scene, contact.beam, "end") and not _grounded(scene, contact.beam, "start"))
+        roles = unseen(later=later).renewed(model.line(beam, model.start))
+        penalties = _penalties(model, beam, beam.thickness)
+        found.append(Pair(name, number, number, later, 0.0, T, scale, measure, *penalties, roles))
+    return tuple(found)
+
+
+def _grounded(scene: Scene, beam: str, which: Literal["start", "end"]) -> bool:
+    """Whether an end is held by a body that does not move, and cannot come to lie on the beam's side."""
+    end = getattr(scene.beams[beam], which)
+    return not isinstance(end, FreeEnd) and scene.bodies[scene.body_of(end.point)].motion == "fixed"
+
+
 def _penalties(model: Model, beam: BeamPart, thickness: float) -> tuple[float, float, float]:
     """EI over the fourth power of the widest layer, of the first, and of the thinnest."""
     h = float(model.elements.length[beam.elements.start])
@@ -83,7 +107,11 @@ def _penalties(model: Model, beam: BeamPart, thickness: float) -> tuple[float, f
 def zones_of(model: Model, pair: Pair, z: State) -> Zones:
     """Where the beams of a pair overlap in state ``z``."""
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    return find(first, second, pair.side, pair.distance)
+    return overlap(first, second, pair.distance, _seen(pair, first, second, pair.distance), 0.0)
+
+
+def _seen(pair: Pair, first: NeutralLine, second: NeutralLine, T: float) -> Survey:
+    return seen(first, second, pair.side, T) if pair.roles is None else seen_itself(first, pair.roles, T)
 
 
 def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State, held: float | None = None) -> Touch:
@@ -95,12 +123,12 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
     line, line_m = model.line(beam, z), model.line(beam_m, z)
     distance = pair.distance + penalty.lead
-    gaps = seen(line, line_m, pair.side, distance)
+    gaps = _seen(pair, line, line_m, distance)
     level = 0.0 if held is None else gaps.least + held
     if level < line_m.lengths.max():
         zones = overlap(line, line_m, distance, gaps, level)
     else:
-        zones = find(line, line_m, pair.side, distance + level)
+        zones = overlap(line, line_m, distance + level, _seen(pair, line, line_m, distance + level), 0.0)
     zones = replace(zones, least=gaps.least + penalty.lead)
 
     points, weights = gauss(quadrature)
@@ -123,7 +151,8 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     d = (n * plane(apart(line, there, line_m, across))).sum(axis=0)
     a = (n * plane(across.bent)).sum(axis=0)
     Z = J**2 - d * a
-    g = pair.side * d - distance
+    side = pair.sides(zeta, zeta_m, d)
+    g = side * d - distance
 
     H, H_m, H_m1 = shapes(xi), shapes(xi_m), shape_slopes(xi_m)
     d_q = np.concatenate([along(n, H, line, e), -along(n, H_m, line_m, e_m)])
@@ -136,7 +165,7 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
 
     weight = penalty.stiffness * ds
     alike = together(quadrature, e, e_m)
-    normal = pair.side * n
+    normal = side * n
     return Touch(
         pair=pair,
         zones=zones,
@@ -144,8 +173,8 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
         alike=alike,
         stiffness=weight,
         gap=g,
-        gap_by=pair.side * d_q,
-        gap_by_twice=pair.side * d_qq,
+        gap_by=side * d_q,
+        gap_by_twice=side * d_qq,
         zeta=zeta,
         zeta_m=zeta_m,
         x=plane(x),
@@ -165,18 +194,21 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
         return 0.0
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
     line, line_m = model.line(beam, z), model.line(beam_m, z)
-    intervals = touch.zones.intervals
+    along = np.argsort(touch.zones.intervals[:, 0])  # laps of one beam follow each other in no order
+    intervals = touch.zones.intervals[along]
     zone = np.cumsum(np.append(False, intervals[1:, 0] > intervals[:-1, 1]))
     at_end = np.array([intervals[0, 0] <= _AT_END, intervals[-1, 1] >= line.n - _AT_END])
     widths = [np.ptp(intervals[zone == one]) for one in (zone[[0, -1]][at_end] if at_end.any() else np.unique(zone))]
     if min(widths) < _LYING:
         return 0.0
-    middle, middle_m = intervals.mean(axis=1), touch.zones.zeta_m.mean(axis=1)
+    middle, middle_m = intervals.mean(axis=1), touch.zones.zeta_m[along].mean(axis=1)
     e = line.locate(middle)[0] + beam.elements.start
     e_m = line_m.locate(middle_m)[0] + beam_m.elements.start
-    _, speed, bent = line_m.at(middle_m)
+    x_m, speed, bent = line_m.at(middle_m)
     J = np.hypot(speed[0], speed[1])
-    of_second = -pair.side * (speed[0] * bent[1] - speed[1] * bent[0]) / J**3
+    away = line.at(middle)[0] - x_m
+    side = pair.sides(middle, middle_m, speed[0] * away[1] - speed[1] * away[0])
+    of_second = -side * (speed[0] * bent[1] - speed[1] * bent[0]) / J**3
     kappa = of_second / (1.0 + pair.distance * of_second)  # parallel curves
     axial, axial_m = z[model.element_dofs[6, e]], z[model.element_dofs[6, e_m]]
     EI, EI_m = beam.bending(middle / line.n), beam_m.bending(middle_m / line_m.n)
@@ -194,6 +226,6 @@ def _missing(first: NeutralLine, second: NeutralLine, pair: Pair, penalty: Penal
     there, there_m = first.around(zeta), second.around(zeta_m)
     back = (there_m.ahead / np.abs(there_m.ahead)).conj()
     d = (back * apart(first, there, second, there_m)).imag
-    g = np.minimum(pair.side * d - pair.distance - penalty.lead, 0.0)
+    g = np.minimum(pair.sides(zeta, zeta_m, d) * d - pair.distance - penalty.lead, 0.0)
     ahead = np.abs((back * there.ahead).real) / first.lengths[there.element]
     return float((0.5 * penalty.stiffness * g**2 / np.maximum(ahead, 1e-3)).sum())

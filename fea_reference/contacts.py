@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from fea_reference import circle, contact, face
-from fea_reference.crossing import cross
+from fea_reference.crossing import cross, crosses_itself
 from fea_reference.model import Model
 from fea_reference.state import State
 from fea_reference.touch import Circle, Contact, Face, Pair, Penalty, Touch
@@ -15,6 +17,7 @@ def contacts(scene: Scene, model: Model, penetration: float) -> tuple[Contact, .
     """What may touch, in the scene's order."""
     every: tuple[Contact, ...] = (
         *contact.pairs(scene, model),
+        *contact.selves(scene, model),
         *circle.circles(scene, model, penetration),
         *face.faces(scene, model, penetration),
     )
@@ -58,12 +61,22 @@ def resting_pressure(model: Model, one: Touch, z: State) -> float:
             return 0.0
 
 
+def looked_at(model: Model, what: Contact, z: State) -> Contact:
+    """The same contact; of a beam and itself with the sides on which its places lie in state ``z``."""
+    if isinstance(what, Pair) and what.roles is not None:
+        return replace(what, roles=what.roles.renewed(model.line(model.beams[what.first], z)))
+    return what
+
+
 def passed_through(model: Model, what: Contact, before: State, after: State) -> bool:
     """Whether what may touch has passed through each other on the way from one state to another."""
     if isinstance(what, Circle):
         return circle.passed(model, what, before, after)
     if isinstance(what, Face):
         return face.passed(model, what, before, after)
+    first, second = (model.line(model.beams[i], after) for i in (what.first, what.second))
+    if what.roles is not None:
+        return crosses_itself(first, contact.zones_of(model, what, after))
     # Lines without thickness cross by what the penalty lets through; that is held, and measured.
     held = what.distance == 0.0 and contact.zones_of(model, what, after).least < 0.0
-    return not held and cross(*(model.line(model.beams[i], after) for i in (what.first, what.second)))
+    return not held and cross(first, second)

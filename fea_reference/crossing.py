@@ -1,18 +1,53 @@
-"""Do two neutral lines cross?"""
+"""Do neutral lines cross?"""
 
 from __future__ import annotations
 
 import numpy as np
 
 from fea_reference.hermite import NeutralLine
-from scene.answer import Array
+from fea_reference.zones import Zones
+from scene.answer import Array, Flags
+
+_BESIDE = 1.5  # elements beside a zone in which it may cross
+_PARTS = 32  # of an element that are looked at as chords: what they leave of its bow is a thousandth
 
 
 def cross(first: NeutralLine, second: NeutralLine) -> bool:
     """Whether any two chords of the lines' elements intersect in their insides."""
-    a, b = first.points[:, :-1, None], first.points[:, 1:, None]
-    c, d = second.points[:, None, :-1], second.points[:, None, 1:]
-    return bool(((_turn(a, b, c) * _turn(a, b, d) < 0.0) & (_turn(c, d, a) * _turn(c, d, b) < 0.0)).any())
+    chords = [(line.points[:, :-1], line.points[:, 1:]) for line in (first, second)]
+    (a, b), (c, d) = chords
+    return bool(_intersect(a[:, :, None], b[:, :, None], c[:, None], d[:, None]).any())
+
+
+def crosses_itself(line: NeutralLine, held: Zones) -> bool:
+    """Whether a line crosses itself where nothing is ``held`` apart.
+
+    Laps that lie in each other may be nearer than their elements bow.  Where chords of elements intersect, those of
+    their parts, and of the parts of the elements beside them, decide.  What sinks into a penalty may cross by that,
+    and is held, and measured.
+    """
+    a, b = line.points[:, :-1], line.points[:, 1:]
+    found = np.argwhere(np.triu(_intersect(a[:, :, None], b[:, :, None], a[:, None], b[:, None])))
+    if held.intervals.size and found.size:
+        places = np.sort(np.stack([held.intervals, held.zeta_m]), axis=0)  # of both the earlier, then the later
+        low, high = (
+            side[..., None] + _BESIDE * sign for side, sign in ((places.min(axis=2), -1), (places.max(axis=2), 1))
+        )
+        middle = found.T[:, None] + 0.5
+        found = found[~((low < middle) & (middle < high)).all(axis=0).any(axis=0)]
+    if not found.size:
+        return False
+    around = np.stack(np.meshgrid([-1, 0, 1], [-1, 0, 1]), axis=-1).reshape(-1, 2)
+    pairs = np.unique(np.clip((found[:, None] + around).reshape(-1, 2), 0, line.n - 1), axis=0)
+    fine = line.at(np.arange(_PARTS * line.n + 1) / _PARTS)[0]
+    i, j = (_PARTS * one[:, None] + np.arange(_PARTS) for one in pairs.T)
+    ends = (fine[:, i, None], fine[:, i + 1, None], fine[:, j][:, :, None], fine[:, j + 1][:, :, None])
+    return bool(_intersect(*ends).any())
+
+
+def _intersect(a: Array, b: Array, c: Array, d: Array) -> Flags:
+    """Whether ways from ``a`` to ``b`` and from ``c`` to ``d`` intersect in their insides, each (2, ...)."""
+    return np.asarray((_turn(a, b, c) * _turn(a, b, d) < 0.0) & (_turn(c, d, a) * _turn(c, d, b) < 0.0))
 
 
 def _turn(a: Array, b: Array, c: Array) -> Array:

@@ -47,8 +47,9 @@ def ends(model: Model, system: System, touch: Touch) -> Array:
     # a clamped end that just touches overlaps by round-off, and presses by no more
     each = weight.reshape(len(touch.zones.intervals), -1).sum(axis=1)
     pressed = np.flatnonzero(each > _NOTHING * each.sum())
-    first = _continued(model, system, touch, int(pressed[0]), -1.0)
-    last = _continued(model, system, touch, int(pressed[-1]), 1.0)
+    begins, stops = touch.zones.intervals[pressed].T
+    first = _continued(model, system, touch, int(pressed[np.argmin(begins)]), -1.0)
+    last = _continued(model, system, touch, int(pressed[np.argmax(stops)]), 1.0)
     return np.array([first, last]) if first <= middle <= last else np.array([middle, middle])
 
 
@@ -99,10 +100,11 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array,
     zeta_m, found = project(line_m, x, np.full(zeta.shape, facing))
     if not found.all():
         return None
-    tangent_m = line_m.at(zeta_m)[1]
+    x_m, tangent_m, _ = line_m.at(zeta_m)
     along = np.sign((tangent * tangent_m).sum(axis=0))
     across = _curvature(model, system, other, zeta_m)
-    return np.asarray(pair.side * (along * own - across / (1.0 - pair.side * pair.distance * across)))
+    side = pair.sides(zeta, zeta_m, tangent_m[0] * (x - x_m)[1] - tangent_m[1] * (x - x_m)[0])
+    return np.asarray(side * (along * own - across / (1.0 - side * pair.distance * across)))
 
 
 def _curvature(model: Model, system: System, beam: BeamPart, zeta: Array) -> Array:

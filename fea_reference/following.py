@@ -78,6 +78,7 @@ def followed(march: March, load: int, target: float, span: float) -> Lost | None
 
     Then the march has gone some way along it, or none.
     """
+    march.look()
     if march.loose:
         march.tighten()
     lost = _letting_go(march, load, target, span)
@@ -244,7 +245,7 @@ def _next_to_go(march: March, load: int, onward: float) -> tuple[Touch, float] |
 
 def _without(march: March, one: Touch) -> System:
     """The state of now without one contact."""
-    others = {pair: penalty for pair, penalty in march.penalties.items() if pair is not one.pair}
+    others = {pair: penalty for pair, penalty in march.penalties.items() if pair != one.pair}
     return assemble(march.model, others, march.settings.quadrature, march.values, march.system.z, march.acting)
 
 
@@ -276,7 +277,7 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
     energy = potential_energy(march.model, march.system, march.values)
     for one in before.system.touches:
         held = softest(march.model, stiffened(march.model, before.system, one, _RIGID)) if one.closed else None
-        began = next((old.push for old in first.system.touches if old.pair is one.pair), 0.0)
+        began = next((old.push for old in first.system.touches if old.pair == one.pair), 0.0)
         if held is not None and held.curvature > _HELD * first.curvature and one.push < _NOTHING * began:
             left = softest(march.model, _without(march, one))
             return Lost(

@@ -11,7 +11,7 @@ from scipy.sparse.linalg import splu
 
 from fea_reference.acting import Acting
 from fea_reference.advance import advance, carried
-from fea_reference.contacts import passed_through, resting_pressure, zones_of
+from fea_reference.contacts import looked_at, passed_through, resting_pressure, zones_of
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
@@ -153,6 +153,7 @@ class March:
 
     def step(self, load: int, value: float, rate: Array) -> Trouble | None:
         """Try to step to ``value``, or to where a contact or stop changes before; the trouble if neither can be."""
+        self.look()
         before, start = self.system.z, float(self.values[load])
         predicted = advance(self.model, before, self._foreseen(load, value - start, rate))
         system = self.solve(load, value, predicted)
@@ -259,6 +260,12 @@ class March:
         self.system = assemble(
             self.model, self.penalties, self.settings.quadrature, self.values, self.system.z, self.acting
         )
+
+    def look(self) -> None:
+        """See anew on which of their own sides beams lie."""
+        model, z = self.model, self.system.z
+        self.open = [looked_at(model, pair, z) for pair in self.open]
+        self.penalties = {looked_at(model, pair, z): penalty for pair, penalty in self.penalties.items()}
 
     def value(self, load: int) -> float:
         """Of what is stepped, SI."""

@@ -61,7 +61,7 @@ def _cut(model: Model, system: System, beam: BeamPart) -> tuple[Array, Array, Ar
     """
     ends = system.elements.gradient[:3, beam.elements].copy()  # force and moment on every element's first node
     number = model.beams.index(beam)
-    parts = [_NOTHING, *(_on_beam(touch, number) for touch in system.touches)]
+    parts = [_NOTHING, *(part for touch in system.touches for part in _on_beam(touch, number))]
     place, point, force = (np.concatenate(arrays, axis=-1) for arrays in zip(*parts, strict=True))
     for touch in system.touches:
         gradient = touch.gradient
@@ -79,10 +79,11 @@ def _cut(model: Model, system: System, beam: BeamPart) -> tuple[Array, Array, Ar
     return ends, place, point, force
 
 
-def _on_beam(touch: Touch, number: int) -> tuple[Array, Array, Array]:
-    """Places, points and forces of one contact on one beam."""
+def _on_beam(touch: Touch, number: int) -> list[tuple[Array, Array, Array]]:
+    """Places, points and forces of one contact on one beam: on what is first in it, and what is second."""
+    parts = []
     if touch.pair.first == number:
-        return touch.zeta, touch.x, touch.force
+        parts.append((touch.zeta, touch.x, touch.force))
     if isinstance(touch.pair, Pair) and touch.pair.second == number:
-        return touch.zeta_m, touch.x_m, -touch.force
-    return _NOTHING
+        parts.append((touch.zeta_m, touch.x_m, -touch.force))
+    return parts

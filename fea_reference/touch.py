@@ -9,6 +9,7 @@ import numpy as np
 
 from fea_reference.edge import Edge
 from fea_reference.hermite import Index
+from fea_reference.itself import Roles
 from fea_reference.leaning import Chain
 from fea_reference.outline import Outline
 from fea_reference.zones import Zones
@@ -17,12 +18,12 @@ from scene.answer import Array, frozen_array
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Two beams that may touch.
+    """Two beams that may touch, or one and itself.
 
     Attributes:
         first, second: their numbers; the first carries the integral.
         turned: whether the first is the scene's second.
-        side: of the second on which the first lies.
+        side: of the second on which the first lies; of a beam and itself its ``roles`` tell.
         distance: T, of the neutral lines when they touch.
         scale: what the penetration asked is a share of: the mean thickness, or a hundredth of the longest beam for
             lines, which have none.
@@ -44,6 +45,11 @@ class Pair:
     loosest: float
     stiffness: float
     stiffest: float
+    roles: Roles | None = None
+
+    def sides(self, zeta: Array, zeta_m: Array, d: Array) -> Array:
+        """The side at places ``zeta`` (k,) and ``zeta_m`` (k,), where n·(x − x_m) is ``d`` (k,)."""
+        return np.full(zeta.shape, self.side) if self.roles is None else self.roles.sides(zeta, zeta_m, d)
 
 
 @dataclass(frozen=True, slots=True)

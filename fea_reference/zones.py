@@ -156,11 +156,6 @@ def ends_over(first: NeutralLine, second: NeutralLine) -> bool:
     return bool((found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)).any())
 
 
-def find(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Zones:
-    """All intervals on which the first beam overlaps the second."""
-    return overlap(first, second, T, seen(first, second, side, T), 0.0)
-
-
 def seen(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Survey:
     """The gap of two beams wherever it is less than the second's longest element."""
 
@@ -255,7 +250,7 @@ def _with_bends(
     and back: the new place is where it turns back.  A zone that was not looked for there would come into being at its
     full width when one of its ends passes a place, and the force with a jump.
     """
-    width, slope = np.diff(zeta), there.slope
+    width, slope = np.where(neighbours, np.diff(zeta), 1.0), there.slope
     before, behind, rise = slope[:-1], slope[1:], np.diff(there.g) / width
     # g' = before + 2 b ξ + 3 a ξ², over the width
     b, a = 3.0 * rise - 2.0 * before - behind, before + behind - 2.0 * rise

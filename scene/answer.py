@@ -8,7 +8,8 @@ quantity           shape   meaning
 displacement       (2,)    of a body's point, m
 rotation           (1,)    of a body, counter-clockwise, rad, counted through full turns
 force              (1,)    magnitude of a contact's resultant, N; 0 where it is open
-centre             (1,)    arc length on the contact's first beam of the resultant, m; empty if open
+centre             (1,)    arc length on the contact's first beam of the resultant, m; empty if open; of a beam that
+                           touches itself the smaller of both places', here and for the ends
 ends               (2,)    arc lengths on the contact's first beam where its zone begins and ends, m,
                            ascending, the same twice for contact in a point; empty if open; of several
                            zones the first one's beginning and the last one's end

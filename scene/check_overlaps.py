@@ -1,4 +1,4 @@
-"""Beams of a contact: two different ones, each pair once, that do not overlap or cross where they start."""
+"""Beams of a contact: two different ones or one and itself, each once, that do not overlap or cross as drawn."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from scene.check_shapes import MEETING, is_beam
 from scene.geometry import arc_length, closest_pair, distance, largest_coordinate, points_on, scaled, tangents_on
 from scene.mistakes import Mistake, written_place
-from scene.statement import Beam, BeamContact, BeamEnd, Curve, Scene, WeldedEnd
+from scene.statement import Beam, BeamContact, BeamEnd, Curve, Scene, SelfContact, WeldedEnd
 
 Side = Literal["start", "end"]
 
@@ -23,18 +23,22 @@ SIDE_BY_SIDE = 2.0  # mean thicknesses between ends that one body holds beside e
 
 
 def wrong_contacts(scene: Scene) -> Iterator[Mistake]:
-    """Contacts of a beam with itself, and pairs named twice."""
+    """A beam named as its own partner, and pairs or beams that may touch themselves named twice."""
     seen: dict[frozenset[str], str] = {}
     for name, contact in scene.contacts.items():
-        if not isinstance(contact, BeamContact):
+        if not isinstance(contact, BeamContact | SelfContact):
             continue
-        key = f"contacts.{name}"
-        pair = frozenset(contact.between)
-        if len(pair) == 1:
-            yield Mistake(f"{key}.between", f"{contact.between[0]!r} twice", "two different beams")
-        elif pair in seen:
-            yield Mistake(f"{key}.between", f"the pair of contacts.{seen[pair]} again", "each pair of beams once")
-        seen.setdefault(pair, name)
+        paired = isinstance(contact, BeamContact)
+        key = f"contacts.{name}.{'between' if paired else 'beam'}"
+        beams = frozenset(contact.beams)
+        if paired and len(beams) == 1:
+            found = f"{contact.beams[0]!r} twice"
+            yield Mistake(key, found, "two different beams; a beam may touch itself in a contact of kind 'beam-self'")
+            continue
+        if beams in seen:
+            what, allowed = ("pair", "each pair of beams once") if paired else ("beam", "each beam once")
+            yield Mistake(key, f"the {what} of contacts.{seen[beams]} again", allowed)
+        seen.setdefault(beams, name)
 
 
 def overlaps(scene: Scene) -> Iterator[Mistake]:

@@ -6,6 +6,7 @@ from comparisons.order import order_of, richardson
 from scene import Probe
 from tests.cprbm.test_circle import scene_of
 from tests.cprbm.test_lying import lying
+from tests.fea_reference.meeting_itself import strip
 
 
 def test_the_ends_of_a_contact_with_a_circle_are_of_first_order_and_of_another_beam_of_second(hinge):
@@ -38,3 +39,10 @@ def test_the_factor_of_a_known_order():
     # reference: an error C/N^p, of which the change from N to 2N leaves 1 − 2^−p
     assert richardson(1) == 2.0
     assert richardson(2) == pytest.approx(4.0 / 3.0)
+
+
+@pytest.mark.parametrize("probe", ["force", "centre", "ends"])
+def test_a_beam_that_touches_itself_away_from_its_ends_is_of_second_order(probe):
+    scene = strip(0.0012, [8.0])
+    assert order_of(scene, Probe(of="lap", quantity=probe)) == 2
+    assert order_of(scene, Probe(of="C", quantity="reaction")) == 2

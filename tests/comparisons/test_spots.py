@@ -10,9 +10,10 @@ import pytest
 from frozendict import frozendict
 
 from comparisons.choices import Choices
+from comparisons.geometry import nearest, nearest_of_two_laps
 from comparisons.spots import clear_of_spots, ends_of_zones
 from scene import Scene, StationAnswer
-from scene.answer import frozen_array
+from scene.answer import Shape, frozen_array
 from tests.comparisons.made_up import MadeUp
 
 LENGTH = math.pi * 0.025
@@ -90,3 +91,19 @@ def test_an_open_contact_leaves_the_clamps(hinge):
 )
 def test_ends_of_zones(places, apart, expected):
     assert ends_of_zones([np.array(own) for own in places], apart) == expected
+
+
+def test_a_beam_that_touches_itself_does_so_at_two_places():
+    """Between two strands of a hairpin, a polyline: the two nearest places are straight across, 3 and 17 along it."""
+    shape = Shape(
+        s=np.array([0.0, 5.0, 10.0, 15.0, 20.0]),
+        x=np.array([0.0, 5.0, 7.0, 5.0, 0.0]),
+        y=np.array([0.0, 0.0, 0.5, 1.0, 1.0]),
+    )
+    (places,) = nearest_of_two_laps(shape, np.array([[3.0, 0.4]]))
+    assert places == pytest.approx([3.0, 17.0])
+    assert nearest(shape, np.array([[3.0, 0.4]])) == pytest.approx([3.0])
+    assert nearest_of_two_laps(shape, np.empty((0, 2))).shape == (0, 2)
+    # where the polyline is bent, the nearest places of both sides of a node are one lap's
+    (places,) = nearest_of_two_laps(shape, np.array([[5.0, 0.4]]))
+    assert places == pytest.approx([5.0 + 5.0 * 0.8 / 17.0, 10.0 + 5.0 * 15.8 / 17.0])

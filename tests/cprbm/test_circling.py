@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import cprbm
+from cprbm.contact import NO_ROWS
 from cprbm.kinematics import positions, rest_state
 from cprbm.mechanism import mechanism_of
 from scene.reading import scene_from
@@ -76,7 +77,7 @@ def test_steady_rows_stand_at_joints_and_ends_alone(turning):
     problem = mechanism.problem
     state = rest_state(problem.model)
     at = positions(problem.model, state)
-    moving, steady = (rows(state, at) for rows in (problem.formulation, problem.steady))
+    moving, steady = (rows(state, at, NO_ROWS) for rows in (problem.formulation, problem.steady))
     assert ("circle", -1) in moving.keys
     assert steady.size
     assert ("circle", -1) not in steady.keys

@@ -1,5 +1,7 @@
 """First and second derivatives against central differences, at states away from any symmetry."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from cprbm.equilibrium import contact_gradient, contact_rows, equilibrium, measu
 from cprbm.kinematics import State, positions, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.settings import Settings
+from tests.cprbm.rolled import coil, hooked, neck, strip
 from tests.cprbm.scenes import hinge, hinge_data
 
 STEP = 1e-6
@@ -26,18 +29,35 @@ def bows():
     return hinge(beams=beams)
 
 
-@pytest.fixture(params=[("auto", hinge), ("paper", hinge), ("auto", bows), ("paper", bows)])
-def bent(request):
-    """A mechanism close to contact, bent at random, with multipliers."""
-    formulation, scene = request.param
+def bent_hinge(formulation, scene):
+    """A mechanism close to contact, and a state."""
     mechanism = mechanism_of(scene(), Settings(links={"beam1": 23, "beam2": 29}, formulation=formulation))
     problem = mechanism.problem
+    start = point_at(problem, {}, rest_state(problem.model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
+    return mechanism, equilibrium(problem, {"M": 0.43}, start, 1e-11, 30).point.state
+
+
+@pytest.fixture(
+    params=[
+        partial(bent_hinge, "auto", hinge),
+        partial(bent_hinge, "paper", hinge),
+        partial(bent_hinge, "auto", bows),
+        partial(bent_hinge, "paper", bows),
+        partial(strip, neck, 0.01),
+        partial(strip, neck, 0.01, held="T"),
+        partial(strip, coil, 0.005),
+        partial(strip, coil, 0.005, held="T"),
+        partial(strip, hooked, 0.002),
+    ]
+)
+def bent(request):
+    """A mechanism close to contact, bent at random, with multipliers."""
+    mechanism, start = request.param()
+    problem = mechanism.problem
     model = problem.model
-    start = point_at(problem, {}, rest_state(model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
-    point = equilibrium(problem, {"M": 0.43}, start, 1e-11, 30).point
     random = np.random.default_rng(20260)
-    theta = point.state.theta + 0.003 * random.standard_normal(model.n_links)
-    state = State(theta, point.state.bodies + 0.01 * random.standard_normal((1, 3)))
+    theta = start.theta + 0.003 * random.standard_normal(model.n_links)
+    state = State(theta, start.bodies + 0.01 * random.standard_normal((1, 3)))
     moved = point_at(problem, {"M": 0.43}, state, random.standard_normal(problem.closure.rows), np.zeros(0), NO_ROWS)
     lam = 0.5 + random.random(moved.rows.size)
     return problem, point_at(problem, {"M": 0.43}, state, moved.mu, lam, moved.rows)
@@ -79,14 +99,22 @@ def test_the_newton_system_is_the_derivative_of_the_gradient(bent):
         minus, _ = lagrangian_gradient(problem, point, q - STEP * d)
         product = (plus - minus) / (2 * STEP)
         product[problem.closure.fixed] = 0.0
-        # K [d; s; 0] = [Hd; 0; A_E d] with s the low-rank unknowns that their own rows ask for
-        r = len(found.base) - problem.closure.rows - 3
-        low = slice(3, 3 + r)
+        # K [d; s; 0] = [Hd; 0; A_E d] with s the low-rank unknowns that their own rows ask for; angles of links at
+        # free starts stand in the border, behind the bodies
+        anchors = found.anchors
+        known = np.concatenate((d[n:], d[anchors]))
+        inner = d[:n].copy()
+        inner[anchors] = 0.0
+        r, first = len(found.base) - problem.closure.rows - len(known), len(known)
+        low = slice(first, first + r)
         border, corner = found.factors.border, found.factors.corner
-        s = -np.linalg.solve(corner[low, low], border[:, low].T @ d[:n] + corner[low, :3] @ d[n:]) if r else np.zeros(0)
-        upper = found.factors.tridiagonal.times(d[:n, None])[:, 0] + border[:, :3] @ d[n:] + border[:, low] @ s
-        lower = border[:, :3].T @ d[:n] + corner[:3, :3] @ d[n:] + corner[:3, low] @ s
-        assert np.concatenate((upper, lower)) == pytest.approx(product, rel=1e-5, abs=1e-5 * np.max(np.abs(product)))
+        s = np.linalg.solve(corner[low, low], -border[:, low].T @ inner - corner[low, :first] @ known)
+        upper = found.factors.tridiagonal.times(inner[:, None])[:, 0] + border[:, :first] @ known + border[:, low] @ s
+        lower = border[:, :first].T @ inner + corner[:first, :first] @ known + corner[:first, low] @ s
+        upper[anchors] = lower[3:]
+        assert np.concatenate((upper, lower[:3])) == pytest.approx(
+            product, rel=1e-5, abs=1e-5 * np.max(np.abs(product))
+        )
 
 
 def test_energy_and_its_gradient():

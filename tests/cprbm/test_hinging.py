@@ -5,6 +5,7 @@ import pytest
 
 import cprbm
 from cprbm.closure import closure_rows, closure_second, closure_values
+from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import equilibrium, local_system_at, newton_step, point_at
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.local import local_step
@@ -170,7 +171,7 @@ def test_both_forms_of_newtons_system_make_one_step():
     problem = problem_of()
     values = {"M": 0.3 * MOMENT}
     state = rest_state(problem.model)
-    rows = problem.formulation(state, positions(problem.model, state))
+    rows = problem.formulation(state, positions(problem.model, state), NO_ROWS)
     start = point_at(problem, values, state, np.zeros(problem.closure.rows), np.zeros(1), rows)
     found = equilibrium(problem, values, start, 1e-11, 40)
     assert found.converged

@@ -65,7 +65,7 @@ def test_every_minimum_is_found_where_the_curvature_jumps_too(monkeypatch, seed)
     state = State(rest.theta + 0.01 * random.standard_normal(model.n_links), rest.bodies)
     lines = pair.lines(state, positions(model, state))
     D, sigma = nearest._sampled(pair, lines)
-    places, feet = nearest._minima(pair, lines, D, sigma)
+    places, feet = nearest.minima(pair, lines, D, sigma)
     s = smooth.halves(pair.a)
     found = 0
     for k in range(1, len(s) - 1):

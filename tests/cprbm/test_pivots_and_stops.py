@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import cprbm
+from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import contact_rows, point_at
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
@@ -60,7 +61,7 @@ def test_rows_of_stops_are_derivatives(end):
 
     def at(q):
         state = State(q[: model.n_links], q[model.n_links :].reshape(-1, 3))
-        return point_at(problem, {}, state, closed, np.zeros(2), problem.formulation(state, None))
+        return point_at(problem, {}, state, closed, np.zeros(2), problem.formulation(state, None, NO_ROWS))
 
     exact, step = contact_rows(model, at(base)), 1e-6
     assert exact.shape == (2, model.n_unknowns)

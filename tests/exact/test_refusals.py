@@ -93,6 +93,12 @@ def test_beams_that_lie_on_each_other():
     refused(on_its_twin(), 1, "pair")
 
 
+def test_a_beam_that_may_touch_itself():
+    data = cantilever_data(force(0.0, -1.0), [0.5 * UNIT])
+    data["contacts"] = {"own": {"kind": "beam-self", "beam": "beam"}}
+    refused(data, 0, "contact of a beam with itself")
+
+
 def test_a_wrap_with_a_varying_edge():
     data = cantilever_data(force(0.0, -1.0), [0.5 * UNIT, 60.0 * UNIT])
     data["beams"]["beam"]["thickness"] = {"at": [0.0, 1.0], "values": [THICKNESS, 0.5 * THICKNESS]}

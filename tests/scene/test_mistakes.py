@@ -76,6 +76,7 @@ TIES = [
     ("loads/F", {"kind": "force", "point": "A", "direction": [1, 0]}, "loads.F.point", "fixed body 'AC'"),
     ("loads/F", {"kind": "force", "point": "B", "direction": [0, 0]}, "loads.F.direction", "not zero"),
     ("contacts/contact/between", ["beam1", "beam1"], "contacts.contact.between", "two different beams"),
+    ("contacts/own", {"kind": "beam-self", "beam": "beam3"}, "contacts.own.beam", "beam3"),
     (
         "contacts/more",
         {"kind": "beam-beam", "between": ["beam2", "beam1"]},

@@ -1,0 +1,169 @@
+"""Where a beam overlaps itself: pairs of its own places, and on which side of each other they lie.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+x, x_m  points of the neutral line at ζ and ζ_m
+f       (x − x_m)·x_m': positive where the distance of x grows less on the way along ζ_m
+d       n·(x − x_m), n the normal to the left at ζ_m
+======  =====================================================================================
+
+Of the distance from a place, every least value along the line is where f goes through zero from above.  One of them
+is the place itself.  Any other is parted from it by a largest value, and there too the chord is normal to the line; a
+chord is the mean of the tangents between its ends, so that these turn by more than a right angle.  Neighbours are
+therefore told from what may touch by being the same least value, with no length or angle to choose.  Between sides
+that touch the tangents turn by about π, or 2π in a coil.
+
+Each two places are looked at once, from the later one or from the earlier one; see :class:`Roles`.  A place may have
+several partners: those that follow each other along the beam are one sequence.
+
+On which side a place lies is not told by where it is once lines without thickness overlap.  It is what it was in the
+state that the march has reached last, for the places that were across from each other near by, and for others what is
+seen.  Near by is less than halfway to another lap.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
+
+from fea_reference.hermite import NeutralLine
+from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Survey, gap, survey
+from scene.answer import Array, Ints
+
+_ALIKE = 0.5  # of the way between two places along the beam, by which they may differ from those whose side is known
+_FOLLOWS = 2.0  # elements: by which partners of places that follow each other differ at most
+_ITERATIONS = 60
+_NOTHING = 1e-9  # of an element's length, squared
+
+
+@dataclass(frozen=True, slots=True)
+class Roles:
+    """Which of two places carries the integral: the ``later``, if the beam's end may lie over its inside, or else.
+
+    ``across`` (k, 2) are places ζ and ζ_m that were across from each other in the state that was reached last,
+    ``side`` (k,) of the second one on which the first lay there.
+    """
+
+    later: bool
+    across: Array = field(compare=False)
+    side: Array = field(compare=False)
+
+    def sides(self, zeta: Array, zeta_m: Array, d: Array) -> Array:
+        """The side on which places ``zeta`` (k,) lie of ``zeta_m`` (k,); what ``d`` (k,) says where it is not known."""
+        seen = np.where(d < 0.0, -1.0, 1.0)
+        if not self.side.size or not zeta.size:
+            return seen
+        far, nearest = KDTree(self.across).query(np.stack([zeta, zeta_m], axis=1))
+        return np.asarray(np.where(far <= _ALIKE * np.abs(zeta - zeta_m), self.side[nearest], seen))
+
+    def renewed(self, line: NeutralLine) -> Roles:
+        """The same, with what is across from each node where the ``line`` lies now."""
+        nodes = np.arange(line.n + 1)
+        i, j = (index.ravel() for index in np.meshgrid(nodes, nodes[:-1], indexing="ij"))
+        zeta, zeta_m = _partners(line, nodes.astype(float), i, j, later=self.later)[:2]
+        d = gap(line, line, 1.0, 0.0, zeta, zeta_m).g
+        return Roles(self.later, np.stack([zeta, zeta_m], axis=1), self.sides(zeta, zeta_m, d))
+
+
+def unseen(*, later: bool) -> Roles:
+    """Where nothing is known of any side."""
+    return Roles(later, np.empty((0, 2)), np.empty(0))
+
+
+def seen_itself(line: NeutralLine, roles: Roles, T: float) -> Survey:
+    """The gap of a beam and itself wherever it is less than a few elements."""
+
+    def at(where: Array, guess: Array) -> Gap:
+        found = gap(line, line, 1.0, 0.0, where, guess)
+        side = roles.sides(where, found.zeta_m, found.g)
+        return Gap(side * found.g - T, side * found.slope, side * found.curvature, found.zeta_m, found.found)
+
+    reach = 2.0 * abs(T) + 3.0 * float(line.lengths.max())
+    zeta = _samples(line, reach)
+    x = line.at(zeta)[0]
+    near = KDTree(x.T).sparse_distance_matrix(KDTree(line.points.T), reach, output_type="ndarray")
+    pairs = np.concatenate([near["i"] * (line.n + 1) + near["j"], near["i"] * (line.n + 1) + near["j"] - 1])
+    i, j = np.divmod(np.unique(pairs), line.n + 1)
+    inside = j < line.n
+    places, partners, i = _partners(line, zeta, i[inside], j[inside], later=roles.later)
+    there = at(places, partners)
+    usable = there.found & (np.abs(there.g + T) < reach)
+    places, there, i = places[usable], there.chosen(usable), i[usable]
+    if not places.size:
+        return Survey(at, places, there, np.empty(0, dtype=bool), (), reach - T)
+    order, follows = _sequences(i, there.zeta_m)
+    return survey(at, places[order], there.chosen(order), follows)
+
+
+def _partners(line: NeutralLine, zeta: Array, i: Ints, j: Ints, *, later: bool) -> tuple[Array, Array, Ints]:
+    """Of places ``zeta`` (k,), by number ``i`` (m,), and elements ``j`` (m,) those that hold a partner.
+
+    Returns:
+        Their places ζ and about their partners' ζ_m, and the numbers of the places.
+    """
+    before = j + 1.0 < zeta[i] if later else j > zeta[i]
+    i, j = i[before], j[before]
+    x = line.at(zeta)[0]
+
+    def f(node: Ints) -> Array:
+        return np.asarray(((x[:, i] - line.points[:, node]) * line.tangents[:, node]).sum(axis=0))
+
+    here, there = f(j), f(j + 1)
+    # straight across from an end f is zero but for round-off
+    nothing = _NOTHING * float(line.lengths.max()) ** 2
+    here = np.where((j == 0) & (np.abs(here) <= nothing), 0.0, here)
+    there = np.where((j == line.n - 1) & (np.abs(there) <= nothing), 0.0, there)
+    least = (here >= 0.0) & (there <= 0.0) & (here > there)
+    i, j, here, there = i[least], j[least], here[least], there[least]
+    return zeta[i], j + here / (here - there), i
+
+
+def _samples(line: NeutralLine, reach: float) -> Array:
+    """Equal steps within every element, and the places straight across from the line's ends."""
+    even = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
+    x = line.at(even)[0]
+    more = [even]
+    for end in (0, line.n):
+        point, tangent = line.points[:, end, None], line.tangents[:, end, None]
+        ahead = ((x - point) * tangent).sum(axis=0)
+        near = np.hypot(*(x - point)) < reach
+        left = np.flatnonzero(near[:-1] & near[1:] & (ahead[:-1] * ahead[1:] < 0.0))
+        low, high, rising = even[left], even[left + 1], np.sign(ahead[left + 1])
+        zeta = low + ahead[left] / (ahead[left] - ahead[left + 1]) * (high - low)
+        for _ in range(_ITERATIONS if left.size else 0):
+            y, y1, _y2 = line.at(zeta)
+            value, slope = ((y - point) * tangent).sum(axis=0), (y1 * tangent).sum(axis=0)
+            low, high = np.where(value * rising < 0.0, zeta, low), np.where(value * rising < 0.0, high, zeta)
+            moved = zeta - value / np.where(slope == 0.0, 1.0, slope)
+            moved = np.where((moved >= low) & (moved <= high), moved, 0.5 * (low + high))
+            step, zeta = np.abs(moved - zeta).max(), moved
+            if step < 1e-12 * line.n:
+                break
+        more.append(zeta)
+    return np.unique(np.concatenate(more))
+
+
+def _sequences(i: Ints, zeta_m: Array) -> tuple[Ints, NDArray[np.bool_]]:
+    """An order (k,) in which places that follow each other, with partners that do, stand together.
+
+    Returns:
+        The order, and whether each in it is followed by the next of its sequence (k−1,).
+    """
+    number = np.argsort(i, kind="stable")
+    first, stop = np.searchsorted(i[number], i + 1, side="left"), np.searchsorted(i[number], i + 1, side="right")
+    count = stop - first
+    left = np.repeat(np.arange(i.size), count)
+    right = number[np.repeat(first - np.concatenate([[0], np.cumsum(count)[:-1]]), count) + np.arange(left.size)]
+    follows = np.abs(zeta_m[left] - zeta_m[right]) <= _FOLLOWS
+    left, right = left[follows], right[follows]
+    links = coo_array((np.ones(left.size), (left, right)), shape=(i.size, i.size))
+    _, sequence = connected_components(links, directed=False)
+    order = np.lexsort((i, sequence))
+    beside = (sequence[order][1:] == sequence[order][:-1]) & (np.diff(i[order]) == 1)
+    return order, beside

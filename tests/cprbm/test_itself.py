@@ -1,0 +1,311 @@
+"""Contact of a beam with itself: which parts face each other, from where, with what force; necks and rolls."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import cprbm
+from cprbm.contact import NO_ROWS, Rows
+from cprbm.crossing import own_crossings
+from cprbm.equilibrium import contact_gradient, local_system_at, newton_step, point_at
+from cprbm.kinematics import State, positions
+from cprbm.local import local_step
+from scene import Ending, SceneError
+from tests.cprbm import necks
+from tests.cprbm.rolled import MODULUS, NARROWS, THICKNESS, WIDTH, coil, hooked, neck, roll, strip
+from tests.references import rolled as rolled_strip
+from tests.references.pressed_column import closed, closing, curvatures
+
+FORCE = 100.0  # P, E·I/L²
+
+
+def faced(angle, thickness, **settings):
+    mechanism, state = strip(angle, thickness, **settings)
+    at = positions(mechanism.problem.model, state)
+    pair = mechanism.pairs["lap"]
+    return pair, state, at, pair.facing(state, at)
+
+
+@pytest.mark.parametrize("turns", [0.2, 0.49, 0.9, 0.99])
+@pytest.mark.parametrize("links", [12, 40])
+def test_an_arc_does_not_touch_itself_however_thick(turns, links):
+    # reference: of the places of a circle the diametral one is the farthest, and those beside are parts of the same
+    pair, state, at, found = faced(lambda s: 2.0 * np.pi * turns * s, 0.09, links=links)
+    assert found.strands == ()
+    assert found.tip is None
+    assert pair.groups(state, at) == ()
+    assert pair.least_gap(state, at) == np.inf
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_what_has_turned_there_and_back_lies_beyond_something_else(sign):
+    # an S of three strands: the outer two run the same way, and neither faces the other; reference: by sight
+    def angle(s):
+        return sign * np.interp(s, (0.0, 0.3, 0.35, 0.65, 0.7, 1.0), (0.0, 0.0, np.pi, np.pi, 0.0, 0.0))
+
+    _, _, _, found = faced(angle, 0.002, links=240)
+    assert {strand.turns for strand in found.strands} == {1, -1}
+    for strand in found.strands:
+        # on the inside of either bend, which is on its left where it turns to the left
+        assert strand.side == strand.turns
+        assert np.min(strand.D) == pytest.approx(0.05 * 2.0 / np.pi, rel=0.01)
+
+
+@pytest.mark.parametrize("mirrored", [1.0, -1.0])
+@pytest.mark.parametrize("backwards", [False, True])
+def test_from_which_side_strands_face_each_other(mirrored, backwards):
+    # references: by sight; a coil's last part lies inside, on the left of its beginning if it turns to the left; drawn
+    # from the other end the coil turns on to the left, and its first part lies inside
+    def turned(angle):
+        return lambda s: mirrored * (angle(1.0) - angle(1.0 - s) if backwards else angle(s))
+
+    bent = faced(turned(neck), 0.01)[3]
+    (strand,) = bent.strands
+    assert (strand.side, strand.turns) == (-mirrored, -1 * mirrored)
+    wound = faced(turned(coil), 0.005)[3]
+    side = mirrored if backwards else -mirrored
+    assert {(strand.side, strand.turns) for strand in wound.strands} == {(side, 2.0 * mirrored)}
+
+
+def test_a_coils_side_is_what_it_was_before():
+    # as lines: the end of a coil is bent out through the first part; reference: its distance from dense points there
+    mechanism, state = strip(coil, 0.005, thick=False, links=60)
+    model, pair = mechanism.problem.model, mechanism.pairs["lap"]
+    before = pair.facing(state, positions(model, state))
+    borders = model.chains[0].borders
+    beyond = State(model.rest + coil(borders) - 1.2 * np.maximum(borders - 0.75, 0.0), state.bodies)
+    at = positions(model, beyond)
+    assert pair.crosses(beyond, at)
+    now = pair.seen(before.faces)
+    found = now.facing(beyond, at)
+    dense, end = found.lines[0].at(np.linspace(0.0, 0.5, 20001)), found.lines[0].at(np.ones(1))
+    away = np.min(np.hypot(dense.x - end.x, dense.y - end.y))
+    assert away > 0.01
+    assert found.tip is not None
+    assert pytest.approx(-away, rel=1e-4) == found.tip.D
+    assert now.least_gap(beyond, at) <= found.tip.D
+    rows = Rows(now.groups(beyond, at))
+    assert rows.values[np.argmin(np.abs(rows.arc - found.tip.s))] == pytest.approx(away, rel=1e-4)
+
+
+def test_going_through_itself_is_seen_on_the_way():
+    mechanism, state = strip(coil, 0.005)
+    model, pair = mechanism.problem.model, mechanism.pairs["lap"]
+    outside = State(model.rest + 6.9 * model.chains[0].borders, state.bodies)
+
+    def way(end):
+        for part in np.arange(1, 8) / 8.0:
+            between = State(state.theta + part * (end.theta - state.theta), state.bodies)
+            yield between, positions(model, between)
+
+    seen = pair.seen(pair.facing(state, positions(model, state)).faces)
+    assert not seen.passed(way(state), (state, positions(model, state)), 1e-3)
+    through = State(model.rest + coil(model.chains[0].borders) - 2.0 * model.chains[0].borders ** 4, state.bodies)
+    assert seen.passed(way(through), (through, positions(model, through)), 1e-3)
+    # what has not faced anything before and is near at once has come from nobody knows where
+    assert pair.passed(way(state), (state, positions(model, state)), 0.02)
+    assert not pair.passed(way(outside), (outside, positions(model, outside)), 0.0)
+
+
+def test_how_deeply_a_line_crosses_itself():
+    # references: by sight; 3-4-5 triangles
+    loop = np.array([(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (1.0, -1.0)])
+    here, there, depth = own_crossings(loop)
+    assert (here.tolist(), there.tolist()) == ([0], [2])
+    # the end is 1.25 beyond the crossing at (1.75, 0), at a sine of 0.8
+    assert depth == pytest.approx([1.0])
+    assert own_crossings(loop[:3])[0].size == 0
+    # an end that just comes through lies no deeper
+    assert own_crossings(np.array([*loop[:3], (1.74925, -0.001)]))[2] == pytest.approx([0.001])
+
+
+@pytest.mark.parametrize("held", ["C", "T"])
+def test_what_is_before_both_places_carries_nothing(held):
+    mechanism, state = strip(neck, 0.012, held=held)
+    problem = mechanism.problem
+    point = point_at(problem, {}, state, np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
+    assert np.max(point.rows.values) > 0.0
+    point = replace(point, lam=np.where(point.rows.values > 0.0, 3.7, 0.0))
+    gradient, chain = contact_gradient(problem.model, point), problem.model.chains[0]
+    first = np.min(point.rows.arc[point.lam > 0.0])
+    before = np.flatnonzero(chain.s[1:] < first - 1.5 * chain.h)
+    assert before.size >= 2
+    assert np.all(gradient[before] == 0.0)
+    assert np.all(gradient[problem.model.n_links :] == 0.0)
+    assert np.max(np.abs(gradient)) > 0.01
+
+
+@pytest.mark.parametrize(("angle", "thickness"), [(neck, 0.012), (coil, 0.0055), (hooked, 0.2)])
+def test_both_systems_make_the_same_step(angle, thickness):
+    # reference: the system without the joints' positions among its unknowns
+    mechanism, state = strip(angle, thickness)
+    problem = mechanism.problem
+    point = point_at(problem, {}, state, np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
+    point = replace(point, lam=np.where(point.rows.values > 0.0, 0.3, 0.0))
+    assert np.any(point.lam > 0.0)
+    one, other = newton_step(problem, point), local_step(local_system_at(problem, point), point.lam > 0.0)
+    for mine, theirs in zip(one, other, strict=True):
+        assert mine == pytest.approx(theirs, rel=1e-7, abs=1e-7 * np.max(np.abs(mine), initial=0.0))
+
+
+@cache
+def pressed(links, thick, which):
+    """The column, or half of it, under FORCE, without dimension."""
+    scene = getattr(necks, which)(0.01, [FORCE], thick=thick)
+    answer = cprbm.answer(scene, cprbm.Settings(links=links if which == "whole" else links // 2))
+    assert answer.completed, answer.sentence
+    values, length, share = answer.stations[-1].values, necks.LENGTH, 1 if which == "whole" else 2
+    unit = necks.rigidity(0.01) / length**2
+    moved = values["T.displacement"] if which == "whole" else 2.0 * values["R.displacement"]
+    found = {
+        "closing": values["neck.closing_load"][0] / unit,
+        "contact": values["neck.force"][0] / unit,
+        "shortening": abs(moved[0]) / length,
+        "energy": share * values["scene.potential_energy"][0] / (unit * length) + FORCE * abs(moved[0]) / length,
+        "place": values["neck.centre"][0] / length,
+    }
+    return answer.stations[-1], found
+
+
+def expected(thick):
+    thickness = 0.01 if thick else 0.0
+    found = closed(thickness, FORCE)
+    return found, {
+        "closing": closing(thickness).force,
+        "contact": found.contact,
+        "shortening": found.shortening,
+        "energy": found.energy,
+        "place": found.place,
+    }
+
+
+@pytest.mark.parametrize("thick", [True, False])
+def test_a_neck_that_closes(thick):
+    # reference: both halves by shooting against their mirror, tests.references.pressed_column
+    column, exact = expected(thick)
+    errors = {}
+    for links in (40, 80):
+        station, values = pressed(links, thick, "whole")
+        errors[links] = {name: values[name] / exact[name] - 1.0 for name in exact}
+        assert station.certificate.holds
+        assert station.certificate.smallest_curvature > 1.0
+    for name in ("closing", "contact", "shortening", "energy"):
+        # of second order, and even
+        assert 3.3 < errors[40][name] / errors[80][name] < 5.2, name
+        assert abs(errors[80][name]) < 0.002, name
+    assert abs(errors[80]["place"]) < 2e-4
+    values = station.values
+    assert values["neck.ends"][0] == values["neck.ends"][1] == values["neck.centre"][0]
+    unit = necks.rigidity(0.01) / necks.LENGTH
+    assert abs(values["R.reaction_moment"][0]) == pytest.approx(column.moment * unit, rel=5e-4)
+    # the middle between two places that are each other's mirror images
+    middle = 0.5 * (necks.LENGTH + values["T.displacement"][0])
+    assert station.touching["neck"][0, 0] == pytest.approx(middle, rel=1e-9)
+
+
+@pytest.mark.parametrize("thick", [True, False])
+def test_half_of_it_against_a_wall_is_the_same(thick):
+    # reference: contact of a beam with a rigid edge, and the same shooting
+    _, exact = expected(thick)
+    _, whole = pressed(40, thick, "whole")
+    _, half = pressed(40, thick, "half")
+    # while it is open both have the same even elements
+    assert half["closing"] == pytest.approx(whole["closing"], rel=1e-9)
+    for name in exact:
+        assert half[name] == pytest.approx(exact[name], rel=0.01)
+        assert half[name] == pytest.approx(whole[name], rel=0.01)
+
+
+def test_the_stress_on_both_sides_of_a_neck():
+    # reference: curvatures of the shot half, and their mirror images
+    column, _ = expected(thick=True)
+    station, _ = pressed(80, True, "whole")
+    stress = station.values["column.bending_stress"]
+    assert stress == pytest.approx(stress[::-1], rel=1e-6)
+    s = np.linspace(0.0, 1.0, len(stress))
+    half = s <= 0.5
+    exact = 0.5 * necks.MODULUS * 0.01 * curvatures(column, s[half])
+    assert stress[half] == pytest.approx(exact, abs=2e-3 * np.max(np.abs(exact)))
+
+
+STRIP = rolled_strip.Strip(*NARROWS, thickness=THICKNESS)
+ROLL = (6.0, 8.1, 8.4)
+
+
+def rolled_values(links, *, backwards):
+    answer = cprbm.answer(roll(ROLL, backwards=backwards), cprbm.Settings(links=links))
+    assert answer.completed, answer.sentence
+    assert all(station.certificate.holds for station in answer.stations)
+    unit, values = MODULUS * WIDTH * THICKNESS**3 / 12.0, answer.stations[-1].values
+    return {
+        "closing": values["lap.closing_load"][0],
+        "force": values["lap.force"][0] / unit,
+        "place": values["lap.centre"][0],
+        "moment": values["tip.reaction_moment"][0] / unit,
+        "energy": values["scene.potential_energy"][0] / unit,
+        "x": values["T.displacement"][0] + 1.0,
+        "y": values["T.displacement"][1],
+    }
+
+
+def test_a_strip_that_is_rolled():
+    # reference: Euler's elastica with a force between two unknown places, tests.references.rolled
+    first = rolled_strip.first_touch(STRIP, 5.3, 0.16, 0.95)
+    found = rolled_strip.touching(STRIP, first, ROLL[-1])
+    exact = {
+        "closing": first.rotation,
+        "force": found.force,
+        "place": found.outer,
+        "moment": found.moment,
+        "energy": found.energy,
+        "x": found.tip[0],
+        "y": found.tip[1],
+    }
+    coarse, fine = (rolled_values(links, backwards=False) for links in (80, 160))
+    for name, value in exact.items():
+        assert 3.6 < (coarse[name] - value) / (fine[name] - value) < 4.5, name
+        assert abs(fine[name] - value) < (0.01 if name == "force" else 1e-3) * abs(value), name
+
+
+def test_a_strip_drawn_from_its_other_end_is_the_same():
+    # references: itself, and the shot place on the inner lap; a place is told from where the drawing begins
+    forth, back = (rolled_values(20, backwards=backwards) for backwards in (False, True))
+    for name in ("closing", "force", "moment", "energy", "x", "y"):
+        # meshes are fitted until slopes of the curvature differ by 1e-6
+        assert back[name] == pytest.approx(forth[name], rel=1e-6), name
+    first = rolled_strip.first_touch(STRIP, 5.3, 0.16, 0.95)
+    found = rolled_strip.touching(STRIP, first, ROLL[-1])
+    assert back["place"] == pytest.approx(1.0 - found.inner, abs=0.02)
+
+
+LEANING = (0.0, 0.2, 0.4, 0.6, 0.8, 1.0), (0.52, 0.765, 0.73, 0.53, 0.82, 0.925)
+
+
+def test_an_end_comes_to_the_same_side_in_long_steps_and_short_ones():
+    # as a line its end comes in round its beginning at 6.2 rad, touches at 6.34 and slides on; reference: a way on
+    # which it can be seen to be inside before it touches
+    found = []
+    for stations in ((6.0, 7.0), (6.0, 6.3, 6.34, 6.36, 6.4, 6.5, 7.0)):
+        answer = cprbm.answer(roll(stations, LEANING, thick=False), cprbm.Settings(links=40))
+        assert answer.completed, answer.sentence
+        found.append(answer.stations[-1].values)
+    assert found[0]["lap.force"][0] > 0.0
+    for name in ("lap.force", "lap.centre", "scene.potential_energy"):
+        assert found[0][name] == pytest.approx(found[1][name], rel=1e-8), name
+
+
+@pytest.mark.parametrize("thick", [True, False])
+def test_ends_that_meet_head_on_are_no_result(thick):
+    # reference: symmetry; of a strip that is the same from both ends neither may come to lie inside
+    alike = (0.0, 0.3, 0.7, 1.0), (1.0, 0.6, 0.6, 1.0)
+    answer = cprbm.answer(roll((5.0, 5.5, 6.5), alike, thick=thick), cprbm.Settings(links=40))
+    assert answer.ending in (Ending.BEAMS_CROSSED, Ending.STEP_TOO_SMALL)
+    assert [station.value for station in answer.stations] == [5.0, 5.5]
+    assert all(station.values["lap.force"][0] == 0.0 for station in answer.stations)
+
+
+def test_the_papers_formulation_has_no_form_for_it():
+    with pytest.raises(SceneError, match=r"contacts\.lap\.kind.*'beam-self'.*'auto'"):
+        cprbm.answer(roll(ROLL), cprbm.Settings(formulation="paper"))
