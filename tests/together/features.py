@@ -157,6 +157,13 @@ def sliding(**how: Any) -> Data:
     return data
 
 
+def slotted() -> Data:
+    """The same with an arm's pin in an oblique slot, of which the reaction is asked."""
+    data = sliding(turns=True, about="T")
+    data["bodies"]["tip"] |= {"along": [0.6, 0.8]}
+    return data | {"probes": probes("tip.reaction", "R.reaction")}
+
+
 def pivoted() -> Data:
     """A beam welded to a lever on a pivot."""
     data = cantilever(asked=("T.displacement", "lever.rotation", "P.reaction"))
@@ -347,6 +354,7 @@ FEATURES = (
         held_by(CIRCLE) | {"probes": probes("beam.bending_stress")},
     ),
     Feature("probes", "combined stress along a beam", pulled()),
+    Feature("probes", "reaction of a slide", slotted(), NOT_EXACT),
     Feature("probes", "ends of a contact's zone", held_by(CIRCLE) | {"probes": probes("c.ends")}),
     Feature("probes", "load at which a contact closes", held_by(CIRCLE) | {"probes": probes("c.closing_load")}),
 )
