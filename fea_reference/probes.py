@@ -123,7 +123,7 @@ def _holding_ends(march: March, name: str) -> list[float]:
 
 
 def _holding(scene: Scene, march: March, name: str) -> list[tuple[Array, float]]:
-    """Forces and moments of the ground at a point, with its pivots and stops, or of slide or drives of a point or body."""
+    """Forces and moments of the ground at a point, with pivots and stops, or of slide and drives of a point or body."""
     model, z = march.model, march.system.z
     turning = {key for key, body in scene.bodies.items() if isinstance(body, TurningBody) and body.about == name}
     joints = [joint for joint in model.joints if model.bodies[joint.body].dofs is None]

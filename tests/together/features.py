@@ -241,6 +241,13 @@ def two_beams(**contact: Any) -> Data:
     return data
 
 
+def two_tapered() -> Data:
+    """The same beams, one of which grows thinner."""
+    data = two_beams()
+    data["beams"]["beam"]["thickness"] = {"at": [0.0, 1.0], "values": [1.2e-3, 0.8e-3]}
+    return data
+
+
 def pulled() -> Data:
     """A beam on a circle, with a weight of its own, a force at a place and one at its end."""
     data = held_by({**CIRCLE, "center": [0.07, -0.0115]}) | {"probes": probes("beam.combined_stress")}
@@ -336,6 +343,7 @@ FEATURES = (
     ),
     Feature("contacts", "two beams by their edges", two_beams()),
     Feature("contacts", "two beams as lines", two_beams(thick=False)),
+    Feature("contacts", "two beams by their edges, of thickness that varies", two_tapered(), frozenset()),
     Feature("contacts", "circle", held_by(CIRCLE)),
     Feature("contacts", "circle on a body that moves", moved(CIRCLE), NOT_EXACT),
     Feature("contacts", "half-plane", held_by(PLANE), BOTH),

@@ -38,7 +38,7 @@ def test_a_cell(feature: Feature, solver: str) -> None:
     # reference: the exact answer where there is one, or else the other of the two solvers
     number = FEATURES.index(feature)
     if not feature.cells[solver]:
-        if solver == "exact":
+        if solver == "exact" and feature.solvers:
             answer = answered(number, solver)
             assert answer.ending is Ending.NOT_COVERED
             assert len(answer.sentence) > 20
