@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 RAY = 0.15  # of the longest beam: how far the limits of a stop are drawn
 CLOSE = 0.05  # of the longest beam: nearer points have their names on different sides
+SAME = 1e-3  # of that: points nearer than this are in one place
 
 Places = Mapping[str, Point]
 """By the name of a body's point where it is, m."""
@@ -137,14 +138,26 @@ def _edge(contact: EdgeContact, reach: float) -> Array:
 
 
 def draw_names(axes: Axes, scene: Scene) -> None:
-    """The names of all points as drawn: at the left of each, or at the right where another point is close there."""
-    places = {name: np.array(place) for body in scene.bodies.values() for name, place in body.points.items()}
+    """The names of all points as drawn: at the left of each, or at the right where another point is close there.
+
+    Points in one place, as pins join them, share a name.
+    """
     close = CLOSE * max(length(beam.curve) for beam in scene.beams.values())
-    for name, place in places.items():
-        beside = (place - other for other in places.values())
+    named: list[tuple[Array, list[str]]] = []
+    for body in scene.bodies.values():
+        for name, point in body.points.items():
+            place = np.array(point)
+            for known, names in named:
+                if np.hypot(*(place - known)) < SAME * close:
+                    names.append(name)
+                    break
+            else:
+                named.append((place, [name]))
+    for place, names in named:
+        beside = (place - other for other, _ in named)
         crowded = any(0.0 < x < close and abs(y) < close for x, y in beside)
         axes.annotate(
-            name,
+            ", ".join(names),
             tuple(1e3 * place),
             textcoords="offset points",
             xytext=(4 if crowded else -4, 7),

@@ -443,7 +443,10 @@ def _formulations(runs: Runs, probe: Probe, stage: str, spot: Spot) -> tuple[Arr
     """A probe's values in ``paper`` and in ``auto``; None where one of them is missing or on another branch."""
     if runs.formulations is None:
         return None
-    stations = [station_of(answer, stage, spot.value) for answer in runs.formulations]
+    try:
+        stations = [station_of(answer, stage, spot.value) for answer in runs.formulations]
+    except KeyError:  # it ended before
+        return None
     paper, auto = (station.values[probe.name] for station in stations)
     alike = paper.shape == auto.shape and all(station.branch == spot.branch for station in stations)
     return (paper, auto) if alike else None

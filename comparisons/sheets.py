@@ -14,6 +14,7 @@ from comparisons.documents import worst
 from comparisons.formats import along, number, percent, scaled_unit, vector
 from comparisons.geometry import bentness
 from comparisons.measures import Row, Steps, load_unit, unit_of
+from comparisons.paper_sheets import of_paper
 from comparisons.scales import norm
 from comparisons.sheet import Sheet
 from comparisons.stations import station_of
@@ -36,7 +37,7 @@ def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
     found.extend((_verdicts(compared, rows), _true_errors(compared, rows), _claims(compared)))
     found.extend(_reactions(compared))
     found.append(_stresses(compared.scene, rows))
-    found.append(_steps(compared, rows))
+    found.extend((_steps(compared, rows), of_paper(compared)))
     found.append(_certificates(compared))
     return tuple(sheet for sheet in found if sheet.rows)
 

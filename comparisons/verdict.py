@@ -95,10 +95,9 @@ def compared(scene: Scene, runs: Runs) -> Comparison:
         sentence = "; ".join(f"{', '.join(names)} gave no whole answer: {what}" for what, names in found.items())
         verdict = Verdict(Word.UNDECIDED, sentence + ".", (), completed=False)
         return Comparison(scene, runs, (), verdict, critical_rows(scene, runs), _reactions(scene, runs))
-    # nothing rests on the formulation that stands beside, so that its failure leaves no more than a gap
-    beside = cut.paper is not None and not complaints(within, cut.paper)
-    exact = None if cut.exact is None else sound_part(within, cut.exact)
-    rows = rows_of(within, replace(cut, paper=cut.paper if beside else None, exact=exact))
+    # nothing rests on what stands beside, so that where it fails it leaves no more than a gap
+    paper, exact = (None if answer is None else sound_part(within, answer) for answer in (cut.paper, cut.exact))
+    rows = rows_of(within, replace(cut, paper=paper, exact=exact))
     criticals = critical_rows(scene, runs)
     verdict = judged(within, rows, criticals)
     if reach is not None:

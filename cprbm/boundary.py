@@ -144,12 +144,25 @@ class FittedBoundary:
 
     def range_left(self, state: State, at: Positions) -> Array:
         """How far each constrained joint lies beyond the boundary's ends, (m,), units of length; ≤ 0 within."""
-        _, nx, ny = offset_vectors(state.theta[self.links], self.side * self.offset)
-        if self.along_x:
-            A, a = at.x[self.points] + nx, at.x[self.joints]
-        else:
-            A, a = at.y[self.points] + ny, at.y[self.joints]
+        A, _ = self._points(state, at)
+        a = at.x[self.joints] if self.along_x else at.y[self.joints]
         return np.asarray(np.maximum(a - A.max(), A.min() - a))
+
+    @property
+    def approximates(self) -> bool:
+        """Whether g_s has fewer coefficients than points to go through."""
+        return self.degree + 1 < len(self.points)
+
+    def misfit(self, state: State, at: Positions) -> float:
+        """The most by which g_s misses the points that it is fitted to, along the gap's axis, units of length."""
+        A, B = self._points(state, at)
+        return float(np.max(np.abs(chebyshev.Chebyshev.fit(A, B, self.degree)(A) - B)))
+
+    def _points(self, state: State, at: Positions) -> tuple[Array, Array]:
+        """A and B of the offset points, (n,) each."""
+        _, nx, ny = offset_vectors(state.theta[self.links], self.side * self.offset)
+        bx, by = at.x[self.points] + nx, at.y[self.points] + ny
+        return (bx, by) if self.along_x else (by, bx)
 
 
 def _basis(at: Array, centre: float, width: float, degree: int) -> tuple[Array, Array, Array]:

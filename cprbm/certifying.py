@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm.equilibrium import Equilibrium
+from cprbm.boundary import FittedBoundary
+from cprbm.equilibrium import Equilibrium, Point
 from cprbm.forces import balances
 from cprbm.mechanism import Mechanism
+from cprbm.model import Model
 from cprbm.settings import Settings
 from cprbm.stability import smallest_curvature
 from scene import Certificate, Ending
+from scene.answer import Array
 
 LARGEST_BEND = 1.0  # rad: change of angle of one spring beyond which a chord no longer stands for its element
 BALANCE = 1e-8
@@ -60,13 +63,14 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
         Ending.BEAMS_CROSSED,
         f"the beams of a contact overlap by {penetration:.1e} of the mean thickness, allowed {limit:.0e}",
     )
-    for name, boundary in mechanism.boundaries.items():
-        pressing = np.array([lam > 0.0 for lam, c in zip(point.lam, point.rows.contact, strict=True) if c == name])
-        beyond = boundary.range_left(point.state, point.at)
+    for boundary in mechanism.boundaries.values():
+        if not isinstance(boundary, FittedBoundary):
+            continue  # what is rigid ends where it does
+        beyond = _pressed_beyond(boundary, point)
         ask(
-            not np.any(pressing & (beyond > BEYOND * max(chain.h for chain in problem.model.chains))),
+            beyond.max() <= BEYOND * max(chain.h for chain in problem.model.chains),
             Ending.LEFT_BOUNDARY,
-            f"in contact '{name}'",
+            _left(problem.model, boundary, point, beyond),
         )
     force_balance, moment_balance = balances(problem, point)
     balance_asked = max(BALANCE, 100.0 * measure.floor)
@@ -99,6 +103,28 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
         failures=tuple(sentence for _, sentence in failures),
     )
     return certificate, failures[0][0] if failures else Ending.COMPLETED
+
+
+def _pressed_beyond(boundary: FittedBoundary, point: Point) -> Array:
+    """How far each joint of a boundary that presses is beyond the range of the fit, (m,); −inf where it does not."""
+    pressing = np.array([lam > 0.0 for lam, c in zip(point.lam, point.rows.contact, strict=True) if c == boundary.name])
+    return np.where(pressing, boundary.range_left(point.state, point.at), -np.inf)
+
+
+def _left(model: Model, boundary: FittedBoundary, point: Point, beyond: Array) -> str:
+    """Which joint presses beyond the range, by how much, and how far the beam is that it was fitted to."""
+    worst = int(np.argmax(beyond))
+    joint = int(boundary.joints[worst])
+    own, other = (
+        next(chain for chain in model.chains if chain.joints.start <= each < chain.joints.stop)
+        for each in (joint, int(boundary.points[0]))
+    )
+    apart = np.hypot(point.at.x[other.joints] - point.at.x[joint], point.at.y[other.joints] - point.at.y[joint]).min()
+    return (
+        f"in contact '{boundary.name}' joint {joint - own.first_joint} of {own.name} presses "
+        f"{beyond[worst] * model.unit_length:.2g} m beyond the end of the range that the polynomial was fitted on, "
+        f"about {(apart - boundary.offset) * model.unit_length:.2g} m from {other.name}"
+    )
 
 
 def penetration_of(mechanism: Mechanism, found: Equilibrium) -> float:

@@ -164,9 +164,8 @@ class Edge:
             normal=frame.turned(seen.normal, frame.phi),
         )
 
-    def _next_to(self, face: Face, A: smooth.Points, frame: Frame) -> Flags:
-        """Which points face a piece: before it, or behind it and behind no other more closely."""
-        q = frame.inwards(np.stack((A.x, A.y), axis=1))
+    def next_to(self, face: Face, q: Array) -> Flags:
+        """Which places ``q`` (k, 2), as the body sees them, face a piece: before it, or behind it and none nearer."""
         mine = face.seen(q)
         facing = mine.within & (mine.distance >= 0.0)
         nearest = mine.within.copy()
@@ -178,6 +177,10 @@ class Edge:
             seen = corner.seen(q)
             nearest &= ~seen.within | (np.abs(mine.distance) <= seen.distance + NEAREST)
         return np.asarray(facing | nearest)
+
+    def _next_to(self, face: Face, A: smooth.Points, frame: Frame) -> Flags:
+        """Which points of the beam face a piece."""
+        return self.next_to(face, frame.inwards(np.stack((A.x, A.y), axis=1)))
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""

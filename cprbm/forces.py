@@ -49,6 +49,14 @@ def contact_forces(problem: Problem, point: Point, only: str | None = None) -> C
     return ContactForces(fx, fy, moments)
 
 
+def contact_moment(problem: Problem, point: Point, contact: str, chain: Chain, arc: float) -> float:
+    """Moment on a chain of all that one contact exerts on it, about its start (``arc`` = 0) or its end."""
+    exerted, j = contact_forces(problem, point, contact), chain.joints
+    about = chain.first_joint if arc == 0.0 else j.stop - 1
+    x, y = point.at.x[j] - point.at.x[about], point.at.y[j] - point.at.y[about]
+    return float(x @ exerted.fy[j] - y @ exerted.fx[j] + np.sum(exerted.moments[chain.links]))
+
+
 def contact_pressure(point: Point, contact: str, chain: Chain) -> tuple[Array, Array]:
     """Of the rows of a contact that press: arc length on its first beam, ``chain``, and the force there, (k,) each."""
     arcs, forces = [np.zeros(0)], [np.zeros(0)]
@@ -104,10 +112,15 @@ def holding(problem: Problem, point: Point) -> tuple[Held, ...]:
 
 
 def contact_imbalance(problem: Problem, point: Point, contact_name: str) -> float:
-    """Moment of all forces of a contact of beams together over the supports' largest: zero where action is reaction."""
+    """Moment of all forces of a contact of beams together: zero where action is reaction.
+
+    Over the supports' largest, or the contact's own force at the length of the longest beam where that is larger.
+    """
     contact = contact_forces(problem, point, contact_name)
     own = point.at.x @ contact.fy - point.at.y @ contact.fx + np.sum(contact.moments)
-    largest = max((abs(support.moment) for support in supports(problem, point)), default=0.0)
+    joints = [chain.joints for chain in problem.model.chains]
+    forces = [float(np.hypot(contact.fx[j].sum(), contact.fy[j].sum())) for j in joints]
+    largest = max(*forces, *(abs(support.moment) for support in supports(problem, point)))
     return abs(float(own)) / largest if largest > 0.0 else 0.0
 
 

@@ -12,20 +12,19 @@ from functools import cached_property
 import numpy as np
 
 from cprbm.assembling import brought, formulated, freed, released
-from cprbm.boundary import FittedBoundary
 from cprbm.certifying import certify
 from cprbm.closing import Closings, Stood
 from cprbm.contact import NO_ROWS
 from cprbm.critical import BranchEnd, Minimum, branch_end, told
 from cprbm.equilibrium import Point, equilibrium, point_at, potential_energy
 from cprbm.following import Follower, Reached, Way, pressing, to
-from cprbm.forces import contact_imbalance
 from cprbm.kinematics import most_turned, rest_state
 from cprbm.leap import Landed, leap
 from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.probing import probed, shapes, touching
 from cprbm.refining import all_zones, carried_over, fits, fitted, long_ones
+from cprbm.remarks import Remarks
 from cprbm.settings import Settings
 from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAnswer
 
@@ -61,6 +60,7 @@ class March:
         # where contacts stood open in this stage, of those that have not closed yet
         self.opened: dict[str, list[Stood]] = {}
         self.critical: list[Critical] = []
+        self.remarks = Remarks()
 
     def run(self) -> tuple[Ending, str]:
         """Assemble, and march through every stage; the Ending and its sentence."""
@@ -213,6 +213,7 @@ class March:
         mechanism, point, certificate = found
         # what is open on the march's mesh may be closed on this one
         self._note_closings(stage.name, stage.steps, point, value)
+        self.remarks.look(mechanism, point, f"{stage.name} {value:.6g}")
         return StationAnswer(
             stage=stage.name,
             value=value,
@@ -268,22 +269,7 @@ class March:
             for name in self.scene.contacts
             if not any(name in station.touching for station in self.reached)
         ]
-        for name, boundary in self.on.mechanism.boundaries.items():
-            if not isinstance(boundary, FittedBoundary):
-                continue
-            own = contact_imbalance(self.on.mechanism.problem, self.on.point, name)
-            said.append(
-                f"in contact '{name}' forces on the fitted boundary's points and on the joints that press it leave a "
-                f"moment of {own:.1e} of the largest; the formulation has no rotational invariance"
-            )
-            beyond = boundary.range_left(self.on.point.state, self.on.point.at)
-            if np.any(beyond > 0.0):
-                farthest = float(beyond.max()) * self.on.mechanism.problem.model.unit_length
-                said.append(
-                    f"in contact '{name}' {np.sum(beyond > 0.0)} of {len(beyond)} related joints lie beyond the fitted "
-                    f"boundary's ends, by up to {farthest:.2g} m, where it is continued; none of them presses"
-                )
-        return said
+        return said + self.remarks.told(self.on.mechanism, self.on.point)
 
     def _note_closings(self, stage: str, load: str, after: Point, value: float) -> None:
         """Note which contacts have closed on the way to ``after``, and where, if the scene asks."""

@@ -20,15 +20,20 @@ from cprbm.kinematics import Positions, State, most_turned, positions
 from cprbm.model import EVEN, Fit, Model, build
 from cprbm.nearest import Pair, pair_of
 from cprbm.rigid import RigidCircle, rigid_circle
+from cprbm.rigid_edge import RigidEdge, rigid_edge
 from cprbm.settings import Settings
 from cprbm.stops import AngleStop, stop_of
-from scene import BeamContact, CircleContact, EdgeContact, Mistake, Scene, SceneError
+from scene import BeamContact, CircleContact, Mistake, Scene, SceneError
+from scene.statement import SelfContact
 
 BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle or another
 SHALLOW = 0.05  # of the radius: an overlap between rows of a coarse mesh
 WAY = 0.02  # of the longest beam, by which a way of one radian may differ from the unknowns' even one
 EDGE_WAY = 0.2  # the same of an edge, behind which what is rigid never ends: pinned ends leave their points meanwhile
 DIP = 1e-3  # of the longest beam, by which a line may dip into an edge on the way, that goes round it or along it
+SAG = 0.25  # of an element times what links turn by at its spring: twice the sag of an even bend
+
+Boundary = FittedBoundary | RigidCircle | RigidEdge
 
 Groups = Callable[[State, Positions], tuple[Group, ...]]
 
@@ -47,7 +52,7 @@ class Mechanism:
 
     problem: Problem
     pairs: dict[str, Pair | Circle | Edge]
-    boundaries: dict[str, FittedBoundary | RigidCircle]
+    boundaries: dict[str, Boundary]
     stops: dict[str, AngleStop]
     fit: Fit
 
@@ -91,11 +96,18 @@ class Mechanism:
     def _crossed_between(self, pair: Pair | Edge, before: Point, after: Point, way: float) -> bool:
         """Whether a beam lay across what it may touch between two states, by more than the way between is known."""
         slack = max(pair.offset, DIP) if isinstance(pair, Edge) else pair.offset
+        slack += self._sag(pair, after.state)
         allowed = slack + way * _turned(before.state, after.state) ** 2
         return any(
             pair.least_gap(state, positions(self.problem.model, state)) + pair.offset < -allowed
             for state in _between(before.state, after.state)
         )
+
+    def _sag(self, pair: Pair | Edge, state: State) -> float:
+        """By how much beams may sag between their joints, which are all that ``paper`` holds; units of length."""
+        if not self.boundaries:
+            return 0.0
+        return max(SAG * chain.h * float(np.max(np.abs(np.diff(state.theta[chain.links])))) for chain in pair.chains)
 
 
 def _turned(before: State, after: State) -> float:
@@ -112,15 +124,13 @@ def _between(before: State, after: State) -> Iterator[State]:
         )
 
 
-def _groups(
-    contact: str, pairs: Mapping[str, Pair | Circle | Edge], boundaries: Mapping[str, FittedBoundary | RigidCircle]
-) -> Groups:
+def _groups(contact: str, pairs: Mapping[str, Pair | Circle | Edge], boundaries: Mapping[str, Boundary]) -> Groups:
     return boundaries[contact].groups if boundaries else pairs[contact].groups
 
 
 def _formulations(
     pairs: Mapping[str, Pair | Circle | Edge],
-    boundaries: Mapping[str, FittedBoundary | RigidCircle],
+    boundaries: Mapping[str, Boundary],
     stops: Mapping[str, AngleStop],
 ) -> tuple[Formulation, Formulation]:
     """The rows of some contacts and stops, and the steady ones."""
@@ -146,19 +156,22 @@ def _pair(scene: Scene, model: Model, name: str, fit: Fit) -> Pair | Circle | Ed
     return edge_of(scene, model, name, fit)
 
 
-def _boundary(scene: Scene, model: Model, name: str, settings: Settings) -> FittedBoundary | RigidCircle:
+def _boundary(scene: Scene, model: Model, pair: Pair | Circle | Edge, settings: Settings) -> Boundary:
     """A contact in the paper's form.
 
     Raises:
         SceneError: the form lacks what it must be told, or is not offered for the contact's kind.
     """
-    contact = scene.contacts[name]
-    if isinstance(contact, EdgeContact):
-        allowed = "a kind that the formulation 'paper' offers so far, or the formulation 'auto'"
-        raise SceneError([Mistake(f"contacts.{name}.kind", repr(contact.kind), allowed, scene.file)])
-    if isinstance(contact, BeamContact):
-        return fitted_boundary(scene, model, name, settings.degree)
-    return rigid_circle(scene, model, name)
+    contact = scene.contacts[pair.name]
+    if isinstance(contact, SelfContact):
+        allowed = "a kind that the formulation 'paper' offers, or the formulation 'auto'"
+        raise SceneError([Mistake(f"contacts.{pair.name}.kind", repr(contact.kind), allowed, scene.file)])
+    match pair:
+        case Pair():
+            return fitted_boundary(scene, model, pair.name, settings.degree)
+        case Circle():
+            return rigid_circle(scene, model, pair.name)
+    return rigid_edge(scene, model, pair)
 
 
 def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism:
@@ -169,9 +182,9 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism
     """
     model = build(scene, settings, fit)
     pairs = {name: _pair(scene, model, name, fit) for name in scene.contacts}
-    boundaries: dict[str, FittedBoundary | RigidCircle] = {}
+    boundaries: dict[str, Boundary] = {}
     if settings.formulation == "paper":
-        boundaries = {name: _boundary(scene, model, name, settings) for name in scene.contacts}
+        boundaries = {name: _boundary(scene, model, pair, settings) for name, pair in pairs.items()}
     stops = {name: stop_of(scene, model, name) for name in scene.stops}
     closure = closure_of(model, hinges_of(scene, model), holds_of(scene, model))
     loads = dead_loads(scene, model) | end_moments(scene, model)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from cprbm import smooth
+from cprbm.edge import Edge
 from cprbm.equilibrium import Point, Problem, potential_energy
-from cprbm.forces import contact_forces, contact_pressure, holding, supports
+from cprbm.forces import contact_forces, contact_moment, contact_pressure, holding, supports
 from cprbm.mechanism import Mechanism
 from cprbm.normal_force import normal_force
 from cprbm.stress import bending_stress
@@ -66,9 +67,16 @@ def _value(
         case "angle":
             return mechanism.stops[probe.of].angle(point.state)
         case "moment":
-            shares = point.rows.shares(point.lam)
-            held = [lam.sum() for group, lam in shares if group.contact == probe.of and group.holds_angles]
-            return float(sum(held)) * model.unit_moment
+            return abs(_holding_moment(mechanism, point, probe.of)) * model.unit_moment
+
+
+def _holding_moment(mechanism: Mechanism, point: Point, name: str) -> float:
+    """Moment of a stop, or of all that an edge exerts on a beam about the first of its pins on it; zero without one."""
+    pair = mechanism.pairs.get(name)
+    if pair is None:
+        return float(sum(lam.sum() for group, lam in point.rows.shares(point.lam) if group.contact == name))
+    pin = next((pin for pin in pair.pins if pin is not None), None) if isinstance(pair, Edge) else None
+    return 0.0 if pin is None else contact_moment(mechanism.problem, point, name, pair.a, pin.arc)
 
 
 def _displacement(scene: Scene, problem: Problem, point: Point, name: str) -> Array:

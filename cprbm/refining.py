@@ -32,7 +32,7 @@ from cprbm.mechanism import Mechanism
 from cprbm.model import Chain, Fit, Kinks
 from cprbm.settings import Settings
 from cprbm.zones import Zone, zones_of
-from scene.answer import Array, Flags
+from scene.answer import Array, Flags, Ints
 
 COARSEST = 80  # links that need no coarser mesh to start from
 FACTOR = 4
@@ -124,13 +124,13 @@ def fitted(
         needy = np.array([True, *between, chain.end is not None])
         numbers = _shared_out(marks, n, needy)
         # a zone's end is a border; a place need not be one, and as it goes on its way the mesh changes evenly
-        numbers = np.round(numbers) if names else numbers
+        at_end = np.array([False, *(name in names for name in of), False])
+        numbers = np.where(at_end, np.round(numbers), numbers)
         as_they_are = not names and np.allclose(numbers[1:-1], n * marks, rtol=0.0, atol=MOVED)
         if as_they_are or not np.all(np.diff(numbers) >= 1.0):
             continue
         places = np.concatenate(([0.0], marks, [1.0]))
-        if not names:
-            numbers, places = _surrounded(numbers, places, n / BEYOND)
+        numbers, places = _surrounded(numbers, places, n / BEYOND, np.flatnonzero(~at_end[1:-1]) + 1)
         borders[chain.name] = np.interp(np.arange(n + 1), numbers, places)
         kept |= {name: ends[name] for name in names}
     return Fit(borders, kept, _kinks(mechanism, point, zones, eased=eased))
@@ -204,14 +204,14 @@ def _shared_out(marks: Array, n: int, needy: Flags) -> Array:
     return np.concatenate(([0.0], before[:-1], [float(n)]))
 
 
-def _surrounded(numbers: Array, places: Array, beyond: float) -> tuple[Array, Array]:
-    """Numbers and places between which elements are even, the finer at a place going on ``beyond`` it.
+def _surrounded(numbers: Array, places: Array, beyond: float, these: Ints) -> tuple[Array, Array]:
+    """Numbers and places between which elements are even, the finer at some of the places going on ``beyond`` them.
 
     Of the coarser span no more than a third.
     """
     size = np.diff(places) / np.diff(numbers)
     more, where = [numbers], [places]
-    for k in range(1, len(places) - 1):
+    for k in these:
         fine = min(size[k - 1], size[k])
         coarser, sign = (k, 1.0) if size[k] > fine else (k - 1, -1.0)
         step = sign * min(beyond, (numbers[coarser + 1] - numbers[coarser]) / 3.0)

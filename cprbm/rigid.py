@@ -87,10 +87,6 @@ class RigidCircle:
             ),
         )
 
-    def range_left(self, state: State, at: Positions) -> Array:
-        """A circle has no ends: (m,) of minus infinity."""
-        return np.full(len(self.joints), -np.inf)
-
 
 def rigid_circle(scene: Scene, model: Model, name: str) -> RigidCircle:
     """One of the scene's contacts with a circle in the paper's form.

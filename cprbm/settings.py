@@ -23,7 +23,7 @@ class Settings(BaseModel):
     Attributes:
         links: number of elements N per beam (N springs, N + 1 links), one number or one per beam's name.
         formulation: ``auto`` measures the gap between smooth curves where they are closest;
-            ``paper`` constrains related joints against a fitted polynomial, eqs. (8)-(11).
+            ``paper`` constrains related joints against a fitted polynomial or what is rigid, eqs. (8)-(11).
         degree: of the fitted polynomial of ``paper``; lowered to the number of points less one.
         tolerance: largest scaled residual and violation of an equilibrium; round-off may set a higher floor.
         iterations: most Newton iterations of one equilibrium.

@@ -58,11 +58,12 @@ def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     pressed = np.flatnonzero(forces > 0.0)
     h = chain.size_at(arcs)
     # one zone goes on where each joint has a row, and the beam arches by no more than unevenness
-    arched = -overlaps > pair.arching * largest * h**3 / chain.section.rigidity_at(arcs)
+    uneven = pair.arching * largest * h**3 / chain.section.rigidity_at(arcs)
+    arched = -overlaps > uneven
     apart = np.diff(arcs) > CLOSE * np.maximum(h[1:], h[:-1]) + reach[1:] + reach[:-1]
     breaks = np.concatenate(([0], np.cumsum(apart | arched[1:] | arched[:-1])))
     runs = np.split(arcs[pressed], np.flatnonzero(np.diff(breaks[pressed])) + 1)
-    runs = _with_pins(pair, point, runs, pinned, arcs, -overlaps)
+    runs = _with_pins(pair, point, runs, pinned, arcs, -overlaps, uneven)
     runs = [_without_idle_clamp(chain, run, clamped) for run in runs]
     return tuple(
         _zone(pair, point, chain, run, run[np.isin(run, pinned)])
@@ -81,32 +82,37 @@ def _without_idle_clamp(chain: Chain, run: Array, clamped: Array) -> Array:
     return inner if beside and np.ptp(inner) < SHORTEST * h else run
 
 
-def _with_pins(pair: Touching, point: Point, runs: list[Array], pinned: Array, arcs: Array, gaps: Array) -> list[Array]:
+def _with_pins(
+    pair: Touching, point: Point, runs: list[Array], pinned: Array, arcs: Array, gaps: Array, uneven: Array
+) -> list[Array]:
     """The ``runs`` in which those that begin or end at an own pin go on to the next if the beam lies flat between."""
     joined = [runs[0]]
     for run in runs[1:]:
         low, high = float(joined[-1][-1]), float(run[0])
         beside = np.isin((low, high), pinned).any()
-        if beside and _flat(pair, point, low, high, gaps[(arcs > low) & (arcs < high)]):
+        between = (arcs > low) & (arcs < high)
+        arch = float(np.max(gaps[between], initial=-np.inf))
+        if beside and (arch <= np.max(uneven[between], initial=0.0) or _flat(pair, point, low, high, arch)):
             joined[-1] = np.concatenate((joined[-1], run))
         else:
             joined.append(run)
     return joined
 
 
-def _flat(pair: Touching, point: Point, low: float, high: float, gaps: Array) -> bool:
-    """Whether a beam lies on what it touches between two arc lengths, but for what it bends by near them."""
+def _flat(pair: Touching, point: Point, low: float, high: float, arch: float) -> bool:
+    """Whether an ``arch`` between two arc lengths is no more than what the beam bends by near them."""
     chain = pair.a
     h = float(np.max(chain.size_at(np.array([low, high]) + np.array([[-1.0], [1.0]]) * 0.5 * chain.sizes.min())))
     joints = chain.s[(chain.s >= low - 2.0 * h) & (chain.s <= high + 2.0 * h)]
     bent = float(np.max(np.abs(pair.parting(point.state, point.at, joints))))
-    return bool(np.max(gaps, initial=-np.inf) < bent * max(h**2, FLAT * (high - low) ** 2))
+    return bool(arch < bent * max(h**2, FLAT * (high - low) ** 2))
 
 
 def _zone(pair: Touching, point: Point, chain: Chain, run: Array, pins: Array) -> Zone:
     """The zone whose forces act at arc lengths ``run``, ascending, own ``pins`` among them."""
     first, last = float(run[0]), float(run[-1])
-    h = chain.size_at(run[[0, -1]])
+    # of the elements beside the zone; at a border a place says by round-off alone in which of two it is
+    h = chain.size_at(np.clip(run[[0, -1]] + 0.25 * chain.sizes.min() * np.array([-1.0, 1.0]), 0.0, chain.s[-1]))
     springs = chain.s[1:-1]
     before, after = springs[springs < first - 0.25 * h[0]][::-1], springs[springs > last + 0.25 * h[1]]
     whole = run.size > 1 and (not before.size or not after.size)

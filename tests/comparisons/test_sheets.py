@@ -8,6 +8,7 @@ import pytest
 from comparisons import cases, sheets, tables
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
+from comparisons.paper_sheets import of_paper
 from comparisons.verdict import compared
 from scene import Ending
 from tests.comparisons.made_up import MadeUp
@@ -26,7 +27,7 @@ def cell(sheet, row, header):
 
 def test_every_row_has_a_cell_for_every_header(comparison):
     found = sheets.of_comparison(comparison)
-    assert len(found) == 6
+    assert len(found) == 7
     for sheet in found:
         assert {len(row) for row in sheet.rows} == {len(sheet.headers)}
 
@@ -62,6 +63,42 @@ def test_the_contact_model_has_a_column_and_a_word(formulation, said):
         share, 1e-2
     )
     assert said in sheets.explanation(found)[0]
+
+
+def test_by_how_much_paper_is_off_at_most_and_at_last_and_why():
+    scene, solvers = cases.opened("hinge"), Solvers(MadeUp("cprbm", 2e-3, paper=1e-3), MadeUp("fea", 0.0))
+    runs = paired(scene, Choices(), solvers)
+    assert runs.paper is not None
+    early = replace(
+        runs.paper,
+        ending=Ending.LEFT_BOUNDARY,
+        sentence="joint 3 presses beyond the end",
+        stations=runs.paper.stations[:4],
+        notes=("the chord is held",),
+    )
+    for paper, last in ((runs.paper, 0.67), (early, 0.268)):
+        found = compared(scene, replace(runs, paper=paper))
+        sheet = next(
+            sheet for sheet in sheets.of_comparison(found) if sheet.title == "The formulation paper beside auto"
+        )
+        rows = [row for row in found.rows if row.probe.name == "BD.rotation" and row.station <= last]
+        shares = {row.station: row.contact_model / row.denominator for row in rows}
+        worst = max(shares, key=shares.get)
+        said = [cell(sheet, "BD.rotation", header) for header in sheet.headers]
+        assert sheet.headers[3] == f"at load {last:g}"
+        assert said[2] == f"load {worst:g}"
+        for told, station in ((said[1], worst), (said[3], last)):
+            assert float(told.removesuffix(" %")) == pytest.approx(100.0 * shares[station], rel=1e-2)
+        assert ("In paper: the chord is held." in sheet.note) is (paper is early)
+        assert ("It ended before load 0.335: joint 3 presses beyond the end." in sheet.note) is (paper is early)
+        assert all(row.contact_model is None for row in found.rows if row.station > last)
+
+
+@pytest.mark.parametrize(("denominator", "told"), [(0.05, "804 %"), (0.04, "402 mN")])
+def test_what_is_more_than_tenfold_is_told_as_it_is(comparison, denominator, told):
+    rows = [row for row in comparison.rows if row.probe.name == "contact.force"]
+    only = replace(comparison, rows=(replace(rows[-1], contact_model=0.402, denominator=denominator),))
+    assert cell(of_paper(only), "contact.force", "off by at most") == told
 
 
 def test_without_a_whole_answer_in_paper_the_column_is_left_out_and_the_verdict_is_the_same(comparison):

@@ -10,9 +10,9 @@ from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import contact_gradient, contact_rows, local_rows, point_at
 from cprbm.kinematics import State, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
-from scene import SceneError
+from scene import Ending
 from scene.reading import scene_from
-from scene.statement import Contact
+from scene.statement import Contact, PaperRigid, Related
 from tests.references.flattened import Flattened
 from tests.together.pivots import LENGTH, MATERIALS, RIGIDITY, STRIP, THICKNESS, weld
 
@@ -89,16 +89,16 @@ def arch(*, edge="half-plane", joint="pin", end="start", thick=False, turn=0.0, 
     )
 
 
-def solved(scene, links):
-    answer = cprbm.answer(scene, cprbm.Settings(links=links))
+def solved(scene, links, formulation="auto"):
+    answer = cprbm.answer(scene, cprbm.Settings(links=links, formulation=formulation))
     assert answer.completed, answer.sentence
     assert max(answer.stations[-1].certificate.force_balance, answer.stations[-1].certificate.moment_balance) < 1e-9
     return answer.stations[-1].values
 
 
-def errors_of(links, **changes):
+def errors_of(links, formulation="auto", **changes):
     """Of the tip's place, energy, moment, reaction, force and end."""
-    values = solved(arch(**changes), links)
+    values = solved(arch(**changes), links, formulation)
     begin, end = values["edge.ends"]
     if changes.get("end") == "end":
         begin, end = LENGTH - end, LENGTH - begin
@@ -107,7 +107,7 @@ def errors_of(links, **changes):
         [
             np.hypot(*(values["T.displacement"] + CURVED.drawn - CURVED.tip)) / LENGTH,
             abs(values["scene.potential_energy"][0] / CURVED.energy - 1.0),
-            abs(values["edge.moment"][0] / CURVED.moment - 1.0),
+            abs(values["edge.moment"][0] / CURVED.about_start - 1.0),
             np.hypot(*(values["T.reaction"] - [0.0, -CURVED.force])) / CURVED.force,
             abs(values["edge.force"][0] / CURVED.force - 1.0),
             abs(end - CURVED.flat) / LENGTH,
@@ -135,7 +135,7 @@ def test_every_kind_of_edge_is_the_same_straight_one(edge, thick):
 def test_an_edge_and_a_pin_on_a_body_that_turns(monkeypatch):
     # reference: tests.references.flattened, seen from the wheel; and both forms of Newton's system give one answer
     values = solved(arch(turn=0.7, edge="line"), 40)
-    assert values["edge.moment"][0] == pytest.approx(CURVED.moment, rel=2.0 / 40**2)
+    assert values["edge.moment"][0] == pytest.approx(CURVED.about_start, rel=2.0 / 40**2)
     assert values["edge.force"][0] == pytest.approx(CURVED.force, rel=2.0 / 40**2)
     assert values["edge.ends"][1] == pytest.approx(CURVED.flat, abs=2.0 / 40**2 * LENGTH)
     assert values["scene.potential_energy"][0] == pytest.approx(CURVED.energy, rel=2.0 / 40**2)
@@ -185,15 +185,18 @@ BENT = {
 }
 
 
+# in the paper's form a corner that stands out has no row
+@pytest.mark.parametrize(
+    ("kind", "formulation"), [*((kind, "auto") for kind in BENT), *((k, "paper") for k in BENT if k != "corner")]
+)
 @pytest.mark.parametrize("moves", [False, True])
-@pytest.mark.parametrize("kind", list(BENT))
-def test_rows_and_blocks_are_derivatives(kind, moves):
+def test_rows_and_blocks_are_derivatives(kind, moves, formulation):
     # reference: central differences, at random states and with a pair whose places are where they happen to be
     scene = arch(turn=0.7 if moves else 0.0)
     contact = {**BENT[kind], "beam": "beam", "body": "wheel" if moves else "wall", "thick": True}
     edge = TypeAdapter(Contact).validate_python(contact, strict=False)
     scene = scene.model_copy(update={"contacts": {"edge": edge}})
-    problem = mechanism_of(scene, cprbm.Settings(links=13)).problem
+    problem = mechanism_of(scene, cprbm.Settings(links=13, formulation=formulation)).problem
     model = problem.model
     n = model.n_links
     random = np.random.default_rng(5)
@@ -212,7 +215,8 @@ def test_rows_and_blocks_are_derivatives(kind, moves):
     point = at(base, lam, start.rows)
     assert point.rows.size >= (1 if kind == "corner" else 4)
     keys = {key for _, key in point.rows.keys}
-    assert (2 * (13 + 2) + 1 if kind == "corner" else -1) in keys  # a place of its own: the second corner's
+    # a place of its own: the second corner's
+    assert formulation == "paper" or (2 * (13 + 2) + 1 if kind == "corner" else -1) in keys
     second = np.zeros((len(base), len(base)))
     for group, share in point.rows.shares(lam):
         blocks = group.curvature(share)
@@ -242,6 +246,69 @@ def test_a_line_in_pieces_that_go_on_straight_is_one_line():
         assert parts[name] == pytest.approx(value, rel=1e-6, abs=1e-9 * np.max(np.abs(value)))
 
 
-def test_the_papers_form_has_no_edges():
-    with pytest.raises(SceneError, match=r"contacts\.edge\.kind: found 'beam-half-plane'.*'auto'"):
-        cprbm.answer(arch(), cprbm.Settings(links=20, formulation="paper"))
+@pytest.mark.parametrize("changes", [{}, {"edge": "line", "end": "end", "thick": True}])
+def test_the_papers_form_is_of_first_order_beside_an_own_pin_where_auto_is_of_second(changes):
+    # reference: tests.references.flattened. Of the first element only 3/4 of the arc is taken out: the chord from the
+    # pin to the first spring is half as long as the next. Its energy (3/4)², and its moment from the pin's joint
+    lacks, force = {}, {}
+    for n in (20, 40, 80):
+        values = solved(arch(**changes), n, "paper")
+        lacks[n] = 1.0 - values["scene.potential_energy"][0] / CURVED.energy
+        force[n] = values["edge.force"][0] - CURVED.force
+        flat = 0.5 * RIGIDITY / RADIUS**2 * LENGTH / n / CURVED.energy
+        assert lacks[n] == pytest.approx((1.0 - 0.75**2) * flat, rel=1.0 / n)
+        assert force[n] == pytest.approx(0.75 * RIGIDITY / RADIUS / (0.5 * LENGTH / n), rel=2.0 / n**1.5)
+        assert values["edge.moment"][0] == pytest.approx(CURVED.about_start, rel=0.1 / n)
+    auto = {n: errors_of(n, **changes)[1] for n in (20, 40, 80)}
+    for n in (20, 40):
+        assert 1.9 < lacks[n] / lacks[2 * n] < 2.1
+        assert auto[n] / auto[2 * n] > 3.3
+
+
+def test_the_papers_form_is_of_second_order_away_from_own_pins():
+    # reference: tests.references.flattened: a clamp presses nothing, so that the beam touches where it lifts off
+    errors = {}
+    for n in (20, 40, 80):
+        values = solved(arch(joint="weld", edge="function"), n, "paper")
+        errors[n] = abs(values["scene.potential_energy"][0] / CURVED.energy - 1.0)
+        assert values["edge.force"][0] == pytest.approx(CURVED.force, rel=6.0 / n**2)
+    assert min(errors[20] / errors[40], errors[40] / errors[80]) > 3.3
+
+
+def test_the_papers_form_on_a_body_that_turns_is_that_on_the_ground():
+    # the push, and then the turn, of which the mechanism knows nothing
+    turned = arch(turn=0.7, edge="line")
+    still, moved = (solved(scene, 20, "paper") for scene in (arch(edge="line"), turned))
+    for name in ("edge.force", "edge.moment", "edge.ends", "scene.potential_energy"):
+        assert moved[name] == pytest.approx(still[name], rel=1e-8, abs=1e-12)
+
+
+def test_the_papers_form_says_why_it_is_of_first_order_and_since_when():
+    said = cprbm.answer(arch(), cprbm.Settings(links=20, formulation="paper")).notes
+    assert len(said) == 1
+    assert "in contact 'edge', from push" in said[0]
+    assert "first order" in said[0]
+    assert not cprbm.answer(arch(joint="weld"), cprbm.Settings(links=20, formulation="paper")).notes
+
+
+def test_related_joints_are_all_that_the_papers_form_holds():
+    # none of them next to the pin, the beam goes through the edge there, and that ends the answer
+    scene = arch(part=0.3)
+    hints = PaperRigid(related={"beam": Related(x=(0.5 * LENGTH, LENGTH))})
+    few = scene.model_copy(update={"contacts": {"edge": scene.contacts["edge"].model_copy(update={"paper": hints})}})
+    assert solved(scene, 20, "paper")["edge.force"][0] > 0.0
+    answer = cprbm.answer(few, cprbm.Settings(links=20, formulation="paper"))
+    assert answer.ending is Ending.BEAMS_CROSSED
+    assert "in contact 'edge'" in answer.sentence
+
+
+@pytest.mark.parametrize(
+    ("joint", "end", "held"),
+    [("pin", "start", (1, 20)), ("pin", "end", (1, 20)), ("weld", "start", (2, 20)), ("weld", "end", (1, 19))],
+)
+@pytest.mark.parametrize("turn", [0.0, 0.7])
+def test_the_papers_form_holds_every_joint_that_can_move_against_the_edge(joint, end, held, turn):
+    # neither the beam's ends nor the joint on a link that is welded to the edge's own body, which stays where it is
+    scene = arch(joint=joint, end=end, turn=turn)
+    boundary = mechanism_of(scene, cprbm.Settings(links=20, formulation="paper")).boundaries["edge"]
+    assert (boundary.joints[0], boundary.joints[-1]) == held

@@ -1,5 +1,7 @@
 """The rotational hinge against the boundary-value problem of its elastica, contact at a point."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -108,7 +110,32 @@ def test_paper_joint_beyond_the_boundary_ends_by_name():
     data |= {"claims": [], "stages": [{"name": "load", "steps": "M", "stations": [0.2, 0.67]}]}
     answer = cprbm.answer(scene_from(data), cprbm.Settings(formulation="paper"))
     assert answer.ending is Ending.LEFT_BOUNDARY
+    assert re.search(
+        r"in contact 'contact' joint 2\d of beam1 presses .* m beyond the end of the range", answer.sentence
+    )
     assert [station.value for station in answer.stations] == [0.2]
+
+
+def test_by_how_much_a_polynomial_misses_its_points_is_measured_and_told():
+    from cprbm.kinematics import positions, rest_state
+    from cprbm.mechanism import mechanism_of
+
+    # reference: beam 2's springs are even on a circle of 25 mm and their offset points on one of 27 mm; a straight line
+    # through these, which are the same on either side of the middle, is level
+    settings = cprbm.Settings(formulation="paper", degree=1)
+    mechanism = mechanism_of(hinge(), settings)
+    phi = np.pi * (1.0 - (np.arange(40) + 0.5) / 40.0)
+    phi = phi[np.abs(0.025 * np.cos(phi)) <= 0.00625]
+    height = 0.027 * np.sin(phi)
+    model = mechanism.problem.model
+    rest = rest_state(model)
+    misfit = mechanism.boundaries["contact"].misfit(rest, positions(model, rest)) * model.unit_length
+    assert misfit == pytest.approx(np.max(np.abs(height - height.mean())), rel=1e-9)
+    said = [note for note in cprbm.answer(hinge(), settings).notes if "misses the points" in note]
+    assert len(said) == 1
+    assert "at load" in said[0]
+    few = cprbm.answer(hinge(), cprbm.Settings(links=20, formulation="paper"))  # a cubic through four points
+    assert not any("misses the points" in note for note in few.notes)
 
 
 @pytest.mark.parametrize("formulation", ["auto", "paper"])

@@ -60,8 +60,13 @@ class Flattened:
 
     @property
     def moment(self) -> float:
-        """That which holds the start."""
+        """That which holds the start: EI κ₀, by a stop or a clamp there."""
         return self.rigidity / self.radius
+
+    @property
+    def about_start(self) -> float:
+        """That of the plane about the start, by statics: what F has there, being all else that acts."""
+        return self.force * self.tip[0]
 
     @property
     def drawn(self) -> tuple[float, float]:

@@ -1,0 +1,85 @@
+"""The five-bar of section 3.5: two inputs, and beams that lie on a link of it up to their pins.
+
+No published number exists; each solver is held against itself on other ways, and against the other in the limit.
+"""
+
+from math import radians
+
+import numpy as np
+import pytest
+
+import cprbm
+import fea_reference
+from comparisons import cases
+
+WAYS = {
+    "first": [("alpha1", [20.0]), ("alpha2", [30.0, 50.0, 70.0])],
+    "back": [("alpha1", [20.0]), ("alpha2", [70.0, 50.0, 30.0, 0.0]), ("alpha1", [0.0])],
+    "turns": [("alpha2", [30.0]), ("alpha1", [20.0]), ("alpha2", [50.0, 70.0])],
+    "last": [("alpha2", [70.0]), ("alpha1", [20.0])],
+}
+SOLVERS = {
+    "cprbm": lambda scene: cprbm.answer(scene, cprbm.Settings(links=40)),
+    "fea": lambda scene: fea_reference.answer(scene, fea_reference.Settings(elements=20)),
+}
+
+
+def on_the_way(parts):
+    """The five-bar on another way: angles of the cranks in degrees, counted from where they start."""
+    scene = cases.opened("five-bar")
+    stages = []
+    for i, (drive, angles) in enumerate(parts):
+        stage = next(stage for stage in scene.stages if stage.steps == drive)
+        stations = tuple(radians(angle) for angle in angles)
+        stages.append(stage.model_copy(update={"name": f"{i}", "stations": stations, "shown": ()}))
+    return scene.model_copy(update={"stages": tuple(stages)})
+
+
+def states(solve, parts):
+    """Of every state: both angles, degrees, and its values."""
+    answer = solve(on_the_way(parts))
+    assert answer.completed, answer.sentence
+    angles, found = dict.fromkeys(("alpha1", "alpha2"), 0.0), {}
+    drives = [drive for drive, stations in parts for _ in stations]
+    for drive, station in zip(drives, answer.stations, strict=True):
+        angles[drive] = np.degrees(station.value)
+        found[round(angles["alpha1"]), round(angles["alpha2"])] = station.values
+        assert station.certificate.smallest_curvature > 0.0
+    return found
+
+
+@pytest.fixture(scope="module", params=list(SOLVERS))
+def ways(request):
+    return {name: states(SOLVERS[request.param], parts) for name, parts in WAYS.items()}
+
+
+@pytest.mark.parametrize("way", ["back", "turns", "last"])
+def test_the_way_does_not_matter(ways, way):
+    first, other = ways["first"], ways[way]
+    met = [at for at in other if at in first and at[1] > 0]
+    assert len(met) == {"back": 3, "turns": 3, "last": 1}[way]
+    for at in met:
+        energy = first[at]["scene.potential_energy"]
+        assert other[at]["scene.potential_energy"] == pytest.approx(energy, rel=1e-6)
+        for probe in ("OA.reaction_moment", "CD.reaction_moment"):
+            assert other[at][probe] == pytest.approx(
+                first[at][probe], abs=1e-5 * first[20, 70]["CD.reaction_moment"][0]
+            )
+
+
+def test_it_comes_home(ways):
+    energies = [values["scene.potential_energy"][0] for values in ways["back"].values()]
+    assert energies[-1] == pytest.approx(0.0, abs=1e-12 * max(energies))
+
+
+def test_both_solvers_have_one_limit():
+    """Within bending; the CPRBM's by two N and its second order, of the largest value."""
+    scene = cases.opened("five-bar")
+    coarse, fine = (cprbm.answer(scene, cprbm.Settings(links=n)).stations for n in (80, 160))
+    reference = fea_reference.answer(scene, fea_reference.Settings(elements=160, kinematics="bending")).stations
+    probes = ("scene.potential_energy", "OA.reaction_moment", "CD.reaction_moment", "contact.force", "link1.moment")
+    for probe in probes:
+        two, four, true = (
+            np.array([station.values[probe][0] for station in each]) for each in (coarse, fine, reference)
+        )
+        assert (4.0 * four - two) / 3.0 == pytest.approx(true, abs=5e-4 * np.max(np.abs(true)))
