@@ -171,6 +171,10 @@ def _boundary(scene: Scene, model: Model, pair: Pair | Circle | Edge, settings: 
             return fitted_boundary(scene, model, pair.name, settings.degree)
         case Circle():
             return rigid_circle(scene, model, pair.name)
+    if not all(corner.ends for corner in pair.corners):
+        found = "a line with a corner that stands out, which presses a beam between its joints"
+        allowed = "a line without one, or the formulation 'auto'"
+        raise SceneError([Mistake(f"contacts.{pair.name}.points", found, allowed, scene.file)])
     return rigid_edge(scene, model, pair)
 
 
