@@ -38,11 +38,15 @@ JUTTING = 1e-9  # sine of the angle by which an edge turns at least where it sta
 
 @dataclass(frozen=True, slots=True)
 class Corner:
-    """A corner at ``place``, between the unit normals ``before`` and ``behind``, in the frame of the edge's body."""
+    """A corner at ``place``, between the unit normals ``before`` and ``behind``, in the frame of the edge's body.
+
+    ``ends`` where the edge does, and does not go on in another piece.
+    """
 
     place: tuple[float, float]
     before: tuple[float, float]
     behind: tuple[float, float]
+    ends: bool
 
     @property
     def ahead(self) -> Array:
@@ -73,23 +77,24 @@ def corners_of(faces: Sequence[Face]) -> tuple[Corner, ...]:
     There what is rigid goes straight back, at right angles to the piece.
     """
     found = []
-    for k, face in enumerate(faces):
+    for face in faces:
         begin, end = face.ends
         if begin is not None:
             n = _normal(face, begin)
             other = next((each for each in faces if each is not face and _same(each.ends[1], begin)), None)
             before = np.array([-n[1], n[0]]) if other is None else _normal(other, begin)
-            found.append((k, begin, before, n))
+            found.append((begin, before, n, other is None))
         if end is not None and not any(_same(each.ends[0], end) for each in faces if each is not face):
             n = _normal(face, end)
-            found.append((k, end, n, np.array([n[1], -n[0]])))
+            found.append((end, n, np.array([n[1], -n[0]]), True))
     return tuple(
         Corner(
             place=(float(place[0]), float(place[1])),
             before=(float(before[0]), float(before[1])),
             behind=(float(behind[0]), float(behind[1])),
+            ends=ends,
         )
-        for _, place, before, behind in found
+        for place, before, behind, ends in found
         if before[0] * behind[1] - before[1] * behind[0] < -JUTTING
     )
 

@@ -29,7 +29,8 @@ class Hold:
     """One equality on a body that moves.
 
     Attributes:
-        drive: the drive's name, or that of the point which is a pivot; empty for a slide.
+        drive: the drive's name, or that of the point which is a pivot, or of the body that slides; empty for what keeps
+            that from turning.
         at: r and the body.
         along: e, a unit vector or zero.
         turn: τ, one or zero.
@@ -82,7 +83,7 @@ def holds_of(scene: Scene, model: Model) -> tuple[Hold, ...]:
             body_itself = Attachment(model.free_bodies.index(name), (0.0, 0.0), welded=False)
             ex, ey = _unit(body.along)
             guided = body_itself if body.pin is None else attached(scene, model, body.pin)
-            found.append(Hold("", guided, (-ey, ex), 0.0, 0.0))
+            found.append(Hold(name, guided, (-ey, ex), 0.0, 0.0))
             if body.pin is None:
                 found.append(Hold("", body_itself, (0.0, 0.0), 1.0, 0.0))
         elif isinstance(body, TurningBody):

@@ -197,8 +197,12 @@ def _boundary(scene: Scene, model: Model, pair: AnyPair, settings: Settings) -> 
             return fitted_boundary(scene, model, pair.name, settings.degree)
         case Circle():
             return rigid_circle(scene, model, pair.name)
-        case Edge():
+        case Edge() if all(corner.ends for corner in pair.corners):
             return rigid_edge(scene, model, pair)
+        case Edge():
+            found = "a line with a corner that stands out, which presses a beam between its joints"
+            allowed = "a line without one, or the formulation 'auto'"
+            raise SceneError([Mistake(f"contacts.{pair.name}.points", found, allowed, scene.file)])
     allowed = "a kind that the formulation 'paper' offers, or the formulation 'auto'"
     kind = scene.contacts[pair.name].kind
     raise SceneError([Mistake(f"contacts.{pair.name}.kind", repr(kind), allowed, scene.file)])

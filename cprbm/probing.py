@@ -108,7 +108,7 @@ def _reaction(scene: Scene, problem: Problem, point: Point, name: str) -> tuple[
 
 
 def _held(scene: Scene, drive: str) -> str:
-    """Of which point or body a drive's reaction is asked; a pivot's own point, and of a slide nothing."""
+    """Of which point or body a drive's reaction is asked; a pivot's own point, and the body that slides."""
     if drive not in scene.drives:
         return drive
     driven = scene.drives[drive]

@@ -77,7 +77,8 @@ def _covered(scene: Scene) -> None:
 
     Raises:
         NotCoveredError: the scene has stops, an assembly, a body on a pivot, bodies that are pinned to each other,
-            contact with a line, a half-plane or a function or of a beam with itself, or a moment on a beam.
+            contact with a line, a half-plane or a function or of a beam with itself, or a moment on a beam, or it is
+            asked what a slide does.
     """
     pivots = any(isinstance(body, TurningBody) for body in scene.bodies.values())
     edges = any(isinstance(contact, EdgeContact) for contact in scene.contacts.values())
@@ -89,6 +90,7 @@ def _covered(scene: Scene) -> None:
         ("pins between bodies", scene.pins),
         ("contact with lines, half-planes and functions", edges),
         ("contact of a beam with itself", selves),
+        ("what a slide does", any(probe.of in scene.bodies and probe.quantity == "reaction" for probe in scene.probes)),
         ("moments on beams", any(isinstance(load, BeamMoment) for load in scene.loads.values())),
     ):
         if there:

@@ -123,7 +123,7 @@ def _holding_ends(march: March, name: str) -> list[float]:
 
 
 def _holding(scene: Scene, march: March, name: str) -> list[tuple[Array, float]]:
-    """Forces and moments of the ground at a point, with its pivots and stops, or of the drives of a point or body."""
+    """Forces and moments of the ground at a point, with pivots and stops, or of slide and drives of a point or body."""
     model, z = march.model, march.system.z
     turning = {key for key, body in scene.bodies.items() if isinstance(body, TurningBody) and body.about == name}
     joints = [joint for joint in model.joints if model.bodies[joint.body].dofs is None]
@@ -131,7 +131,7 @@ def _holding(scene: Scene, march: March, name: str) -> list[tuple[Array, float]]
     return [
         *(support(joint, z) for joint in joints if joint.point == name),
         *((force, 0.0) for point, force in hinges if point == name),
-        *(held(part, z) for part in model.guides if part.name in turning),
+        *(held(part, z) for part in model.guides if part.name in turning or part.name == name),
         *((np.zeros(2), stop.moment(z)) for stop in model.stops if stop.phi is None and stop.point == name),
         *(held(part, z) for part in model.drives if _driven(scene, part.name) == name),
     ]

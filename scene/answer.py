@@ -19,7 +19,8 @@ bending_stress     (P,)    signed: E·t/2 times the change of curvature along th
                            a positive change turns the tangent counter-clockwise
 combined_stress    (P,)    largest magnitude over the section at the same places, Pa: those of the bending stress
                            and of the normal force over the section's area together
-reaction           (2,)    force of the ground on what is joined at a point, N; at a driven point the drive's force
+reaction           (2,)    force of the ground on what is joined at a point, N; at a driven point the drive's force,
+                           of a body that slides that of its slide
 reaction_moment    (1,)    moment of the ground there, about that point, N·m; of a body that is turned by a
                            drive the drive's moment
 potential_energy   (1,)    strain energy less the work of the dead loads from the initial state, J

@@ -15,6 +15,7 @@ from scene.statement import (
     Quantity,
     RotationDrive,
     Scene,
+    SlidingBody,
     TurningBody,
 )
 
@@ -39,7 +40,7 @@ _SAID = {
     "body": "a body",
     "contact": "a contact",
     "beam": "a beam",
-    "support": "a point of a fixed body at which a beam ends, a pivot, or a driven point",
+    "support": "a point of a fixed body at which a beam ends, a pivot, a driven point, or a body that slides",
     "stop": "a stop",
     "holding": "a stop, or a contact with a line, a half-plane or a function of the body that the beam is pinned to",
     "turned": "a point of a fixed body at which a beam ends, or a body whose rotation is driven",
@@ -107,6 +108,7 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
     supports = [end.point for end in ends if not isinstance(end, FreeEnd) and end.point in fixed]
     supports += [point for pin in scene.pins.values() for point in pin.points if point in fixed]
     pivots = [body.about for body in scene.bodies.values() if isinstance(body, TurningBody)]
+    slides = [name for name, body in scene.bodies.items() if isinstance(body, SlidingBody)]
     points = [drive.point for drive in scene.drives.values() if isinstance(drive, DisplacementDrive)]
     bodies = [drive.body for drive in scene.drives.values() if isinstance(drive, RotationDrive)]
     return {
@@ -114,7 +116,7 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
         "body": list(scene.bodies),
         "contact": list(scene.contacts),
         "beam": list(scene.beams),
-        "support": list(dict.fromkeys((*supports, *pivots, *points))),
+        "support": list(dict.fromkeys((*supports, *pivots, *points, *slides))),
         "turned": list(dict.fromkeys((*supports, *bodies))),
         "stop": list(scene.stops),
         "holding": [*scene.stops, *(name for name, each in scene.contacts.items() if isinstance(each, EdgeContact))],

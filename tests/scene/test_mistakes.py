@@ -117,7 +117,7 @@ TIES = [
         "probes/0/quantity",
         "reaction",
         "probes[0]",
-        "point of a fixed body at which a beam ends, a pivot, or a driven point: 'A', 'C'",
+        "point of a fixed body at which a beam ends, a pivot, a driven point, or a body that slides: 'A', 'C'",
     ),
     ("probes/0/points", 11, "probes[0].points", "'combined_stress' only"),
     ("probes/1/of", "B", "probes[1]", "'B.displacement' again"),

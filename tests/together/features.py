@@ -14,7 +14,7 @@ Data = dict[str, Any]
 
 SOLVERS = {"auto": "CPRBM `auto`", "paper": "CPRBM `paper`", "fea": "FE", "exact": "exact"}
 ALL = frozenset(SOLVERS)
-NOT_PAPER, NOT_EXACT, BOTH = ALL - {"paper"}, ALL - {"exact"}, frozenset({"auto", "fea"})
+NOT_EXACT, BOTH = ALL - {"exact"}, frozenset({"auto", "fea"})
 
 LENGTH, THICKNESS, WIDTH, MODULUS = 0.1, 1.0e-3, 0.012, 2.0e9
 RIGIDITY = MODULUS * WIDTH * THICKNESS**3 / 12.0  # N·m²
@@ -157,6 +157,13 @@ def sliding(**how: Any) -> Data:
     return data
 
 
+def slotted() -> Data:
+    """The same with an arm's pin in an oblique slot, of which the reaction is asked."""
+    data = sliding(turns=True, about="T")
+    data["bodies"]["tip"] |= {"along": [0.6, 0.8]}
+    return data | {"probes": probes("tip.reaction", "R.reaction")}
+
+
 def pivoted() -> Data:
     """A beam welded to a lever on a pivot."""
     data = cantilever(asked=("T.displacement", "lever.rotation", "P.reaction"))
@@ -234,6 +241,13 @@ def two_beams(**contact: Any) -> Data:
     return data
 
 
+def two_tapered() -> Data:
+    """The same beams, one of which grows thinner."""
+    data = two_beams()
+    data["beams"]["beam"]["thickness"] = {"at": [0.0, 1.0], "values": [1.2e-3, 0.8e-3]}
+    return data
+
+
 def pulled() -> Data:
     """A beam on a circle, with a weight of its own, a force at a place and one at its end."""
     data = held_by({**CIRCLE, "center": [0.07, -0.0115]}) | {"probes": probes("beam.combined_stress")}
@@ -247,7 +261,7 @@ def pulled() -> Data:
 
 def lying_on_its_pin() -> Data:
     """An arc pinned to the plane that it lies on from its pin on."""
-    data = cantilever(arc(0.9), asked=("T.displacement", "c.force", "scene.potential_energy", "T.reaction"))
+    data = cantilever(arc(0.9), asked=("T.displacement", "c.moment", "scene.potential_energy", "T.reaction"))
     data["beams"]["beam"]["start"] = pin("R")
     plane = {"kind": "beam-half-plane", "point": [0.0, 0.0], "normal": [0.0, 1.0], "thick": False}
     data["contacts"] = {"c": {"beam": "beam", "body": "wall", **plane}}
@@ -329,17 +343,18 @@ FEATURES = (
     ),
     Feature("contacts", "two beams by their edges", two_beams()),
     Feature("contacts", "two beams as lines", two_beams(thick=False)),
+    Feature("contacts", "two beams by their edges, of thickness that varies", two_tapered(), frozenset()),
     Feature("contacts", "circle", held_by(CIRCLE)),
     Feature("contacts", "circle on a body that moves", moved(CIRCLE), NOT_EXACT),
-    Feature("contacts", "half-plane", held_by(PLANE), BOTH),
-    Feature("contacts", "line", held_by(TABLE), BOTH),
+    Feature("contacts", "half-plane", held_by(PLANE), NOT_EXACT),
+    Feature("contacts", "line", held_by(TABLE), NOT_EXACT),
     Feature("contacts", "polyline with a corner that stands out", held_by(ROOF), BOTH),
     Feature("contacts", "polyline that goes round", held_by(BLOCK), BOTH),
-    Feature("contacts", "function", held_by(HILL), BOTH),
-    Feature("contacts", "half-plane on a body that moves", moved(PLANE), BOTH),
+    Feature("contacts", "function", held_by(HILL), NOT_EXACT),
+    Feature("contacts", "half-plane on a body that moves", moved(PLANE), NOT_EXACT),
     Feature("contacts", "polyline on a body that moves", moved(ROOF), BOTH),
-    Feature("contacts", "function on a body that moves", moved(HILL), BOTH),
-    Feature("contacts", "beam pinned to what it touches", lying_on_its_pin(), BOTH),
+    Feature("contacts", "function on a body that moves", moved(HILL), NOT_EXACT),
+    Feature("contacts", "beam pinned to what it touches", lying_on_its_pin(), NOT_EXACT),
     Feature("stages", "assembly first, by moments and pins", bowed(), NOT_EXACT),
     Feature(
         "probes",
@@ -347,6 +362,7 @@ FEATURES = (
         held_by(CIRCLE) | {"probes": probes("beam.bending_stress")},
     ),
     Feature("probes", "combined stress along a beam", pulled()),
+    Feature("probes", "reaction of a slide", slotted(), NOT_EXACT),
     Feature("probes", "ends of a contact's zone", held_by(CIRCLE) | {"probes": probes("c.ends")}),
     Feature("probes", "load at which a contact closes", held_by(CIRCLE) | {"probes": probes("c.closing_load")}),
 )

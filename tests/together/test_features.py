@@ -17,7 +17,7 @@ from tests.together.features import FEATURES, SOLVERS, Feature
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "features.md"
 LINKS, ELEMENTS = {"auto": 40, "paper": 120}, 16
-TOLERANCE = {"auto": 0.02, "paper": 0.05, "fea": 0.002}  # of a probe's size, by the discretisation
+TOLERANCE = {"auto": 0.02, "paper": 0.05, "fea": 0.005}  # of a probe's size, by the discretisation
 CELLS = [(feature, solver) for feature in FEATURES for solver in SOLVERS]
 NAMES = [f"{feature.group}: {feature.said}: {solver}" for feature, solver in CELLS]
 
@@ -38,7 +38,7 @@ def test_a_cell(feature: Feature, solver: str) -> None:
     # reference: the exact answer where there is one, or else the other of the two solvers
     number = FEATURES.index(feature)
     if not feature.cells[solver]:
-        if solver == "exact":
+        if solver == "exact" and feature.solvers:
             answer = answered(number, solver)
             assert answer.ending is Ending.NOT_COVERED
             assert len(answer.sentence) > 20
