@@ -36,10 +36,10 @@ from cprbm.energy import (
 from cprbm.kinematics import Positions, State, position_rows, positions, pulled_back
 from cprbm.local import LocalSystem, local_step, local_system
 from cprbm.model import Model
-from scene.answer import Array, Flags, Ints
+from scene.answer import Array, Ints
 
 LONGEST_TURN = 0.5  # of any link in one iteration, rad
-CONTACT_STIFFNESS = 1e4  # of pressing contacts while the energy alone is not convex, S/ℓ²
+CONTACT_STIFFNESS = (1e4, 1e6)  # of pressing contacts while the energy alone is not convex, S/ℓ²; the first that helps
 MANY = 40  # contact rows beyond which the system is solved with the joints' positions as unknowns
 LOCAL = 8  # joints in a row that is local
 PATIENCE = 12  # iterations; then the set that presses may go in circles, and is found by a rule that cannot
@@ -245,8 +245,8 @@ class System:
         return change, b
 
 
-def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System:
-    """Assemble and factorise; ``stiff`` (m,) of bool marks contacts whose stiffness is added.
+def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System:
+    """Assemble and factorise; ``stiff`` (m,) are stiffnesses of contacts that are added, nought of most.
 
     Raises:
         np.linalg.LinAlgError: the tridiagonal part is exactly singular.
@@ -278,9 +278,9 @@ def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System
         curvatures.append(sigma.ravel()[real])
         known.append(np.zeros(int(np.sum(real))))
     if np.any(stiff):
-        columns.append(A_I[stiff].T)
-        curvatures.append(np.full(int(np.sum(stiff)), CONTACT_STIFFNESS))
-        known.append(-rows.values[stiff])
+        columns.append(A_I[stiff > 0.0].T)
+        curvatures.append(stiff[stiff > 0.0])
+        known.append(-rows.values[stiff > 0.0])
     low_rank = np.concatenate(columns, axis=1) if columns else np.zeros((n + n_bodies, 0))
     sigma = np.concatenate(curvatures) if curvatures else np.zeros(0)
     free = [c.first_link for c in model.chains if c.first_link not in closure.fixed]
@@ -325,10 +325,10 @@ def _convex_system(problem: Problem, point: Point) -> System:
     Raises:
         np.linalg.LinAlgError: no shift up to the springs' own stiffness helped.
     """
-    none = np.zeros(point.rows.size, dtype=bool)
+    none = np.zeros(point.rows.size)
     tries = [(none, 0.0)]
     if np.any(point.lam > 0.0):
-        tries.append((point.lam > 0.0, 0.0))
+        tries += [(np.where(point.lam > 0.0, stiffness, 0.0), 0.0) for stiffness in CONTACT_STIFFNESS]
     tries += [(none, 4.0**i) for i in range(1, 12)]
     for stiff, shift in tries:
         try:

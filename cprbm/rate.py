@@ -48,7 +48,7 @@ def rate(problem: Problem, point: Point, change: Mapping[str, float]) -> Array:
 
 def _bordered(problem: Problem, point: Point, f: Array, driven: Array) -> Array:
     n = problem.model.n_links
-    found = system(problem, point, np.zeros(point.rows.size, dtype=bool), 0.0)
+    found = system(problem, point, np.zeros(point.rows.size), 0.0)
     keep = np.concatenate((found.base, found.contacts[point.lam > 0.0]))
     right = np.zeros(len(keep))
     right[: len(f) - n] = f[n:]

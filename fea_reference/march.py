@@ -314,7 +314,15 @@ class March:
             least_gap(root)
         except (ArithmeticError, ValueError):
             return None
+        if not self._arrived(known[root]):  # a thin beam's gap is none only beyond the root, where the bracket ends
+            beyond = [value for value in known if self.least_gap(known[value]) <= 0.0]
+            root = min(beyond, key=lambda value: abs(value - root))
         return root, known[root]
+
+    def _arrived(self, system: System) -> bool:
+        """Whether anything that may change has come to where it does."""
+        closing = any(zones_of(self.model, pair, system.z).least <= _CLOSED * pair.scale for pair in self.open)
+        return closing or any(self.room(stop, system) <= _SWITCHED for stop in self.model.stops)
 
     def _close_tightly(self, load: int, way: float) -> None:
         """Where a contact or stop has closed, tighten the others and find again where it does.

@@ -64,6 +64,8 @@ class Gap:
 class Survey:
     """A gap at places ``zeta`` (k,) in order, its least values among them, from which follows where it is small.
 
+    Of a beam and itself there may be several such sequences, one after the other, that are no neighbours.
+
     ``at`` gives it at other places ζ, its closest points sought from ζ_m; ``neighbours`` (k−1,) says whether it is
     known between a place and the next; ``kinks`` are those of the places, but for nodes, at which it has a kink.
     ``least`` is its least value anywhere, an upper bound of it where there are no places.

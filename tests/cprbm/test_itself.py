@@ -269,6 +269,48 @@ def test_a_strip_that_is_rolled():
         assert abs(fine[name] - value) < (0.01 if name == "force" else 1e-3) * abs(value), name
 
 
+@pytest.mark.parametrize("backwards", [False, True])
+def test_an_end_that_comes_to_lie_on_its_beam(backwards):
+    # reference: the same elastica, the force at its end, tests.references.rolled
+    narrows = (0.0, 0.3, 0.9, 1.0), (1.0, 0.6, 0.7, 0.3)
+    exact = rolled_strip.tip_touching(rolled_strip.Strip(*narrows, THICKNESS), 6.5, 0.1, 0.05)
+    unit, errors = MODULUS * WIDTH * THICKNESS**3 / 12.0, []
+    for links in (40, 80):
+        answer = cprbm.answer(roll((6.3, 6.5), narrows, backwards=backwards), cprbm.Settings(links=links))
+        assert answer.completed, answer.sentence
+        before, after = (station.values for station in answer.stations)
+        assert before["lap.force"][0] == 0.0
+        errors.append(
+            [
+                after["lap.force"][0] / unit / exact.force - 1.0,
+                after["tip.reaction_moment"][0] / unit / exact.moment - 1.0,
+            ]
+        )
+        # the end itself is the smaller of both arc lengths if the strip is drawn from there
+        place = 0.0 if backwards else exact.outer
+        assert after["lap.centre"][0] == pytest.approx(place, abs=5e-4)
+    coarse, fine = np.abs(errors)
+    assert np.all((coarse / fine > 3.5) & (coarse / fine < 4.5))
+    assert np.all(fine < (0.12, 2e-4))
+
+
+def test_lines_that_are_rolled_know_their_side_from_before():
+    # reference: the same elastica without thickness; at the touch itself no distance tells the side
+    narrows = (0.0, 0.3, 0.9, 1.0), (1.0, 0.75, 0.825, 0.4)
+    line = rolled_strip.Strip(*narrows, 0.0)
+    first = rolled_strip.first_touch(line, rolled_strip.free(line, 7.0).moment, 0.09, 0.976)
+    exact = rolled_strip.touching(line, first, 8.2)
+    unit, errors = MODULUS * WIDTH * THICKNESS**3 / 12.0, []
+    for links in (80, 160):
+        answer = cprbm.answer(roll((6.5, 7.4, 8.2), narrows, thick=False), cprbm.Settings(links=links))
+        assert answer.completed, answer.sentence
+        values = answer.stations[-1].values
+        errors.append([values["lap.force"][0] / unit - exact.force, values["lap.centre"][0] - exact.outer])
+    ratios = np.array(errors[0]) / errors[1]
+    assert np.all((ratios > 3.5) & (ratios < 4.5))
+    assert np.all(np.abs(errors[1]) < (0.006 * exact.force, 2e-4))
+
+
 def test_a_strip_drawn_from_its_other_end_is_the_same():
     # references: itself, and the shot place on the inner lap; a place is told from where the drawing begins
     forth, back = (rolled_values(20, backwards=backwards) for backwards in (False, True))

@@ -243,7 +243,7 @@ def test_derivatives_of_gaps_and_of_the_lagrangian(links):
         assert there.rows.keys == point.rows.keys
         return there.gradient + there.A_E.T @ mu + contact_gradient(model, there), there
 
-    found = system(problem, point, np.zeros(point.rows.size, dtype=bool), 0.0)
+    found = system(problem, point, np.zeros(point.rows.size), 0.0)
     for _ in range(3):
         d = random.standard_normal(len(q))
         d[closure.fixed] = 0.0

@@ -24,6 +24,7 @@ The unknowns are m(0) and H; P and c with the last two.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +47,7 @@ class Neck:
     energy: float
 
 
+@cache
 def opened(beta: float, clamp: float) -> Neck:
     """Before it touches, the clamp brought from where it is without stress to D."""
     u = np.zeros(2)
@@ -54,6 +56,7 @@ def opened(beta: float, clamp: float) -> Neck:
     return _answer(beta, clamp, u[0], u[1], 0.0, np.nan)
 
 
+@cache
 def first_touch(beta: float, T: float, near: float, place: float) -> Neck:
     """Where the neck closes, from a D and a place near by: (2) without a force."""
     start = opened(beta, near)
