@@ -12,7 +12,7 @@ first alone; a turning one two: its pivot stays), of a drive and of a stop.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLine
@@ -21,12 +21,15 @@ from fea_reference.acting import Acting
 from fea_reference.curves import length, sample
 from fea_reference.element import Elements, reference
 from fea_reference.hermite import Index, NeutralLine
+from fea_reference.known import Known
 from fea_reference.leaning import Chain, Span, chain, tangent_angles
 from fea_reference.own_pins import own_pins
 from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
 from fea_reference.settings import Settings
 from fea_reference.state import State
 from fea_reference.stops import StopPart, stops_of
+from fea_reference.touch import Contact, Penalty, Touch
+from fea_reference.zones import Zones
 from scene.answer import Array
 from scene.check_shapes import is_apart
 from scene.statement import (
@@ -230,7 +233,9 @@ WAY = SharePart("share of the ends' way to their points")
 class Model:
     """Everything the mechanics needs to know of a scene; ``start`` is the undeformed state.
 
-    ``guides`` are rows like a drive's whose value stays zero; ``apart`` are the ends to be assembled.
+    ``guides`` are rows like a drive's whose value stays zero; ``apart`` are the ends to be assembled.  ``lines``,
+    ``overlaps`` and ``touches`` remember what has been found in a state: neutral lines by the beam's name, the zones of
+    contacts, and what a contact is with a penalty, a quadrature and the depth at which it is held.
     """
 
     units: Units
@@ -249,6 +254,9 @@ class Model:
     multipliers: Index
     size: int
     start: State
+    lines: Known[str, NeutralLine] = field(default_factory=Known, repr=False)
+    overlaps: Known[Contact, Zones] = field(default_factory=Known, repr=False)
+    touches: Known[tuple[Contact, Penalty, int, float | None], Touch] = field(default_factory=Known, repr=False)
 
     @property
     def stepped(self) -> tuple[LoadPart | BeamLoadPart | DrivePart | SharePart, ...]:
@@ -276,6 +284,9 @@ class Model:
 
     def line(self, beam: BeamPart, z: State) -> NeutralLine:
         """A beam's neutral line in state ``z``."""
+        return self.lines.found(z, beam.name, lambda: self._line(beam, z))
+
+    def _line(self, beam: BeamPart, z: State) -> NeutralLine:
         dofs = self.node_dofs[:, beam.nodes]
         return NeutralLine.through(
             z[dofs[:2]],
