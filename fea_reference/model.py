@@ -233,7 +233,8 @@ WAY = SharePart("share of the ends' way to their points")
 class Model:
     """Everything the mechanics needs to know of a scene; ``start`` is the undeformed state.
 
-    ``guides`` are rows like a drive's whose value stays zero; ``apart`` are the ends to be assembled.  ``lines``,
+    ``guides`` are rows like a drive's whose value stays zero; ``apart`` are the ends to be assembled; ``stiffest`` is
+    the largest of the elements' 12 EI/h²; ``moving`` are the motions among the unknowns: of all nodes and bodies.  ``lines``,
     ``overlaps`` and ``touches`` remember what has been found in a state: neutral lines by the beam's name, the zones of
     contacts, and what a contact is with a penalty, a quadrature and the depth at which it is held.
     """
@@ -254,6 +255,8 @@ class Model:
     multipliers: Index
     size: int
     start: State
+    stiffest: float
+    moving: Index
     lines: Known[str, NeutralLine] = field(default_factory=Known, repr=False)
     overlaps: Known[Contact, Zones] = field(default_factory=Known, repr=False)
     touches: Known[tuple[Contact, Penalty, int, float | None], Touch] = field(default_factory=Known, repr=False)
@@ -262,12 +265,6 @@ class Model:
     def stepped(self) -> tuple[LoadPart | BeamLoadPart | DrivePart | SharePart, ...]:
         """What has a value that is stepped, in the order of the values: loads, drives, the assembly's two shares."""
         return (*self.loads, *self.drives, *((MOMENTS, WAY) if self.apart else ()))
-
-    @property
-    def moving(self) -> Index:
-        """The motions among the unknowns: of all nodes and bodies."""
-        bodies = [body.dofs for body in self.bodies if body.dofs is not None]
-        return np.concatenate([self.node_dofs.ravel(), *bodies])
 
     @property
     def drawn(self) -> Acting:
@@ -472,6 +469,8 @@ def build(scene: Scene, settings: Settings) -> Model:
         np.arange(first_row, size),
         size,
         State.of(start),
+        max(12.0 * beam.stiffest / float(elements.length[beam.elements.start]) ** 2 for beam in beams),
+        np.concatenate([node_dofs.ravel(), *(body.dofs for body in bodies if body.dofs is not None)]),
     )
 
 
