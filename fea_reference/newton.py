@@ -36,7 +36,7 @@ from scene.answer import Array
 
 _TURN = 0.4  # rad, and the same in lengths of the longest beam: the most that one iteration may move anything
 _NEAR = 3.0  # factor between penetrations that Newton's method bridges by itself
-_NOTHING = 1e-2  # of the correction asked: what need not be corrected any more
+_NOTHING = 1e-2  # of the correction and the unbalanced force asked: what need not be corrected any more
 _SETTLED = 1e-4  # correction after which holding has done what it can
 _FALLING = 0.1  # of the unbalanced force before: who has come so far needs a few iterations more
 _TOUCHING = 1e-9  # of the thickness: an overlap that is none
@@ -79,8 +79,7 @@ def equilibrium(
     while True:
         unbalanced = float(np.abs(system.residual).max())
         accepted = max(settings.residual * system.scale, system.floor)
-        balanced = not held and unbalanced <= accepted
-        if balanced and correction <= settings.correction:
+        if not held and correction <= settings.correction and unbalanced <= accepted:
             return Solved(system, converged=True, iterations=iteration)
         if iteration >= settings.newton_limit and not unbalanced <= _FALLING * last:
             return Solved(system, converged=False, iterations=iteration)
@@ -92,7 +91,7 @@ def equilibrium(
         if not np.isfinite(step).all():
             return Solved(system, converged=False, iterations=iteration + 1)
         correction = float(np.abs(step[moving]).max())
-        if balanced and correction <= _NOTHING * settings.correction:
+        if not held and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING * accepted:
             return Solved(system, converged=True, iterations=iteration)  # this step need not be made
         step *= min(1.0, _TURN / max(correction, _TURN))
         foreseen = {one.pair: one.foreseen(step) for one in system.touches}
