@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.sparse.linalg import splu
 
 from fea_reference.acting import Acting
 from fea_reference.advance import advance, carried
@@ -135,11 +134,8 @@ class March:
 
     def rate(self, load: int) -> Array:
         """dz/dvalue along the branch; zero where the tangent is singular."""
-        try:
-            rate = splu(self.system.tangent).solve(load_direction(self.model, load, self.system.z, self.acting))
-        except RuntimeError:
-            return np.zeros(self.model.size)
-        return rate if np.isfinite(rate).all() else np.zeros(self.model.size)
+        rate = self.system.solve(load_direction(self.model, load, self.system.z, self.acting))
+        return np.zeros(self.model.size) if rate is None else rate
 
     def solve(self, load: int, value: float, z: State) -> System | None:
         """Equilibrium at ``value`` near ``z``; None if there is none to be found."""

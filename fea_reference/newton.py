@@ -21,7 +21,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.linalg import splu
 
 from fea_reference.acting import Acting
 from fea_reference.advance import advance
@@ -84,11 +83,8 @@ def equilibrium(
         if iteration >= settings.newton_limit and not unbalanced <= _FALLING * last:
             return Solved(system, converged=False, iterations=iteration)
         last = unbalanced
-        try:
-            step = splu(system.tangent).solve(-system.residual)
-        except RuntimeError:  # exactly singular
-            return Solved(system, converged=False, iterations=iteration + 1)
-        if not np.isfinite(step).all():
+        step = system.solve(-system.residual)
+        if step is None:
             return Solved(system, converged=False, iterations=iteration + 1)
         correction = float(np.abs(step[moving]).max())
         if not held and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING * accepted:

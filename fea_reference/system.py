@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from frozendict import frozendict
 from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import SuperLU, splu
 
 from fea_reference.acting import Acting
 from fea_reference.beam_loads import BeamLoad, beam_load, load_forces
@@ -32,7 +34,7 @@ _NONE_HELD: Mapping[Contact, float] = frozendict()
 _NOTHING_FORESEEN: Mapping[Contact, Array] = frozendict()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class System:
     """A state ``z`` and what follows from it.
 
@@ -55,6 +57,18 @@ class System:
     loads: tuple[BeamLoad, ...]
     scale: float
     floor: float
+
+    def solve(self, right: Array) -> Array | None:
+        """What the tangent makes ``right`` (size,) of; None where it is exactly singular or as good as that."""
+        solution = None if self._factors is None else self._factors.solve(right)
+        return None if solution is None or not np.isfinite(solution).all() else solution
+
+    @cached_property
+    def _factors(self) -> SuperLU | None:
+        try:
+            return splu(self.tangent)
+        except RuntimeError:  # exactly singular
+            return None
 
 
 @dataclass(frozen=True, slots=True)
