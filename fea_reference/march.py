@@ -283,10 +283,11 @@ class March:
     def _first_touch(self, load: int, known: dict[float, System]) -> tuple[float, System] | None:
         """The value at which the least gap of what may change is zero, on the equilibria where it has not.
 
-        ``known`` are two equilibria by their values, before and beyond it.
+        ``known`` are two equilibria by their values, one before and one beyond it.  Sought is where one of the gaps is
+        zero, which is smooth, beginning with the one that comes first on a straight line.
         """
 
-        def least_gap(value: float) -> float:
+        def gaps(value: float) -> list[float]:
             if value not in known:
                 low, high = max(v for v in known if v < value), min(v for v in known if v > value)
                 between = known[high].z.values - known[low].z.values
@@ -295,15 +296,28 @@ class March:
                 if system is None:
                     raise ArithmeticError
                 known[value] = system
-            return self.least_gap(known[value])
+            return self.gaps(known[value])
 
-        one, other = known
+        def sought(value: float, which: int) -> float:
+            return gaps(value)[which]
+
+        arrived = [*(_CLOSED * pair.scale for pair in self.open), *(_SWITCHED for _ in self.model.stops)]
+        clear, beyond = sorted(known, key=lambda value: min(gaps(value)), reverse=True)
+        xtol = 1e-11 * max(abs(clear), abs(beyond))
         try:
-            root = float(brentq(least_gap, one, other, xtol=1e-11 * max(abs(one), abs(other)), rtol=1e-11))
-            least_gap(root)
+            for _ in gaps(clear):
+                pairs = list(zip(gaps(clear), gaps(beyond), strict=True))
+                first = min((i for i, pair in enumerate(pairs) if pair[1] < 0.0), key=lambda i: _straight(*pairs[i]))
+                root = float(brentq(sought, clear, beyond, (first,), xtol=xtol, rtol=1e-11))
+                if gaps(root)[first] > arrived[first]:  # a jump: overlap that is not seen before it has some size
+                    over = [value for value in known if gaps(value)[first] <= 0.0]
+                    root = over[int(np.argmin(np.abs(np.array(over) - root)))]
+                if min((*gaps(root)[:first], *gaps(root)[first + 1 :]), default=0.0) >= 0.0:
+                    return root, known[root]
+                beyond = root
         except (ArithmeticError, ValueError):
             return None
-        return root, known[root]
+        return None
 
     def _close_tightly(self, load: int, way: float) -> None:
         """Where a contact or stop has closed, tighten the others and find again where it does.
@@ -328,10 +342,14 @@ class March:
                     self.values[load], self.system = found
                 return
 
-    def least_gap(self, system: System) -> float:
+    def gaps(self, system: System) -> list[float]:
         """Of the open contacts, and how far stops are from changing."""
         gaps = [zones_of(self.model, pair, system.z).least for pair in self.open]
-        return min((*gaps, *(self.room(stop, system) for stop in self.model.stops)), default=np.inf)
+        return [*gaps, *(self.room(stop, system) for stop in self.model.stops)]
+
+    def least_gap(self, system: System) -> float:
+        """The least of them."""
+        return min(self.gaps(system), default=np.inf)
 
     def watch_what_touches(self, load: int) -> None:
         """Give a penalty to every open contact whose gap has vanished."""
@@ -493,6 +511,11 @@ class March:
         """What is stepped, and a value of it in SI."""
         part = self.model.stepped[load]
         return f"{part.name} = {value * part.unit:.6g}"
+
+
+def _straight(before: float, beyond: float) -> float:
+    """The share of the way at which what falls from one to the other is zero on a straight line; first what is so."""
+    return before / (before - beyond) if before > 0.0 else 0.0
 
 
 def begin(model: Model, settings: Settings, contacts: tuple[Contact, ...]) -> March:

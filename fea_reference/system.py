@@ -113,9 +113,9 @@ def assemble(
     """
     elements = forces(model.elements, model.element_dofs, z)
     touches = tuple(touch(model, pair, penalty, quadrature, z, held.get(pair)) for pair, penalty in penalties.items())
-    residual, rows, columns, values_there = _rigid(model, values, z, acting)
+    residual, rigid = _rigid(model, values, z, acting)
     parts = [(model.element_dofs, elements.gradient)]
-    entries = [(np.array(rows), np.array(columns), np.array(values_there)), _entries(model.element_dofs, elements.hessian)]
+    entries = [rigid, _entries(model.element_dofs, elements.hessian)]
     pressing = [(one, one.gradient) for one in touches if one.closed]
     for one, gradient in pressing:
         parts.append((one.dofs, gradient))
@@ -205,7 +205,7 @@ def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
     return f
 
 
-def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array, list[int], list[int], list[float]]:
+def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array, Entries]:
     """Joints, hinges, guides, drives, stops and loads: few, so one after the other."""
     residual = np.zeros(model.size)
     ways: dict[int, Array] = {}
@@ -315,7 +315,7 @@ def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array
             rows.append(int(dofs[2]))
             columns.append(int(dofs[2]))
             entries.append(value * float(turned(part.arm, z[dofs[2]]) @ part.direction))
-    return residual, rows, columns, entries
+    return residual, (np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64), np.array(entries))
 
 
 def _entries(dofs: Index, local: Array) -> Entries:

@@ -359,7 +359,7 @@ def _roots(
 
 
 def _turning(zeta: Array, slope: Array, curvature: Array, left: NDArray[np.int64]) -> Array:
-    """The share of the way from ``left`` to the next where g' is zero by the cubic of ζ in g', or by a straight line."""
+    """The share of the way from ``left`` to the next at which g' is zero: ζ as a cubic of g', or straight."""
     right = left + 1
     rise = slope[right] - slope[left]
     linear = -slope[left] / rise
