@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fea_reference.acting import Acting
-from fea_reference.advance import advance, carried
+from fea_reference.advance import advance, carried, way_to
 from fea_reference.contacts import passed_through, resting_pressure, zones_of
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
@@ -189,16 +189,20 @@ class March:
         return None
 
     def _foreseen(self, load: int, step: float, rate: Array) -> Array:
-        """By what a step will move, (size,): to second order by the rates of now and of before, if they tell."""
+        """By what a step will move, (size,): to third order by state and rate of now and of before, if they tell."""
         first, behind = step * rate, self.behind
         if behind is None or behind.load != load or behind.acting is not self.acting:
             return first
         back = float(self.values[load]) - behind.value
         if behind.contacts != frozenset(self.penalties) or not abs(step) <= _AHEAD * abs(back):
             return first
-        second = 0.5 * step**2 / back * (rate - carried(self.model, behind.z, self.system.z, behind.rate))
-        bent, straight = (float(np.abs(way[self.model.moving]).max()) for way in (second, first))
-        return first + second if bent <= _BENT * straight else first
+        # c₂ u² + c₃ u³ besides, with u from −1 before to 0 now
+        u, here = step / back, back * rate
+        come = way_to(self.model, self.system.z, behind.z) + here
+        turned = back * carried(self.model, behind.z, self.system.z, behind.rate) - here
+        more = u**2 * (3.0 * come + turned) + u**3 * (2.0 * come + turned)
+        bent, straight = (float(np.abs(way[self.model.moving]).max()) for way in (more, first))
+        return first + more if bent <= _BENT * straight else first
 
     def passed(self, before: State, system: System, where: str) -> Trouble | None:
         """What must not have happened on the way from the state ``before`` to a system; a sentence says ``where``."""

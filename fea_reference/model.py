@@ -235,8 +235,8 @@ class Model:
 
     ``guides`` are rows like a drive's whose value stays zero; ``apart`` are the ends to be assembled; ``stiffest`` is
     the largest of the elements' 12 EI/h²; ``moving`` are the motions among the unknowns: of all nodes and bodies.
-    ``lines``, ``overlaps`` and ``touches`` remember what has been found in a state: neutral lines by the beam's name, the zones of
-    contacts, and what a contact is with a penalty, a quadrature and the depth at which it is held.
+    ``lines``, ``overlaps`` and ``touches`` remember what has been found in a state: neutral lines by the name of the
+    beam, the zones of contacts, and what a contact is with a penalty, a quadrature and the depth at which it is held.
     """
 
     units: Units
