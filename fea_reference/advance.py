@@ -47,6 +47,20 @@ def carried(model: Model, before: State, now: State, rate: Array) -> Array:
     return same
 
 
+def way_to(model: Model, start: State, end: State) -> Array:
+    """The step (size,) by which ``start`` is moved to ``end``, see :func:`advance`."""
+    way = (end.values - start.values) + (end.rest - start.rest)
+    for beam in model.beams:
+        dofs = model.node_dofs[:2, beam.nodes]
+        dx, dy = start.difference(dofs[:, 1:], dofs[:, :-1])
+        along, across = end.difference(dofs[:, 1:], dofs[:, :-1])
+        ratio = (along + 1j * across) / (dx + 1j * dy)
+        turn, stretch = np.angle(ratio), np.abs(ratio) - 1.0
+        changes = np.stack([stretch * dx - turn * dy, turn * dx + stretch * dy])
+        way[dofs[:, 1:]] = way[dofs[:, :1]] + np.cumsum(changes, axis=1)
+    return way
+
+
 def _chords(dofs: Ints, z: State, step: Array) -> tuple[Array, Array, Array, Array]:
     """The chords (n,) between a beam's nodes, ``dofs`` (2, n + 1), along x and y, and their turn and stretch."""
     dx, dy = z.difference(dofs[:, 1:], dofs[:, :-1])

@@ -27,6 +27,10 @@ def contacts(scene: Scene, model: Model, penetration: float) -> tuple[Contact, .
 
 def zones_of(model: Model, what: Contact, z: State) -> Zones:
     """Where there is overlap in state ``z``."""
+    return model.overlaps.found(z, what, lambda: _zones_of(model, what, z))
+
+
+def _zones_of(model: Model, what: Contact, z: State) -> Zones:
     match what:
         case Pair():
             return contact.zones_of(model, what, z)
@@ -38,6 +42,11 @@ def zones_of(model: Model, what: Contact, z: State) -> Zones:
 
 def touch(model: Model, what: Contact, penalty: Penalty, quadrature: int, z: State, held: float | None = None) -> Touch:
     """The penalty's energy derivatives, see :func:`fea_reference.contact.touch`; only beams are ever held."""
+    key = what, penalty, quadrature, held
+    return model.touches.found(z, key, lambda: _touch(model, what, penalty, quadrature, z, held))
+
+
+def _touch(model: Model, what: Contact, penalty: Penalty, quadrature: int, z: State, held: float | None) -> Touch:
     match what:
         case Pair():
             return contact.touch(model, what, penalty, quadrature, z, held)

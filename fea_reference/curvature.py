@@ -161,7 +161,7 @@ def _directions(model: Model, system: System, K: csr_array) -> csr_array:
         dofs = np.concatenate([dofs for i in group if (dofs := model.bodies[i].dofs) is not None])
         held = [hold.row for hold in (*model.guides, *model.drives) if hold.body in group]
         held += [int(row) for hinge in model.hinges if set(hinge.bodies) & group for row in hinge.rows]
-        left = null_space(K[held][:, dofs].toarray()) if held else np.eye(dofs.size)
+        left = null_space(_block(K, held, dofs)) if held else np.eye(dofs.size)
         here = count + np.arange(left.shape[1])
         count += here.size
         of_bodies |= {int(dof): (here, line) for dof, line in zip(dofs, left, strict=True)}
@@ -180,6 +180,16 @@ def _directions(model: Model, system: System, K: csr_array) -> csr_array:
         entries.append(value * line)
     coordinates = (np.concatenate(rows), np.concatenate(columns))
     return csr_array((np.concatenate(entries), coordinates), (model.size, count))
+
+
+def _block(K: csr_array, rows: list[int], columns: Index) -> Array:
+    """The few entries of K in ``rows`` (m,) and ``columns`` (k,), (m, k)."""
+    block = np.zeros((len(rows), columns.size))
+    for i, row in enumerate(rows):
+        entries = slice(K.indptr[row], K.indptr[row + 1])
+        for column, value in zip(K.indices[entries], K.data[entries], strict=True):
+            block[i, columns == column] = value
+    return block
 
 
 def _together(model: Model) -> list[set[int]]:

@@ -11,6 +11,7 @@ T       half of the thickness, zero for a line: it goes straight between the sec
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from scene.answer import Array
 from scene.statement import Beam
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Edge:
     """``half`` (k,) is T at the ``knots`` (k,), which are places ζ from the beam's start to its end; no unit."""
 
@@ -32,12 +33,19 @@ class Edge:
 
     def at(self, zeta: Array) -> Array:
         """T at places ``zeta`` (k,)."""
-        return np.asarray(np.interp(zeta, self.knots, self.half))
+        places, half, _ = self._table
+        return np.asarray(np.interp(zeta, places, half))
 
     def slope(self, zeta: Array) -> Array:
         """∂T/∂ζ at places ``zeta`` (k,); at a knot what follows."""
-        piece = np.clip(np.searchsorted(self.knots, zeta, side="right") - 1, 0, len(self.knots) - 2)
-        return np.asarray((np.diff(self.half) / np.diff(self.knots))[piece])
+        places, _, slopes = self._table
+        return np.asarray(slopes[np.searchsorted(places[1:-1], zeta, side="right")])
+
+    @cached_property
+    def _table(self) -> tuple[Array, Array, Array]:
+        """Knots and T at them (k,), and ∂T/∂ζ between them (k−1,)."""
+        places, half = np.array(self.knots), np.array(self.half)
+        return places, half, np.diff(half) / np.diff(places)
 
 
 def edge_of(beam: Beam, elements: int, unit_length: float, *, thick: bool) -> Edge:

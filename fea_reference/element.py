@@ -165,23 +165,28 @@ def forces(elements: Elements, dofs: Index, state: State) -> ElementForces:
 
 @dataclass(frozen=True, slots=True)
 class Shear:
-    """γ of n elements (n,), its derivatives ``by`` (6, n) and ``by_twice`` (6, 6, n) the nodes' (x, y, θ)."""
+    """Derivatives of γ of n elements, ``by`` (6, n) and ``by_twice`` (6, 6, n) the nodes' (x, y, θ)."""
 
-    angle: Array
     by: Array
     by_twice: Array
 
 
-def shear(elements: Elements, part: slice, dofs: Index, state: State) -> Shear:
-    """γ of those elements that are ``part`` of all, with unknowns ``dofs`` (7, n)."""
+def shear(elements: Elements, part: slice | Index, dofs: Index, state: State) -> Shear:
+    """What γ changes by, of those elements that are ``part`` of all, with unknowns ``dofs`` (7, n)."""
     dx, dy = state.difference(dofs[3:5], dofs[:2])
-    l, alpha = np.hypot(dx, dy), np.arctan2(dy, dx)  # noqa: E741 - the chord's length
-    ends, slip = dofs[[2, 5]], elements.slip[:, part]
-    delta = _wrapped(state[ends] - alpha) + state.rest[ends] - elements.rotation[:, part]
+    l, slip = np.hypot(dx, dy), elements.slip[:, part]  # noqa: E741 - the chord's length
     r, z, turn = _chord(dx, dy, l)
     rz = r[:6, None] * z[None, :6]
     by_twice = -slip.sum(axis=0) / l**2 * (rz + rz.transpose(1, 0, 2))
-    return Shear(-(slip * delta).sum(axis=0), -np.einsum("in,ian->an", slip, turn[:, :6]), by_twice)
+    return Shear(-np.einsum("in,ian->an", slip, turn[:, :6]), by_twice)
+
+
+def shear_angle(elements: Elements, part: slice, dofs: Index, state: State) -> Array:
+    """γ of the same elements, (n,)."""
+    dx, dy = state.difference(dofs[3:5], dofs[:2])
+    ends = dofs[[2, 5]]
+    delta = _wrapped(state[ends] - np.arctan2(dy, dx)) + state.rest[ends] - elements.rotation[:, part]
+    return np.asarray(-(elements.slip[:, part] * delta).sum(axis=0))
 
 
 def _chord(dx: Array, dy: Array, l: Array) -> tuple[Array, Array, Array]:  # noqa: E741 - the chord's length

@@ -36,12 +36,12 @@ from __future__ import annotations
 import numpy as np
 
 from fea_reference.edge import edge_of
-from fea_reference.hermite import Index, NeutralLine, along, shapes, twice_along
+from fea_reference.hermite import Around, Index, NeutralLine, along, plane, shapes, twice_along
 from fea_reference.model import BodyPart, Model, turned
 from fea_reference.outline import Near
 from fea_reference.own_pins import held_on
-from fea_reference.state import State, summed
-from fea_reference.touch import Face, Penalty, Touch, together
+from fea_reference.state import Complex, State, summed
+from fea_reference.touch import Face, Penalty, Touch, gauss, together
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, none
 from scene.answer import Array
 from scene.statement import EdgeContact, Scene
@@ -135,7 +135,7 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     zones, kinks = seen.zones()
     line = seen.line
 
-    points, weights = np.polynomial.legendre.leggauss(quadrature)
+    points, weights = gauss(quadrature)
     width = zones.intervals[:, 1] - zones.intervals[:, 0]
     zeta = (zones.intervals[:, :1] + width[:, None] * 0.5 * (points + 1.0)).ravel()
     e, xi = line.locate(zeta)
@@ -226,13 +226,17 @@ class _Seen:
         X, Y, self.phi = model.body_state(body, z)
         self.centre = body.centre + np.array([X, Y])
         rest = np.zeros(2) if body.dofs is None else z.rest[body.dofs[:2]]
-        q, error = summed(self.line.points, -self.centre[:, None] * np.ones_like(self.line.points))
-        self.nodes = self._back(q + (error + self.line.rest - rest[:, None]))
+        q, error = summed(self.line.nodes, -complex(*self.centre) * np.ones_like(self.line.nodes))
+        self.back = complex(np.cos(self.phi), -np.sin(self.phi))
+        self.nodes = self.back * (q + (error + self.line.rests - complex(*rest)))
 
     def place(self, zeta: Array) -> Array:
         """y (2, k)."""
-        e, _ = self.line.locate(zeta)
-        return np.asarray(self.nodes[:, e] + self._back(self.line.from_node(zeta)))
+        return plane(self._place(self.line.around(zeta)))
+
+    def _place(self, there: Around) -> Complex:
+        """y as a complex number, (k,)."""
+        return np.asarray(self.nodes[there.element] + self.back * there.way)
 
     def turned(self, vectors: Array) -> Array:
         """Vectors (2, k) of the body's frame as they point now."""
@@ -273,15 +277,15 @@ class _Seen:
 
     def _at(self, zeta: Array, none_m: Array) -> Gap:
         face = self.face
-        near = face.outline.near(self.place(zeta))
-        _, x1, x2 = self.line.at(zeta)
-        n = self.turned(near.normal)
-        along_face = n[1] * x1[0] - n[0] * x1[1]
-        slope, curvature = (n * x1).sum(axis=0) - face.edge.slope(zeta), (n * x2).sum(axis=0)
+        there = self.line.around(zeta)
+        near = face.outline.near(plane(self._place(there)))
+        # of a product with n turned back, n·v is real, and −τ·v imaginary
+        back = (near.normal[0] - 1j * near.normal[1]) * self.back
+        ahead = back * there.ahead
         return Gap(
             near.distance - face.edge.at(zeta),
-            slope,
-            curvature + near.bend * along_face**2,
+            ahead.real - face.edge.slope(zeta),
+            (back * there.bent).real + near.bend * ahead.imag**2,
             none_m,
             near.distance > -face.outline.extent,
         )
@@ -291,39 +295,36 @@ class _Seen:
         corners = self.face.outline.corners
         if corners.points.shape[1] == 0:
             return np.empty(0), {}
-        y = self.place(even)
-        apart = np.hypot(*(y[:, None, :] - corners.points[:, :, None]))
+        y = self._place(self.line.around(even))
+        apart = np.abs(y - (corners.points[0] + 1j * corners.points[1])[:, None])
         reach = 2.0 * max(self.face.edge.half) + _REACH * float(self.line.lengths.max())
         near = np.flatnonzero(apart.min(axis=1) < reach)
         if near.size == 0:
             return np.empty(0), {}
         start = even[apart[near].argmin(axis=1)]
         P = corners.points[:, near]
-        zeta, crosses = self._crossing(P, corners.halving[:, near], start)
+        across = (corners.halving, *corners.tangents)
+        t = np.concatenate([one[:, near] for one in across], axis=1)
+        every, crosses = self._crossing(np.tile(P, len(across)), t, np.tile(start, len(across)))
+        zeta, through = every[: near.size], crosses[: near.size]
         d = self.face.outline.near(self.place(zeta)).distance
-        jumps = crosses & np.where(corners.jutting[near], d < 0.0, d > 0.0)
-        found = [zeta[crosses]]
-        for side in corners.tangents:
-            beside, crosses = self._crossing(P, side[:, near], start)
-            found.append(beside[crosses])
-        return np.concatenate(found), dict(zip(zeta[jumps].tolist(), near[jumps], strict=True))
+        jumps = through & np.where(corners.jutting[near], d < 0.0, d > 0.0)
+        return every[crosses], dict(zip(zeta[jumps].tolist(), near[jumps], strict=True))
 
     def _crossing(self, P: Array, t: Array, start: Array) -> tuple[Array, Array]:
         """Places (c,) where the line crosses those through P across t (2, c), sought from ``start`` (c,)."""
         zeta, step = start.copy(), np.zeros_like(start)
+        at, along_t = P[0] + 1j * P[1], t[0] - 1j * t[1]
         for _ in range(_CROSSING_STEPS):
-            ahead = (self._back(self.line.at(zeta)[1]) * t).sum(axis=0)
-            off = ((self.place(zeta) - P) * t).sum(axis=0)
-            step = np.clip(off / np.where(ahead == 0.0, 1.0, ahead), -1.0, 1.0)
-            moved = np.clip(zeta - step, 0.0, self.line.n)
+            there = self.line.around(zeta)
+            ahead = (there.ahead * self.back * along_t).real
+            off = ((self._place(there) - at) * along_t).real
+            step = np.minimum(np.maximum(off / np.where(ahead == 0.0, 1.0, ahead), -1.0), 1.0)
+            moved = np.minimum(np.maximum(zeta - step, 0.0), self.line.n)
             zeta, step = moved, zeta - moved
             if float(np.abs(step).max()) < _ARRIVED:
                 break
-        crosses = np.abs(((self.place(zeta) - P) * t).sum(axis=0)) < _ARRIVED
+        crosses = np.abs(((self._place(self.line.around(zeta)) - at) * along_t).real) < _ARRIVED
         for end in self.face.own:
             crosses &= np.abs(zeta - end) > _AT_END
         return zeta, crosses
-
-    def _back(self, vectors: Array) -> Array:
-        """Vectors (2, k) as the body's frame sees them."""
-        return turned(vectors, -self.phi)

@@ -83,7 +83,7 @@ class NeutralLine:
     def around(self, zeta: Array) -> Around:
         """What there is at places (k,)."""
         e, xi = self.locate(zeta)
-        t, b, a = self.cubic[:, e]
+        t, b, a = self.cubic.take(e, axis=1)
         last = xi * a
         bent = b + last
         return Around(e, xi * (t + xi * bent), t + xi * (bent + bent + last), 2.0 * bent + 4.0 * last)

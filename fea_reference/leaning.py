@@ -26,7 +26,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea_reference.element import Elements, shear
+from fea_reference.element import Elements, shear, shear_angle
 from fea_reference.hermite import Index
 from fea_reference.state import State
 from scene.answer import Array
@@ -50,7 +50,7 @@ def tangent_angles(elements: Elements, span: Span, z: State) -> Array:
     theta = np.append(z[dofs[2]], z[dofs[5, -1:]])
     if not elements.slip[:, span.part].any():
         return theta
-    gamma = shear(elements, span.part, dofs, z).angle
+    gamma = shear_angle(elements, span.part, dofs, z)
     start, end = (0.0 if welded else 1.0 for welded in span.welded)
     beside = np.append(start * gamma[:1], gamma) + np.append(gamma, end * gamma[-1:])
     beside[[0, -1]] *= start, end
@@ -123,18 +123,20 @@ def chain(elements: Elements, lines: tuple[tuple[Span, Index], ...], body: Index
     by, twice = np.zeros((2 * len(leaning), size, k)), np.zeros((2 * len(leaning), size, size, k))
     for number, (i, (span, e)) in enumerate(leaning):
         last = span.dofs.shape[1] - 1
-        slip = shear(elements, span.part, span.dofs, z)
+        near = np.clip(np.stack([e - 1, e, e + 1]), 0, last)
+        slip = shear(elements, span.part.start + near.ravel(), span.dofs[:, near.ravel()], z)
+        slip_by, slip_twice = slip.by.reshape(6, 3, k), slip.by_twice.reshape(6, 6, 3, k)
         for tangent in (0, 1):
             one = 2 * number + tangent
             rows.append(_LINE * i + _TANGENTS[tangent])
-            neighbour = np.clip(e + 2 * tangent - 1, 0, last)
+            neighbour = near[2 * tangent]
             share = np.where(neighbour == e, 0.0, 0.5)
             own_share = np.where(neighbour == e, 0.0 if span.welded[tangent] else 1.0, 0.5)
             row = len(own) + 12 * number + 6 * tangent
             beside.append(span.dofs[:6, neighbour])
             shares.append((i, row, neighbour))
-            for begin, where, weight in ((_LINE * i, e, own_share), (row, neighbour, share)):
+            for begin, where, weight in ((_LINE * i, 1, own_share), (row, 2 * tangent, share)):
                 here = slice(begin, begin + 6)
-                by[one, here] = weight * slip.by[:, where]
-                twice[one, here, here] = weight * slip.by_twice[:, :, where]
+                by[one, here] = weight * slip_by[:, where]
+                twice[one, here, here] = weight * slip_twice[:, :, where]
     return Chain(np.concatenate(beside), tuple(rows), by, twice, tuple(shares))

@@ -7,10 +7,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.sparse.linalg import splu
 
 from fea_reference.acting import Acting
-from fea_reference.advance import advance, carried
+from fea_reference.advance import advance, carried, way_to
 from fea_reference.contacts import looked_at, passed_through, resting_pressure, zones_of
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
@@ -135,11 +134,8 @@ class March:
 
     def rate(self, load: int) -> Array:
         """dz/dvalue along the branch; zero where the tangent is singular."""
-        try:
-            rate = splu(self.system.tangent).solve(load_direction(self.model, load, self.system.z, self.acting))
-        except RuntimeError:
-            return np.zeros(self.model.size)
-        return rate if np.isfinite(rate).all() else np.zeros(self.model.size)
+        rate = self.system.solve(load_direction(self.model, load, self.system.z, self.acting))
+        return np.zeros(self.model.size) if rate is None else rate
 
     def solve(self, load: int, value: float, z: State) -> System | None:
         """Equilibrium at ``value`` near ``z``; None if there is none to be found."""
@@ -194,16 +190,20 @@ class March:
         return None
 
     def _foreseen(self, load: int, step: float, rate: Array) -> Array:
-        """By what a step will move, (size,): to second order by the rates of now and of before, if they tell."""
+        """By what a step will move, (size,): to third order by state and rate of now and of before, if they tell."""
         first, behind = step * rate, self.behind
         if behind is None or behind.load != load or behind.acting is not self.acting:
             return first
         back = float(self.values[load]) - behind.value
         if behind.contacts != frozenset(self.penalties) or not abs(step) <= _AHEAD * abs(back):
             return first
-        second = 0.5 * step**2 / back * (rate - carried(self.model, behind.z, self.system.z, behind.rate))
-        bent, straight = (float(np.abs(way[self.model.moving]).max()) for way in (second, first))
-        return first + second if bent <= _BENT * straight else first
+        # c₂ u² + c₃ u³ besides, with u from −1 before to 0 now
+        u, here = step / back, back * rate
+        come = way_to(self.model, self.system.z, behind.z) + here
+        turned = back * carried(self.model, behind.z, self.system.z, behind.rate) - here
+        more = u**2 * (3.0 * come + turned) + u**3 * (2.0 * come + turned)
+        bent, straight = (float(np.abs(way[self.model.moving]).max()) for way in (more, first))
+        return first + more if bent <= _BENT * straight else first
 
     def passed(self, before: State, system: System, where: str) -> Trouble | None:
         """What must not have happened on the way from the state ``before`` to a system; a sentence says ``where``."""
@@ -294,10 +294,11 @@ class March:
     def _first_touch(self, load: int, known: dict[float, System]) -> tuple[float, System] | None:
         """The value at which the least gap of what may change is zero, on the equilibria where it has not.
 
-        ``known`` are two equilibria by their values, before and beyond it.
+        ``known`` are two equilibria by their values, one before and one beyond it.  Sought is where one of the gaps is
+        zero, which is smooth, beginning with the one that comes first on a straight line.
         """
 
-        def least_gap(value: float) -> float:
+        def gaps(value: float) -> list[float]:
             if value not in known:
                 low, high = max(v for v in known if v < value), min(v for v in known if v > value)
                 between = known[high].z.values - known[low].z.values
@@ -306,23 +307,28 @@ class March:
                 if system is None:
                     raise ArithmeticError
                 known[value] = system
-            return self.least_gap(known[value])
+            return self.gaps(known[value])
 
-        one, other = known
+        def sought(value: float, which: int) -> float:
+            return gaps(value)[which]
+
+        arrived = [*(_CLOSED * pair.scale for pair in self.open), *(_SWITCHED for _ in self.model.stops)]
+        clear, beyond = sorted(known, key=lambda value: min(gaps(value)), reverse=True)
+        xtol = 1e-11 * max(abs(clear), abs(beyond))
         try:
-            root = float(brentq(least_gap, one, other, xtol=1e-11 * max(abs(one), abs(other)), rtol=1e-11))
-            least_gap(root)
+            for _ in gaps(clear):
+                pairs = list(zip(gaps(clear), gaps(beyond), strict=True))
+                first = min((i for i, pair in enumerate(pairs) if pair[1] < 0.0), key=lambda i: _straight(*pairs[i]))
+                root = float(brentq(sought, clear, beyond, (first,), xtol=xtol, rtol=1e-11))
+                if gaps(root)[first] > arrived[first]:  # a jump: overlap that is not seen before it has some size
+                    over = [value for value in known if gaps(value)[first] <= 0.0]
+                    root = over[int(np.argmin(np.abs(np.array(over) - root)))]
+                if min((*gaps(root)[:first], *gaps(root)[first + 1 :]), default=0.0) >= 0.0:
+                    return root, known[root]
+                beyond = root
         except (ArithmeticError, ValueError):
             return None
-        if not self._arrived(known[root]):  # a thin beam's gap is none only beyond the root, where the bracket ends
-            beyond = [value for value in known if self.least_gap(known[value]) <= 0.0]
-            root = min(beyond, key=lambda value: abs(value - root))
-        return root, known[root]
-
-    def _arrived(self, system: System) -> bool:
-        """Whether anything that may change has come to where it does."""
-        closing = any(zones_of(self.model, pair, system.z).least <= _CLOSED * pair.scale for pair in self.open)
-        return closing or any(self.room(stop, system) <= _SWITCHED for stop in self.model.stops)
+        return None
 
     def _close_tightly(self, load: int, way: float) -> None:
         """Where a contact or stop has closed, tighten the others and find again where it does.
@@ -347,10 +353,14 @@ class March:
                     self.values[load], self.system = found
                 return
 
-    def least_gap(self, system: System) -> float:
+    def gaps(self, system: System) -> list[float]:
         """Of the open contacts, and how far stops are from changing."""
         gaps = [zones_of(self.model, pair, system.z).least for pair in self.open]
-        return min((*gaps, *(self.room(stop, system) for stop in self.model.stops)), default=np.inf)
+        return [*gaps, *(self.room(stop, system) for stop in self.model.stops)]
+
+    def least_gap(self, system: System) -> float:
+        """The least of them."""
+        return min(self.gaps(system), default=np.inf)
 
     def watch_what_touches(self, load: int) -> None:
         """Give a penalty to every open contact whose gap has vanished."""
@@ -512,6 +522,11 @@ class March:
         """What is stepped, and a value of it in SI."""
         part = self.model.stepped[load]
         return f"{part.name} = {value * part.unit:.6g}"
+
+
+def _straight(before: float, beyond: float) -> float:
+    """The share of the way at which what falls from one to the other is zero on a straight line; first what is so."""
+    return before / (before - beyond) if before > 0.0 else 0.0
 
 
 def begin(model: Model, settings: Settings, contacts: tuple[Contact, ...]) -> March:

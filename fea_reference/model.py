@@ -12,7 +12,7 @@ first alone; a turning one two: its pivot stays), of a drive and of a stop.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLine
@@ -21,12 +21,15 @@ from fea_reference.acting import Acting
 from fea_reference.curves import length, sample
 from fea_reference.element import Elements, reference
 from fea_reference.hermite import Index, NeutralLine
+from fea_reference.known import Known
 from fea_reference.leaning import Chain, Span, chain, tangent_angles
 from fea_reference.own_pins import own_pins
 from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
 from fea_reference.settings import Settings
 from fea_reference.state import State
 from fea_reference.stops import StopPart, stops_of
+from fea_reference.touch import Contact, Penalty, Touch
+from fea_reference.zones import Zones
 from scene.answer import Array
 from scene.check_shapes import is_apart
 from scene.statement import (
@@ -244,7 +247,10 @@ WAY = SharePart("share of the ends' way to their points")
 class Model:
     """Everything the mechanics needs to know of a scene; ``start`` is the undeformed state.
 
-    ``guides`` are rows like a drive's whose value stays zero; ``apart`` are the ends to be assembled.
+    ``guides`` are rows like a drive's whose value stays zero; ``apart`` are the ends to be assembled; ``stiffest`` is
+    the largest of the elements' 12 EI/h²; ``moving`` are the motions among the unknowns: of all nodes and bodies.
+    ``lines``, ``overlaps`` and ``touches`` remember what has been found in a state: neutral lines by the name of the
+    beam, the zones of contacts, and what a contact is with a penalty, a quadrature and the depth at which it is held.
     """
 
     units: Units
@@ -263,17 +269,16 @@ class Model:
     multipliers: Index
     size: int
     start: State
+    stiffest: float
+    moving: Index
+    lines: Known[str, NeutralLine] = field(default_factory=Known, repr=False)
+    overlaps: Known[Contact, Zones] = field(default_factory=Known, repr=False)
+    touches: Known[tuple[Contact, Penalty, int, float | None], Touch] = field(default_factory=Known, repr=False)
 
     @property
     def stepped(self) -> tuple[LoadPart | OnBeam | DrivePart | SharePart, ...]:
         """What has a value that is stepped, in the order of the values: loads, drives, the assembly's two shares."""
         return (*self.loads, *self.drives, *((MOMENTS, WAY) if self.apart else ()))
-
-    @property
-    def moving(self) -> Index:
-        """The motions among the unknowns: of all nodes and bodies."""
-        bodies = [body.dofs for body in self.bodies if body.dofs is not None]
-        return np.concatenate([self.node_dofs.ravel(), *bodies])
 
     @property
     def drawn(self) -> Acting:
@@ -290,6 +295,9 @@ class Model:
 
     def line(self, beam: BeamPart, z: State) -> NeutralLine:
         """A beam's neutral line in state ``z``."""
+        return self.lines.found(z, beam.name, lambda: self._line(beam, z))
+
+    def _line(self, beam: BeamPart, z: State) -> NeutralLine:
         dofs = self.node_dofs[:, beam.nodes]
         return NeutralLine.through(
             z[dofs[:2]],
@@ -479,6 +487,8 @@ def build(scene: Scene, settings: Settings) -> Model:
         np.arange(first_row, size),
         size,
         State.of(start),
+        max(12.0 * beam.stiffest / float(elements.length[beam.elements.start]) ** 2 for beam in beams),
+        np.concatenate([node_dofs.ravel(), *(body.dofs for body in bodies if body.dofs is not None)]),
     )
 
 

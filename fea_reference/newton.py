@@ -21,7 +21,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.linalg import splu
 
 from fea_reference.acting import Acting
 from fea_reference.advance import advance
@@ -35,7 +34,9 @@ from fea_reference.touch import Contact, Penalty, Touch
 from scene.answer import Array
 
 _TURN = 0.4  # rad, and the same in lengths of the longest beam: the most that one iteration may move anything
+_LOST = 3  # corrections longer than that: an equilibrium so far off would belong to another branch
 _NEAR = 3.0  # factor between penetrations that Newton's method bridges by itself
+_NOTHING = 1e-2  # of the correction and the unbalanced force asked: what need not be corrected any more
 _SETTLED = 1e-4  # correction after which holding has done what it can
 _FALLING = 0.1  # of the unbalanced force before: who has come so far needs a few iterations more
 _TOUCHING = 1e-9  # of the thickness: an overlap that is none
@@ -69,7 +70,7 @@ def equilibrium(
     pushed with there, (k,) each.  A ``drag`` resists the motions.
     """
     moving = model.moving
-    correction, last, iteration = np.inf, np.inf, 0
+    correction, last, iteration, far = np.inf, np.inf, 0, 0
     foreseen = dict(before)
     system = assemble(model, penalties, settings.quadrature, values, z, acting, {}, foreseen, drag)
     held = {one.pair: depths[one.pair] for one in system.touches if _to_hold(one, depths, before)}
@@ -83,13 +84,15 @@ def equilibrium(
         if iteration >= settings.newton_limit and not unbalanced <= _FALLING * last:
             return Solved(system, converged=False, iterations=iteration)
         last = unbalanced
-        try:
-            step = splu(system.tangent).solve(-system.residual)
-        except RuntimeError:  # exactly singular
-            return Solved(system, converged=False, iterations=iteration + 1)
-        if not np.isfinite(step).all():
+        step = system.solve(-system.residual)
+        if step is None:
             return Solved(system, converged=False, iterations=iteration + 1)
         correction = float(np.abs(step[moving]).max())
+        if not held and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING * accepted:
+            return Solved(system, converged=True, iterations=iteration)  # this step need not be made
+        far += correction > _TURN
+        if far >= _LOST:
+            return Solved(system, converged=False, iterations=iteration + 1)
         step *= min(1.0, _TURN / max(correction, _TURN))
         foreseen = {one.pair: one.foreseen(step) for one in system.touches}
         if penalties and not held and unbalanced > accepted:

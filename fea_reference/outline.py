@@ -21,6 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -101,7 +102,7 @@ class HalfPlane:
         )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Broken:
     """An edge of straight pieces: the free side is to the left of what runs along ``points`` (2, m+1).
 
@@ -110,7 +111,7 @@ class Broken:
 
     points: Array
 
-    @property
+    @cached_property
     def corners(self) -> Corners:
         """Its corners, and those at its ends."""
         tau = self._tangents
@@ -133,29 +134,22 @@ class Broken:
 
     def near(self, y: Array) -> Near:
         """Distance and so on of places (2, k)."""
-        tau = self._tangents
-        length = np.hypot(*np.diff(self.points, axis=1))
-        # the sides straight back begin or end at no place
-        tangents = np.column_stack([_left(tau[:, :1]), tau, -_left(tau[:, -1:])])
-        first = np.column_stack([self.points[:, :1], self.points[:, :-1], self.points[:, -1:]])
-        low = np.concatenate([[-np.inf], np.zeros(length.size), [0.0]])
-        high = np.concatenate([[0.0], length, [np.inf]])
-        if self.closed:
-            tangents, first, low, high = tau, self.points[:, :-1], low[1:-1], high[1:-1]
+        tangents, first, low, high = self._sides
         r = y[:, None, :] - first[:, :, None]
-        t = np.clip((r * tangents[:, :, None]).sum(axis=0), low[:, None], high[:, None])
+        t = r[0] * tangents[0][:, None] + r[1] * tangents[1][:, None]
+        t = np.minimum(np.maximum(t, low[:, None]), high[:, None])
         away = r - t * tangents[:, :, None]
         nearest = np.hypot(away[0], away[1]).argmin(axis=0)
         every = np.arange(y.shape[1])
-        t = t[nearest, every]
+        t, away = t[nearest, every], away[:, nearest, every]
         side = _left(tangents[:, nearest])
-        corner = (t <= low[nearest]) | (t >= high[nearest])
-        d = (side * away[:, nearest, every]).sum(axis=0)
+        before = t <= low[nearest]
+        corner = before | (t >= high[nearest])
+        d = (side * away).sum(axis=0)
         # at a corner both of its sides say on which of them a place is
-        neighbour = np.where(t <= low[nearest], nearest - 1, nearest + 1)
-        neighbour = neighbour % length.size if self.closed else np.clip(neighbour, 0, length.size + 1)
+        neighbour = np.where(before, nearest - 1, nearest + 1)
+        neighbour = neighbour % low.size if self.closed else np.minimum(np.maximum(neighbour, 0), low.size - 1)
         both = side + np.where(corner, _left(tangents[:, neighbour]), 0.0)
-        away = away[:, nearest, every]
         r_corner = np.hypot(away[0], away[1])
         corner &= r_corner > 0.0
         sign = np.where((both * away).sum(axis=0) < 0.0, -1.0, 1.0)
@@ -166,6 +160,18 @@ class Broken:
             np.where(corner, sign / np.where(corner, r_corner, 1.0), 0.0),
             corner,
         )
+
+    @cached_property
+    def _sides(self) -> tuple[Array, Array, Array, Array]:
+        """Tangents and first points (2, m+2), and between which distances from these the sides lie (m+2,)."""
+        tau = self._tangents
+        length = np.hypot(*np.diff(self.points, axis=1))
+        # the sides straight back begin or end at no place
+        tangents = np.column_stack([_left(tau[:, :1]), tau, -_left(tau[:, -1:])])
+        first = np.column_stack([self.points[:, :1], self.points[:, :-1], self.points[:, -1:]])
+        low, high = np.concatenate([[-np.inf], np.zeros(length.size), [0.0]]), np.concatenate([[0.0], length, [np.inf]])
+        # what goes round has no such sides
+        return (tau, self.points[:, :-1], low[1:-1], high[1:-1]) if self.closed else (tangents, first, low, high)
 
     @property
     def closed(self) -> bool:

@@ -31,9 +31,9 @@ Numbers = TypeVar("Numbers", Array, Complex)
 _SPLITTER = 2.0**27 + 1.0  # cuts 53 bits into two halves
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, weakref_slot=True)
 class State:
-    """The unknowns ``values`` + ``rest``, both (size,); indexed, it gives the values."""
+    """The unknowns ``values`` + ``rest``, both (size,); indexed, it gives the values.  Equal to itself only."""
 
     values: Array
     rest: Array

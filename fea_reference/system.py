@@ -6,13 +6,14 @@ included, and the tangent its second derivative: symmetric and indefinite.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from frozendict import frozendict
 from scipy.sparse import csc_matrix
-from skfem.assembly.form.coo_data import COOData
+from scipy.sparse.linalg import SuperLU, splu
 
 from fea_reference.acting import Acting
 from fea_reference.beam_loads import BeamLoad, beam_load, load_forces
@@ -25,13 +26,15 @@ from fea_reference.stops import acting_stops
 from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
 from scene.answer import Array
 
+Entries = tuple[Index, Index, Array]
+
 _ROUND_OFF = 3.0  # measured: up to two from 20 to 1280 elements, of both of its parts
 _NOTHING = 10.0  # floors: a force below this is round-off itself
 _NONE_HELD: Mapping[Contact, float] = frozendict()
 _NOTHING_FORESEEN: Mapping[Contact, Array] = frozendict()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class System:
     """A state ``z`` and what follows from it.
 
@@ -55,6 +58,18 @@ class System:
     scale: float
     floor: float
 
+    def solve(self, right: Array) -> Array | None:
+        """What the tangent makes ``right`` (size,) of; None where it is exactly singular or as good as that."""
+        solution = None if self._factors is None else self._factors.solve(right)
+        return None if solution is None or not np.isfinite(solution).all() else solution
+
+    @cached_property
+    def _factors(self) -> SuperLU | None:
+        try:
+            return splu(self.tangent)
+        except RuntimeError:  # exactly singular
+            return None
+
 
 @dataclass(frozen=True, slots=True)
 class Drag:
@@ -68,7 +83,7 @@ def stiffened(model: Model, system: System, one: Touch, factor: float) -> System
     """The same state, one of its contacts ``factor`` times as stiff and pushing as before; the tangent only."""
     stiffer = replace(one, stiffness=factor * one.stiffness)
     more = stiffer.hessian(one.pushes) - one.hessian(one.pushes)
-    return replace(system, tangent=(system.tangent + _matrix(one.dofs, more, model.size).tocsr()).tocsc())
+    return replace(system, tangent=system.tangent + _matrix([_entries(one.dofs, more)], model.size))
 
 
 def assemble(
@@ -98,35 +113,34 @@ def assemble(
     """
     elements = forces(model.elements, model.element_dofs, z)
     touches = tuple(touch(model, pair, penalty, quadrature, z, held.get(pair)) for pair, penalty in penalties.items())
-    vectors = [_vector(model.element_dofs, elements.gradient, model.size)]
-    matrices = [_matrix(model.element_dofs, elements.hessian, model.size)]
-    for one in touches:
-        if one.closed:
-            vectors.append(_vector(one.dofs, one.gradient, model.size))
-            matrices.append(_matrix(one.dofs, one.hessian(_pushes(one, foreseen.get(one.pair))), model.size))
+    residual, rigid = _rigid(model, values, z, acting)
+    parts = [(model.element_dofs, elements.gradient)]
+    entries = [rigid, _entries(model.element_dofs, elements.hessian)]
+    pressing = [(one, one.gradient) for one in touches if one.closed]
+    for one, gradient in pressing:
+        parts.append((one.dofs, gradient))
+        entries.append(_entries(one.dofs, one.hessian(_pushes(one, foreseen.get(one.pair)))))
     loads = tuple(
         beam_load(model, part, float(value), z)
         for part, value in zip(model.loads, values[: len(model.loads)], strict=True)
         if isinstance(part, OnBeam)
     )
     for load in loads:
-        vectors.append(_vector(load.dofs, -load.gradient, model.size))
-        matrices.append(_matrix(load.dofs, -load.hessian, model.size))
-    rigid, rows, columns, entries = _rigid(model, values, z, acting)
-    matrices.append(COOData(np.array([rows, columns]), np.array(entries), (model.size, model.size), local_shape=None))
-    residual = sum(vectors).toarray() + rigid
+        parts.append((load.dofs, -load.gradient))
+        entries.append(_entries(load.dofs, -load.hessian))
+    for dofs, gradient in parts:
+        residual += np.bincount(dofs.ravel(), gradient.ravel(), model.size)
     if drag is not None:
         residual += drag.weights * (z.values - drag.anchor.values + (z.rest - drag.anchor.rest))
         every = np.arange(model.size)
-        matrices.append(COOData(np.array([every, every]), drag.weights, (model.size, model.size), local_shape=None))
-    tangent = sum(matrices).tocsr().tocsc()
+        entries.append((every, every, drag.weights))
+    tangent = _matrix(entries, model.size)
     balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values[: len(model.loads)]).max(initial=0.0)]
-    balanced += [np.abs(one.gradient).max(initial=0.0) for one in touches]
+    balanced += [np.abs(gradient).max() for _, gradient in pressing]
     balanced += [abs(values[model.stepped.index(MOMENTS)] * one.moment) for one in model.apart]
     largest = float(max(balanced))
     angle = max(1.0, float(np.abs(z[model.node_dofs[2]]).max()))
-    stiffest = max(12.0 * beam.stiffest / model.elements.length[beam.elements.start] ** 2 for beam in model.beams)
-    floor = _ROUND_OFF * stiffest * float(np.spacing(angle))
+    floor = _ROUND_OFF * model.stiffest * float(np.spacing(angle))
     floor += sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
     scale = largest if largest > _NOTHING * floor else 1.0
     return System(z, acting, residual, tangent, elements, touches, loads, scale, floor)
@@ -191,7 +205,7 @@ def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
     return f
 
 
-def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array, list[int], list[int], list[float]]:
+def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array, Entries]:
     """Joints, hinges, guides, drives, stops and loads: few, so one after the other."""
     residual = np.zeros(model.size)
     ways: dict[int, Array] = {}
@@ -301,15 +315,16 @@ def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array
             rows.append(int(dofs[2]))
             columns.append(int(dofs[2]))
             entries.append(value * float(turned(part.arm, z[dofs[2]]) @ part.direction))
-    return residual, rows, columns, entries
+    return residual, (np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64), np.array(entries))
 
 
-def _vector(dofs: Index, local: Array, size: int) -> COOData:
-    return COOData(dofs.reshape(1, -1), local.ravel(), (size,), local_shape=None)
+def _entries(dofs: Index, local: Array) -> Entries:
+    """Rows, columns and values of local symmetric matrices (m, m, n) of the unknowns ``dofs`` (m, n)."""
+    rows = np.broadcast_to(dofs[:, None], local.shape)
+    return rows.ravel(), rows.swapaxes(0, 1).ravel(), local.ravel()
 
 
-def _matrix(dofs: Index, local: Array, size: int) -> COOData:
-    """Local matrices (m, m, n) in scikit-fem's order, trial before test; they are symmetric."""
-    trial = np.broadcast_to(dofs[:, None], local.shape)
-    test = np.broadcast_to(dofs[None, :], local.shape)
-    return COOData(np.stack([test.ravel(), trial.ravel()]), local.ravel(), (size, size), local_shape=None)
+def _matrix(entries: Sequence[Entries], size: int) -> csc_matrix:
+    """Their sum, (size, size)."""
+    rows, columns, values = (np.concatenate(arrays) for arrays in zip(*entries, strict=True))
+    return csc_matrix((values, (rows, columns)), (size, size))

@@ -30,6 +30,7 @@ from scipy.spatial import KDTree
 
 from fea_reference.hermite import NeutralLine, apart
 from fea_reference.projection import closest, project
+from fea_reference.state import Complex
 from scene.answer import Array
 
 SAMPLES_PER_ELEMENT = 4
@@ -37,6 +38,8 @@ _ITERATIONS = 60
 _END_ITERATIONS = 15
 _INSIDE = 1e-6  # elements
 _ARRIVED = 1e-8  # elements
+_TABLE = 40_000  # distances: so many are found faster one and all than by a tree
+_EVEN = 3.0  # times its mean: a derivative below that at both ends keeps a cubic rising
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,8 +142,9 @@ def gap(first: NeutralLine, second: NeutralLine, side: float, T: float, zeta: Ar
 
 def side_of(first: NeutralLine, second: NeutralLine) -> float:
     """On which side of the second beam the first lies: +1 to the left of its direction, −1 to the right."""
-    zeta = _samples(first, second, 0.0)
-    near = KDTree(second.points.T).query(first.at(zeta)[0].T)[1].astype(float)
+    zeta = _samples(first, second, np.arange(first.n), _reach(first, second, 0.0))
+    x = first.around(zeta)
+    near = _nearest(first.nodes[x.element] + x.way, second.nodes)[1].astype(float)
     there = gap(first, second, 1.0, 0.0, zeta, near)
     d = there.g[there.found]
     if d.size == 0:
@@ -152,9 +156,8 @@ def side_of(first: NeutralLine, second: NeutralLine) -> float:
 
 def ends_over(first: NeutralLine, second: NeutralLine) -> bool:
     """Whether an end of the first beam has its closest point in the inside of the second."""
-    ends = first.points[:, [0, -1]]
-    near = KDTree(second.points.T).query(ends.T)[1].astype(float)
-    zeta, found = project(second, ends, near)
+    near = _nearest(first.nodes[[0, -1]], second.nodes)[1].astype(float)
+    zeta, found = project(second, first.points[:, [0, -1]], near)
     return bool((found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)).any())
 
 
@@ -164,10 +167,15 @@ def seen(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Surv
     def at(where: Array, guess: Array) -> Gap:
         return gap(first, second, side, T, where, guess)
 
-    zeta = _samples(first, second, T)
-    x = first.at(zeta)[0]
-    distance, nearest = KDTree(second.points.T).query(x.T)
-    reach = _reach(first, second, T)
+    reach, none_there = _reach(first, second, T), np.empty(0)
+    apart_by, _ = _nearest(first.nodes, second.nodes)
+    beside = np.flatnonzero(np.minimum(apart_by[:-1], apart_by[1:]) < reach + first.lengths.max())
+    if not beside.size:
+        nothing = Gap(none_there, none_there, none_there, none_there, none_there.astype(bool))
+        return Survey(at, none_there, nothing, none_there.astype(bool), (), float(apart_by.min()) - T)
+    zeta = _samples(first, second, beside, reach)
+    x = first.around(zeta)
+    distance, nearest = _nearest(first.nodes[x.element] + x.way, second.nodes)
     near = np.flatnonzero(distance < reach)
     there = at(zeta[near], nearest[near].astype(float))
     # A point that sees the far side of a strongly bent second beam is no overlap.
@@ -226,7 +234,7 @@ def survey(
 
     turning = np.flatnonzero(neighbours & (slope[:-1] * slope[1:] < 0.0))
     if turning.size:
-        share = slope[turning] / (slope[turning] - slope[turning + 1])
+        share = _turning(zeta, slope, there.curvature, turning)
         where, guess = _roots(slope_at, zeta, slope, zeta_m, turning, share)
         zeta, there, neighbours = _with(zeta, there, neighbours, turning, where, at(where, guess))
     least = float((there.g[~np.isin(zeta, joined)] if joined else there.g).min())
@@ -272,24 +280,35 @@ def _reach(first: NeutralLine, second: NeutralLine, T: float) -> float:
     return float(2.0 * abs(T) + 2.0 * second.lengths.max() + first.lengths.max())
 
 
-def _samples(first: NeutralLine, second: NeutralLine, T: float) -> Array:
-    """Equal steps within every element, and the places straight across from the second beam's nodes.
+def _nearest(points: Complex, nodes: Complex) -> tuple[Array, NDArray[np.int64]]:
+    """How far points x + i y (k,) are from the nearest of the ``nodes`` (m,), and which that is."""
+    if points.size * nodes.size > _TABLE:
+        distance, which = KDTree(nodes.view(float).reshape(-1, 2)).query(points.view(float).reshape(-1, 2))
+        return distance, which
+    every = np.abs(points[:, None] - nodes)
+    which = every.argmin(axis=1)
+    return every[np.arange(points.size), which], which
+
+
+def _samples(first: NeutralLine, second: NeutralLine, elements: NDArray[np.int64], reach: float) -> Array:
+    """Equal steps within those ``elements``, and the places straight across from the second beam's nodes in reach.
 
     Beyond an end there is no gap, and a zone that reaches up to one may be narrower than a step; at the others the
     gap's curvature jumps.
     """
-    even = np.arange(SAMPLES_PER_ELEMENT * first.n + 1) / SAMPLES_PER_ELEMENT
-    distance, nearest = KDTree(first.points.T).query(second.points.T)
-    near = distance < _reach(first, second, T)
+    even = (elements[:, None] + np.arange(SAMPLES_PER_ELEMENT + 1) / SAMPLES_PER_ELEMENT).ravel()
+    distance, nearest = _nearest(second.nodes, first.nodes)
+    near = distance < reach
     if not near.any():
-        return even
-    nodes, tangents = second.points[:, near], second.tangents[:, near]
+        return np.unique(even)
+    nodes, back = second.nodes[near], second.tangents[0, near] - 1j * second.tangents[1, near]
     zeta = nearest[near].astype(float)
     for _ in range(_END_ITERATIONS):
-        x, x1, _ = first.at(zeta)
-        ahead = (x1 * tangents).sum(axis=0)
-        step = ((x - nodes) * tangents).sum(axis=0) / np.where(ahead == 0.0, 1.0, ahead)
-        moved = np.clip(zeta - np.clip(step, -1.0, 1.0), 0.0, first.n)
+        there = first.around(zeta)
+        ahead = (there.ahead * back).real
+        off = ((first.nodes[there.element] - nodes + there.way) * back).real
+        step = np.minimum(np.maximum(off / np.where(ahead == 0.0, 1.0, ahead), -1.0), 1.0)
+        moved = np.minimum(np.maximum(zeta - step, 0.0), first.n)
         done = np.abs(moved - zeta).max() < 1e-8
         zeta = moved
         if done:
@@ -334,6 +353,19 @@ def _roots(
         if done:
             break
     return x, guess
+
+
+def _turning(zeta: Array, slope: Array, curvature: Array, left: NDArray[np.int64]) -> Array:
+    """The share of the way from ``left`` to the next at which g' is zero: ζ as a cubic of g', or straight."""
+    right = left + 1
+    rise = slope[right] - slope[left]
+    linear = -slope[left] / rise
+    by_width = rise / (zeta[right] - zeta[left])
+    first, last = (by_width / np.where(curvature[i] == 0.0, np.inf, curvature[i]) for i in (left, right))
+    rest = 1.0 - linear
+    cubic = linear * (linear * (3.0 - 2.0 * linear) + rest * (rest * first - linear * last))
+    even = (np.minimum(first, last) > 0.0) & (np.maximum(first, last) < _EVEN)
+    return np.asarray(np.where(even, cubic, linear))
 
 
 def _parabola(zeta: Array, g: Array, slope: Array, curvature: Array, left: NDArray[np.int64]) -> Array:
