@@ -86,6 +86,7 @@ class Point:
     """A state with its multipliers and everything first-order there.
 
     Attributes:
+        formulation: by which the contact rows were found.
         state, at: the unknowns and the joints' positions.
         mu, lam: multipliers of the equalities and of the contact rows.
         Z, rows: equalities (mE,) and contact constraints.
@@ -94,6 +95,7 @@ class Point:
         work: of the loads.
     """
 
+    formulation: Formulation
     state: State
     at: Positions
     mu: Array
@@ -128,24 +130,37 @@ class Equilibrium:
 
 def point_at(problem: Problem, values: dict[str, float], state: State, mu: Array, lam: Array, before: Rows) -> Point:
     """Evaluate a state; ``lam`` belongs to the rows ``before`` and is carried over to those found here."""
-    model = problem.model
-    at = positions(model, state)
+    at = positions(problem.model, state)
     rows = problem.formulation(state, at)
+    return _point(problem, values, state, at, mu, carried(before, lam, rows, problem.model), rows)
+
+
+def point_under(problem: Problem, values: dict[str, float], point: Point) -> Point:
+    """The state of a ``point`` under other values; its rows are the same where they are found in the same way."""
+    if point.formulation is not problem.formulation:
+        return point_at(problem, values, point.state, point.mu, point.lam, point.rows)
+    return _point(problem, values, point.state, point.at, point.mu, point.lam, point.rows)
+
+
+def _point(
+    problem: Problem, values: dict[str, float], state: State, at: Positions, mu: Array, lam: Array, rows: Rows
+) -> Point:
+    model = problem.model
     work = load_work(model, problem.loads, values, state, at)
     gradient = -work.gradient
     gradient[: model.n_links] += strain_gradient(model, state)
     if problem.drag is not None:
         gradient[: model.n_links] += problem.stiffened() * (state.theta - problem.drag.theta)
-    A_E = closure_rows(model, problem.closure, state, at)
     return Point(
+        formulation=problem.formulation,
         state=state,
         at=at,
         mu=mu,
-        lam=carried(before, lam, rows, model),
+        lam=lam,
         Z=closure_values(model, problem.closure, state, at, values),
         rows=rows,
         gradient=gradient,
-        A_E=A_E,
+        A_E=closure_rows(model, problem.closure, state, at),
         work=work,
     )
 
@@ -415,7 +430,7 @@ def equilibrium(
     otherwise that is the end.
     """
     model = problem.model
-    point = point_at(problem, values, start.state, start.mu, start.lam, start.rows)
+    point = point_under(problem, values, start)
     now = measure(problem, point)
     seen: list[float] = []
     part, circles = 1.0, 0

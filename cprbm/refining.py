@@ -19,14 +19,15 @@ dead forces near held ends) has a stated share of the beam's elements, however s
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from cprbm.beam_loads import BeamLoad
-from cprbm.contact import Rows
+from cprbm.contact import NO_ROWS, Rows
 from cprbm.equilibrium import Point, point_at
-from cprbm.kinematics import State, positions
+from cprbm.kinematics import State
 from cprbm.kinks import kinks_at, within
 from cprbm.mechanism import Mechanism
 from cprbm.model import Chain, Fit, Kinks
@@ -264,8 +265,8 @@ def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict
         turned = point.state.theta[source.links] - source.rest
         theta[target.links] += np.interp(target.borders, source.borders, turned)
     state = State(theta, point.state.bodies)
-    at = positions(new, state)
-    rows = after.problem.formulation(state, at)
+    bare = point_at(after.problem, values, state, point.mu, np.zeros(0), NO_ROWS)
+    rows = bare.rows
     lam = np.zeros(rows.size)
     zones = long_ones(all_zones(before, point))
     first = 0
@@ -275,7 +276,7 @@ def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict
         if name in zones and not group.holds_angles:
             lam[mine] = _pressure(point, name, zones[name], (before.pairs[name].a, after.pairs[name].a), group.arc)
     _add_single(point, zones, rows, lam, 2.0 * max(chain.h for chain in old.chains))
-    return point_at(after.problem, values, state, point.mu, lam, rows)
+    return replace(bare, lam=lam)
 
 
 def _pressure(point: Point, contact: str, zones: tuple[Zone, ...], chains: tuple[Chain, Chain], arc: Array) -> Array:

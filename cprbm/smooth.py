@@ -40,8 +40,10 @@ import numpy as np
 
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
+from cprbm.pieces import CurvePieces
 from scene.answer import Array, Flags, Ints
 
+STRAIGHT = 1e-150  # rad: what turns less is straight, and its sine the angle
 LOCALS = 5  # x_i, y_i, θ_{i−1}, θ_i, θ_{i+1}
 
 # Taylor coefficients, lowest first, of sin z/z and (1 − cos z)/z² in z² and of y cot y in y²
@@ -54,53 +56,95 @@ COTANGENT = (1.0, -1 / 3, -1 / 45, -2 / 945, -1 / 4725, -2 / 93555, -1382 / 6385
 class Points:
     """Some points of one beam's smooth line, arrays (k,) unless said otherwise.
 
+    What its first derivatives over the local numbers need besides is worked out where it is asked.
+
     Attributes:
-        s: arc length; link: the link each lies on, in the beam's own numbering.
-        x, y: position; psi: tangent angle.
+        line: whose points they are.
+        half: number of the half of an element that each lies in, (k,).
+        s: arc length; off: from the border at the half's end, negative before it.
+        x, y: position; tangent: angle of the line's tangent; psi: that of the beam's, the same but for kinks.
         speed: |dC/ds|; bend: dψ/ds; gain: d|dC/ds|/ds.
-        cos, sin: of the link's angle: e = (cos, sin), n = (−sin, cos).
-        a, w, a1, w1: coordinates in the link's frame and their derivatives over s.
-        before: whether each lies before the border, in the element of the link's first joint.
-        h, turn, radius, ratio, xi: of its element h, Θ, R, Θ⁰; ξ.
-        lean: (2, k), cos and sin of the tangent at the border against the link.
     """
 
+    line: SmoothLine
+    half: Ints
     s: Array
-    link: Ints
+    off: Array
     x: Array
     y: Array
+    tangent: Array
     psi: Array
     speed: Array
     bend: Array
     gain: Array
-    cos: Array
-    sin: Array
-    a: Array
-    w: Array
-    a1: Array
-    w1: Array
-    before: Flags
-    h: Array
-    turn: Array
-    radius: Array
-    ratio: Array
-    xi: Array
-    lean: Array
+
+    @cached_property
+    def link(self) -> Ints:
+        """The link each lies on, in the beam's own numbering."""
+        return (self.half + 1) // 2
+
+    @cached_property
+    def before(self) -> Flags:
+        """Whether each lies before the border, in the element of the link's first joint."""
+        return np.asarray(self.half % 2 == 1)
+
+    @cached_property
+    def h(self) -> Array:
+        """Of the element h."""
+        return self.line.chain.sizes[self.half // 2]
+
+    @cached_property
+    def xi(self) -> Array:
+        """ξ."""
+        return np.abs(self.off) / self.h
+
+    @cached_property
+    def ratio(self) -> Array:
+        """Of the element Θ⁰."""
+        return self.line.chain.turns[self.half // 2]
+
+    @cached_property
+    def turn(self) -> Array:
+        """Of the element Θ."""
+        return self.ratio + self.line.turns[self.half // 2]
+
+    @cached_property
+    def radius(self) -> Array:
+        """Of the element R."""
+        return self.line.radii[self.half // 2]
+
+    @cached_property
+    def lean(self) -> Array:
+        """Cos and sin of the tangent at the border against the link, (2, k)."""
+        return self.line.chain.lean[:, self.link]
+
+    @cached_property
+    def e(self) -> Array:
+        """Direction of the link, (k, 2)."""
+        return np.stack((self.line.cos[self.link], self.line.sin[self.link]), axis=1)
+
+    @cached_property
+    def n(self) -> Array:
+        """Left normal of the link, (k, 2)."""
+        return np.stack((-self.line.sin[self.link], self.line.cos[self.link]), axis=1)
+
+    @cached_property
+    def in_link(self) -> Array:
+        """Coordinates a and w in the link's frame, (2, k)."""
+        x, y = self.x - self.line.x[self.link], self.y - self.line.y[self.link]
+        cos, sin = self.e[:, 0], self.e[:, 1]
+        return np.stack((cos * x + sin * y, cos * y - sin * x))
+
+    @cached_property
+    def in_link_1(self) -> Array:
+        """Derivatives of a and w over s, (2, k)."""
+        leading = self.tangent - self.line.theta[self.link]
+        return np.stack((self.speed * np.cos(leading), self.speed * np.sin(leading)))
 
     @cached_property
     def over_turn(self) -> tuple[Array, Array, Array]:
         """∂(a, w), ∂(a′, w′) and ∂²(a, w) over δ of the point's element, (2, k) each; ′ is the derivative over s."""
         return _over_turn(self)
-
-    @cached_property
-    def e(self) -> Array:
-        """Direction of the link, (k, 2)."""
-        return np.stack((self.cos, self.sin), axis=1)
-
-    @cached_property
-    def n(self) -> Array:
-        """Left normal of the link, (k, 2)."""
-        return np.stack((-self.sin, self.cos), axis=1)
 
 
 @dataclass(frozen=True)
@@ -130,66 +174,85 @@ class SmoothLine:
         """Points at :func:`halves`."""
         return self.at(halves(self.chain))
 
+    @cached_property
+    def arcs(self) -> Array:
+        """Of every half of an element its border, Θ/h and R, and there x, y and the tangent's cos, sin and angle."""
+        chain = self.chain
+        lean_cos, lean_sin = chain.lean
+        cos, sin = self.cos * lean_cos - self.sin * lean_sin, self.sin * lean_cos + self.cos * lean_sin
+        a, w = chain.at_borders
+        x, y = self.x[:-1] + a * self.cos - w * self.sin, self.y[:-1] + a * self.sin + w * self.cos
+        links = np.stack((chain.borders, x, y, cos, sin, self.theta + np.arctan2(lean_sin, lean_cos)))
+        springs = np.stack(((chain.turns + self.turns) / chain.sizes, self.radii))
+        return np.concatenate((np.repeat(links, 2, axis=1)[:, 1:-1], np.repeat(springs, 2, axis=1)))
+
     def at(self, s: Array) -> Points:
         """Points at arc lengths ``s`` (k,), units of length; beyond the ends the end itself."""
         chain = self.chain
         s = np.minimum(np.maximum(s, 0.0), chain.s[-1])
-        link = np.minimum(np.searchsorted(chain.s, s, side="right") - 1, chain.n)
-        t = s - chain.s[link]
-        off = s - chain.borders[link]
-        before = (off < 0.0) | (link == chain.n)
-        spring = link - before
-        h, sign = chain.sizes[spring], np.where(before, -1.0, 1.0)
-        cos, sin = self.cos[link], self.sin[link]
-        xi = np.abs(off) / h
-        ratio = chain.turns[spring]
-        turn = ratio + self.turns[spring]
-        R, phi = self.radii[spring], turn * xi
-        R_cos, R_sin = R * np.cos(phi), R * np.sin(phi)
-        # A − A⁰ and W − W⁰ and their derivatives over u
-        A, W = h * xi * R * _series(SINE, phi * phi), h * xi * R * phi * _series(VERSINE, phi * phi)
-        A_u, W_u, A_uu, W_uu = R_cos, R_sin, -turn / h * R_sin, turn / h * R_cos
+        half = chain.breaks.searchsorted(s, side="right")
+        border, x, y, cos, sin, tangent, rate, R = self.arcs[:, half]
+        off = s - border
+        if isinstance(chain.pieces, CurvePieces):
+            return self._beside(chain.pieces, half, s, off, rate, R)
+        # stress-free piece and difference of two arcs make one arc, from the border on
+        along, across = _arc(off, rate, R)
+        tangent = tangent + rate * off
+        return Points(
+            line=self,
+            half=half,
+            s=s,
+            off=off,
+            x=x + along * cos - across * sin,
+            y=y + along * sin + across * cos,
+            tangent=tangent,
+            psi=tangent,
+            speed=R,
+            bend=rate,
+            gain=np.zeros(len(s)),
+        )
+
+    def _beside(self, pieces: CurvePieces, half: Ints, s: Array, off: Array, rate: Array, R: Array) -> Points:
+        """Points of which the stress-free ``pieces`` are no arcs; see :meth:`at`."""
+        chain, link, spring = self.chain, (half + 1) // 2, half // 2
+        a, w, a1, w1, a2, w2 = pieces.seen(link, s, s - chain.s[link], self.unit_length)
+        rest = chain.turns[spring] / chain.sizes[spring]
+        phi, phi_rest = rate * off, rest * off
+        R_cos, R_sin, cos, sin = R * np.cos(phi), R * np.sin(phi), np.cos(phi_rest), np.sin(phi_rest)
         lean = chain.lean[:, link]
-        if chain.pieces is None:
-            nothing = np.zeros(len(s))
-            a, w, a1, w1, a2, w2 = t, nothing, nothing + 1.0, nothing, nothing, nothing
-            A, A_u = A - h * xi, A_u - 1.0
-        else:
-            a, w, a1, w1, a2, w2 = chain.pieces.seen(link, s, t, self.unit_length)
-            phi = ratio * xi
-            A, W = A - h * xi * _series(SINE, phi * phi), W - h * xi * phi * _series(VERSINE, phi * phi)
-            A_u, W_u = A_u - np.cos(phi), W_u - np.sin(phi)
-            A_uu, W_uu = A_uu + ratio / h * np.sin(phi), W_uu - ratio / h * np.cos(phi)
-        along, across = _leant(lean, sign * A, W)
+        (A, W), (A_rest, W_rest) = _arc(off, rate, R), _arc(off, rest, 1.0)
+        along, across = _leant(lean, A - A_rest, W - W_rest)
         a, w = a + along, w + across
-        along, across = _leant(lean, A_u, sign * W_u)
+        along, across = _leant(lean, R_cos - cos, R_sin - sin)
         a1, w1 = a1 + along, w1 + across
-        along, across = _leant(lean, sign * A_uu, W_uu)
+        along, across = _leant(lean, rest * sin - rate * R_sin, rate * R_cos - rest * cos)
         a2, w2 = a2 + along, w2 + across
         squared = a1 * a1 + w1 * w1
+        speed = np.sqrt(squared)
+        cos, sin = self.cos[link], self.sin[link]
+        tangent = self.theta[link] + np.arctan2(w1, a1)
         return Points(
+            line=self,
+            half=half,
             s=s,
-            link=link,
+            off=off,
             x=self.x[link] + a * cos - w * sin,
             y=self.y[link] + a * sin + w * cos,
-            psi=self.theta[link] + np.arctan2(w1, a1),
-            speed=np.sqrt(squared),
+            tangent=tangent,
+            psi=tangent,
+            speed=speed,
             bend=(a1 * w2 - w1 * a2) / squared,
-            gain=(a1 * a2 + w1 * w2) / np.sqrt(squared),
-            cos=cos,
-            sin=sin,
-            a=a,
-            w=w,
-            a1=a1,
-            w1=w1,
-            before=before,
-            h=h,
-            turn=turn,
-            radius=R,
-            ratio=ratio,
-            xi=xi,
-            lean=lean,
+            gain=(a1 * a2 + w1 * w2) / speed,
         )
+
+
+def _arc(off: Array, rate: Array, R: Array | float) -> tuple[Array, Array]:
+    """±A and W of arcs that turn by ``rate`` per length."""
+    half = 0.5 * rate * off
+    half = np.where(half == 0.0, STRAIGHT, half)
+    sin = np.sin(half)
+    chord = R * off * (sin / half)
+    return chord * np.cos(half), chord * sin
 
 
 def smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -> SmoothLine:
@@ -288,7 +351,8 @@ def position_slopes(points: Points) -> Array:
     slopes = np.zeros((len(points.s), 2, LOCALS))
     slopes[:, 0, 0] = slopes[:, 1, 1] = 1.0
     slopes[:, :, 2:] = _vector(points, points.over_turn[0])[:, :, None] * _over_angles(points)[:, None, :]
-    slopes[:, :, 3] += points.a[:, None] * points.n - points.w[:, None] * points.e
+    a, w = points.in_link
+    slopes[:, :, 3] += a[:, None] * points.n - w[:, None] * points.e
     return slopes
 
 
@@ -302,15 +366,16 @@ def position_curvature(points: Points, along: Array) -> Array:
     over = (once[0] * on_n - once[1] * on_e)[:, None] * turns
     second[:, 3, 2:] += over
     second[:, 2:, 3] += over
-    second[:, 3, 3] -= points.a * on_e + points.w * on_n
+    a, w = points.in_link
+    second[:, 3, 3] -= a * on_e + w * on_n
     return second
 
 
 def angle_slopes(points: Points) -> Array:
     """∂ψ over the local numbers, (k, 5)."""
     slopes = np.zeros((len(points.s), LOCALS))
-    a1_, w1_ = points.over_turn[1]
-    slopes[:, 2:] = ((points.a1 * w1_ - points.w1 * a1_) / points.speed**2)[:, None] * _over_angles(points)
+    (a1, w1), (a1_, w1_) = points.in_link_1, points.over_turn[1]
+    slopes[:, 2:] = ((a1 * w1_ - w1 * a1_) / points.speed**2)[:, None] * _over_angles(points)
     slopes[:, 3] += 1.0
     return slopes
 
@@ -319,5 +384,6 @@ def tangent_slopes(points: Points) -> Array:
     """∂C_s over the local numbers, (k, 2, 5)."""
     slopes = np.zeros((len(points.s), 2, LOCALS))
     slopes[:, :, 2:] = _vector(points, points.over_turn[1])[:, :, None] * _over_angles(points)[:, None, :]
-    slopes[:, :, 3] += points.a1[:, None] * points.n - points.w1[:, None] * points.e
+    a1, w1 = points.in_link_1
+    slopes[:, :, 3] += a1[:, None] * points.n - w1[:, None] * points.e
     return slopes
