@@ -16,6 +16,7 @@ import numpy as np
 
 from cprbm.equilibrium import Point, Problem, point_at
 from cprbm.kinematics import State
+from cprbm.model import Fit
 
 FEWEST = 3  # states: of two the way goes on straight, and so does Newton's first step
 MOST = 5
@@ -51,10 +52,28 @@ def continued(
         for parts in zip(*((p.state.theta, p.state.bodies, p.mu) for _, p in used), strict=True)
     )
     # what does not turn is set right by no iteration
-    theta[problem.closure.fixed] = last.state.theta[problem.closure.fixed]
+    theta[problem.closure.fixed] = problem.model.rest[problem.closure.fixed]
     lam = np.zeros(len(last.lam))
     lam[last.lam > 0.0] = np.maximum(weights @ np.stack([point.lam[point.lam > 0.0] for _, point in used]), 0.0)
     return point_at(problem, values, State(theta, bodies), mu, lam, last.rows)
+
+
+def alike(one: Fit, other: Fit) -> bool:
+    """Whether meshes have the same elements, somewhat longer or shorter: then what is known on both goes on evenly."""
+    return _built(one) == _built(other)
+
+
+def _built(fit: Fit) -> tuple[object, ...]:
+    return (
+        fit.fixed,
+        {name: len(kinks[0].places) for name, kinks in fit.kinks.items()},
+        {name: len(ends) for name, ends in fit.ends.items()},
+        # numbers of the borders that are ends of zones
+        {
+            beam: sorted({int(np.argmin(np.abs(borders - end))) for ends in fit.ends.values() for end in ends})
+            for beam, borders in fit.borders.items()
+        },
+    )
 
 
 def _pressing(point: Point) -> tuple[tuple[str, int], ...]:

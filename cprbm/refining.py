@@ -30,7 +30,7 @@ from cprbm.equilibrium import Point, point_at
 from cprbm.kinematics import State
 from cprbm.kinks import kinks_at, within
 from cprbm.mechanism import Mechanism
-from cprbm.model import Chain, Fit, Kinks
+from cprbm.model import Chain, Fit, Kinks, Model
 from cprbm.settings import Settings
 from cprbm.zones import Zone, zones_of
 from scene.answer import Array, Flags
@@ -256,15 +256,20 @@ def _as_bent(chain: Chain, made: Kinks, now: Kinks) -> bool:
     return bool(np.all(change <= little))
 
 
+def carried_state(before: Model, state: State, after: Model) -> State:
+    """The unknowns of one mesh as those of another."""
+    theta = after.rest.copy()
+    # each link has the beam's tangent at the border that lies on it
+    for source, target in zip(before.chains, after.chains, strict=True):
+        turned = state.theta[source.links] - source.rest
+        theta[target.links] += np.interp(target.borders, source.borders, turned)
+    return State(theta, state.bodies)
+
+
 def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict[str, float]) -> Point:
     """A state of one mesh on another, with its forces: a guess."""
     old, new = before.problem.model, after.problem.model
-    theta = new.rest.copy()
-    # each link has the beam's tangent at the border that lies on it
-    for source, target in zip(old.chains, new.chains, strict=True):
-        turned = point.state.theta[source.links] - source.rest
-        theta[target.links] += np.interp(target.borders, source.borders, turned)
-    state = State(theta, point.state.bodies)
+    state = carried_state(old, point.state, new)
     bare = point_at(after.problem, values, state, point.mu, np.zeros(0), NO_ROWS)
     rows = bare.rows
     lam = np.zeros(rows.size)
