@@ -57,7 +57,7 @@ class Attachment:
     welded: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Chain:
     """One beam's links, springs and joints, in units of length, and where they stand in the shared numbering.
 
@@ -190,7 +190,7 @@ class Model:
         return next(chain for chain in self.chains if chain.name == name)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Kinks:
     """Where contacts press a beam in points, and how its curvature goes there, :mod:`cprbm.kinks`.
 

@@ -53,7 +53,7 @@ from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
 
 FOOT_ITERATIONS = 8
-FOOT_TOLERANCE = 1e-13  # of σ, and of t·r, units of length
+CLOSE = 1e-9  # units of length: a step whose square is nothing
 CLOSEST_ITERATIONS = 50
 LEAST_CURVATURE = 1e-3  # of D, 1/ℓ: elements that end elsewhere on either beam leave as much in a zone
 REACH = 0.1  # minima and ends with gaps wider than this part of the longest beam are no constraints yet
@@ -61,7 +61,6 @@ ARCHING = 1.0  # of what the largest force bends one element by: unlike elements
 JOINT_REACH = 2.0  # joints with gaps wider than this many h²·(|ψ_A'| + |ψ_B'| + 1/ℓ) are none
 PARALLEL = 1e-3  # a foot whose perpendicular misses by more (sine) is an end, not a foot
 SAME = 1e-3  # lengths that differ by less than this part are one
-PLACE_TOLERANCE = 1e-13  # of a minimum's place, units of length
 SETTLED = 1e-9  # slope of D at a minimum
 BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces A leaves its place to that
 
@@ -382,11 +381,13 @@ def _feet(pair: Pair, lines: Lines, A: smooth.Points, sigma: Array) -> tuple[Arr
     for _ in range(FOOT_ITERATIONS):
         B = pair.on_b(lines, sigma)
         along, across = _seen_from(B, A)
-        step = along / (B.speed * np.maximum(1.0 - B.bend * across, 0.2))
-        ahead = np.minimum(np.maximum(sigma + np.minimum(np.maximum(step, -pair.b.h), pair.b.h), 0.0), pair.b.s[-1])
-        if np.max(np.abs(ahead - sigma)) < FOOT_TOLERANCE:
+        # along the circle of curvature, where that is round the foot
+        left = along / np.maximum(1.0 - B.bend * across, 0.2)
+        step = left / (B.speed * (1.0 + (B.bend * left) ** 2 / 3.0))
+        before = sigma
+        sigma = np.minimum(np.maximum(before + np.minimum(np.maximum(step, -pair.b.h), pair.b.h), 0.0), pair.b.s[-1])
+        if np.abs(sigma - before).max() < CLOSE:
             break
-        sigma = ahead
     foot = np.abs(along) <= PARALLEL * np.maximum(np.abs(across), pair.b.h)
     return pair.side * across, sigma, foot
 
@@ -514,9 +515,9 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
         ahead = s - slope / np.where(convex > LEAST_CURVATURE, convex, np.inf)
         newton = (convex > LEAST_CURVATURE) & (ahead >= low) & (ahead <= high)
         step = np.where(newton, ahead, 0.5 * (low + high)) - s
-        if np.all((np.abs(step) < PLACE_TOLERANCE) & (np.abs(along) < FOOT_TOLERANCE)):
+        s, sigma = s + step, np.minimum(np.maximum(sigma + left + towards * step, 0.0), pair.b.s[-1])
+        if np.all((np.abs(step) < CLOSE) & (np.abs(along) < CLOSE) & (np.abs(slope) < SETTLED)):
             break
-        s, sigma = s + step, np.clip(sigma + left + towards * step, 0.0, pair.b.s[-1])
     held = found.held(pair.side * across - pair.offset)
     settled = held & (convex > LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
     return s[settled], sigma[settled]

@@ -256,7 +256,14 @@ def _arc(off: Array, rate: Array, R: Array | float) -> tuple[Array, Array]:
 
 
 def smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -> SmoothLine:
-    """The smooth line of ``chain`` in a state."""
+    """The smooth line of ``chain`` in a state, the same one each time it is asked for at the same positions."""
+    line = at.known.get(chain.first_link)
+    if not isinstance(line, SmoothLine):
+        line = at.known[chain.first_link] = _smooth_line(chain, unit_length, state, at)
+    return line
+
+
+def _smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -> SmoothLine:
     theta = state.theta[chain.links]
     turns = np.diff(theta) - np.diff(chain.rest)
     return SmoothLine(
