@@ -26,7 +26,7 @@ import numpy as np
 from frozendict import frozendict
 
 from cprbm.curves import NeutralLine, neutral_line
-from cprbm.pieces import Pieces, pieces
+from cprbm.pieces import Piece, Pieces, pieces
 from cprbm.section import Section, largest_rigidity, section_of
 from cprbm.settings import Settings
 from cprbm.spacing import spaced
@@ -100,6 +100,23 @@ class Chain:
     youngs_modulus: float
     start: Attachment
     end: Attachment | None
+
+    @cached_property
+    def halves(self) -> Array:
+        """Arc lengths of the joints and of the places half-way between them, (2N+3,)."""
+        s = np.empty(2 * self.n + 3)
+        s[::2] = self.s
+        s[1::2] = 0.5 * (self.s[1:] + self.s[:-1])
+        s.flags.writeable = False
+        return s
+
+    @cached_property
+    def at_halves(self) -> Piece | None:
+        """What the links carry at :attr:`halves`, but of a straight beam."""
+        if self.pieces is None:
+            return None
+        link = np.minimum(np.arange(2 * self.n + 3) // 2, self.n)
+        return self.pieces.seen(link, self.halves, self.halves - self.s[link], self.line.length / float(self.s[-1]))
 
     @cached_property
     def breaks(self) -> Array:

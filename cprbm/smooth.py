@@ -40,7 +40,7 @@ import numpy as np
 
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
-from cprbm.pieces import CurvePieces
+from cprbm.pieces import CurvePieces, Piece
 from scene.answer import Array, Flags, Ints
 
 STRAIGHT = 1e-150  # rad: what turns less is straight, and its sine the angle
@@ -172,7 +172,7 @@ class SmoothLine:
     @cached_property
     def sampled(self) -> Points:
         """Points at :func:`halves`."""
-        return self.at(halves(self.chain))
+        return self._at(self.chain.halves, self.chain.at_halves)
 
     @cached_property
     def arcs(self) -> Array:
@@ -188,13 +188,18 @@ class SmoothLine:
 
     def at(self, s: Array) -> Points:
         """Points at arc lengths ``s`` (k,), units of length; beyond the ends the end itself."""
+        return self._at(np.minimum(np.maximum(s, 0.0), self.chain.s[-1]), None)
+
+    def _at(self, s: Array, piece: Piece | None) -> Points:
+        """Points at arc lengths ``s`` within the beam, of a stress-free ``piece`` that is known or not."""
         chain = self.chain
-        s = np.minimum(np.maximum(s, 0.0), chain.s[-1])
         half = chain.breaks.searchsorted(s, side="right")
         border, x, y, cos, sin, tangent, rate, R = self.arcs[:, half]
         off = s - border
         if isinstance(chain.pieces, CurvePieces):
-            return self._beside(chain.pieces, half, s, off, rate, R)
+            link = (half + 1) // 2
+            piece = piece or chain.pieces.seen(link, s, s - chain.s[link], self.unit_length)
+            return self._beside(piece, half, s, off, rate, R)
         # stress-free piece and difference of two arcs make one arc, from the border on
         along, across = _arc(off, rate, R)
         tangent = tangent + rate * off
@@ -212,10 +217,10 @@ class SmoothLine:
             gain=np.zeros(len(s)),
         )
 
-    def _beside(self, pieces: CurvePieces, half: Ints, s: Array, off: Array, rate: Array, R: Array) -> Points:
-        """Points of which the stress-free ``pieces`` are no arcs; see :meth:`at`."""
+    def _beside(self, piece: Piece, half: Ints, s: Array, off: Array, rate: Array, R: Array) -> Points:
+        """Points of which the stress-free ``piece`` is no arc; see :meth:`at`."""
         chain, link, spring = self.chain, (half + 1) // 2, half // 2
-        a, w, a1, w1, a2, w2 = pieces.seen(link, s, s - chain.s[link], self.unit_length)
+        a, w, a1, w1, a2, w2 = piece
         rest = chain.turns[spring] / chain.sizes[spring]
         phi, phi_rest = rate * off, rest * off
         R_cos, R_sin, cos, sin = R * np.cos(phi), R * np.sin(phi), np.cos(phi_rest), np.sin(phi_rest)
@@ -281,10 +286,7 @@ def _smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) 
 
 def halves(chain: Chain) -> Array:
     """Arc lengths of the joints and of the places half-way between them, (2N+3,)."""
-    s = np.empty(2 * chain.n + 3)
-    s[::2] = chain.s
-    s[1::2] = 0.5 * (chain.s[1:] + chain.s[:-1])
-    return s
+    return chain.halves
 
 
 def _series(coefficients: tuple[float, ...], z: Array) -> Array:
