@@ -16,7 +16,7 @@ directions where it is not, first by the stiffness of the contacts that press, t
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -93,6 +93,7 @@ class Point:
         gradient: of the potential energy (n,).
         A_E: derivatives of Z over q.
         work: of the loads.
+        systems: Newton's, of problems for which they were asked.
     """
 
     formulation: Formulation
@@ -105,6 +106,7 @@ class Point:
     gradient: Array
     A_E: Array
     work: LoadWork
+    systems: list[tuple[Problem, System]] = field(default_factory=list, init=False, repr=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,7 +242,7 @@ def measure(problem: Problem, point: Point) -> Measure:
 
 @dataclass(frozen=True, slots=True)
 class System:
-    """A factorised Newton system and the places of its border columns."""
+    """A factorised Newton system, the places of its border columns, and ∂c over q, ``slopes`` (m, n_links + 3B)."""
 
     factors: Bordered
     base: Ints
@@ -250,6 +252,7 @@ class System:
     anchors: Ints
     expected: int
     n_links: int
+    slopes: Array
 
     def step(self, keep: Ints, right: Array, f: Array) -> tuple[Array, Array]:
         """Change of q and the border's solution for the columns ``keep``."""
@@ -331,7 +334,22 @@ def system(problem: Problem, point: Point, stiff: Flags, shift: float) -> System
         anchors=anchors,
         expected=m_E + int(np.sum(sigma > 0.0)),
         n_links=n,
+        slopes=A_I,
     )
+
+
+def own_system(problem: Problem, point: Point) -> System:
+    """The system with nothing added to it; for Newton's step, the rate and the curvatures at a state the same one.
+
+    Raises:
+        np.linalg.LinAlgError: the tridiagonal part is exactly singular.
+    """
+    for its, found in point.systems:
+        if its is problem:
+            return found
+    found = system(problem, point, np.zeros(point.rows.size, dtype=bool), 0.0)
+    point.systems.append((problem, found))
+    return found
 
 
 def _convex_system(problem: Problem, point: Point) -> System:
@@ -347,7 +365,8 @@ def _convex_system(problem: Problem, point: Point) -> System:
     tries += [(none, 4.0**i) for i in range(1, 12)]
     for stiff, shift in tries:
         try:
-            found = system(problem, point, stiff, shift)
+            plain = shift == 0.0 and not np.any(stiff)
+            found = own_system(problem, point) if plain else system(problem, point, stiff, shift)
             if found.factors.negative(found.base) == found.expected:
                 return found
         except np.linalg.LinAlgError:
@@ -404,9 +423,7 @@ def newton_step(problem: Problem, point: Point, *, thorough: bool = False) -> tu
         S, base, contacts = found.factors.schur, found.base, found.contacts
         across = S[np.ix_(base, contacts)]
         G = -(S[np.ix_(contacts, contacts)] - across.T @ np.linalg.solve(S[np.ix_(base, base)], across))
-        lam, active = pressing(
-            0.5 * (G + G.T), point.rows.values + contact_rows(problem.model, point) @ change, point.lam > 0.0
-        )
+        lam, active = pressing(0.5 * (G + G.T), point.rows.values + found.slopes @ change, point.lam > 0.0)
         if np.any(active):
             keep = np.concatenate((base, contacts[active]))
             change, b = found.step(keep, np.concatenate((right, -point.rows.values[active])), f)

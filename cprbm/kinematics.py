@@ -70,7 +70,7 @@ class Positions:
     y: Array
     dx: Array
     dy: Array
-    known: dict[int, object] = field(default_factory=dict, repr=False, compare=False)
+    known: dict[int, object] = field(default_factory=dict, init=False, repr=False, compare=False)
 
 
 def positions(model: Model, state: State) -> Positions:
