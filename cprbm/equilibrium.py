@@ -33,7 +33,7 @@ from cprbm.energy import (
     strain_gradient,
     strain_hessian,
 )
-from cprbm.kinematics import Positions, State, position_rows, positions, pulled_back
+from cprbm.kinematics import Positions, State, most_turned, position_rows, positions, pulled_back
 from cprbm.local import LocalSystem, local_step, local_system
 from cprbm.model import Model
 from scene.answer import Array, Flags, Ints
@@ -438,13 +438,20 @@ def potential_energy(problem: Problem, point: Point) -> float:
 
 
 def equilibrium(
-    problem: Problem, values: dict[str, float], start: Point, tolerance: float, iterations: int, *, settle: bool = False
+    problem: Problem,
+    values: dict[str, float],
+    start: Point,
+    tolerance: float,
+    iterations: int,
+    *,
+    settle: bool = False,
+    farthest: float = np.inf,
 ) -> Equilibrium:
     """Newton's method from ``start`` to the equilibrium under the loads' and drives' ``values`` (SI).
 
     Where it comes back to a residual it had, the row sets of two or three states follow each other in a circle, and
     a part of the step is taken.  Where it comes back for good, the steady rows decide if they may ``settle`` it;
-    otherwise that is the end.
+    otherwise that is the end, and so it is where a link has turned by more than ``farthest``, rad.
     """
     model = problem.model
     point = point_under(problem, values, start)
@@ -471,6 +478,8 @@ def equilibrium(
         state = point.state.moved(scale * change, model.n_links)
         point = point_at(problem, values, state, mu, lam, point.rows)
         now = measure(problem, point)
+        if most_turned(start.state, state) > farthest:
+            return Equilibrium(point, now, iteration, converged=False)
         if scale == 1.0 and _settled(now, longest, tolerance):
             return Equilibrium(point, now, iteration, converged=True)
     return Equilibrium(point, now, iterations, converged=False)

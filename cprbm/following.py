@@ -30,6 +30,7 @@ SETTLE = 0.1  # of the way: in shorter steps steady rows may settle which places
 CLOSER = 0.98  # of the way that is left to where something ends
 SOON = 6  # iterations to a state that is nearly known
 SHORT = 0.2  # rad: the most that a link may turn in a step that hides no end of a branch
+FAR = 10.0  # times the way that the rates make: up to a fold it is twice that
 ISOLATED = 0.01  # rad: the most in which a contact or stop may close or open: what it catches did not fall far
 JUST = 2.0  # smallest steps, to see that there is nothing beyond
 TRAIL = 30  # minima that are kept
@@ -115,7 +116,8 @@ class Follower:
             ahead = None if refused else continued(problem, values, self._known, way.value(fraction))
             for start in [self.point] if ahead is None else [ahead, self.point]:
                 most = self.settings.iterations if start is self.point else SOON
-                found = self._solved(values, start, most, settle=step <= SETTLE and start is self.point)
+                farthest = self._farthest((fraction - done) * here)
+                found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
                 iterations += found.iterations
                 certificate, ending = certify(self.mechanism, self.settings, found)
                 if ending is Ending.COMPLETED:
@@ -155,8 +157,15 @@ class Follower:
         """The last minima and their values."""
         return [(one.value, one.point) for one in self.trail[-MOST:]]
 
-    def _solved(self, values: dict[str, float], start: Point, most: int, *, settle: bool) -> Equilibrium:
-        return equilibrium(self.mechanism.problem, values, start, self.settings.tolerance, most, settle=settle)
+    def _farthest(self, way: Array) -> float:
+        """The most that a link turns by before a step is given up on which links go a ``way`` by their rates."""
+        return max(FAR * float(np.max(np.abs(way))), 2.0 * ISOLATED) if self.careful else np.inf
+
+    def _solved(
+        self, values: dict[str, float], start: Point, most: int, farthest: float, *, settle: bool
+    ) -> Equilibrium:
+        problem, tolerance = self.mechanism.problem, self.settings.tolerance
+        return equilibrium(problem, values, start, tolerance, most, settle=settle, farthest=farthest)
 
     def _strayed(self, found: Point, start: Array, end: Array) -> tuple[Ending, str]:
         """Why a minimum is not on the branch; COMPLETED where it is.
