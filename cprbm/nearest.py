@@ -337,34 +337,36 @@ class Pair:
         r_z = np.concatenate((smooth.position_slopes(A), -smooth.position_slopes(B)), axis=2)
         n_r = np.einsum("mi,mik->mk", normal, r_z)
         t_r = np.einsum("mi,mik->mk", tangent, r_z)
-
-        # ds/dz and dσ/dz from (i) and (ii)
-        zeros = np.zeros((m, k))
-        psi_B = np.concatenate((zeros, smooth.angle_slopes(B)), axis=1)
-        psi_A = np.concatenate((smooth.angle_slopes(A), zeros), axis=1)
         facing = np.cos(A.psi - B.psi)
         of_foot = -B.speed + distance * B.bend
-        one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
-        more_A, more_B = missed(self.a, self.kinks[0], s), missed(self.b, self.kinks[1], sigma)
-        determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.speed, 1.0)
-        s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
         # what D gains over s by the tangents' γ, the foot going along
+        more_A, more_B = missed(self.a, self.kinks[0], s), missed(self.b, self.kinks[1], sigma)
         gained = np.sign(facing) * (more_A.integral + of_foot / (facing * A.speed) * more_B.integral)
-        sigma_z = (two - (facing * A.speed)[:, None] * s_z) / of_foot[:, None]
-        turning = psi_B + B.bend[:, None] * sigma_z
-        second = np.zeros((m, 2 * k, 2 * k))
-        second[:, :k, :k] = smooth.position_curvature(A, normal)
-        second[:, k:, k:] = -smooth.position_curvature(B, normal)
-        n_A = np.concatenate((np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(A)), zeros), axis=1)
-        n_B = np.concatenate((zeros, np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(B))), axis=1)
-        second += -t_r[:, :, None] * turning[:, None, :]
-        second += n_A[:, :, None] * s_z[:, None, :] - n_B[:, :, None] * sigma_z[:, None, :]
-        second = 0.5 * (second + np.swapaxes(second, 1, 2))  # γ leaves a part of its own size uneven
+
+        def bent() -> Array:
+            # ds/dz and dσ/dz from (i) and (ii)
+            zeros = np.zeros((m, k))
+            psi_B = np.concatenate((zeros, smooth.angle_slopes(B)), axis=1)
+            psi_A = np.concatenate((smooth.angle_slopes(A), zeros), axis=1)
+            one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
+            determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.speed, 1.0)
+            s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
+            sigma_z = (two - (facing * A.speed)[:, None] * s_z) / of_foot[:, None]
+            turning = psi_B + B.bend[:, None] * sigma_z
+            second = np.zeros((m, 2 * k, 2 * k))
+            second[:, :k, :k] = smooth.position_curvature(A, normal)
+            second[:, k:, k:] = -smooth.position_curvature(B, normal)
+            n_A = np.concatenate((np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(A)), zeros), axis=1)
+            n_B = np.concatenate((zeros, np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(B))), axis=1)
+            second += -t_r[:, :, None] * turning[:, None, :]
+            second += n_A[:, :, None] * s_z[:, None, :] - n_B[:, :, None] * sigma_z[:, None, :]
+            # γ leaves a part of its own size uneven
+            return np.asarray(-self.side * 0.5 * (second + np.swapaxes(second, 1, 2)))
 
         return Touches(
             values=self.offset - self.side * (distance + gained),
             slopes=-self.side * n_r,
-            second=-self.side * second,
+            bent=bent,
             links=np.stack((A.link, B.link)),
         )
 

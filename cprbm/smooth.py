@@ -142,9 +142,14 @@ class Points:
         return np.stack((self.speed * np.cos(leading), self.speed * np.sin(leading)))
 
     @cached_property
-    def over_turn(self) -> tuple[Array, Array, Array]:
-        """∂(a, w), ∂(a′, w′) and ∂²(a, w) over δ of the point's element, (2, k) each; ′ is the derivative over s."""
+    def over_turn(self) -> tuple[Array, Array]:
+        """∂(a, w) and ∂(a′, w′) over δ of the point's element, (2, k) each; ′ is the derivative over s."""
         return _over_turn(self)
+
+    @cached_property
+    def over_turn_twice(self) -> Array:
+        """∂²(a, w) over δ of the point's element, (2, k)."""
+        return _over_turn_twice(self)
 
 
 @dataclass(frozen=True)
@@ -173,6 +178,18 @@ class SmoothLine:
     def sampled(self) -> Points:
         """Points at :func:`halves`."""
         return self._at(self.chain.halves, self.chain.at_halves)
+
+    @cached_property
+    def radii_1(self) -> Array:
+        """∂R over δ (N,)."""
+        x, y = 0.5 * self.chain.turns, 0.5 * (self.chain.turns + self.turns)
+        return _series(SINE, x * x) * y * _series(COTANGENT_1, y * y) + 0.5 * x * _series(VERSINE, x * x)
+
+    @cached_property
+    def radii_2(self) -> Array:
+        """∂²R over δ (N,)."""
+        x, q = 0.5 * self.chain.turns, 0.25 * (self.chain.turns + self.turns) ** 2
+        return 0.5 * _series(SINE, x * x) * (_series(COTANGENT_1, q) + 2.0 * q * _series(COTANGENT_2, q))
 
     @cached_property
     def arcs(self) -> Array:
@@ -321,28 +338,30 @@ def _leant(lean: Array, along: Array, across: Array) -> tuple[Array, Array]:
     return lean[0] * along - lean[1] * across, lean[1] * along + lean[0] * across
 
 
-def _over_turn(points: Points) -> tuple[Array, Array, Array]:
-    x, y, xi, turn = 0.5 * points.ratio, 0.5 * points.turn, points.xi, points.turn
+def _over_turn(points: Points) -> tuple[Array, Array]:
+    xi, turn, R, R_1 = points.xi, points.turn, points.radius, points.line.radii_1[points.half // 2]
     phi, q = turn * xi, (turn * xi) ** 2
-    s0, s1 = _series(SINE, x * x), 0.5 * x * _series(VERSINE, x * x)
-    T1, T2 = _series(COTANGENT_1, y * y), _series(COTANGENT_2, y * y)
-    R = points.radius
-    R_1, R_2 = s0 * y * T1 + s1, 0.5 * s0 * (T1 + 2.0 * y * y * T2)
+    V, R_1_P = _series(VERSINE, q), R_1 * _series(SINE, q)
+    P_1, Q_1 = 2.0 * phi * _series(SINE_1, q), V + 2.0 * q * _series(VERSINE_1, q)
+    u, sign, R_xi = points.h * xi, np.where(points.before, -1.0, 1.0), R * xi
+    A, W = u * (R_1_P + R_xi * P_1), u * (R_1 * phi * V + R_xi * Q_1)
+    cos, sin = np.cos(phi), np.sin(phi)
+    A_u, W_u = R_1 * cos - R_xi * sin, R_1 * sin + R_xi * cos
+    return np.stack(_leant(points.lean, sign * A, W)), np.stack(_leant(points.lean, A_u, sign * W_u))
+
+
+def _over_turn_twice(points: Points) -> Array:
+    xi, turn, R = points.xi, points.turn, points.radius
+    R_1, R_2 = points.line.radii_1[points.half // 2], points.line.radii_2[points.half // 2]
+    phi, q = turn * xi, (turn * xi) ** 2
     S1, S2 = _series(SINE_1, q), _series(SINE_2, q)
     V, V1, V2 = _series(VERSINE, q), _series(VERSINE_1, q), _series(VERSINE_2, q)
     P, P_1, P_2 = _series(SINE, q), 2.0 * phi * S1, 2.0 * S1 + 4.0 * q * S2
     Q, Q_1, Q_2 = phi * V, V + 2.0 * q * V1, 6.0 * phi * V1 + 4.0 * phi * q * V2
     u, sign = points.h * xi, np.where(points.before, -1.0, 1.0)
-    A, W = u * (R_1 * P + R * xi * P_1), u * (R_1 * Q + R * xi * Q_1)
     A_2 = u * (R_2 * P + 2.0 * R_1 * xi * P_1 + R * xi * xi * P_2)
     W_2 = u * (R_2 * Q + 2.0 * R_1 * xi * Q_1 + R * xi * xi * Q_2)
-    cos, sin = np.cos(phi), np.sin(phi)
-    A_u, W_u = R_1 * cos - R * xi * sin, R_1 * sin + R * xi * cos
-    return (
-        np.stack(_leant(points.lean, sign * A, W)),
-        np.stack(_leant(points.lean, A_u, sign * W_u)),
-        np.stack(_leant(points.lean, sign * A_2, W_2)),
-    )
+    return np.stack(_leant(points.lean, sign * A_2, W_2))
 
 
 def _over_angles(points: Points) -> Array:
@@ -369,7 +388,7 @@ def position_curvature(points: Points, along: Array) -> Array:
     """Second derivatives of along·C over the local numbers for directions ``along`` (k, 2): (k, 5, 5)."""
     second = np.zeros((len(points.s), LOCALS, LOCALS))
     on_e, on_n = np.sum(along * points.e, axis=1), np.sum(along * points.n, axis=1)
-    once, _, twice = points.over_turn
+    once, twice = points.over_turn[0], points.over_turn_twice
     turns = _over_angles(points)
     second[:, 2:, 2:] = (twice[0] * on_e + twice[1] * on_n)[:, None, None] * turns[:, :, None] * turns[:, None, :]
     over = (once[0] * on_n - once[1] * on_e)[:, None] * turns
