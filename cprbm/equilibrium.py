@@ -45,6 +45,7 @@ LOCAL = 8  # joints in a row that is local
 PATIENCE = 12  # iterations; then the set that presses may go in circles, and is found by a rule that cannot
 SAME = 0.1  # part by which residuals differ that are the same again
 CIRCLES = 4  # returns that end the search for places of their own
+AWAY = 6  # steps in a row, each longer than the one before
 NOTHING = 1e-12  # S: moments below it are no load at all, and what is left is measured by S
 EPS = float(np.finfo(float).eps)
 
@@ -451,13 +452,15 @@ def equilibrium(
 
     Where it comes back to a residual it had, the row sets of two or three states follow each other in a circle, and
     a part of the step is taken.  Where it comes back for good, the steady rows decide if they may ``settle`` it;
-    otherwise that is the end, and so it is where a link has turned by more than ``farthest``, rad.
+    otherwise that is the end.  Where ``farthest`` says (rad) by what a link turns at most, so it is beyond that, and
+    where steps grow and grow: they lead away from a state that is no minimum.
     """
     model = problem.model
     point = point_under(problem, values, start)
     now = measure(problem, point)
     seen: list[float] = []
     part, circles = 1.0, 0
+    grown, last = 0, np.inf
     for iteration in range(1, iterations + 1):
         try:
             change, mu, lam = newton_step(problem, point, thorough=iteration > PATIENCE)
@@ -465,6 +468,9 @@ def equilibrium(
             return Equilibrium(point, now, iteration, converged=False)
         longest = float(np.max(np.abs(change[: model.n_links])))
         if not np.isfinite(longest):
+            return Equilibrium(point, now, iteration, converged=False)
+        grown, last = grown + 1 if longest > last else 0, longest
+        if grown == AWAY and np.isfinite(farthest):
             return Equilibrium(point, now, iteration, converged=False)
         returns = _returns(seen, now.residual)
         part = 0.5 * part if returns else min(1.0, 2.0 * part)
