@@ -464,6 +464,13 @@ def _held_together(one: Chain, other: Chain, end: int, foot: float) -> bool:
 
 def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     """D at the joints of A and half-way between them, infinite where it is out of reach, and σ, (2N+3,) each."""
+    known, what = lines[0].known, (pair.name, "samples")
+    if what not in known:
+        known[what] = _sampled_anew(pair, lines)
+    return known[what]
+
+
+def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     A, G = lines[0].sampled, lines[1].sampled
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
     rough, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(
@@ -492,6 +499,13 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
     Newton's method on dD/ds = 0 and on (i), kept between the samples beside the lowest: where the curvature jumps
     it alone would not settle.
     """
+    known, what = lines[0].known, (pair.name, "minima" if pair.own_places else "none")
+    if what not in known:
+        known[what] = _minima_anew(pair, lines, D, sigma)
+    return known[what]
+
+
+def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:
     s, lowest = smooth.halves(pair.a), wells.lowest(D, pair.offset + REACH)
     if not lowest.size:
         return np.zeros(0), np.zeros(0)

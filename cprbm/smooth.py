@@ -33,7 +33,7 @@ element, κ⁰′h²/8: of fifth order in h.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -162,6 +162,7 @@ class SmoothLine:
         theta, cos, sin: angles of the links (N+1,).
         turns, radii: δ and R of the springs (N,).
         x, y: joints (N+2,).
+        known: what contacts have found along it, by the contact's name and what it is.
     """
 
     chain: Chain
@@ -173,6 +174,9 @@ class SmoothLine:
     radii: Array
     x: Array
     y: Array
+    known: dict[tuple[str, str], tuple[Array, Array]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @cached_property
     def sampled(self) -> Points:
