@@ -467,7 +467,8 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     known, what = lines[0].known, (pair.name, "samples")
     if what not in known:
         known[what] = _sampled_anew(pair, lines)
-    return known[what]
+    D, sigma = known[what]
+    return D, sigma
 
 
 def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
@@ -500,9 +501,10 @@ def _minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Ar
     it alone would not settle.
     """
     known, what = lines[0].known, (pair.name, "minima" if pair.own_places else "none")
-    if what not in known:
-        known[what] = _minima_anew(pair, lines, D, sigma)
-    return known[what]
+    if what not in known or known[what][0] is not D:
+        known[what] = D, *_minima_anew(pair, lines, D, sigma)
+    _, s, sigma = known[what]
+    return s, sigma
 
 
 def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:

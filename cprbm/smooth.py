@@ -174,9 +174,7 @@ class SmoothLine:
     radii: Array
     x: Array
     y: Array
-    known: dict[tuple[str, str], tuple[Array, Array]] = field(
-        default_factory=dict, init=False, repr=False, compare=False
-    )
+    known: dict[tuple[str, str], tuple[Array, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
     def sampled(self) -> Points:
