@@ -16,7 +16,7 @@ directions where it is not, first by the stiffness of the contacts that press, t
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -33,7 +33,7 @@ from cprbm.energy import (
     strain_gradient,
     strain_hessian,
 )
-from cprbm.kinematics import Positions, State, position_rows, positions, pulled_back
+from cprbm.kinematics import Positions, State, most_turned, position_rows, positions, pulled_back
 from cprbm.local import LocalSystem, local_step, local_system
 from cprbm.model import Model
 from scene.answer import Array, Ints
@@ -45,6 +45,7 @@ LOCAL = 8  # joints in a row that is local
 PATIENCE = 12  # iterations; then the set that presses may go in circles, and is found by a rule that cannot
 SAME = 0.1  # part by which residuals differ that are the same again
 CIRCLES = 4  # returns that end the search for places of their own
+AWAY = 6  # steps in a row, each longer than the one before
 NOTHING = 1e-12  # S: moments below it are no load at all, and what is left is measured by S
 EPS = float(np.finfo(float).eps)
 
@@ -86,14 +87,17 @@ class Point:
     """A state with its multipliers and everything first-order there.
 
     Attributes:
+        formulation: by which the contact rows were found.
         state, at: the unknowns and the joints' positions.
         mu, lam: multipliers of the equalities and of the contact rows.
         Z, rows: equalities (mE,) and contact constraints.
         gradient: of the potential energy (n,).
         A_E: derivatives of Z over q.
         work: of the loads.
+        systems: Newton's, of problems for which they were asked.
     """
 
+    formulation: Formulation
     state: State
     at: Positions
     mu: Array
@@ -103,6 +107,7 @@ class Point:
     gradient: Array
     A_E: Array
     work: LoadWork
+    systems: list[tuple[Problem, System]] = field(default_factory=list, init=False, repr=False, compare=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,24 +133,37 @@ class Equilibrium:
 
 def point_at(problem: Problem, values: dict[str, float], state: State, mu: Array, lam: Array, before: Rows) -> Point:
     """Evaluate a state; ``lam`` belongs to the rows ``before`` and is carried over to those found here."""
-    model = problem.model
-    at = positions(model, state)
+    at = positions(problem.model, state)
     rows = problem.formulation(state, at, before)
+    return _point(problem, values, state, at, mu, carried(before, lam, rows, problem.model), rows)
+
+
+def point_under(problem: Problem, values: dict[str, float], point: Point) -> Point:
+    """The state of a ``point`` under other values; its rows are the same where they are found in the same way."""
+    if point.formulation is not problem.formulation:
+        return point_at(problem, values, point.state, point.mu, point.lam, point.rows)
+    return _point(problem, values, point.state, point.at, point.mu, point.lam, point.rows)
+
+
+def _point(
+    problem: Problem, values: dict[str, float], state: State, at: Positions, mu: Array, lam: Array, rows: Rows
+) -> Point:
+    model = problem.model
     work = load_work(model, problem.loads, values, state, at)
     gradient = -work.gradient
     gradient[: model.n_links] += strain_gradient(model, state)
     if problem.drag is not None:
         gradient[: model.n_links] += problem.stiffened() * (state.theta - problem.drag.theta)
-    A_E = closure_rows(model, problem.closure, state, at)
     return Point(
+        formulation=problem.formulation,
         state=state,
         at=at,
         mu=mu,
-        lam=carried(before, lam, rows, model),
+        lam=lam,
         Z=closure_values(model, problem.closure, state, at, values),
         rows=rows,
         gradient=gradient,
-        A_E=A_E,
+        A_E=closure_rows(model, problem.closure, state, at),
         work=work,
     )
 
@@ -225,7 +243,7 @@ def measure(problem: Problem, point: Point) -> Measure:
 
 @dataclass(frozen=True, slots=True)
 class System:
-    """A factorised Newton system and the places of its border columns."""
+    """A factorised Newton system, the places of its border columns, and ∂c over q, ``slopes`` (m, n_links + 3B)."""
 
     factors: Bordered
     base: Ints
@@ -235,6 +253,7 @@ class System:
     anchors: Ints
     expected: int
     n_links: int
+    slopes: Array
 
     def step(self, keep: Ints, right: Array, f: Array) -> tuple[Array, Array]:
         """Change of q and the border's solution for the columns ``keep``."""
@@ -316,7 +335,22 @@ def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System
         anchors=anchors,
         expected=m_E + int(np.sum(sigma > 0.0)),
         n_links=n,
+        slopes=A_I,
     )
+
+
+def own_system(problem: Problem, point: Point) -> System:
+    """The system with nothing added to it; for Newton's step, the rate and the curvatures at a state the same one.
+
+    Raises:
+        np.linalg.LinAlgError: the tridiagonal part is exactly singular.
+    """
+    for its, found in point.systems:
+        if its is problem:
+            return found
+    found = system(problem, point, np.zeros(point.rows.size), 0.0)
+    point.systems.append((problem, found))
+    return found
 
 
 def _convex_system(problem: Problem, point: Point) -> System:
@@ -332,7 +366,8 @@ def _convex_system(problem: Problem, point: Point) -> System:
     tries += [(none, 4.0**i) for i in range(1, 12)]
     for stiff, shift in tries:
         try:
-            found = system(problem, point, stiff, shift)
+            plain = shift == 0.0 and not np.any(stiff)
+            found = own_system(problem, point) if plain else system(problem, point, stiff, shift)
             if found.factors.negative(found.base) == found.expected:
                 return found
         except np.linalg.LinAlgError:
@@ -389,9 +424,7 @@ def newton_step(problem: Problem, point: Point, *, thorough: bool = False) -> tu
         S, base, contacts = found.factors.schur, found.base, found.contacts
         across = S[np.ix_(base, contacts)]
         G = -(S[np.ix_(contacts, contacts)] - across.T @ np.linalg.solve(S[np.ix_(base, base)], across))
-        lam, active = pressing(
-            0.5 * (G + G.T), point.rows.values + contact_rows(problem.model, point) @ change, point.lam > 0.0
-        )
+        lam, active = pressing(0.5 * (G + G.T), point.rows.values + found.slopes @ change, point.lam > 0.0)
         if np.any(active):
             keep = np.concatenate((base, contacts[active]))
             change, b = found.step(keep, np.concatenate((right, -point.rows.values[active])), f)
@@ -406,19 +439,28 @@ def potential_energy(problem: Problem, point: Point) -> float:
 
 
 def equilibrium(
-    problem: Problem, values: dict[str, float], start: Point, tolerance: float, iterations: int, *, settle: bool = False
+    problem: Problem,
+    values: dict[str, float],
+    start: Point,
+    tolerance: float,
+    iterations: int,
+    *,
+    settle: bool = False,
+    farthest: float = np.inf,
 ) -> Equilibrium:
     """Newton's method from ``start`` to the equilibrium under the loads' and drives' ``values`` (SI).
 
     Where it comes back to a residual it had, the row sets of two or three states follow each other in a circle, and
     a part of the step is taken.  Where it comes back for good, the steady rows decide if they may ``settle`` it;
-    otherwise that is the end.
+    otherwise that is the end.  Where ``farthest`` says (rad) by what a link turns at most, so it is beyond that, and
+    where steps grow and grow: they lead away from a state that is no minimum.
     """
     model = problem.model
-    point = point_at(problem, values, start.state, start.mu, start.lam, start.rows)
+    point = point_under(problem, values, start)
     now = measure(problem, point)
     seen: list[float] = []
     part, circles = 1.0, 0
+    grown, last = 0, np.inf
     for iteration in range(1, iterations + 1):
         try:
             change, mu, lam = newton_step(problem, point, thorough=iteration > PATIENCE)
@@ -426,6 +468,9 @@ def equilibrium(
             return Equilibrium(point, now, iteration, converged=False)
         longest = float(np.max(np.abs(change[: model.n_links])))
         if not np.isfinite(longest):
+            return Equilibrium(point, now, iteration, converged=False)
+        grown, last = grown + 1 if longest > last else 0, longest
+        if grown == AWAY and np.isfinite(farthest):
             return Equilibrium(point, now, iteration, converged=False)
         returns = _returns(seen, now.residual)
         part = 0.5 * part if returns else min(1.0, 2.0 * part)
@@ -439,6 +484,8 @@ def equilibrium(
         state = point.state.moved(scale * change, model.n_links)
         point = point_at(problem, values, state, mu, lam, point.rows)
         now = measure(problem, point)
+        if most_turned(start.state, state) > farthest:
+            return Equilibrium(point, now, iteration, converged=False)
         if scale == 1.0 and _settled(now, longest, tolerance):
             return Equilibrium(point, now, iteration, converged=True)
     return Equilibrium(point, now, iterations, converged=False)

@@ -17,6 +17,7 @@ import numpy as np
 from cprbm.certifying import certify
 from cprbm.critical import Minimum, foreseen
 from cprbm.equilibrium import Equilibrium, Point, equilibrium
+from cprbm.extrapolating import MOST, continued
 from cprbm.kinematics import most_turned
 from cprbm.mechanism import Mechanism
 from cprbm.rate import rate, strayed
@@ -27,7 +28,9 @@ from scene.answer import Array
 GROWTH = 2.0
 SETTLE = 0.1  # of the way: in shorter steps steady rows may settle which places there are
 CLOSER = 0.98  # of the way that is left to where something ends
+SOON = 6  # iterations to a state that is nearly known
 SHORT = 0.2  # rad: the most that a link may turn in a step that hides no end of a branch
+FAR = 10.0  # times the way that the rates make: up to a fold it is twice that
 ISOLATED = 0.01  # rad: the most in which a contact or stop may close or open: what it catches did not fall far
 JUST = 2.0  # smallest steps, to see that there is nothing beyond
 TRAIL = 30  # minima that are kept
@@ -104,20 +107,27 @@ class Follower:
         """Go all the way, directly or in steps; ``accept`` sees every next minimum before it is the present one."""
         done, step, iterations, refused = 0.0, 1.0, 0, False
         self.values = dict(way.begin)
-        here = there = rate(self.mechanism.problem, self.point, way.change)
+        problem = self.mechanism.problem
+        here = there = rate(problem, self.point, way.change)
         while True:
             step = min(step, 1.0 - done, self._longest(here))
             fraction = 1.0 if done + step >= 1.0 else done + step
             values = way.at(fraction)
-            found = self._solved(values, settle=step <= SETTLE)
-            iterations += found.iterations
-            certificate, ending = certify(self.mechanism, self.settings, found)
-            if ending is Ending.COMPLETED:
-                there = rate(self.mechanism.problem, found.point, way.change)
-                part = fraction - done
-                ending, sentence = self._strayed(found.point, part * here, part * there)
-            else:
-                sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
+            ahead = None if refused else continued(problem, values, self._known, way.value(fraction))
+            for start in [self.point] if ahead is None else [ahead, self.point]:
+                most = self.settings.iterations if start is self.point else SOON
+                farthest = self._farthest((fraction - done) * here)
+                found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
+                iterations += found.iterations
+                certificate, ending = certify(self.mechanism, self.settings, found)
+                if ending is Ending.COMPLETED:
+                    there = rate(problem, found.point, way.change)
+                    part = fraction - done
+                    ending, sentence = self._strayed(found.point, part * here, part * there)
+                else:
+                    sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
+                if ending is Ending.COMPLETED:
+                    break
             if ending is Ending.COMPLETED:
                 accept(found.point, values)
                 self.point, self.values, done, here = found.point, values, fraction, there
@@ -142,9 +152,20 @@ class Follower:
         turn = float(np.max(np.abs(here)))
         return max(SHORT / turn, self.settings.smallest_step) if turn > SHORT else 1.0
 
-    def _solved(self, values: dict[str, float], *, settle: bool) -> Equilibrium:
-        problem, settings = self.mechanism.problem, self.settings
-        return equilibrium(problem, values, self.point, settings.tolerance, settings.iterations, settle=settle)
+    @property
+    def _known(self) -> list[tuple[float, Point]]:
+        """The last minima and their values."""
+        return [(one.value, one.point) for one in self.trail[-MOST:]]
+
+    def _farthest(self, way: Array) -> float:
+        """The most that a link turns by before a step is given up on which links go a ``way`` by their rates."""
+        return max(FAR * float(np.max(np.abs(way))), 2.0 * ISOLATED) if self.careful else np.inf
+
+    def _solved(
+        self, values: dict[str, float], start: Point, most: int, farthest: float, *, settle: bool
+    ) -> Equilibrium:
+        problem, tolerance = self.mechanism.problem, self.settings.tolerance
+        return equilibrium(problem, values, start, tolerance, most, settle=settle, farthest=farthest)
 
     def _strayed(self, found: Point, start: Array, end: Array) -> tuple[Ending, str]:
         """Why a minimum is not on the branch; COMPLETED where it is.

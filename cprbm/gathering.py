@@ -16,7 +16,9 @@ A row is Σ w c(z(ζ)), where z is linear in ζ but for the positions of further
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -27,29 +29,37 @@ from cprbm.model import Chain
 from scene.answer import Array, Flags, Ints
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Touches:
     """The constraint c at k places, each over local numbers of its own.
 
     Attributes:
         values: c (k,), units of length.
-        slopes, second: ∂c/∂z (k, 10) and ∂²c/∂z² (k, 10, 10).
+        slopes: ∂c/∂z (k, 10).
+        bent: yields ∂²c/∂z² (k, 10, 10), which only what presses needs.
         links: of A and of B in their own numbering, (2, k).
     """
 
     values: Array
     slopes: Array
-    second: Array
+    bent: Callable[[], Array]
     links: Ints
+
+    @cached_property
+    def second(self) -> Array:
+        """∂²c/∂z² (k, 10, 10)."""
+        return self.bent()
 
     def only(self, these: Flags | Ints) -> Touches:
         """Some of the places."""
-        return Touches(self.values[these], self.slopes[these], self.second[these], self.links[:, these])
+        return Touches(self.values[these], self.slopes[these], lambda: self.second[these], self.links[:, these])
 
     def exchanged(self) -> Touches:
         """The same with the parts of A and B exchanged."""
         turned = (np.arange(2 * smooth.LOCALS) + smooth.LOCALS) % (2 * smooth.LOCALS)
-        return Touches(self.values, self.slopes[:, turned], self.second[:, turned[:, None], turned], self.links[::-1])
+        return Touches(
+            self.values, self.slopes[:, turned], lambda: self.second[:, turned[:, None], turned], self.links[::-1]
+        )
 
 
 def gathered(
@@ -96,7 +106,7 @@ def gathered(
             turned[past, column + 1 + k] = -(touches.slopes[past, x] * dx + touches.slopes[past, x + 1] * dy)
         column += width
     share = weights.ravel()
-    slopes = np.einsum("kz,kzj->kj", share[:, None] * touches.slopes, M).reshape(m, q, -1).sum(axis=1)
+    slopes = ((share[:, None] * touches.slopes)[:, None] @ M).reshape(m, q, -1).sum(axis=1)
     joints = np.stack([chain.first_joint + begin for chain, begin in zip(chains, first, strict=True)], axis=1)
     over = np.concatenate(angles, axis=1)
 

@@ -10,7 +10,7 @@ f_j         generalised force on joint j; F_i = Σ_{j>i} f_j of the same beam
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -61,12 +61,16 @@ def place(model: Model, attachment: Attachment, bodies: Array) -> tuple[float, f
 
 @dataclass(frozen=True, slots=True)
 class Positions:
-    """Joint positions x, y (n_joints,) and the links' components dx, dy (n_links,)."""
+    """Joint positions x, y (n_joints,) and the links' components dx, dy (n_links,).
+
+    ``known`` is for what others derive from them and the state once, by the first link of the beam that it is of.
+    """
 
     x: Array
     y: Array
     dx: Array
     dy: Array
+    known: dict[int, object] = field(default_factory=dict, init=False, repr=False, compare=False)
 
 
 def positions(model: Model, state: State) -> Positions:

@@ -26,6 +26,7 @@ to the same), and are constants while the next one is sought; how γ changes as 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -87,9 +88,8 @@ def missed(chain: Chain, kinks: Kinks, s: Array) -> Missed:
     if not kinks.places.size:
         nothing = np.zeros(len(s))
         return Missed(np.zeros(len(s), dtype=bool), nothing, nothing, u, h, u, h, nothing)
-    nearest = np.argmin(np.abs(s[:, None] - kinks.places), axis=1)
-    place = kinks.places[nearest]
-    home = _element(chain, place)
+    nearest = np.abs(s[:, None] - kinks.places).argmin(axis=1)
+    place, home = kinks.places[nearest], _reached(chain, kinks)[1][nearest]
     return Missed(
         active=np.abs(here - home) <= 1,
         before=kinks.before[nearest],
@@ -107,9 +107,9 @@ def kinked(chain: Chain, kinks: Kinks, points: Points) -> Points:
     if not kinks.places.size:
         return points
     near = np.zeros(len(points.s), dtype=bool)
-    for home in _element(chain, kinks.places):
-        near |= (points.s > chain.borders[max(home - 1, 0)]) & (points.s < chain.borders[min(home + 2, chain.n)])
-    if not np.any(near):
+    for low, high in _reached(chain, kinks)[0]:
+        near |= (points.s > low) & (points.s < high)
+    if not near.any():
         return points
     more = missed(chain, kinks, points.s[near])
     psi, bend = points.psi.copy(), points.bend.copy()
@@ -126,7 +126,15 @@ def _integral(u: Array, h: Array, p: Array, q: Array) -> Array:
 
 
 def _element(chain: Chain, s: Array) -> Ints:
-    return np.clip(np.searchsorted(chain.borders, s, side="right") - 1, 0, chain.n - 1)
+    return np.minimum(np.maximum(chain.borders.searchsorted(s, side="right") - 1, 0), chain.n - 1)
+
+
+@lru_cache(maxsize=64)
+def _reached(chain: Chain, kinks: Kinks) -> tuple[list[tuple[float, float]], Ints]:
+    """Between which arc lengths each kink is felt, and in which element it is."""
+    homes = _element(chain, kinks.places)
+    borders = chain.borders
+    return [(borders[max(home - 1, 0)], borders[min(home + 2, chain.n)]) for home in homes], homes
 
 
 def within(chain: Chain, places: Array) -> Flags:

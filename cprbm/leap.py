@@ -22,7 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cprbm.certifying import certify
-from cprbm.equilibrium import Drag, Equilibrium, Point, equilibrium, point_at, potential_energy
+from cprbm.equilibrium import Drag, Equilibrium, Point, equilibrium, point_at, point_under, potential_energy
 from cprbm.kinematics import State, most_turned
 from cprbm.mechanism import Mechanism
 from cprbm.settings import Settings
@@ -105,8 +105,7 @@ def _step(
 
 
 def _undragged(mechanism: Mechanism, values: dict[str, float], found: Equilibrium) -> Point:
-    point = found.point
-    return point_at(mechanism.problem, values, point.state, point.mu, point.lam, point.rows)
+    return point_under(mechanism.problem, values, found.point)
 
 
 def _landed(mechanism: Mechanism, settings: Settings, values: dict[str, float], point: Point) -> Landed | None:

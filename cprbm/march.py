@@ -16,14 +16,16 @@ from cprbm.certifying import certify
 from cprbm.closing import Closings, Stood
 from cprbm.contact import NO_ROWS
 from cprbm.critical import BranchEnd, Minimum, branch_end, told
-from cprbm.equilibrium import Point, equilibrium, point_at, potential_energy
+from cprbm.equilibrium import Equilibrium, Point, equilibrium, point_at, potential_energy
+from cprbm.extrapolating import MOST, alike, continued
 from cprbm.following import Follower, Reached, Way, pressing, to
-from cprbm.kinematics import most_turned, rest_state
+from cprbm.kinematics import State, most_turned, rest_state
 from cprbm.leap import Landed, leap
 from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of
+from cprbm.model import Fit
 from cprbm.probing import probed, shapes, touching
-from cprbm.refining import all_zones, carried_over, fits, fitted, long_ones
+from cprbm.refining import all_zones, carried_over, carried_state, fits, fitted, long_ones
 from cprbm.remarks import Remarks
 from cprbm.settings import Settings
 from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAnswer
@@ -35,6 +37,7 @@ BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is n
 ENDS = 10  # of branches between two stations
 ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all branches are near
 FURTHER = 30.0  # times as far before it, the fitted mesh is on the branch still
+SOON = 6  # iterations to a state that is nearly known
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
 
 
@@ -61,6 +64,8 @@ class March:
         self.opened: dict[str, list[Stood]] = {}
         self.critical: list[Critical] = []
         self.remarks = Remarks()
+        # what was solved at the last stations, by how often the mesh had been fitted, and to what
+        self.before: dict[int, tuple[Fit, list[Stood]]] = {}
 
     def run(self) -> tuple[Ending, str]:
         """Assemble, and march through every stage; the Ending and its sentence."""
@@ -71,7 +76,7 @@ class March:
         for stage in self.scene.stages:
             here = self.on.values.get(stage.steps, 0.0), self.on.point
             self.opened = {name: [here] for name in self.asked_events if name not in self.closed_at}
-            self.on.trail, self.on.careful = [], stage.beyond is not None
+            self.on.trail, self.on.careful, self.before = [], stage.beyond is not None, {}
             for target in stage.stations:
                 reached = self._reach(stage, target)
                 if reached.certificate is None:
@@ -102,7 +107,7 @@ class March:
             if finer is not None:
                 again = finer.go(to(stage.steps, finer.values, target), accept)
                 if again.certificate is not None:
-                    self.on = finer
+                    self.on, self.before = finer, {}
                     return again
                 sharper = branch_end(finer.mechanism, finer.trail, finer.refused)
                 if sharper is not None:
@@ -142,6 +147,7 @@ class March:
 
     def _ended(self, stage: Stage, target: float, end: BranchEnd) -> tuple[Landed | None, Reached]:
         """Note that the branch ends, and leap from there if the stage goes on, to what is the present state then."""
+        self.before = {}
         on, of = self.on, f"{told(end.loss, end.what)} at {stage.steps} = {end.value:.6g}"
         problem = on.mechanism.problem
         before, after = potential_energy(problem, on.point) * problem.model.unit_moment, None
@@ -205,7 +211,7 @@ class March:
 
     def _station(self, stage: Stage, value: float, certificate: Certificate) -> StationAnswer | None:
         """The answer at a station that the march has reached, on the mesh that was asked; None if that fails."""
-        found = self._fitted(self.on.point, self.on.values, certificate)
+        found = self._fitted(self.on.point, self.on.values, certificate, station=value)
         if found is None:
             if len(self.family) > 1:
                 return None
@@ -225,9 +231,12 @@ class March:
         )
 
     def _fitted(
-        self, point: Point, values: dict[str, float], certificate: Certificate
+        self, point: Point, values: dict[str, float], certificate: Certificate, station: float | None = None
     ) -> tuple[Mechanism, Point, Certificate] | None:
-        """A state on the branch on the mesh that was asked, its borders where zones of contact end."""
+        """A state on the branch on the mesh that was asked, its borders where zones of contact end.
+
+        At a ``station`` it is sought first where the states on such meshes at the last stations lead.
+        """
         mechanism, iterations = self.on.mechanism, certificate.iterations
         asked, now = self.family[-1], self.on.settings
         for turn, settings in enumerate((*self.family[1:-1], *[asked] * FITS)):
@@ -238,29 +247,73 @@ class March:
             if settings is now and fits(mechanism, fit):
                 break
             target = mechanism_of(self.scene, settings, fit)
-            start = carried_over(mechanism, point, target, values)
-            # the first mesh, or one for other zones, may settle which places there are; the next ones know them
-            first = mechanism is self.on.mechanism or mechanism.fit.ends.keys() != fit.ends.keys()
-            most = settings.iterations if first else min(settings.iterations, AGAIN)
-            for settle in (False, True) if first and now is asked else (now is not asked,):
-                solved = equilibrium(target.problem, values, start, settings.tolerance, most, settle=settle)
-                iterations += solved.iterations
-                if solved.converged:
-                    break
-                if fit.kinks and (level := levelled(self.scene, settings, mechanism, point, fit, values)) is not None:
-                    target, solved = level
-                    break
-            turned = most_turned(start.state, solved.point.state)
+            carried = carried_state(mechanism.problem.model, point.state, target.problem.model)
+            solved = self._resumed(turn, target, carried, values, station)
+            if solved is None:
+                # the first mesh, or one for other zones, may settle which places there are; the next ones know them
+                first = mechanism is self.on.mechanism or mechanism.fit.ends.keys() != fit.ends.keys()
+                target, solved = self._refitted(mechanism, point, target, values, settings, now, settle=first)
+            iterations += solved.iterations
+            turned = most_turned(carried, solved.point.state)
             if not solved.converged or turned > FOLLOWED:
                 if now is asked:  # on a mesh that fits a little less it stands already
                     break
                 return None
             mechanism, point, now, found = target, solved.point, settings, solved
+            if station is not None:
+                fit, known = self.before.get(turn, (target.fit, []))
+                kept = known[1 - MOST :] if alike(fit, target.fit) else []
+                self.before[turn] = target.fit, [*kept, (station, point)]
         if mechanism is not self.on.mechanism:
             certificate, ending = certify(mechanism, asked, found)
             if ending is not Ending.COMPLETED:
                 return None
         return mechanism, point, replace(certificate, iterations=iterations)
+
+    def _resumed(
+        self, turn: int, target: Mechanism, carried: State, values: dict[str, float], station: float | None
+    ) -> Equilibrium | None:
+        """The equilibrium near where those on such meshes at the last stations lead; None where none is found there.
+
+        ``carried`` is the state near which it must be.
+        """
+        fit, known = self.before.get(turn, (target.fit, []))
+        if station is None or not alike(fit, target.fit):
+            return None
+        start = continued(target.problem, values, known, station)
+        if start is None:
+            return None
+        found = equilibrium(target.problem, values, start, self.family[-1].tolerance, SOON)
+        return found if found.converged and most_turned(carried, found.point.state) <= FOLLOWED else None
+
+    def _refitted(
+        self,
+        before: Mechanism,
+        point: Point,
+        target: Mechanism,
+        values: dict[str, float],
+        settings: Settings,
+        now: Settings,
+        *,
+        settle: bool,
+    ) -> tuple[Mechanism, Equilibrium]:
+        """The equilibrium on a mesh from the one ``before``, of which ``now`` are the settings; and the next mesh.
+
+        That is another than the ``target`` where places were to be levelled.
+        """
+        iterations, most = 0, settings.iterations if settle else min(settings.iterations, AGAIN)
+        start = carried_over(before, point, target, values)
+        coarse = now is not self.family[-1]
+        for steady in (False, True) if settle and not coarse else (coarse,):
+            solved = equilibrium(target.problem, values, start, settings.tolerance, most, settle=steady)
+            iterations += solved.iterations
+            if solved.converged:
+                break
+            level = levelled(self.scene, settings, before, point, target.fit, values) if target.fit.kinks else None
+            if level is not None:
+                target, solved = level
+                break
+        return target, replace(solved, iterations=iterations)
 
     def notes(self) -> list[str]:
         """What a reader should know besides the numbers."""

@@ -20,12 +20,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from frozendict import frozendict
 
 from cprbm.curves import NeutralLine, neutral_line
-from cprbm.pieces import Pieces, pieces
+from cprbm.pieces import Piece, Pieces, pieces
 from cprbm.section import Section, largest_rigidity, section_of
 from cprbm.settings import Settings
 from cprbm.spacing import spaced
@@ -57,7 +58,7 @@ class Attachment:
     welded: bool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Chain:
     """One beam's links, springs and joints, in units of length, and where they stand in the shared numbering.
 
@@ -75,6 +76,7 @@ class Chain:
         turns: stress-free turning of the neutral line along the elements, rad (N,).
         lean: (2, N+1), cos and sin of its stress-free tangent at the borders against the links there.
         pieces: of the neutral line, that the links carry; None of a straight one.
+        at_borders: coordinates of the stress-free borders along and across the links that they lie on (2, N+1).
         section: thickness and E·I along the beam.
         youngs_modulus: E, Pa.
         start, end: what the ends are joined to; no end is None for a free one, a free start a body of its own.
@@ -94,10 +96,33 @@ class Chain:
     turns: Array
     lean: Array
     pieces: Pieces | None
+    at_borders: Array
     section: Section
     youngs_modulus: float
     start: Attachment
     end: Attachment | None
+
+    @cached_property
+    def halves(self) -> Array:
+        """Arc lengths of the joints and of the places half-way between them, (2N+3,)."""
+        s = np.empty(2 * self.n + 3)
+        s[::2] = self.s
+        s[1::2] = 0.5 * (self.s[1:] + self.s[:-1])
+        s.flags.writeable = False
+        return s
+
+    @cached_property
+    def at_halves(self) -> Piece | None:
+        """What the links carry at :attr:`halves`, but of a straight beam."""
+        if self.pieces is None:
+            return None
+        link = np.minimum(np.arange(2 * self.n + 3) // 2, self.n)
+        return self.pieces.seen(link, self.halves, self.halves - self.s[link], self.line.length / float(self.s[-1]))
+
+    @cached_property
+    def breaks(self) -> Array:
+        """Arc lengths between the halves of the elements: springs and, within the beam, borders (2N−1,)."""
+        return np.stack((self.s[1:-1], self.borders[1:]), axis=1).ravel()[:-1]
 
     @property
     def thickness(self) -> float:
@@ -183,7 +208,7 @@ class Model:
         return next(chain for chain in self.chains if chain.name == name)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Kinks:
     """Where contacts press a beam in points, and how its curvature goes there, :mod:`cprbm.kinks`.
 
@@ -275,6 +300,7 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
         s = np.concatenate(([0.0], springs, [line.length]))
         chords, directions = line.chords(s)
         tangents = line.angle(edges)
+        carried = pieces(line, s, directions)
         chains.append(
             Chain(
                 name=name,
@@ -290,7 +316,8 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
                 rest=directions,
                 turns=np.diff(tangents),
                 lean=np.stack((np.cos(tangents - directions), np.sin(tangents - directions))),
-                pieces=pieces(line, s, directions),
+                pieces=carried,
+                at_borders=_at_borders(carried, edges, s[:-1], unit_length),
                 section=section_of(beam, moduli[name], line.length, unit_length, unit_moment),
                 youngs_modulus=moduli[name],
                 start=attachment(beam.start) or Attachment(free_bodies.index(_loose(name)), (0.0, 0.0), welded=True),
@@ -325,6 +352,15 @@ def _borders(scene: Scene, beam: str, n: int) -> Array:
     if np.any(np.diff(numbers) < 1.0):
         return np.arange(n + 1) / n
     return np.interp(np.arange(n + 1), numbers, np.concatenate(([0.0], marks, [1.0])))
+
+
+def _at_borders(carried: Pieces | None, borders: Array, begins: Array, unit_length: float) -> Array:
+    """``at_borders`` of a chain whose links begin at arc lengths ``begins``, m as the ``borders``."""
+    t = (borders - begins) / unit_length
+    if carried is None:
+        return np.stack((t, np.zeros_like(t)))
+    piece = carried.seen(np.arange(len(t)), borders / unit_length, t, unit_length)
+    return np.stack((piece.a, piece.w))
 
 
 def attached(scene: Scene, model: Model, point: str) -> Attachment:

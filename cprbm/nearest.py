@@ -54,7 +54,7 @@ from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
 
 FOOT_ITERATIONS = 8
-FOOT_TOLERANCE = 1e-13  # of σ, and of t·r, units of length
+CLOSE = 1e-9  # units of length: a step whose square is nothing
 CLOSEST_ITERATIONS = 50
 LEAST_CURVATURE = 1e-3  # of D, 1/ℓ: elements that end elsewhere on either beam leave as much in a zone
 REACH = 0.1  # minima and ends with gaps wider than this part of the longest beam are no constraints yet
@@ -62,7 +62,6 @@ ARCHING = 1.0  # of what the largest force bends one element by: unlike elements
 JOINT_REACH = 2.0  # joints with gaps wider than this many h²·(|ψ_A'| + |ψ_B'| + 1/ℓ) are none
 PARALLEL = 1e-3  # a foot whose perpendicular misses by more (sine) is an end, not a foot
 SAME = 1e-3  # lengths that differ by less than this part are one
-PLACE_TOLERANCE = 1e-13  # of a minimum's place, units of length
 SETTLED = 1e-9  # slope of D at a minimum
 BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces A leaves its place to that
 
@@ -340,34 +339,36 @@ class Pair:
         r_z = np.concatenate((smooth.position_slopes(A), -smooth.position_slopes(B)), axis=2)
         n_r = np.einsum("mi,mik->mk", normal, r_z)
         t_r = np.einsum("mi,mik->mk", tangent, r_z)
-
-        # ds/dz and dσ/dz from (i) and (ii)
-        zeros = np.zeros((m, k))
-        psi_B = np.concatenate((zeros, smooth.angle_slopes(B)), axis=1)
-        psi_A = np.concatenate((smooth.angle_slopes(A), zeros), axis=1)
         facing = np.cos(A.psi - B.psi)
         of_foot = -B.speed + distance * B.bend
-        one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
-        more_A, more_B = missed(self.a, self.kinks[0], s), missed(self.b, self.kinks[1], sigma)
-        determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.speed, 1.0)
-        s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
         # what D gains over s by the tangents' γ, the foot going along
+        more_A, more_B = missed(self.a, self.kinks[0], s), missed(self.b, self.kinks[1], sigma)
         gained = np.sign(facing) * (more_A.integral + of_foot / (facing * A.speed) * more_B.integral)
-        sigma_z = (two - (facing * A.speed)[:, None] * s_z) / of_foot[:, None]
-        turning = psi_B + B.bend[:, None] * sigma_z
-        second = np.zeros((m, 2 * k, 2 * k))
-        second[:, :k, :k] = smooth.position_curvature(A, normal)
-        second[:, k:, k:] = -smooth.position_curvature(B, normal)
-        n_A = np.concatenate((np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(A)), zeros), axis=1)
-        n_B = np.concatenate((zeros, np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(B))), axis=1)
-        second += -t_r[:, :, None] * turning[:, None, :]
-        second += n_A[:, :, None] * s_z[:, None, :] - n_B[:, :, None] * sigma_z[:, None, :]
-        second = 0.5 * (second + np.swapaxes(second, 1, 2))  # γ leaves a part of its own size uneven
+
+        def bent() -> Array:
+            # ds/dz and dσ/dz from (i) and (ii)
+            zeros = np.zeros((m, k))
+            psi_B = np.concatenate((zeros, smooth.angle_slopes(B)), axis=1)
+            psi_A = np.concatenate((smooth.angle_slopes(A), zeros), axis=1)
+            one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
+            determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.speed, 1.0)
+            s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
+            sigma_z = (two - (facing * A.speed)[:, None] * s_z) / of_foot[:, None]
+            turning = psi_B + B.bend[:, None] * sigma_z
+            second = np.zeros((m, 2 * k, 2 * k))
+            second[:, :k, :k] = smooth.position_curvature(A, normal)
+            second[:, k:, k:] = -smooth.position_curvature(B, normal)
+            n_A = np.concatenate((np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(A)), zeros), axis=1)
+            n_B = np.concatenate((zeros, np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(B))), axis=1)
+            second += -t_r[:, :, None] * turning[:, None, :]
+            second += n_A[:, :, None] * s_z[:, None, :] - n_B[:, :, None] * sigma_z[:, None, :]
+            # γ leaves a part of its own size uneven
+            return np.asarray(-self.side * 0.5 * (second + np.swapaxes(second, 1, 2)))
 
         return Touches(
             values=self.offset - self.side * (distance + gained),
             slopes=-self.side * n_r,
-            second=-self.side * second,
+            bent=bent,
             links=np.stack((A.link, B.link)),
         )
 
@@ -384,11 +385,13 @@ def feet_near(pair: Pair, lines: Lines, A: smooth.Points, sigma: Array) -> tuple
     for _ in range(FOOT_ITERATIONS):
         B = pair.on_b(lines, sigma)
         along, across = _seen_from(B, A)
-        step = along / (B.speed * np.maximum(1.0 - B.bend * across, 0.2))
-        ahead = np.minimum(np.maximum(sigma + np.minimum(np.maximum(step, -pair.b.h), pair.b.h), 0.0), pair.b.s[-1])
-        if np.max(np.abs(ahead - sigma)) < FOOT_TOLERANCE:
+        # along the circle of curvature, where that is round the foot
+        left = along / np.maximum(1.0 - B.bend * across, 0.2)
+        step = left / (B.speed * (1.0 + (B.bend * left) ** 2 / 3.0))
+        before = sigma
+        sigma = np.minimum(np.maximum(before + np.minimum(np.maximum(step, -pair.b.h), pair.b.h), 0.0), pair.b.s[-1])
+        if np.abs(sigma - before).max() < CLOSE:
             break
-        sigma = ahead
     foot = np.abs(along) <= PARALLEL * np.maximum(np.abs(across), pair.b.h)
     return pair.side * across, sigma, foot
 
@@ -464,6 +467,14 @@ def held_together(one: Chain, other: Chain, end: int, foot: float) -> bool:
 
 def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     """D at the joints of A and half-way between them, infinite where it is out of reach, and σ, (2N+3,) each."""
+    known, what = lines[0].known, (pair.name, "samples")
+    if what not in known:
+        known[what] = _sampled_anew(pair, lines)
+    D, sigma = known[what]
+    return D, sigma
+
+
+def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     A, G = lines[0].sampled, lines[1].sampled
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
     rough, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(
@@ -492,6 +503,14 @@ def minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Arr
     Newton's method on dD/ds = 0 and on (i), kept between the samples beside the lowest: where the curvature jumps
     it alone would not settle.
     """
+    known, what = lines[0].known, (pair.name, "minima" if pair.own_places else "none")
+    if what not in known or known[what][0] is not D:
+        known[what] = D, *_minima_anew(pair, lines, D, sigma)
+    _, s, sigma = known[what]
+    return s, sigma
+
+
+def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:
     s, lowest = smooth.halves(pair.a), wells.lowest(D, pair.offset + REACH)
     if not lowest.size:
         return np.zeros(0), np.zeros(0)
@@ -517,9 +536,9 @@ def minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Arr
         ahead = s - slope / np.where(convex > LEAST_CURVATURE, convex, np.inf)
         newton = (convex > LEAST_CURVATURE) & (ahead >= low) & (ahead <= high)
         step = np.where(newton, ahead, 0.5 * (low + high)) - s
-        if np.all((np.abs(step) < PLACE_TOLERANCE) & (np.abs(along) < FOOT_TOLERANCE)):
+        s, sigma = s + step, np.minimum(np.maximum(sigma + left + towards * step, 0.0), pair.b.s[-1])
+        if np.all((np.abs(step) < CLOSE) & (np.abs(along) < CLOSE) & (np.abs(slope) < SETTLED)):
             break
-        s, sigma = s + step, np.clip(sigma + left + towards * step, 0.0, pair.b.s[-1])
     held = found.held(pair.side * across - pair.offset)
     settled = held & (convex > LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
     return s[settled], sigma[settled]

@@ -27,10 +27,11 @@ CLOSE = 1e-9  # of the length: a step whose square is nothing
 
 @dataclass(frozen=True, slots=True)
 class Panels:
-    """Ends ``v`` of the panels, arc length ``s`` there, and the ``speed`` ds/dv at places of any shape."""
+    """Ends ``v`` of the panels, arc length ``s`` and ``slope`` dv/ds there, and the ``speed`` ds/dv at any places."""
 
     v: Array
     s: Array
+    slope: Array
     speed: Callable[[Array], Array]
 
     @property
@@ -40,16 +41,16 @@ class Panels:
 
     def inverted(self, s: Array) -> Array:
         """v(s) (k,); beyond the ends the end itself."""
-        s = np.clip(s, 0.0, self.length)
-        panel = np.minimum(np.searchsorted(self.s, s, side="right") - 1, len(self.v) - 2)
+        s = np.minimum(np.maximum(s, 0.0), self.length)
+        panel = np.minimum(self.s.searchsorted(s, side="right") - 1, len(self.v) - 2)
         v0, v1, s0, s1 = self.v[panel], self.v[panel + 1], self.s[panel], self.s[panel + 1]
         size = s1 - s0
         t = (s - s0) / size
-        d0, d1 = size / self.speed(v0), size / self.speed(v1)
+        d0, d1 = size * self.slope[panel], size * self.slope[panel + 1]
         rise = v1 - v0
         v = v0 + t * (d0 + t * (3.0 * rise - 2.0 * d0 - d1 + t * (d0 + d1 - 2.0 * rise)))
         for _ in range(NEWTON_ITERATIONS):
-            v = np.clip(v, v0, v1)
+            v = np.minimum(np.maximum(v, v0), v1)
             step = (s - s0 - _arc(self.speed, v0, v)) / self.speed(v)
             v = v + step
             if np.max(np.abs(step), initial=0.0) <= CLOSE * self.length:
@@ -66,7 +67,7 @@ def panelled(speed: Callable[[Array], Array], ends: Array) -> Panels:
         v, s = finer, _summed(speed, finer)
         if np.max(np.abs(s[::2] - before)) <= SETTLED * s[-1]:
             break
-    return Panels(v, s, speed)
+    return Panels(v, s, 1.0 / speed(v), speed)
 
 
 def _summed(speed: Callable[[Array], Array], v: Array) -> Array:

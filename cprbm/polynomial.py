@@ -104,9 +104,10 @@ class PolynomialLine:
 
 def speed(slope: Array, v: Array) -> Array:
     """ds/dv = √(1 + g'²)."""
-    g1 = np.full_like(v, slope[-1])
+    g1: Array = slope[-1] + 0.0 * v
     for coefficient in slope[-2::-1]:
-        g1 = g1 * v + coefficient
+        g1 *= v
+        g1 += coefficient
     return np.hypot(1.0, g1)
 
 

@@ -21,7 +21,7 @@ import numpy as np
 
 from cprbm.closure import apart_by
 from cprbm.energy import load_work
-from cprbm.equilibrium import Point, Problem, local_system_at, many, system
+from cprbm.equilibrium import Point, Problem, local_system_at, many, own_system
 from scene.answer import Array
 
 APART = 0.5  # of the mean way that the rates make: curvature of the way, and more than one contact
@@ -48,7 +48,7 @@ def rate(problem: Problem, point: Point, change: Mapping[str, float]) -> Array:
 
 def _bordered(problem: Problem, point: Point, f: Array, driven: Array) -> Array:
     n = problem.model.n_links
-    found = system(problem, point, np.zeros(point.rows.size), 0.0)
+    found = own_system(problem, point)
     keep = np.concatenate((found.base, found.contacts[point.lam > 0.0]))
     right = np.zeros(len(keep))
     right[: len(f) - n] = f[n:]

@@ -19,6 +19,7 @@ dead forces near held ends) has a stated share of the beam's elements, however s
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -26,10 +27,10 @@ import numpy as np
 from cprbm.beam_loads import BeamLoad
 from cprbm.contact import Rows
 from cprbm.equilibrium import Point, point_at
-from cprbm.kinematics import State, positions
+from cprbm.kinematics import State
 from cprbm.kinks import kinks_at, within
 from cprbm.mechanism import Mechanism
-from cprbm.model import Chain, Fit, Kinks
+from cprbm.model import Chain, Fit, Kinks, Model
 from cprbm.settings import Settings
 from cprbm.zones import Zone, zones_of
 from scene.answer import Array, Flags, Ints
@@ -251,17 +252,22 @@ def _as_bent(chain: Chain, made: Kinks, now: Kinks) -> bool:
     return bool(np.all(change <= little))
 
 
+def carried_state(before: Model, state: State, after: Model) -> State:
+    """The unknowns of one mesh as those of another."""
+    theta = after.rest.copy()
+    # each link has the beam's tangent at the border that lies on it
+    for source, target in zip(before.chains, after.chains, strict=True):
+        turned = state.theta[source.links] - source.rest
+        theta[target.links] += np.interp(target.borders, source.borders, turned)
+    return State(theta, state.bodies)
+
+
 def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict[str, float]) -> Point:
     """A state of one mesh on another, with its forces: a guess."""
     old, new = before.problem.model, after.problem.model
-    theta = new.rest.copy()
-    # each link has the beam's tangent at the border that lies on it
-    for source, target in zip(old.chains, new.chains, strict=True):
-        turned = point.state.theta[source.links] - source.rest
-        theta[target.links] += np.interp(target.borders, source.borders, turned)
-    state = State(theta, point.state.bodies)
-    at = positions(new, state)
-    rows = after.problem.formulation(state, at, point.rows)
+    state = carried_state(old, point.state, new)
+    bare = point_at(after.problem, values, state, point.mu, np.zeros(0), Rows((), point.rows.faces))
+    rows = bare.rows
     lam = np.zeros(rows.size)
     zones = long_ones(all_zones(before, point))
     first = 0
@@ -271,7 +277,7 @@ def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict
         if name in zones and not group.holds_angles:
             lam[mine] = _pressure(point, name, zones[name], (before.pairs[name].a, after.pairs[name].a), group.arc)
     _add_single(point, zones, rows, lam, 2.0 * max(chain.h for chain in old.chains))
-    return point_at(after.problem, values, state, point.mu, lam, rows)
+    return replace(bare, lam=lam)
 
 
 def _pressure(point: Point, contact: str, zones: tuple[Zone, ...], chains: tuple[Chain, Chain], arc: Array) -> Array:

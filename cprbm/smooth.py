@@ -33,15 +33,17 @@ element, κ⁰′h²/8: of fifth order in h.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
+from cprbm.pieces import CurvePieces, Piece
 from scene.answer import Array, Flags, Ints
 
+STRAIGHT = 1e-150  # rad: what turns less is straight, and its sine the angle
 LOCALS = 5  # x_i, y_i, θ_{i−1}, θ_i, θ_{i+1}
 
 # Taylor coefficients, lowest first, of sin z/z and (1 − cos z)/z² in z² and of y cot y in y²
@@ -54,53 +56,100 @@ COTANGENT = (1.0, -1 / 3, -1 / 45, -2 / 945, -1 / 4725, -2 / 93555, -1382 / 6385
 class Points:
     """Some points of one beam's smooth line, arrays (k,) unless said otherwise.
 
+    What its first derivatives over the local numbers need besides is worked out where it is asked.
+
     Attributes:
-        s: arc length; link: the link each lies on, in the beam's own numbering.
-        x, y: position; psi: tangent angle.
+        line: whose points they are.
+        half: number of the half of an element that each lies in, (k,).
+        s: arc length; off: from the border at the half's end, negative before it.
+        x, y: position; tangent: angle of the line's tangent; psi: that of the beam's, the same but for kinks.
         speed: |dC/ds|; bend: dψ/ds; gain: d|dC/ds|/ds.
-        cos, sin: of the link's angle: e = (cos, sin), n = (−sin, cos).
-        a, w, a1, w1: coordinates in the link's frame and their derivatives over s.
-        before: whether each lies before the border, in the element of the link's first joint.
-        h, turn, radius, ratio, xi: of its element h, Θ, R, Θ⁰; ξ.
-        lean: (2, k), cos and sin of the tangent at the border against the link.
     """
 
+    line: SmoothLine
+    half: Ints
     s: Array
-    link: Ints
+    off: Array
     x: Array
     y: Array
+    tangent: Array
     psi: Array
     speed: Array
     bend: Array
     gain: Array
-    cos: Array
-    sin: Array
-    a: Array
-    w: Array
-    a1: Array
-    w1: Array
-    before: Flags
-    h: Array
-    turn: Array
-    radius: Array
-    ratio: Array
-    xi: Array
-    lean: Array
 
     @cached_property
-    def over_turn(self) -> tuple[Array, Array, Array]:
-        """∂(a, w), ∂(a′, w′) and ∂²(a, w) over δ of the point's element, (2, k) each; ′ is the derivative over s."""
-        return _over_turn(self)
+    def link(self) -> Ints:
+        """The link each lies on, in the beam's own numbering."""
+        return (self.half + 1) // 2
+
+    @cached_property
+    def before(self) -> Flags:
+        """Whether each lies before the border, in the element of the link's first joint."""
+        return np.asarray(self.half % 2 == 1)
+
+    @cached_property
+    def h(self) -> Array:
+        """Of the element h."""
+        return self.line.chain.sizes[self.half // 2]
+
+    @cached_property
+    def xi(self) -> Array:
+        """ξ."""
+        return np.abs(self.off) / self.h
+
+    @cached_property
+    def ratio(self) -> Array:
+        """Of the element Θ⁰."""
+        return self.line.chain.turns[self.half // 2]
+
+    @cached_property
+    def turn(self) -> Array:
+        """Of the element Θ."""
+        return self.ratio + self.line.turns[self.half // 2]
+
+    @cached_property
+    def radius(self) -> Array:
+        """Of the element R."""
+        return self.line.radii[self.half // 2]
+
+    @cached_property
+    def lean(self) -> Array:
+        """Cos and sin of the tangent at the border against the link, (2, k)."""
+        return self.line.chain.lean[:, self.link]
 
     @cached_property
     def e(self) -> Array:
         """Direction of the link, (k, 2)."""
-        return np.stack((self.cos, self.sin), axis=1)
+        return np.stack((self.line.cos[self.link], self.line.sin[self.link]), axis=1)
 
     @cached_property
     def n(self) -> Array:
         """Left normal of the link, (k, 2)."""
-        return np.stack((-self.sin, self.cos), axis=1)
+        return np.stack((-self.line.sin[self.link], self.line.cos[self.link]), axis=1)
+
+    @cached_property
+    def in_link(self) -> Array:
+        """Coordinates a and w in the link's frame, (2, k)."""
+        x, y = self.x - self.line.x[self.link], self.y - self.line.y[self.link]
+        cos, sin = self.e[:, 0], self.e[:, 1]
+        return np.stack((cos * x + sin * y, cos * y - sin * x))
+
+    @cached_property
+    def in_link_1(self) -> Array:
+        """Derivatives of a and w over s, (2, k)."""
+        leading = self.tangent - self.line.theta[self.link]
+        return np.stack((self.speed * np.cos(leading), self.speed * np.sin(leading)))
+
+    @cached_property
+    def over_turn(self) -> tuple[Array, Array]:
+        """∂(a, w) and ∂(a′, w′) over δ of the point's element, (2, k) each; ′ is the derivative over s."""
+        return _over_turn(self)
+
+    @cached_property
+    def over_turn_twice(self) -> Array:
+        """∂²(a, w) over δ of the point's element, (2, k)."""
+        return _over_turn_twice(self)
 
 
 @dataclass(frozen=True)
@@ -113,6 +162,7 @@ class SmoothLine:
         theta, cos, sin: angles of the links (N+1,).
         turns, radii: δ and R of the springs (N,).
         x, y: joints (N+2,).
+        known: what contacts have found along it, by the contact's name and what it is.
     """
 
     chain: Chain
@@ -124,76 +174,120 @@ class SmoothLine:
     radii: Array
     x: Array
     y: Array
+    known: dict[tuple[str, str], tuple[Array, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
     def sampled(self) -> Points:
         """Points at :func:`halves`."""
-        return self.at(halves(self.chain))
+        return self._at(self.chain.halves, self.chain.at_halves)
+
+    @cached_property
+    def radii_1(self) -> Array:
+        """∂R over δ (N,)."""
+        x, y = 0.5 * self.chain.turns, 0.5 * (self.chain.turns + self.turns)
+        return _series(SINE, x * x) * y * _series(COTANGENT_1, y * y) + 0.5 * x * _series(VERSINE, x * x)
+
+    @cached_property
+    def radii_2(self) -> Array:
+        """∂²R over δ (N,)."""
+        x, q = 0.5 * self.chain.turns, 0.25 * (self.chain.turns + self.turns) ** 2
+        return 0.5 * _series(SINE, x * x) * (_series(COTANGENT_1, q) + 2.0 * q * _series(COTANGENT_2, q))
+
+    @cached_property
+    def arcs(self) -> Array:
+        """Of every half of an element its border, Θ/h and R, and there x, y and the tangent's cos, sin and angle."""
+        chain = self.chain
+        lean_cos, lean_sin = chain.lean
+        cos, sin = self.cos * lean_cos - self.sin * lean_sin, self.sin * lean_cos + self.cos * lean_sin
+        a, w = chain.at_borders
+        x, y = self.x[:-1] + a * self.cos - w * self.sin, self.y[:-1] + a * self.sin + w * self.cos
+        links = np.stack((chain.borders, x, y, cos, sin, self.theta + np.arctan2(lean_sin, lean_cos)))
+        springs = np.stack(((chain.turns + self.turns) / chain.sizes, self.radii))
+        return np.concatenate((np.repeat(links, 2, axis=1)[:, 1:-1], np.repeat(springs, 2, axis=1)))
 
     def at(self, s: Array) -> Points:
         """Points at arc lengths ``s`` (k,), units of length; beyond the ends the end itself."""
+        return self._at(np.minimum(np.maximum(s, 0.0), self.chain.s[-1]), None)
+
+    def _at(self, s: Array, piece: Piece | None) -> Points:
+        """Points at arc lengths ``s`` within the beam, of a stress-free ``piece`` that is known or not."""
         chain = self.chain
-        s = np.minimum(np.maximum(s, 0.0), chain.s[-1])
-        link = np.minimum(np.searchsorted(chain.s, s, side="right") - 1, chain.n)
-        t = s - chain.s[link]
-        off = s - chain.borders[link]
-        before = (off < 0.0) | (link == chain.n)
-        spring = link - before
-        h, sign = chain.sizes[spring], np.where(before, -1.0, 1.0)
-        cos, sin = self.cos[link], self.sin[link]
-        xi = np.abs(off) / h
-        ratio = chain.turns[spring]
-        turn = ratio + self.turns[spring]
-        R, phi = self.radii[spring], turn * xi
-        R_cos, R_sin = R * np.cos(phi), R * np.sin(phi)
-        # A − A⁰ and W − W⁰ and their derivatives over u
-        A, W = h * xi * R * _series(SINE, phi * phi), h * xi * R * phi * _series(VERSINE, phi * phi)
-        A_u, W_u, A_uu, W_uu = R_cos, R_sin, -turn / h * R_sin, turn / h * R_cos
+        half = chain.breaks.searchsorted(s, side="right")
+        border, x, y, cos, sin, tangent, rate, R = self.arcs[:, half]
+        off = s - border
+        if isinstance(chain.pieces, CurvePieces):
+            link = (half + 1) // 2
+            piece = piece or chain.pieces.seen(link, s, s - chain.s[link], self.unit_length)
+            return self._beside(piece, half, s, off, rate, R)
+        # stress-free piece and difference of two arcs make one arc, from the border on
+        along, across = _arc(off, rate, R)
+        tangent = tangent + rate * off
+        return Points(
+            line=self,
+            half=half,
+            s=s,
+            off=off,
+            x=x + along * cos - across * sin,
+            y=y + along * sin + across * cos,
+            tangent=tangent,
+            psi=tangent,
+            speed=R,
+            bend=rate,
+            gain=np.zeros(len(s)),
+        )
+
+    def _beside(self, piece: Piece, half: Ints, s: Array, off: Array, rate: Array, R: Array) -> Points:
+        """Points of which the stress-free ``piece`` is no arc; see :meth:`at`."""
+        chain, link, spring = self.chain, (half + 1) // 2, half // 2
+        a, w, a1, w1, a2, w2 = piece
+        rest = chain.turns[spring] / chain.sizes[spring]
+        phi, phi_rest = rate * off, rest * off
+        R_cos, R_sin, cos, sin = R * np.cos(phi), R * np.sin(phi), np.cos(phi_rest), np.sin(phi_rest)
         lean = chain.lean[:, link]
-        if chain.pieces is None:
-            nothing = np.zeros(len(s))
-            a, w, a1, w1, a2, w2 = t, nothing, nothing + 1.0, nothing, nothing, nothing
-            A, A_u = A - h * xi, A_u - 1.0
-        else:
-            a, w, a1, w1, a2, w2 = chain.pieces.seen(link, s, t, self.unit_length)
-            phi = ratio * xi
-            A, W = A - h * xi * _series(SINE, phi * phi), W - h * xi * phi * _series(VERSINE, phi * phi)
-            A_u, W_u = A_u - np.cos(phi), W_u - np.sin(phi)
-            A_uu, W_uu = A_uu + ratio / h * np.sin(phi), W_uu - ratio / h * np.cos(phi)
-        along, across = _leant(lean, sign * A, W)
+        (A, W), (A_rest, W_rest) = _arc(off, rate, R), _arc(off, rest, 1.0)
+        along, across = _leant(lean, A - A_rest, W - W_rest)
         a, w = a + along, w + across
-        along, across = _leant(lean, A_u, sign * W_u)
+        along, across = _leant(lean, R_cos - cos, R_sin - sin)
         a1, w1 = a1 + along, w1 + across
-        along, across = _leant(lean, sign * A_uu, W_uu)
+        along, across = _leant(lean, rest * sin - rate * R_sin, rate * R_cos - rest * cos)
         a2, w2 = a2 + along, w2 + across
         squared = a1 * a1 + w1 * w1
+        speed = np.sqrt(squared)
+        cos, sin = self.cos[link], self.sin[link]
+        tangent = self.theta[link] + np.arctan2(w1, a1)
         return Points(
+            line=self,
+            half=half,
             s=s,
-            link=link,
+            off=off,
             x=self.x[link] + a * cos - w * sin,
             y=self.y[link] + a * sin + w * cos,
-            psi=self.theta[link] + np.arctan2(w1, a1),
-            speed=np.sqrt(squared),
+            tangent=tangent,
+            psi=tangent,
+            speed=speed,
             bend=(a1 * w2 - w1 * a2) / squared,
-            gain=(a1 * a2 + w1 * w2) / np.sqrt(squared),
-            cos=cos,
-            sin=sin,
-            a=a,
-            w=w,
-            a1=a1,
-            w1=w1,
-            before=before,
-            h=h,
-            turn=turn,
-            radius=R,
-            ratio=ratio,
-            xi=xi,
-            lean=lean,
+            gain=(a1 * a2 + w1 * w2) / speed,
         )
 
 
+def _arc(off: Array, rate: Array, R: Array | float) -> tuple[Array, Array]:
+    """±A and W of arcs that turn by ``rate`` per length."""
+    half = 0.5 * rate * off
+    half = np.where(half == 0.0, STRAIGHT, half)
+    sin = np.sin(half)
+    chord = R * off * (sin / half)
+    return chord * np.cos(half), chord * sin
+
+
 def smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -> SmoothLine:
-    """The smooth line of ``chain`` in a state."""
+    """The smooth line of ``chain`` in a state, the same one each time it is asked for at the same positions."""
+    line = at.known.get(chain.first_link)
+    if not isinstance(line, SmoothLine):
+        line = at.known[chain.first_link] = _smooth_line(chain, unit_length, state, at)
+    return line
+
+
+def _smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -> SmoothLine:
     theta = state.theta[chain.links]
     turns = np.diff(theta) - np.diff(chain.rest)
     return SmoothLine(
@@ -211,10 +305,7 @@ def smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -
 
 def halves(chain: Chain) -> Array:
     """Arc lengths of the joints and of the places half-way between them, (2N+3,)."""
-    s = np.empty(2 * chain.n + 3)
-    s[::2] = chain.s
-    s[1::2] = 0.5 * (chain.s[1:] + chain.s[:-1])
-    return s
+    return chain.halves
 
 
 def _series(coefficients: tuple[float, ...], z: Array) -> Array:
@@ -249,28 +340,30 @@ def _leant(lean: Array, along: Array, across: Array) -> tuple[Array, Array]:
     return lean[0] * along - lean[1] * across, lean[1] * along + lean[0] * across
 
 
-def _over_turn(points: Points) -> tuple[Array, Array, Array]:
-    x, y, xi, turn = 0.5 * points.ratio, 0.5 * points.turn, points.xi, points.turn
+def _over_turn(points: Points) -> tuple[Array, Array]:
+    xi, turn, R, R_1 = points.xi, points.turn, points.radius, points.line.radii_1[points.half // 2]
     phi, q = turn * xi, (turn * xi) ** 2
-    s0, s1 = _series(SINE, x * x), 0.5 * x * _series(VERSINE, x * x)
-    T1, T2 = _series(COTANGENT_1, y * y), _series(COTANGENT_2, y * y)
-    R = points.radius
-    R_1, R_2 = s0 * y * T1 + s1, 0.5 * s0 * (T1 + 2.0 * y * y * T2)
+    V, R_1_P = _series(VERSINE, q), R_1 * _series(SINE, q)
+    P_1, Q_1 = 2.0 * phi * _series(SINE_1, q), V + 2.0 * q * _series(VERSINE_1, q)
+    u, sign, R_xi = points.h * xi, np.where(points.before, -1.0, 1.0), R * xi
+    A, W = u * (R_1_P + R_xi * P_1), u * (R_1 * phi * V + R_xi * Q_1)
+    cos, sin = np.cos(phi), np.sin(phi)
+    A_u, W_u = R_1 * cos - R_xi * sin, R_1 * sin + R_xi * cos
+    return np.stack(_leant(points.lean, sign * A, W)), np.stack(_leant(points.lean, A_u, sign * W_u))
+
+
+def _over_turn_twice(points: Points) -> Array:
+    xi, turn, R = points.xi, points.turn, points.radius
+    R_1, R_2 = points.line.radii_1[points.half // 2], points.line.radii_2[points.half // 2]
+    phi, q = turn * xi, (turn * xi) ** 2
     S1, S2 = _series(SINE_1, q), _series(SINE_2, q)
     V, V1, V2 = _series(VERSINE, q), _series(VERSINE_1, q), _series(VERSINE_2, q)
     P, P_1, P_2 = _series(SINE, q), 2.0 * phi * S1, 2.0 * S1 + 4.0 * q * S2
     Q, Q_1, Q_2 = phi * V, V + 2.0 * q * V1, 6.0 * phi * V1 + 4.0 * phi * q * V2
     u, sign = points.h * xi, np.where(points.before, -1.0, 1.0)
-    A, W = u * (R_1 * P + R * xi * P_1), u * (R_1 * Q + R * xi * Q_1)
     A_2 = u * (R_2 * P + 2.0 * R_1 * xi * P_1 + R * xi * xi * P_2)
     W_2 = u * (R_2 * Q + 2.0 * R_1 * xi * Q_1 + R * xi * xi * Q_2)
-    cos, sin = np.cos(phi), np.sin(phi)
-    A_u, W_u = R_1 * cos - R * xi * sin, R_1 * sin + R * xi * cos
-    return (
-        np.stack(_leant(points.lean, sign * A, W)),
-        np.stack(_leant(points.lean, A_u, sign * W_u)),
-        np.stack(_leant(points.lean, sign * A_2, W_2)),
-    )
+    return np.stack(_leant(points.lean, sign * A_2, W_2))
 
 
 def _over_angles(points: Points) -> Array:
@@ -288,7 +381,8 @@ def position_slopes(points: Points) -> Array:
     slopes = np.zeros((len(points.s), 2, LOCALS))
     slopes[:, 0, 0] = slopes[:, 1, 1] = 1.0
     slopes[:, :, 2:] = _vector(points, points.over_turn[0])[:, :, None] * _over_angles(points)[:, None, :]
-    slopes[:, :, 3] += points.a[:, None] * points.n - points.w[:, None] * points.e
+    a, w = points.in_link
+    slopes[:, :, 3] += a[:, None] * points.n - w[:, None] * points.e
     return slopes
 
 
@@ -296,21 +390,22 @@ def position_curvature(points: Points, along: Array) -> Array:
     """Second derivatives of along·C over the local numbers for directions ``along`` (k, 2): (k, 5, 5)."""
     second = np.zeros((len(points.s), LOCALS, LOCALS))
     on_e, on_n = np.sum(along * points.e, axis=1), np.sum(along * points.n, axis=1)
-    once, _, twice = points.over_turn
+    once, twice = points.over_turn[0], points.over_turn_twice
     turns = _over_angles(points)
     second[:, 2:, 2:] = (twice[0] * on_e + twice[1] * on_n)[:, None, None] * turns[:, :, None] * turns[:, None, :]
     over = (once[0] * on_n - once[1] * on_e)[:, None] * turns
     second[:, 3, 2:] += over
     second[:, 2:, 3] += over
-    second[:, 3, 3] -= points.a * on_e + points.w * on_n
+    a, w = points.in_link
+    second[:, 3, 3] -= a * on_e + w * on_n
     return second
 
 
 def angle_slopes(points: Points) -> Array:
     """∂ψ over the local numbers, (k, 5)."""
     slopes = np.zeros((len(points.s), LOCALS))
-    a1_, w1_ = points.over_turn[1]
-    slopes[:, 2:] = ((points.a1 * w1_ - points.w1 * a1_) / points.speed**2)[:, None] * _over_angles(points)
+    (a1, w1), (a1_, w1_) = points.in_link_1, points.over_turn[1]
+    slopes[:, 2:] = ((a1 * w1_ - w1 * a1_) / points.speed**2)[:, None] * _over_angles(points)
     slopes[:, 3] += 1.0
     return slopes
 
@@ -319,5 +414,6 @@ def tangent_slopes(points: Points) -> Array:
     """∂C_s over the local numbers, (k, 2, 5)."""
     slopes = np.zeros((len(points.s), 2, LOCALS))
     slopes[:, :, 2:] = _vector(points, points.over_turn[1])[:, :, None] * _over_angles(points)[:, None, :]
-    slopes[:, :, 3] += points.a1[:, None] * points.n - points.w1[:, None] * points.e
+    a1, w1 = points.in_link_1
+    slopes[:, :, 3] += a1[:, None] * points.n - w1[:, None] * points.e
     return slopes

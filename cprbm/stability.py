@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import eigh_tridiagonal
 
-from cprbm.equilibrium import Point, Problem, local_system_at, many, system
+from cprbm.equilibrium import Point, Problem, local_system_at, many, own_system
 from scene.answer import Array
 
 DENSE = 120  # unknowns up to which all curvatures are computed at once
@@ -63,7 +63,7 @@ def released(point: Point, rows: frozenset[tuple[str, int]]) -> Point:
 
 def _bordered_inverse(problem: Problem, point: Point, root: Array) -> tuple[Callable[[Array], Array], bool]:
     """√M K⁻¹ √M on columns over θ, and whether it has a negative eigenvalue."""
-    found = system(problem, point, np.zeros(point.rows.size), 0.0)
+    found = own_system(problem, point)
     keep = np.concatenate((found.base, found.contacts[point.lam > 0.0]))
     n, n_bodies = found.n_links, 3 * len(problem.model.free_bodies)
     place = slice(n_bodies, n_bodies + len(found.anchors))

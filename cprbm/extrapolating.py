@@ -1,0 +1,80 @@
+"""Where Newton's method begins: a branch of equilibria, continued from those that are known on it.
+
+==========  ==============================================================
+v_k, q_k    values of what is stepped, and the unknowns and multipliers there
+q(v)        ≈ Σ_k q_k Π_{j≠k} (v − v_j)/(v_k − v_j), Lagrange
+==========  ==============================================================
+
+It is a guess and no more: what is found from it is certified like all else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cprbm.equilibrium import Point, Problem, point_at
+from cprbm.kinematics import State
+from cprbm.model import Fit
+
+FEWEST = 3  # states: of two the way goes on straight, and so does Newton's first step
+MOST = 5
+FARTHEST = 1.5  # times as far ahead of the last value as that is from the one before
+
+
+def continued(
+    problem: Problem, values: dict[str, float], known: Sequence[tuple[float, Point]], v: float
+) -> Point | None:
+    """The state at v, which the ``values`` (SI) of loads and drives belong to; None where too little is known.
+
+    Args:
+        problem: its unknowns are numbered as those of the ``known`` states.
+        values: of loads and drives, SI.
+        known: v_k and the equilibrium there, in the order of the way; those up to a change of what presses are used.
+        v: beyond the last of them.
+    """
+    if len(known) < FEWEST:
+        return None
+    last_value, last = known[-1]
+    pressing = _pressing(last)
+    used = [known[-1]]
+    for value, point in reversed(known[:-1]):
+        if len(used) == MOST or (used[-1][0] - value) * (v - last_value) <= 0.0 or _pressing(point) != pressing:
+            break
+        used.append((value, point))
+    if len(used) < FEWEST or abs(v - last_value) > FARTHEST * abs(last_value - used[1][0]):
+        return None
+    at = np.array([value for value, _ in used])
+    weights = np.array([np.prod((v - np.delete(at, k)) / (at[k] - np.delete(at, k))) for k in range(len(at))])
+    theta, bodies, mu = (
+        np.tensordot(weights, np.stack(parts), 1)
+        for parts in zip(*((p.state.theta, p.state.bodies, p.mu) for _, p in used), strict=True)
+    )
+    # what does not turn is set right by no iteration
+    theta[problem.closure.fixed] = problem.model.rest[problem.closure.fixed]
+    lam = np.zeros(len(last.lam))
+    lam[last.lam > 0.0] = np.maximum(weights @ np.stack([point.lam[point.lam > 0.0] for _, point in used]), 0.0)
+    return point_at(problem, values, State(theta, bodies), mu, lam, last.rows)
+
+
+def alike(one: Fit, other: Fit) -> bool:
+    """Whether meshes have the same elements, somewhat longer or shorter: then what is known on both goes on evenly."""
+    return _built(one) == _built(other)
+
+
+def _built(fit: Fit) -> tuple[object, ...]:
+    return (
+        fit.fixed,
+        {name: len(kinks[0].places) for name, kinks in fit.kinks.items()},
+        {name: len(ends) for name, ends in fit.ends.items()},
+        # numbers of the borders that are ends of zones
+        {
+            beam: sorted({int(np.argmin(np.abs(borders - end))) for ends in fit.ends.values() for end in ends})
+            for beam, borders in fit.borders.items()
+        },
+    )
+
+
+def _pressing(point: Point) -> tuple[tuple[str, int], ...]:
+    return tuple(key for key, force in zip(point.rows.keys, point.lam, strict=True) if force > 0.0)
