@@ -57,15 +57,17 @@ class StoppedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Behind:
-    """The ``value`` of what is stepped (number ``load``) before the last step; state and ``rate`` there, what acted.
+    """The last step, by which the value of what is stepped (number ``load``) changed ``by`` so much.
 
-    ``contacts`` are those that were closed.
+    Over u from −1 where it began to 0 where it ended, the branch goes by u times its rate at the end, ``second`` u²
+    and ``third`` u³, (size,) each.  ``acting`` and ``contacts`` are what acted and which contacts were closed at its
+    beginning.
     """
 
     load: int
-    value: float
-    z: State
-    rate: Array
+    by: float
+    second: Array
+    third: Array
     acting: Acting
     contacts: frozenset[Contact]
 
@@ -80,8 +82,8 @@ class March:
     of branches that have been passed; ``iterations`` are counted since the last station; ``far`` is whether zones have
     been too far from one station to the last for tight penalties and have not come nearer since, so that the way to
     the next one begins with loose ones on what is rigid; ``loose`` whether penalties were loosened since they were
-    tightened; ``known`` is the last system whose smallest curvature was asked for, with that; ``behind`` is where the
-    last step began, if it went along a branch.
+    tightened; ``known`` is the last system whose smallest curvature was asked for, with that; ``behind`` is the last
+    step, if it went along a branch.
     """
 
     model: Model
@@ -189,19 +191,28 @@ class March:
             self.switch(load, changing)
         return None
 
+    def gone(self, load: int, before: March, rate: Array, ahead: Array) -> Behind:
+        """The step from ``before``, where the branch went by ``rate`` (size,), to here, where it goes by ``ahead``.
+
+        By the states and rates at both ends under the penalties of the step: what tighter ones move them by is none of
+        its bend.
+        """
+        by = float(self.values[load] - before.values[load])
+        here = by * ahead
+        come = way_to(self.model, self.system.z, before.system.z) + here
+        turned = by * carried(self.model, before.system.z, self.system.z, rate) - here
+        contacts = frozenset(before.penalties)
+        return Behind(load, by, 3.0 * come + turned, 2.0 * come + turned, before.acting, contacts)
+
     def _foreseen(self, load: int, step: float, rate: Array) -> Array:
-        """By what a step will move, (size,): to third order by state and rate of now and of before, if they tell."""
+        """By what a step will move, (size,): to third order by the rate and the last step, if that tells."""
         first, behind = step * rate, self.behind
         if behind is None or behind.load != load or behind.acting is not self.acting:
             return first
-        back = float(self.values[load]) - behind.value
-        if behind.contacts != frozenset(self.penalties) or not abs(step) <= _AHEAD * abs(back):
+        if behind.contacts != frozenset(self.penalties) or not abs(step) <= _AHEAD * abs(behind.by):
             return first
-        # c₂ u² + c₃ u³ besides, with u from −1 before to 0 now
-        u, here = step / back, back * rate
-        come = way_to(self.model, self.system.z, behind.z) + here
-        turned = back * carried(self.model, behind.z, self.system.z, behind.rate) - here
-        more = u**2 * (3.0 * come + turned) + u**3 * (2.0 * come + turned)
+        u = step / behind.by
+        more = u**2 * behind.second + u**3 * behind.third
         bent, straight = (float(np.abs(way[self.model.moving]).max()) for way in (more, first))
         return first + more if bent <= _BENT * straight else first
 
