@@ -23,7 +23,7 @@ from scene.answer import Array, Critical, Ending
 
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
 _AHEAD = 2.0  # of the last step: the longest for which its change of rate tells anything
-_BENT = 0.02  # of what a step moves by its rate: the most that its change may add
+_BENT = 0.3  # of what a step moves by its rate: the most that its change may add
 _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _TIGHTENINGS = 25
