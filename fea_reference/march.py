@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fea_reference.acting import Acting
-from fea_reference.advance import advance, carried, way_to
+from fea_reference.advance import advance, bend
 from fea_reference.contacts import looked_at, passed_through, resting_pressure, zones_of
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
@@ -134,9 +134,10 @@ class March:
         self.penalties, self.closing, self.switched = saved.penalties, saved.closing, saved.switched
         self.far, self.loose = saved.far, saved.loose
 
-    def rate(self, load: int) -> Array:
-        """dz/dvalue along the branch; zero where the tangent is singular."""
-        rate = self.system.solve(load_direction(self.model, load, self.system.z, self.acting))
+    def rate(self, load: int, system: System | None = None) -> Array:
+        """dz/dvalue along the branch, here or in another ``system`` of it; zero where the tangent is singular."""
+        system = system or self.system
+        rate = system.solve(load_direction(self.model, load, system.z, self.acting))
         return np.zeros(self.model.size) if rate is None else rate
 
     def solve(self, load: int, value: float, z: State) -> System | None:
@@ -198,11 +199,8 @@ class March:
         its bend.
         """
         by = float(self.values[load] - before.values[load])
-        here = by * ahead
-        come = way_to(self.model, self.system.z, before.system.z) + here
-        turned = by * carried(self.model, before.system.z, self.system.z, rate) - here
-        contacts = frozenset(before.penalties)
-        return Behind(load, by, 3.0 * come + turned, 2.0 * come + turned, before.acting, contacts)
+        second, third = bend(self.model, before.system.z, self.system.z, (rate, ahead), by)
+        return Behind(load, by, second, third, before.acting, frozenset(before.penalties))
 
     def _foreseen(self, load: int, step: float, rate: Array) -> Array:
         """By what a step will move, (size,): to third order by the rate and the last step, if that tells."""
@@ -312,9 +310,7 @@ class March:
         def gaps(value: float) -> list[float]:
             if value not in known:
                 low, high = max(v for v in known if v < value), min(v for v in known if v > value)
-                between = known[high].z.values - known[low].z.values
-                guess = advance(self.model, known[low].z, (value - low) / (high - low) * between)
-                system = self.solve(load, value, guess)
+                system = self.solve(load, value, self._between(load, (low, known[low]), (high, known[high]), value))
                 if system is None:
                     raise ArithmeticError
                 known[value] = system
@@ -340,6 +336,14 @@ class March:
         except (ArithmeticError, ValueError):
             return None
         return None
+
+    def _between(self, load: int, low: tuple[float, System], high: tuple[float, System], value: float) -> State:
+        """The state at a ``value`` between two equilibria with theirs, to third order by their rates."""
+        (start, before), (end, after) = low, high
+        rates = self.rate(load, before), self.rate(load, after)
+        u = (value - end) / (end - start)
+        second, third = bend(self.model, before.z, after.z, rates, end - start)
+        return advance(self.model, after.z, (value - end) * rates[1] + u**2 * second + u**3 * third)
 
     def _close_tightly(self, load: int, way: float) -> None:
         """Where a contact or stop has closed, tighten the others and find again where it does.
@@ -443,7 +447,8 @@ class March:
                 self.system, self.penalties = solved.system, tighter
                 most = min(most**1.5, _TIGHTEN)
             else:
-                most = max(most**0.4, 1.2)
+                tried = max(max(factor, 1.0 / factor) for factor in factors.values())
+                most = max(min(most, tried) ** 0.4, 1.2)
 
     def settle(self, load: int) -> None:
         """Tighten penalties, and let stops change whose side is another with them, until all is as it should be.
