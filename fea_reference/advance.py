@@ -47,6 +47,18 @@ def carried(model: Model, before: State, now: State, rate: Array) -> Array:
     return same
 
 
+def bend(model: Model, before: State, now: State, rates: tuple[Array, Array], by: float) -> tuple[Array, Array]:
+    """What bends the way from one state to another while a value changes ``by`` so much: c₂ and c₃, (size,) each.
+
+    Over u from −1 in the state ``before`` to 0 ``now`` it is u times the last rate, + c₂ u² + c₃ u³; ``rates`` are those
+    at both ends, (size,) each, by the value.
+    """
+    here = by * rates[1]
+    come = way_to(model, now, before) + here
+    turned = by * carried(model, before, now, rates[0]) - here
+    return 3.0 * come + turned, 2.0 * come + turned
+
+
 def way_to(model: Model, start: State, end: State) -> Array:
     """The step (size,) by which ``start`` is moved to ``end``, see :func:`advance`."""
     way = (end.values - start.values) + (end.rest - start.rest)

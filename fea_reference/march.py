@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fea_reference.acting import Acting
-from fea_reference.advance import advance, carried, way_to
+from fea_reference.advance import advance, bend
 from fea_reference.contacts import looked_at, passed_through, resting_pressure, zones_of
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
@@ -23,7 +23,7 @@ from scene.answer import Array, Critical, Ending
 
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
 _AHEAD = 2.0  # of the last step: the longest for which its change of rate tells anything
-_BENT = 0.02  # of what a step moves by its rate: the most that its change may add
+_BENT = 0.3  # of what a step moves by its rate: the most that its change may add
 _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _TIGHTENINGS = 25
@@ -57,15 +57,17 @@ class StoppedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Behind:
-    """The ``value`` of what is stepped (number ``load``) before the last step; state and ``rate`` there, what acted.
+    """The last step, by which the value of what is stepped (number ``load``) changed ``by`` so much.
 
-    ``contacts`` are those that were closed.
+    Over u from −1 where it began to 0 where it ended, the branch goes by u times its rate at the end, ``second`` u²
+    and ``third`` u³, (size,) each.  ``acting`` and ``contacts`` are what acted and which contacts were closed at its
+    beginning.
     """
 
     load: int
-    value: float
-    z: State
-    rate: Array
+    by: float
+    second: Array
+    third: Array
     acting: Acting
     contacts: frozenset[Contact]
 
@@ -80,8 +82,8 @@ class March:
     of branches that have been passed; ``iterations`` are counted since the last station; ``far`` is whether zones have
     been too far from one station to the last for tight penalties and have not come nearer since, so that the way to
     the next one begins with loose ones on what is rigid; ``loose`` whether penalties were loosened since they were
-    tightened; ``known`` is the last system whose smallest curvature was asked for, with that; ``behind`` is where the
-    last step began, if it went along a branch.
+    tightened; ``known`` is the last system whose smallest curvature was asked for, with that; ``behind`` is the last
+    step, if it went along a branch.
     """
 
     model: Model
@@ -132,9 +134,10 @@ class March:
         self.penalties, self.closing, self.switched = saved.penalties, saved.closing, saved.switched
         self.far, self.loose = saved.far, saved.loose
 
-    def rate(self, load: int) -> Array:
-        """dz/dvalue along the branch; zero where the tangent is singular."""
-        rate = self.system.solve(load_direction(self.model, load, self.system.z, self.acting))
+    def rate(self, load: int, system: System | None = None) -> Array:
+        """dz/dvalue along the branch, here or in another ``system`` of it; zero where the tangent is singular."""
+        system = system or self.system
+        rate = system.solve(load_direction(self.model, load, system.z, self.acting))
         return np.zeros(self.model.size) if rate is None else rate
 
     def solve(self, load: int, value: float, z: State) -> System | None:
@@ -189,19 +192,25 @@ class March:
             self.switch(load, changing)
         return None
 
+    def gone(self, load: int, before: March, rate: Array, ahead: Array) -> Behind:
+        """The step from ``before``, where the branch went by ``rate`` (size,), to here, where it goes by ``ahead``.
+
+        By the states and rates at both ends under the penalties of the step: what tighter ones move them by is none of
+        its bend.
+        """
+        by = float(self.values[load] - before.values[load])
+        second, third = bend(self.model, before.system.z, self.system.z, (rate, ahead), by)
+        return Behind(load, by, second, third, before.acting, frozenset(before.penalties))
+
     def _foreseen(self, load: int, step: float, rate: Array) -> Array:
-        """By what a step will move, (size,): to third order by state and rate of now and of before, if they tell."""
+        """By what a step will move, (size,): to third order by the rate and the last step, if that tells."""
         first, behind = step * rate, self.behind
         if behind is None or behind.load != load or behind.acting is not self.acting:
             return first
-        back = float(self.values[load]) - behind.value
-        if behind.contacts != frozenset(self.penalties) or not abs(step) <= _AHEAD * abs(back):
+        if behind.contacts != frozenset(self.penalties) or not abs(step) <= _AHEAD * abs(behind.by):
             return first
-        # c₂ u² + c₃ u³ besides, with u from −1 before to 0 now
-        u, here = step / back, back * rate
-        come = way_to(self.model, self.system.z, behind.z) + here
-        turned = back * carried(self.model, behind.z, self.system.z, behind.rate) - here
-        more = u**2 * (3.0 * come + turned) + u**3 * (2.0 * come + turned)
+        u = step / behind.by
+        more = u**2 * behind.second + u**3 * behind.third
         bent, straight = (float(np.abs(way[self.model.moving]).max()) for way in (more, first))
         return first + more if bent <= _BENT * straight else first
 
@@ -301,9 +310,7 @@ class March:
         def gaps(value: float) -> list[float]:
             if value not in known:
                 low, high = max(v for v in known if v < value), min(v for v in known if v > value)
-                between = known[high].z.values - known[low].z.values
-                guess = advance(self.model, known[low].z, (value - low) / (high - low) * between)
-                system = self.solve(load, value, guess)
+                system = self.solve(load, value, self._between(load, (low, known[low]), (high, known[high]), value))
                 if system is None:
                     raise ArithmeticError
                 known[value] = system
@@ -329,6 +336,14 @@ class March:
         except (ArithmeticError, ValueError):
             return None
         return None
+
+    def _between(self, load: int, low: tuple[float, System], high: tuple[float, System], value: float) -> State:
+        """The state at a ``value`` between two equilibria with theirs, to third order by their rates."""
+        (start, before), (end, after) = low, high
+        rates = self.rate(load, before), self.rate(load, after)
+        u = (value - end) / (end - start)
+        second, third = bend(self.model, before.z, after.z, rates, end - start)
+        return advance(self.model, after.z, (value - end) * rates[1] + u**2 * second + u**3 * third)
 
     def _close_tightly(self, load: int, way: float) -> None:
         """Where a contact or stop has closed, tighten the others and find again where it does.
@@ -432,7 +447,8 @@ class March:
                 self.system, self.penalties = solved.system, tighter
                 most = min(most**1.5, _TIGHTEN)
             else:
-                most = max(most**0.4, 1.2)
+                tried = max(max(factor, 1.0 / factor) for factor in factors.values())
+                most = max(min(most, tried) ** 0.4, 1.2)
 
     def settle(self, load: int) -> None:
         """Tighten penalties, and let stops change whose side is another with them, until all is as it should be.

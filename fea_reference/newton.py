@@ -40,6 +40,7 @@ _NOTHING = 1e-2  # of the correction and the unbalanced force asked: what need n
 _SETTLED = 1e-4  # correction after which holding has done what it can
 _FALLING = 0.1  # of the unbalanced force before: who has come so far needs a few iterations more
 _TOUCHING = 1e-9  # of the thickness: an overlap that is none
+_STALLED = 6  # corrections in a row, below that at which a contact's zone has settled, none of them half the first
 _HELD = 6  # iterations for which a contact is held at most
 
 
@@ -66,11 +67,12 @@ def equilibrium(
     """Seek the equilibrium near ``z`` under load ``values``, with those stops ``acting`` that do, whatever their sign.
 
     ``depths`` are the penetrations of the contacts that were closed in the equilibrium before: where they are not near
-    that, these are held until they are again, or until they pull.  ``before`` is what the points of the contacts
+    that, these are held until they are again, or until they pull.  Who neither arrives nor comes nearer gives up.  ``before`` is what the points of the contacts
     pushed with there, (k,) each.  A ``drag`` resists the motions.
     """
     moving = model.moving
     correction, last, iteration, far = np.inf, np.inf, 0, 0
+    small: list[float] = []
     foreseen = dict(before)
     system = assemble(model, penalties, settings.quadrature, values, z, acting, {}, foreseen, drag)
     held = {one.pair: depths[one.pair] for one in system.touches if _to_hold(one, depths, before)}
@@ -91,7 +93,9 @@ def equilibrium(
         if not held and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING * accepted:
             return Solved(system, converged=True, iterations=iteration)  # this step need not be made
         far += correction > _TURN
-        if far >= _LOST:
+        small = [*small[1 - _STALLED :], correction] if correction < _SETTLED else []
+        stalled = not held and len(small) == _STALLED and min(small) > 0.5 * small[0]
+        if far >= _LOST or stalled:
             return Solved(system, converged=False, iterations=iteration + 1)
         step *= min(1.0, _TURN / max(correction, _TURN))
         foreseen = {one.pair: one.foreseen(step) for one in system.touches}

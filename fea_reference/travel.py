@@ -26,7 +26,7 @@ import numpy as np
 
 from fea_reference.descent import descended
 from fea_reference.following import Lost, about_to_go, followed
-from fea_reference.march import Behind, March, StoppedError, Trouble
+from fea_reference.march import March, StoppedError, Trouble
 from fea_reference.touch import Circle, Face, Pair
 from scene.answer import Array, Critical, Ending, Loss
 
@@ -155,9 +155,7 @@ def _arrive(march: March, course: Course, target: float) -> None:
         elif trouble is None:
             same = len(march.penalties) == len(saved.penalties) and march.acting is saved.acting
             known = [*known[-1:], (float(march.values[load]), march.curvature)] if same and watched else []
-            old = saved.system.z
-            march.behind = Behind(load, float(saved.values[load]), old, rate, saved.acting, frozenset(saved.penalties))
-            rate = ahead
+            march.behind, rate = march.gone(load, saved, rate, ahead), ahead
             easy = march.iterations - spent <= _EASY
             stride, cuts, follow = 2.0 * size if easy else size, 0, True
             searching = searching and len(march.penalties) == len(saved.penalties)
