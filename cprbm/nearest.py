@@ -202,10 +202,13 @@ class Pair:
 
     def _distances(self, lines: Lines, gone: float = np.inf) -> tuple[Array, Array]:
         """D along A and at the ends of B, infinite where there is no foot, ``gone`` where that is round an end."""
-        s = np.concatenate((smooth.halves(self.a), minima(self, lines, *_sampled(self, lines))[0]))
-        D, _, foot = distance_along(self, lines, s)
-        E, _, facing = distance_along(self.exchanged(), lines[::-1], self.b.s[[0, -1]])
-        D, E = np.where(foot, D, np.inf), np.where(facing, E, np.inf)
+        known, what = lines[0].known, (self.name, "distances")
+        if what not in known:
+            s = np.concatenate((smooth.halves(self.a), minima(self, lines, *_sampled(self, lines))[0]))
+            D, _, foot = distance_along(self, lines, s)
+            E, _, facing = distance_along(self.exchanged(), lines[::-1], self.b.s[[0, -1]])
+            known[what] = np.where(foot, D, np.inf), np.where(facing, E, np.inf)
+        D, E = known[what]
         return _not_gone_round(self, lines, D, gone), _not_gone_round(self.exchanged(), lines[::-1], E, gone)
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
