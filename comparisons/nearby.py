@@ -8,10 +8,10 @@ d       a station of a drive, m or rad
 d1, d2  d(1 − ρ) and d(1 + ρ), eqs. (12) and (13)
 ======  =======================================================
 
-At every station the drive goes to d1, to d2 and then to d, so that what follows (the next station, or a further
-stage, which finds the drive where this one has left it) goes on from where the scene itself would.  Whether d1 of one
-station lies before d2 of the last does not matter: an equilibrium without friction does not know from which side it
-was reached.  A station at zero has no d1 and d2; a load's stations are as they are.
+In the place of every station d the drive goes to d1 and d2, and at a stage's last on to d, so that a further stage
+finds the drive where this one leaves it.  Whether d1 of one station lies before d2 of the last does not matter: an
+equilibrium without friction does not know from which side it was reached.  A station at zero has no d1 and d2; a
+load's stations are as they are.
 
 Where a scene asks for the potential energy itself, and a stage's own stations are close together, nothing needs to be
 run beside it: the energies at the stations tell their derivative (:mod:`comparisons.slopes`).
@@ -19,7 +19,7 @@ run beside it: the energies at the stations tell their derivative (:mod:`compari
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import chain, pairwise
 
 from comparisons.branches import span_of
 from comparisons.slopes import MOST
@@ -64,9 +64,15 @@ def needs_more(scene: Scene, stage: Stage) -> bool:
     return is_asked(scene, stage) and not is_dense(scene, stage)
 
 
-def visited(d: float) -> tuple[float, ...]:
-    """The values of a drive that are gone to at a station d, the last of them d."""
-    return (d * (1.0 - RHO), d * (1.0 + RHO), d) if d != 0.0 else (d,)
+def visited(scene: Scene, stage: Stage) -> tuple[tuple[float, ...], ...]:
+    """The values that are gone to for each station of a stage."""
+    if not needs_more(scene, stage):
+        return tuple((d,) for d in stage.stations)
+    last = len(stage.stations) - 1
+    return tuple(
+        (d * (1.0 - RHO), d * (1.0 + RHO), *([d] if place == last else [])) if d != 0.0 else (d,)
+        for place, d in enumerate(stage.stations)
+    )
 
 
 def nearby(scene: Scene) -> Scene | None:
@@ -77,9 +83,7 @@ def nearby(scene: Scene) -> Scene | None:
     if not any(needs_more(scene, stage) for stage in scene.stages):
         return None
     stages = tuple(
-        stage.model_copy(update={"stations": tuple(value for d in stage.stations for value in visited(d))})
-        if needs_more(scene, stage)
-        else stage
+        stage.model_copy(update={"stations": tuple(chain.from_iterable(visited(scene, stage)))})
         for stage in scene.stages
     )
     return scene.model_copy(update={"stages": stages, "probes": (ENERGY,), "claims": ()})

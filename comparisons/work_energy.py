@@ -43,7 +43,7 @@ import numpy as np
 from comparisons.formats import percent
 from comparisons.held import Held, changes, held, stretches
 from comparisons.measures import UNITS
-from comparisons.nearby import ENERGY, RHO, is_asked, is_dense, needs_more, reaction_of, visited
+from comparisons.nearby import ENERGY, RHO, is_asked, is_dense, reaction_of, visited
 from comparisons.scales import VANISHING
 from comparisons.slopes import FEWEST, slope
 from comparisons.stations import station_of
@@ -294,8 +294,9 @@ def _of_runs(scene: Scene, every: Sequence[Held], mine: Sequence[int], near: Ans
     if near is None:
         return {}
     rates = {}
-    first = sum(len(values) for values in _visited(scene, every[: mine[0]]))
-    for place, values in zip(mine, _visited(scene, [every[place] for place in mine]), strict=True):
+    gone_to = [values for stage in scene.stages for values in visited(scene, stage)]
+    first = sum(len(values) for values in gone_to[: mine[0]])
+    for place, values in zip(mine, gone_to[mine[0] : mine[-1] + 1], strict=True):
         here, beside = every[place].station, near.stations[first : first + len(values)]
         first += len(values)
         if here.value == 0.0:
@@ -308,15 +309,6 @@ def _of_runs(scene: Scene, every: Sequence[Held], mine: Sequence[int], near: Ans
             jumped=jumped,
         )
     return rates
-
-
-def _visited(scene: Scene, every: Sequence[Held]) -> list[tuple[float, ...]]:
-    """Which values the run close by goes to at each station."""
-    stages = {stage.name: stage for stage in scene.stages}
-    return [
-        visited(each.station.value) if needs_more(scene, stages[each.station.stage]) else (each.station.value,)
-        for each in every
-    ]
 
 
 def _work_energy(d: float, values: tuple[float, ...], beside: tuple[StationAnswer, ...]) -> float | None:

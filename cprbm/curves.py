@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import assert_never
 
 import numpy as np
@@ -61,6 +62,7 @@ class EvenLine:
 NeutralLine = EvenLine | PolynomialLine | SplineLine
 
 
+@lru_cache(maxsize=64)
 def neutral_line(curve: Curve) -> NeutralLine:
     """Arc-length form of a scene's curve."""
     match curve:

@@ -188,8 +188,12 @@ def contact_rows(model: Model, point: Point) -> Array:
             J = local_rows(model, point.state, point.at, group.joints[:1], group.angles[:1])
             parts.append(group.slopes @ J[0])
             continue
-        J = local_rows(model, point.state, point.at, group.joints, group.angles)
-        parts.append(np.einsum("mk,mkn->mn", group.slopes, J))
+        m, p = group.joints.shape
+        over_x, over_y = position_rows(model, point.state, point.at, group.joints.ravel())
+        found = group.slopes[:, :p].reshape(m, 1, p) @ over_x.reshape(m, p, -1)
+        found += group.slopes[:, p : 2 * p].reshape(m, 1, p) @ over_y.reshape(m, p, -1)
+        np.add.at(found, (np.arange(m)[:, None], 0, group.angles), group.slopes[:, 2 * p :])
+        parts.append(found[:, 0])
     return np.concatenate(parts)
 
 

@@ -20,7 +20,9 @@ from cprbm.model import Fit
 
 FEWEST = 3  # states: of two the way goes on straight, and so does Newton's first step
 MOST = 5
-FARTHEST = 1.5  # times as far ahead of the last value as that is from the one before
+KEPT = 15  # states, some of which may be too close to each other
+FARTHEST = 1.5  # times as far from the nearest value as that is from the one after it
+SPACED = 0.2  # of the way to the nearest value: of values closer to each other the last is taken
 
 
 def continued(
@@ -31,19 +33,25 @@ def continued(
     Args:
         problem: its unknowns are numbered as those of the ``known`` states.
         values: of loads and drives, SI.
-        known: v_k and the equilibrium there, in the order of the way; those up to a change of what presses are used.
-        v: beyond the last of them.
+        known: v_k and the equilibrium there, in the order in which they were found; those up to a change of what
+            presses are used.
+        v: between them or beyond the last.
     """
     if len(known) < FEWEST:
         return None
-    last_value, last = known[-1]
+    last = known[-1][1]
     pressing = _pressing(last)
-    used = [known[-1]]
-    for value, point in reversed(known[:-1]):
-        if len(used) == MOST or (used[-1][0] - value) * (v - last_value) <= 0.0 or _pressing(point) != pressing:
+    used: list[tuple[float, Point]] = []
+    for value, point in reversed(known):
+        if len(used) == MOST or value == v or _pressing(point) != pressing:
             break
-        used.append((value, point))
-    if len(used) < FEWEST or abs(v - last_value) > FARTHEST * abs(last_value - used[1][0]):
+        nearest = min((abs(v - other) for other, _ in used), default=0.0)
+        if all(abs(value - other) > SPACED * nearest for other, _ in used):
+            used.append((value, point))
+    if len(used) < FEWEST:
+        return None
+    one, other = sorted((value for value, _ in used), key=lambda value: abs(v - value))[:2]
+    if abs(v - one) > FARTHEST * abs(one - other):
         return None
     at = np.array([value for value, _ in used])
     weights = np.array([np.prod((v - np.delete(at, k)) / (at[k] - np.delete(at, k))) for k in range(len(at))])

@@ -17,7 +17,7 @@ import numpy as np
 from cprbm.certifying import certify
 from cprbm.critical import Minimum, foreseen
 from cprbm.equilibrium import Equilibrium, Point, equilibrium
-from cprbm.extrapolating import MOST, continued
+from cprbm.extrapolating import KEPT, continued
 from cprbm.kinematics import most_turned
 from cprbm.mechanism import Mechanism
 from cprbm.rate import rate, strayed
@@ -155,7 +155,7 @@ class Follower:
     @property
     def _known(self) -> list[tuple[float, Point]]:
         """The last minima and their values."""
-        return [(one.value, one.point) for one in self.trail[-MOST:]]
+        return [(one.value, one.point) for one in self.trail[-KEPT:]]
 
     def _farthest(self, way: Array) -> float:
         """The most that a link turns by before a step is given up on which links go a ``way`` by their rates."""

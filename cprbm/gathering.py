@@ -90,32 +90,48 @@ def gathered(
         # beyond a beam's ends the end itself: what is there has no share
         angles.append(chain.first_link + np.clip(begin[:, None] - 1 + np.arange(width), 0, chain.n))
         lefts.append(np.repeat(begin, q))
-    M = np.zeros((m * q, 2 * smooth.LOCALS, 4 + int(widths.sum())))
-    turned = np.zeros((m * q, M.shape[2]))
-    place, column = np.arange(m * q), 4
+    # where a place's local numbers stand among its row's, and those of the links in between
+    place, size = np.arange(m * q), 4 + int(widths.sum())
+    columns = np.zeros((m * q, 2 * smooth.LOCALS), dtype=np.intp)
+    passed: list[tuple[Ints, Ints, int, Array, Array]] = []
+    column = 4
     for beam, (chain, link, left, width) in enumerate(zip(chains, touches.links, lefts, widths, strict=True)):
         x = smooth.LOCALS * beam
-        M[:, x, beam] = M[:, x + 1, 2 + beam] = 1.0
-        for i in range(3):
-            M[place, x + 2 + i, column + link - left + i] = 1.0
+        columns[:, x], columns[:, x + 1] = beam, 2 + beam
+        columns[:, x + 2 : x + smooth.LOCALS] = (column + link - left)[:, None] + np.arange(3)
         for k in range(width - 3):
             past = np.flatnonzero(left + k < link)
             crossed = chain.first_link + left[past] + k
-            dx, dy = at.dx[crossed], at.dy[crossed]
-            M[past, x, column + 1 + k], M[past, x + 1, column + 1 + k] = -dy, dx
-            turned[past, column + 1 + k] = -(touches.slopes[past, x] * dx + touches.slopes[past, x + 1] * dy)
+            passed.append((past, np.full(len(past), column + 1 + k), x, -at.dy[crossed], at.dx[crossed]))
         column += width
     share = weights.ravel()
-    slopes = ((share[:, None] * touches.slopes)[:, None] @ M).reshape(m, q, -1).sum(axis=1)
+    own = share[:, None] * touches.slopes
+    rows, over_row, parts = [np.repeat(place // q, columns.shape[1])], [columns.ravel()], [own.ravel()]
+    for past, further, x, along, across in passed:
+        rows.append(past // q)
+        over_row.append(further)
+        parts.append(own[past, x] * along + own[past, x + 1] * across)
+    flat = np.concatenate(rows) * size + np.concatenate(over_row)
+    slopes = np.bincount(flat, np.concatenate(parts), m * size).reshape(m, size)
     joints = np.stack([chain.first_joint + begin for chain, begin in zip(chains, first, strict=True)], axis=1)
     over = np.concatenate(angles, axis=1)
+
+    def to_row() -> tuple[Array, Array]:
+        """M (m·q, 10, size), and what −∂c/∂p_l · L_k (cos θ_k, sin θ_k) adds to its square (m·q, size)."""
+        M, turned = np.zeros((m * q, columns.shape[1], size)), np.zeros((m * q, size))
+        M[place[:, None], np.arange(columns.shape[1]), columns] = 1.0
+        for past, further, x, along, across in passed:
+            M[past, x, further], M[past, x + 1, further] = along, across
+            turned[past, further] = touches.slopes[past, x + 1] * along - touches.slopes[past, x] * across
+        return M, turned
 
     def curvature(multipliers: Array) -> Blocks:
         pressing = np.flatnonzero(multipliers)
         mine = (pressing[:, None] * q + np.arange(q)).ravel()
-        matrices = np.swapaxes(M[mine], 1, 2) @ touches.second[mine] @ M[mine]
-        diagonal = np.arange(M.shape[2])
-        matrices[:, diagonal, diagonal] += turned[mine]
+        M, turned = (each[mine] for each in to_row())
+        matrices = np.swapaxes(M, 1, 2) @ touches.second[mine] @ M
+        diagonal = np.arange(size)
+        matrices[:, diagonal, diagonal] += turned
         matrices *= (np.repeat(multipliers[pressing], q) * share[mine])[:, None, None]
         return Blocks(
             joints[pressing], over[pressing], matrices.reshape(len(pressing), q, *matrices.shape[1:]).sum(axis=1)

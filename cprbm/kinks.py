@@ -46,8 +46,6 @@ class Missed:
         active: whether a place lies in the element of a kink or in one beside it; nothing is missed elsewhere.
         before, behind: p and q of the nearest kink.
         u, h: of the element of the place.
-        place, size: u and h of the kink.
-        side: +1 where the place's element is behind the kink's, −1 before it, 0 where it is the same.
     """
 
     active: Flags
@@ -55,9 +53,6 @@ class Missed:
     behind: Array
     u: Array
     h: Array
-    place: Array
-    size: Array
-    side: Array
 
     @property
     def angle(self) -> Array:
@@ -83,22 +78,17 @@ class Missed:
 
 def missed(chain: Chain, kinks: Kinks, s: Array) -> Missed:
     """What is missed at arc lengths ``s`` (k,) of a ``chain``."""
-    here = _element(chain, s)
-    u, h = s - chain.borders[here], chain.sizes[here]
     if not kinks.places.size:
         nothing = np.zeros(len(s))
-        return Missed(np.zeros(len(s), dtype=bool), nothing, nothing, u, h, u, h, nothing)
+        return Missed(np.zeros(len(s), dtype=bool), nothing, nothing, nothing, np.ones(len(s)))
+    here = _element(chain, s)
     nearest = np.abs(s[:, None] - kinks.places).argmin(axis=1)
-    place, home = kinks.places[nearest], _reached(chain, kinks)[1][nearest]
     return Missed(
-        active=np.abs(here - home) <= 1,
+        active=np.abs(here - _reached(chain, kinks)[1][nearest]) <= 1,
         before=kinks.before[nearest],
         behind=kinks.behind[nearest],
-        u=u,
-        h=h,
-        place=place - chain.borders[home],
-        size=chain.sizes[home],
-        side=np.sign(here - home).astype(float),
+        u=s - chain.borders[here],
+        h=chain.sizes[here],
     )
 
 
@@ -116,13 +106,6 @@ def kinked(chain: Chain, kinks: Kinks, points: Points) -> Points:
     psi[near] += more.angle
     bend[near] += more.bend
     return replace(points, psi=psi, bend=bend)
-
-
-def _integral(u: Array, h: Array, p: Array, q: Array) -> Array:
-    """∫ γ from the element's first border."""
-    return np.asarray(
-        -(p * u**3 * (h / 3.0 - u / 4.0) + q * u**2 * (h * h / 2.0 - 2.0 * h * u / 3.0 + u * u / 4.0)) / (2.0 * h)
-    )
 
 
 def _element(chain: Chain, s: Array) -> Ints:

@@ -110,7 +110,8 @@ def _undragged(mechanism: Mechanism, values: dict[str, float], found: Equilibriu
 
 def _landed(mechanism: Mechanism, settings: Settings, values: dict[str, float], point: Point) -> Landed | None:
     """The certified minimum near a state, if there is one and it is not higher."""
-    found = equilibrium(mechanism.problem, values, point, settings.tolerance, settings.iterations, settle=True)
+    problem, most = mechanism.problem, settings.iterations
+    found = equilibrium(problem, values, point, settings.tolerance, most, settle=True, farthest=STEP)
     certificate, ending = certify(mechanism, settings, found)
     if (
         ending is not Ending.COMPLETED
@@ -118,10 +119,5 @@ def _landed(mechanism: Mechanism, settings: Settings, values: dict[str, float], 
         or mechanism.passed(point, found.point)
     ):
         return None
-    before, after = (potential_energy(mechanism.problem, each) for each in (point, found.point))
+    before, after = (potential_energy(problem, each) for each in (point, found.point))
     return Landed(found.point, certificate) if after <= before + ROUNDED * abs(before) else None
-
-
-def _too_far(mechanism: Mechanism, before: Point, after: Point) -> bool:
-    """Whether a step is too long, or goes through something."""
-    return most_turned(before.state, after.state) > STEP or bool(mechanism.passed(before, after))

@@ -17,7 +17,7 @@ from cprbm.closing import Closings, Stood
 from cprbm.contact import NO_ROWS
 from cprbm.critical import BranchEnd, Minimum, branch_end, told
 from cprbm.equilibrium import Equilibrium, Point, equilibrium, point_at, potential_energy
-from cprbm.extrapolating import MOST, alike, continued
+from cprbm.extrapolating import KEPT, alike, continued
 from cprbm.following import Follower, Reached, Way, pressing, to
 from cprbm.kinematics import State, most_turned, rest_state
 from cprbm.leap import Landed, leap
@@ -262,7 +262,7 @@ class March:
             mechanism, point, now, found = target, solved.point, settings, solved
             if station is not None:
                 fit, known = self.before.get(turn, (target.fit, []))
-                kept = known[1 - MOST :] if alike(fit, target.fit) else []
+                kept = known[1 - KEPT :] if alike(fit, target.fit) else []
                 self.before[turn] = target.fit, [*kept, (station, point)]
         if mechanism is not self.on.mechanism:
             certificate, ending = certify(mechanism, asked, found)

@@ -69,6 +69,7 @@ DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even
 
 STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
 ON_IT = 1e-9  # gap and slope of two clamped ends, and how far they lie apart along the beams, where they touch
+FEW = 8  # places whose nearest samples are found by looking at all
 STRAIGHT = 0.1  # of an element: by less a line is off the chords between its samples
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)  # of the mean on either side of a border of B
 
@@ -201,10 +202,13 @@ class Pair:
 
     def _distances(self, lines: Lines, gone: float = np.inf) -> tuple[Array, Array]:
         """D along A and at the ends of B, infinite where there is no foot, ``gone`` where that is round an end."""
-        s = np.concatenate((smooth.halves(self.a), minima(self, lines, *_sampled(self, lines))[0]))
-        D, _, foot = distance_along(self, lines, s)
-        E, _, facing = distance_along(self.exchanged(), lines[::-1], self.b.s[[0, -1]])
-        D, E = np.where(foot, D, np.inf), np.where(facing, E, np.inf)
+        known, what = lines[0].known, (self.name, "distances")
+        if what not in known:
+            s = np.concatenate((smooth.halves(self.a), minima(self, lines, *_sampled(self, lines))[0]))
+            D, _, foot = distance_along(self, lines, s)
+            E, _, facing = distance_along(self.exchanged(), lines[::-1], self.b.s[[0, -1]])
+            known[what] = np.where(foot, D, np.inf), np.where(facing, E, np.inf)
+        D, E = known[what]
         return _not_gone_round(self, lines, D, gone), _not_gone_round(self.exchanged(), lines[::-1], E, gone)
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
@@ -376,7 +380,10 @@ class Pair:
 def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Flags]:
     """Signed distance D of A from B at arc lengths ``s``: D, σ (k,), and whether a foot exists (k,)."""
     A, G = pair.on_a(lines, s), lines[1].sampled
-    _, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(np.stack((A.x, A.y), axis=1))
+    if len(s) <= FEW:
+        nearest = ((A.x[:, None] - G.x) ** 2 + (A.y[:, None] - G.y) ** 2).argmin(axis=1)
+    else:
+        _, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(np.stack((A.x, A.y), axis=1))
     return feet_near(pair, lines, A, G.s[nearest])
 
 
@@ -522,7 +529,9 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     found = wells.wells(pair.a, D - pair.offset, parting, lowest, LEAST_CURVATURE, pair.kinks[0].places)
     if not found.samples.size:
         return np.zeros(0), np.zeros(0)
-    low, high, s, sigma = (of[found.samples + step] for of, step in ((s, -1), (s, 1), (s, 0), (sigma, 0)))
+    before, here, behind = found.samples - 1, found.samples, found.samples + 1
+    low, high = s[before], s[behind]
+    s, sigma = _lowest_of_parabola(s, D, sigma, before, here, behind)
     for _ in range(CLOSEST_ITERATIONS):
         A, B = pair.on_a(lines, s), pair.on_b(lines, sigma)
         along, across = _seen_from(B, A)
@@ -542,6 +551,20 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     held = found.held(pair.side * across - pair.offset)
     settled = held & (convex > LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
     return s[settled], sigma[settled]
+
+
+def _lowest_of_parabola(s: Array, D: Array, sigma: Array, before: Ints, here: Ints, behind: Ints) -> tuple[Array, Array]:
+    """Where parabolas through D at three samples are lowest, and σ there; at the middle one where they are not known."""
+    one, other = s[before] - s[here], s[behind] - s[here]
+    with np.errstate(invalid="ignore"):
+        rise, fall = (D[behind] - D[here]) / other, (D[before] - D[here]) / one
+        curved = (rise - fall) / (other - one)
+        ahead = -0.5 * (rise - curved * other) / curved
+    known = np.isfinite(ahead) & (ahead > one) & (ahead < other)
+    ahead = np.where(known, ahead, 0.0)
+    beside = np.where(ahead > 0.0, behind, before)
+    share = ahead / (s[beside] - s[here])
+    return s[here] + ahead, np.where(known, sigma[here] + share * (sigma[beside] - sigma[here]), sigma[here])
 
 
 def pair_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Pair:

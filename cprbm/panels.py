@@ -5,8 +5,9 @@ v       the variable, ascending along the line
 s(v)    arc length, ds/dv the speed
 ======  ==========================================================================
 
-ds/dv is integrated over panels of v by Gauss's rule, which are halved until their ends' arc lengths settle.  v(s) is
-Newton's: it begins at the cubic through its panel's ends with the slopes there.
+ds/dv is integrated over panels of v by Gauss's rule, which are halved until their ends' arc lengths settle, and on
+until the cubics through the panels' ends with the slopes there are v(s).  If they never are, v(s) is Newton's, which
+begins there.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scene.answer import Array
+from scene.answer import Array, Ints
 
 ABSCISSAE, WEIGHTS = (0.5 * part for part in np.polynomial.legendre.leggauss(8))  # on [−½, ½]
 MOST_PANELS = 1 << 15
@@ -27,12 +28,16 @@ CLOSE = 1e-9  # of the length: a step whose square is nothing
 
 @dataclass(frozen=True, slots=True)
 class Panels:
-    """Ends ``v`` of the panels, arc length ``s`` and ``slope`` dv/ds there, and the ``speed`` ds/dv at any places."""
+    """Ends ``v`` of the panels, arc length ``s`` and ``slope`` dv/ds there, and the ``speed`` ds/dv at any places.
+
+    ``fine`` says whether the cubics through the ends are v(s).
+    """
 
     v: Array
     s: Array
     slope: Array
     speed: Callable[[Array], Array]
+    fine: bool
 
     @property
     def length(self) -> float:
@@ -43,12 +48,10 @@ class Panels:
         """v(s) (k,); beyond the ends the end itself."""
         s = np.minimum(np.maximum(s, 0.0), self.length)
         panel = np.minimum(self.s.searchsorted(s, side="right") - 1, len(self.v) - 2)
-        v0, v1, s0, s1 = self.v[panel], self.v[panel + 1], self.s[panel], self.s[panel + 1]
-        size = s1 - s0
-        t = (s - s0) / size
-        d0, d1 = size * self.slope[panel], size * self.slope[panel + 1]
-        rise = v1 - v0
-        v = v0 + t * (d0 + t * (3.0 * rise - 2.0 * d0 - d1 + t * (d0 + d1 - 2.0 * rise)))
+        v = self._cubic(panel, s)
+        if self.fine:
+            return v
+        v0, v1, s0 = self.v[panel], self.v[panel + 1], self.s[panel]
         for _ in range(NEWTON_ITERATIONS):
             v = np.minimum(np.maximum(v, v0), v1)
             step = (s - s0 - _arc(self.speed, v0, v)) / self.speed(v)
@@ -57,17 +60,25 @@ class Panels:
                 break
         return np.asarray(v)
 
+    def _cubic(self, panel: Ints, s: Array) -> Array:
+        v0, s0 = self.v[panel], self.s[panel]
+        rise, size = self.v[panel + 1] - v0, self.s[panel + 1] - s0
+        t, d0, d1 = (s - s0) / size, size * self.slope[panel], size * self.slope[panel + 1]
+        return np.asarray(v0 + t * (d0 + t * (3.0 * rise - 2.0 * d0 - d1 + t * (d0 + d1 - 2.0 * rise))))
+
 
 def panelled(speed: Callable[[Array], Array], ends: Array) -> Panels:
     """Panels that begin with those between ``ends`` and are halved until they are enough."""
-    v, s = ends, _summed(speed, ends)
-    while len(v) <= MOST_PANELS:
-        before, finer = s, np.empty(2 * len(v) - 1)
-        finer[::2], finer[1::2] = v, 0.5 * (v[1:] + v[:-1])
-        v, s = finer, _summed(speed, finer)
-        if np.max(np.abs(s[::2] - before)) <= SETTLED * s[-1]:
-            break
-    return Panels(v, s, 1.0 / speed(v), speed)
+    found = Panels(ends, _summed(speed, ends), 1.0 / speed(ends), speed, fine=False)
+    while len(found.v) <= MOST_PANELS and not found.fine:
+        v = np.empty(2 * len(found.v) - 1)
+        v[::2], v[1::2] = found.v, 0.5 * (found.v[1:] + found.v[:-1])
+        s = _summed(speed, v)
+        off = found._cubic(np.arange(len(found.v) - 1), s[1::2]) - v[1::2]
+        summed = np.max(np.abs(s[::2] - found.s)) <= SETTLED * s[-1]
+        fine = bool(summed and np.max(np.abs(off)) <= SETTLED * (v[-1] - v[0]))
+        found = Panels(v, s, 1.0 / speed(v), speed, fine)
+    return found
 
 
 def _summed(speed: Callable[[Array], Array], v: Array) -> Array:
