@@ -87,6 +87,8 @@ def touching(march: March) -> dict[str, Array]:
                 # From each neutral line to its own surface; lines have none.
                 own, other = (model.beams[i].thickness for i in (one.pair.first, one.pair.second))
                 to_surfaces = np.asarray(one.pair.distance / (own + other) * (other - own))
+                if one.pair.tapers is not None:
+                    to_surfaces = one.pair.tapers.second.at(one.zeta_m) - one.pair.tapers.first.at(one.zeta)
             else:
                 # Points of what is rigid are on its surface already.
                 to_surfaces = -one.pair.edge.at(one.zeta)

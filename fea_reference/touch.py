@@ -8,6 +8,7 @@ from functools import cache
 import numpy as np
 
 from fea_reference.edge import Edge
+from fea_reference.facing import Tapers
 from fea_reference.hermite import Index
 from fea_reference.itself import Roles
 from fea_reference.leaning import Chain
@@ -24,7 +25,8 @@ class Pair:
         first, second: their numbers; the first carries the integral.
         turned: whether the first is the scene's second.
         side: of the second on which the first lies; of a beam and itself its ``roles`` tell.
-        distance: T, of the neutral lines when they touch.
+        distance: T, of the neutral lines when they touch where the beams are thickest.
+        tapers: how the thickness varies, of beams that touch by their edges if it does.
         scale: what the penetration asked is a share of: the mean thickness, or a hundredth of the longest beam for
             lines, which have none.
         measure: what penetration is reported by: the same, but the longest beam for lines.
@@ -46,10 +48,21 @@ class Pair:
     stiffness: float
     stiffest: float
     roles: Roles | None = None
+    tapers: Tapers | None = None
 
     def sides(self, zeta: Array, zeta_m: Array, d: Array) -> Array:
         """The side at places ``zeta`` (k,) and ``zeta_m`` (k,), where n·(x − x_m) is ``d`` (k,)."""
         return np.full(zeta.shape, self.side) if self.roles is None else self.roles.sides(zeta, zeta_m, d)
+
+    def apart(self, zeta: Array, zeta_m: Array) -> Array:
+        """How far apart the neutral lines are when they touch at places ``zeta`` and ``zeta_m`` (k,)."""
+        thinner = np.zeros(zeta.shape) if self.tapers is None else self.tapers.thinner(zeta, zeta_m)
+        return np.asarray(self.distance - thinner)
+
+    @property
+    def edge_m(self) -> Edge | None:
+        """How the second beam's thickness varies, if it does."""
+        return None if self.tapers is None else self.tapers.second
 
 
 @dataclass(frozen=True, slots=True)
