@@ -39,7 +39,7 @@ from typing import Literal
 import numpy as np
 
 from fea_reference.edge import edge_of
-from fea_reference.facing import Borders, Tapers, borders, facing, lean
+from fea_reference.facing import Borders, Tapers, borders, lean
 from fea_reference.hermite import NeutralLine, along, apart, plane, shape_slopes, shapes, twice_along
 from fea_reference.itself import seen_itself, unseen
 from fea_reference.model import BeamPart, Model
@@ -169,7 +169,7 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
 
     there = line.around(zeta)
     x = line.nodes[there.element] + there.way
-    faced = facing(line_m, pair.edge_m, x, guess, lambda at_m, d: pair.sides(zeta, at_m, d))
+    faced = pair.faced(line, line_m, zeta, guess)
     zeta_m, across, J = faced.zeta_m, faced.across, faced.c
     e_m, xi_m = line_m.locate(zeta_m)
     x_m = line_m.nodes[across.element] + across.way

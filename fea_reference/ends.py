@@ -31,7 +31,6 @@ from fea_reference.edge import Edge
 from fea_reference.face import beside
 from fea_reference.hermite import NeutralLine
 from fea_reference.model import BeamPart, Model
-from fea_reference.projection import project
 from fea_reference.recovery import bending_moment
 from fea_reference.system import System
 from fea_reference.touch import Circle, Face, Touch
@@ -97,9 +96,10 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array,
         return None if near.corner.any() else np.asarray(turning * own + near.bend)
     other = model.beams[pair.second]
     line_m = model.line(other, z)
-    zeta_m, found = project(line_m, x, np.full(zeta.shape, facing))
-    if not found.all():
+    faced = pair.faced(line, line_m, zeta, np.full(zeta.shape, facing))
+    if not faced.found.all():
         return None
+    zeta_m = faced.zeta_m
     x_m, tangent_m, _ = line_m.at(zeta_m)
     along = np.sign((tangent * tangent_m).sum(axis=0))
     across = _curvature(model, system, other, zeta_m)
@@ -109,7 +109,10 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array,
         # as on a circle; the other's surface leans as well
         both = ((pair.tapers.first, line, zeta), (pair.tapers.second, line_m, zeta_m))
         levels = [_level(*one) for one in both]
-    lying = across * levels[0] / (levels[1] - side * pair.apart(zeta, zeta_m) * across)
+    apart = pair.apart(zeta, zeta_m)
+    lying = across * levels[0] / (levels[1] - side * apart * across)
+    if faced.fixed.any():  # round a corner of the surface
+        lying = np.where(faced.fixed, -side * levels[0] / apart, lying)
     return np.asarray(side * (along * own - lying))
 
 

@@ -8,8 +8,8 @@ from functools import cache
 import numpy as np
 
 from fea_reference.edge import Edge
-from fea_reference.facing import Tapers
-from fea_reference.hermite import Index
+from fea_reference.facing import Facing, Tapers, facing
+from fea_reference.hermite import Index, NeutralLine
 from fea_reference.itself import Roles
 from fea_reference.leaning import Chain
 from fea_reference.outline import Outline
@@ -53,6 +53,12 @@ class Pair:
     def sides(self, zeta: Array, zeta_m: Array, d: Array) -> Array:
         """The side at places ``zeta`` (k,) and ``zeta_m`` (k,), where n·(x − x_m) is ``d`` (k,)."""
         return np.full(zeta.shape, self.side) if self.roles is None else self.roles.sides(zeta, zeta_m, d)
+
+    def faced(self, first: NeutralLine, second: NeutralLine, zeta: Array, guess: Array) -> Facing:
+        """What places ``zeta`` (k,) of the first beam face on the second, sought from ``guess`` (k,)."""
+        there = first.around(zeta)
+        points = first.nodes[there.element] + there.way
+        return facing(second, self.edge_m, points, guess, lambda zeta_m, d: self.sides(zeta, zeta_m, d))
 
     def apart(self, zeta: Array, zeta_m: Array) -> Array:
         """How far apart the neutral lines are when they touch at places ``zeta`` and ``zeta_m`` (k,)."""
