@@ -28,7 +28,7 @@ from exact.state import State
 from exact.structure import Meeting, Wrap
 from exact.way import Way
 from scene import Answer, Ending, Scene, StationAnswer
-from scene.statement import BeamMoment, EdgeContact, SelfContact, TurningBody
+from scene.statement import BeamContact, BeamMoment, EdgeContact, SelfContact, TurningBody
 
 _OVERLAP = 1e-10  # of the unit of length
 _FIRST_STEP = 0.2  # of the way to the first station
@@ -77,12 +77,16 @@ def _covered(scene: Scene) -> None:
 
     Raises:
         NotCoveredError: the scene has stops, an assembly, a body on a pivot, bodies that are pinned to each other,
-            contact with a line, a half-plane or a function or of a beam with itself, or a moment on a beam, or it is
-            asked what a slide does.
+            contact with a line, a half-plane or a function, of a beam with itself or of two beams by edges whose
+            distance from the neutral line varies, or a moment on a beam, or it is asked what a slide does.
     """
     pivots = any(isinstance(body, TurningBody) for body in scene.bodies.values())
     edges = any(isinstance(contact, EdgeContact) for contact in scene.contacts.values())
     selves = any(isinstance(contact, SelfContact) for contact in scene.contacts.values())
+    tapered = any(
+        isinstance(contact, BeamContact) and contact.thick and any(scene.beams[beam].tapered for beam in contact.beams)
+        for contact in scene.contacts.values()
+    )
     for what, there in (
         ("stops", scene.stops),
         ("assembly", scene.assembly is not None),
@@ -90,6 +94,7 @@ def _covered(scene: Scene) -> None:
         ("pins between bodies", scene.pins),
         ("contact with lines, half-planes and functions", edges),
         ("contact of a beam with itself", selves),
+        ("contact of two beams by their edges where a thickness varies", tapered),
         ("what a slide does", any(probe.of in scene.bodies and probe.quantity == "reaction" for probe in scene.probes)),
         ("moments on beams", any(isinstance(load, BeamMoment) for load in scene.loads.values())),
     ):

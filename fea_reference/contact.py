@@ -38,10 +38,11 @@ from typing import Literal
 
 import numpy as np
 
+from fea_reference.edge import edge_of
+from fea_reference.facing import Borders, Tapers, borders, lean
 from fea_reference.hermite import NeutralLine, along, apart, plane, shape_slopes, shapes, twice_along
 from fea_reference.itself import seen_itself, unseen
 from fea_reference.model import BeamPart, Model
-from fea_reference.projection import closest
 from fea_reference.state import State
 from fea_reference.touch import Pair, Penalty, Touch, gauss, together
 from fea_reference.zones import Survey, Zones, ends_over, overlap, seen, side_of
@@ -67,12 +68,27 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
             i, j = j, i
         first, second = model.beams[i], model.beams[j]
         mean = 0.5 * (first.thickness + second.thickness)
+        least = 0.5 * (first.record.thinnest + second.record.thinnest) / model.units.length
         side = side_of(model.line(first, model.start), model.line(second, model.start))
-        distance, scale, measure = (mean, mean, mean) if contact.thick else (0.0, _SLENDER, 1.0)
+        distance, scale, measure = (mean, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
         penalties = [_penalties(model, beam, mean) for beam in (first, second)]
         loosest, stiffness, stiffest = map(min, zip(*penalties, strict=True))
-        found.append(Pair(name, i, j, turned, side, distance, scale, measure, loosest, stiffness, stiffest))
+        tapers = _tapers(model, first, second, thick=contact.thick)
+        found.append(
+            Pair(name, i, j, turned, side, distance, scale, measure, loosest, stiffness, stiffest, tapers=tapers)
+        )
     return tuple(found)
+
+
+def _tapers(model: Model, first: BeamPart, second: BeamPart, *, thick: bool) -> Tapers | None:
+    """How the thickness of either varies, if any does and it matters."""
+    if not thick or not (first.record.tapered or second.record.tapered):
+        return None
+    edges = [
+        edge_of(beam.record, beam.elements.stop - beam.elements.start, model.units.length, thick=True)
+        for beam in (first, second)
+    ]
+    return Tapers(edges[0], edges[1])
 
 
 def selves(scene: Scene, model: Model) -> tuple[Pair, ...]:
@@ -83,11 +99,13 @@ def selves(scene: Scene, model: Model) -> tuple[Pair, ...]:
             continue
         beam = model.beam(contact.beam)
         number = model.beams.index(beam)
-        T, scale, measure = (beam.thickness,) * 3 if contact.thick else (0.0, _SLENDER, 1.0)
+        least = beam.record.thinnest / model.units.length
+        T, scale, measure = (beam.thickness, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
         later = not (_grounded(scene, contact.beam, "end") and not _grounded(scene, contact.beam, "start"))
         roles = unseen(later=later).renewed(model.line(beam, model.start))
         penalties = _penalties(model, beam, beam.thickness)
-        found.append(Pair(name, number, number, later, 0.0, T, scale, measure, *penalties, roles))
+        tapers = _tapers(model, beam, beam, thick=contact.thick)
+        found.append(Pair(name, number, number, later, 0.0, T, scale, measure, *penalties, roles, tapers))
     return tuple(found)
 
 
@@ -107,11 +125,19 @@ def _penalties(model: Model, beam: BeamPart, thickness: float) -> tuple[float, f
 def zones_of(model: Model, pair: Pair, z: State) -> Zones:
     """Where the beams of a pair overlap in state ``z``."""
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    return overlap(first, second, pair.distance, _seen(pair, first, second, pair.distance), 0.0)
+    return overlap(first, second, pair.distance, _seen(pair, first, second, pair.distance), 0.0, _rays(pair, second))
 
 
 def _seen(pair: Pair, first: NeutralLine, second: NeutralLine, T: float) -> Survey:
-    return seen(first, second, pair.side, T) if pair.roles is None else seen_itself(first, pair.roles, T)
+    if pair.roles is None:
+        return seen(first, second, pair.side, T, pair.tapers)
+    return seen_itself(first, pair.roles, T, pair.tapers)
+
+
+def _rays(pair: Pair, second: NeutralLine) -> list[Borders]:
+    """At which of the second beam's places the gap's curvature jumps; of a beam and itself by either side."""
+    sides = (pair.side,) if pair.roles is None else (1.0,) if pair.tapers is None else (1.0, -1.0)
+    return [borders(second, pair.edge_m, side) for side in sides]
 
 
 def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State, held: float | None = None) -> Touch:
@@ -126,9 +152,10 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     gaps = _seen(pair, line, line_m, distance)
     level = 0.0 if held is None else gaps.least + held
     if level < line_m.lengths.max():
-        zones = overlap(line, line_m, distance, gaps, level)
+        zones = overlap(line, line_m, distance, gaps, level, _rays(pair, line_m))
     else:
-        zones = overlap(line, line_m, distance + level, _seen(pair, line, line_m, distance + level), 0.0)
+        wider = _seen(pair, line, line_m, distance + level)
+        zones = overlap(line, line_m, distance + level, wider, 0.0, _rays(pair, line_m))
     zones = replace(zones, least=gaps.least + penalty.lead)
 
     points, weights = gauss(quadrature)
@@ -142,17 +169,19 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
 
     there = line.around(zeta)
     x = line.nodes[there.element] + there.way
-    zeta_m, _, across = closest(line_m, x, guess)
+    faced = pair.faced(line, line_m, zeta, guess)
+    zeta_m, across, J = faced.zeta_m, faced.across, faced.c
     e_m, xi_m = line_m.locate(zeta_m)
     x_m = line_m.nodes[across.element] + across.way
-    J = np.abs(across.ahead)
-    tau = plane(across.ahead / J)
+    tau = plane(faced.w)
     n = np.stack([-tau[1], tau[0]])
     d = (n * plane(apart(line, there, line_m, across))).sum(axis=0)
     a = (n * plane(across.bent)).sum(axis=0)
     Z = J**2 - d * a
     side = pair.sides(zeta, zeta_m, d)
     g = side * d - distance
+    if pair.tapers is not None:
+        g += pair.tapers.thinner(zeta, zeta_m)
 
     H, H_m, H_m1 = shapes(xi), shapes(xi_m), shape_slopes(xi_m)
     d_q = np.concatenate([along(n, H, line, e), -along(n, H_m, line_m, e_m)])
@@ -160,6 +189,8 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     k = np.concatenate([np.zeros_like(d_q[:7]), along(n, H_m1, line_m, e_m)])
     pk = p[:, None] * k[None, :]
     d_qq = -(a * p[:, None] * p[None, :] + d * k[:, None] * k[None, :] + J * (pk + pk.transpose(1, 0, 2))) / Z
+    if faced.fixed.any():
+        d_qq = np.where(faced.fixed, p[:, None] * p[None, :] / np.where(d == 0.0, 1.0, d), d_qq)
     d_qq[:7, :7] += twice_along(n, H, line, e)
     d_qq[7:, 7:] -= twice_along(n, H_m, line_m, e_m)
 
@@ -209,7 +240,7 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
     away = line.at(middle)[0] - x_m
     side = pair.sides(middle, middle_m, speed[0] * away[1] - speed[1] * away[0])
     of_second = -side * (speed[0] * bent[1] - speed[1] * bent[0]) / J**3
-    kappa = of_second / (1.0 + pair.distance * of_second)  # parallel curves
+    kappa = of_second / (1.0 + pair.apart(middle, middle_m) * of_second)  # parallel curves
     axial, axial_m = z[model.element_dofs[6, e]], z[model.element_dofs[6, e_m]]
     EI, EI_m = beam.bending(middle / line.n), beam_m.bending(middle_m / line_m.n)
     pressure = kappa * (axial * EI_m - axial_m * EI) / (EI + EI_m)
@@ -226,6 +257,10 @@ def _missing(first: NeutralLine, second: NeutralLine, pair: Pair, penalty: Penal
     there, there_m = first.around(zeta), second.around(zeta_m)
     back = (there_m.ahead / np.abs(there_m.ahead)).conj()
     d = (back * apart(first, there, second, there_m)).imag
-    g = np.minimum(pair.sides(zeta, zeta_m, d) * d - pair.distance - penalty.lead, 0.0)
+    side = pair.sides(zeta, zeta_m, d)
+    if pair.edge_m is not None:
+        back = lean(there_m.ahead, pair.edge_m.slope(zeta_m), side).conj()
+        d = (back * apart(first, there, second, there_m)).imag
+    g = np.minimum(side * d - pair.apart(zeta, zeta_m) - penalty.lead, 0.0)
     ahead = np.abs((back * there.ahead).real) / first.lengths[there.element]
     return float((0.5 * penalty.stiffness * g**2 / np.maximum(ahead, 1e-3)).sum())

@@ -18,6 +18,8 @@ import numpy as np
 from scene.answer import Array
 from scene.statement import Beam
 
+_EVEN = 1e-9  # of the largest slope: jumps that are none
+
 
 @dataclass(frozen=True)
 class Edge:
@@ -30,6 +32,23 @@ class Edge:
     def nearest(self) -> float:
         """The least T."""
         return min(self.half)
+
+    @property
+    def farthest(self) -> float:
+        """The largest T."""
+        return max(self.half)
+
+    @property
+    def varies(self) -> bool:
+        """Whether T does."""
+        return self.nearest < self.farthest
+
+    @cached_property
+    def corners(self) -> tuple[Array, Array, Array]:
+        """Inner knots (c,) at which ∂T/∂ζ jumps, and ∂T/∂ζ before and behind them."""
+        places, _, slopes = self._table
+        jumps = np.abs(np.diff(slopes)) > _EVEN * np.abs(slopes).max()
+        return places[1:-1][jumps], slopes[:-1][jumps], slopes[1:][jumps]
 
     def at(self, zeta: Array) -> Array:
         """T at places ``zeta`` (k,)."""

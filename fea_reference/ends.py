@@ -27,9 +27,10 @@ from __future__ import annotations
 import numpy as np
 
 from fea_reference.circle import centre
+from fea_reference.edge import Edge
 from fea_reference.face import beside
+from fea_reference.hermite import NeutralLine
 from fea_reference.model import BeamPart, Model
-from fea_reference.projection import project
 from fea_reference.recovery import bending_moment
 from fea_reference.system import System
 from fea_reference.touch import Circle, Face, Touch
@@ -88,23 +89,36 @@ def _relative_curvature(model: Model, system: System, touch: Touch, zeta: Array,
         n = x - centre(model, pair, z)[:, None]
         turning = np.sign(tangent[0] * n[1] - tangent[1] * n[0])
         # where the edge lies along the circle, the beam leans against it by the angle whose sine is T' by arc length
-        lengths = line.lengths[line.locate(zeta)[0]]
-        level = np.sqrt(1.0 - (pair.edge.slope(zeta) / lengths) ** 2)
-        return np.asarray(turning * own + level / (pair.radius + pair.edge.at(zeta)))
+        return np.asarray(turning * own + _level(pair.edge, line, zeta) / (pair.radius + pair.edge.at(zeta)))
     if isinstance(pair, Face):
         near = beside(model, pair, system.z, zeta)
         turning = np.sign(tangent[0] * near.normal[1] - tangent[1] * near.normal[0])
         return None if near.corner.any() else np.asarray(turning * own + near.bend)
     other = model.beams[pair.second]
     line_m = model.line(other, z)
-    zeta_m, found = project(line_m, x, np.full(zeta.shape, facing))
-    if not found.all():
+    faced = pair.faced(line, line_m, zeta, np.full(zeta.shape, facing))
+    if not faced.found.all():
         return None
+    zeta_m = faced.zeta_m
     x_m, tangent_m, _ = line_m.at(zeta_m)
     along = np.sign((tangent * tangent_m).sum(axis=0))
     across = _curvature(model, system, other, zeta_m)
     side = pair.sides(zeta, zeta_m, tangent_m[0] * (x - x_m)[1] - tangent_m[1] * (x - x_m)[0])
-    return np.asarray(side * (along * own - across / (1.0 - side * pair.distance * across)))
+    levels = [np.ones_like(zeta), np.ones_like(zeta)]
+    if pair.tapers is not None:
+        # as on a circle; the other's surface leans as well
+        both = ((pair.tapers.first, line, zeta), (pair.tapers.second, line_m, zeta_m))
+        levels = [_level(*one) for one in both]
+    apart = pair.apart(zeta, zeta_m)
+    lying = across * levels[0] / (levels[1] - side * apart * across)
+    if faced.fixed.any():  # round a corner of the surface
+        lying = np.where(faced.fixed, -side * levels[0] / apart, lying)
+    return np.asarray(side * (along * own - lying))
+
+
+def _level(edge: Edge, line: NeutralLine, zeta: Array) -> Array:
+    """Cosine of the angle by which a surface leans from its neutral line: its sine is T' by arc length."""
+    return np.asarray(np.sqrt(1.0 - (edge.slope(zeta) / line.lengths[line.locate(zeta)[0]]) ** 2))
 
 
 def _curvature(model: Model, system: System, beam: BeamPart, zeta: Array) -> Array:

@@ -25,6 +25,7 @@ seen.  Near by is less than halfway to another lap.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,8 +33,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
-from fea_reference.hermite import NeutralLine
-from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Survey, gap, survey
+from fea_reference.facing import Tapers, borders
+from fea_reference.hermite import NeutralLine, plane
+from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Survey, gap, one_side, survey
 from scene.answer import Array, Ints
 
 _ALIKE = 0.5  # of the way between two places along the beam, by which they may differ from those whose side is known
@@ -67,7 +69,7 @@ class Roles:
         nodes = np.arange(line.n + 1)
         i, j = (index.ravel() for index in np.meshgrid(nodes, nodes[:-1], indexing="ij"))
         zeta, zeta_m = _partners(line, nodes.astype(float), i, j, later=self.later)[:2]
-        d = gap(line, line, 1.0, 0.0, zeta, zeta_m).g
+        d = gap(line, line, one_side(1.0), 0.0, None, zeta, zeta_m).g
         return Roles(self.later, np.stack([zeta, zeta_m], axis=1), self.sides(zeta, zeta_m, d))
 
 
@@ -76,16 +78,15 @@ def unseen(*, later: bool) -> Roles:
     return Roles(later, np.empty((0, 2)), np.empty(0))
 
 
-def seen_itself(line: NeutralLine, roles: Roles, T: float) -> Survey:
+def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None) -> Survey:
     """The gap of a beam and itself wherever it is less than a few elements."""
 
     def at(where: Array, guess: Array) -> Gap:
-        found = gap(line, line, 1.0, 0.0, where, guess)
-        side = roles.sides(where, found.zeta_m, found.g)
-        return Gap(side * found.g - T, side * found.slope, side * found.curvature, found.zeta_m, found.found)
+        return gap(line, line, roles.sides, T, tapers, where, guess)
 
     reach = 2.0 * abs(T) + 3.0 * float(line.lengths.max())
-    zeta = _samples(line, reach)
+    knots = () if tapers is None else tapers.first.knots
+    zeta = np.union1d(_samples(line, tapers, reach), np.array(knots))
     x = line.at(zeta)[0]
     near = KDTree(x.T).sparse_distance_matrix(KDTree(line.points.T), reach, output_type="ndarray")
     pairs = np.concatenate([near["i"] * (line.n + 1) + near["j"], near["i"] * (line.n + 1) + near["j"] - 1])
@@ -98,7 +99,7 @@ def seen_itself(line: NeutralLine, roles: Roles, T: float) -> Survey:
     if not places.size:
         return Survey(at, places, there, np.empty(0, dtype=bool), (), reach - T)
     order, follows = _sequences(i, there.zeta_m)
-    return survey(at, places[order], there.chosen(order), follows)
+    return survey(at, places[order], there.chosen(order), follows, knots)
 
 
 def _partners(line: NeutralLine, zeta: Array, i: Ints, j: Ints, *, later: bool) -> tuple[Array, Array, Ints]:
@@ -124,13 +125,16 @@ def _partners(line: NeutralLine, zeta: Array, i: Ints, j: Ints, *, later: bool) 
     return zeta[i], j + here / (here - there), i
 
 
-def _samples(line: NeutralLine, reach: float) -> Array:
-    """Equal steps within every element, and the places straight across from the line's ends."""
+def _samples(line: NeutralLine, tapers: Tapers | None, reach: float) -> Array:
+    """Equal steps within every element, and the places straight across from the line's ends, by either side."""
     even = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
     x = line.at(even)[0]
     more = [even]
-    for end in (0, line.n):
-        point, tangent = line.points[:, end, None], line.tangents[:, end, None]
+    sides = (1.0,) if tapers is None else (1.0, -1.0)
+    rays = [borders(line, None if tapers is None else tapers.second, side) for side in sides]
+    for one, end in product(rays, (0, line.n)):
+        at = one.zeta == end
+        point, tangent = plane(one.points[at]), plane(one.w[at])
         ahead = ((x - point) * tangent).sum(axis=0)
         near = np.hypot(*(x - point)) < reach
         left = np.flatnonzero(near[:-1] & near[1:] & (ahead[:-1] * ahead[1:] < 0.0))

@@ -8,7 +8,6 @@ from fea_reference.ends import ends
 from fea_reference.energy import potential_energy
 from fea_reference.march import March
 from fea_reference.model import Model
-from fea_reference.projection import project
 from fea_reference.recovery import bending_moment, normal_force
 from fea_reference.stops import StopPart, acting_stops
 from fea_reference.supports import grounded, held, support
@@ -87,6 +86,8 @@ def touching(march: March) -> dict[str, Array]:
                 # From each neutral line to its own surface; lines have none.
                 own, other = (model.beams[i].thickness for i in (one.pair.first, one.pair.second))
                 to_surfaces = np.asarray(one.pair.distance / (own + other) * (other - own))
+                if one.pair.tapers is not None:
+                    to_surfaces = one.pair.tapers.second.at(one.zeta_m) - one.pair.tapers.first.at(one.zeta)
             else:
                 # Points of what is rigid are on its surface already.
                 to_surfaces = -one.pair.edge.at(one.zeta)
@@ -165,7 +166,7 @@ def _ends(march: March, touch: Touch) -> Array:
     if isinstance(pair, Pair) and pair.turned:
         first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
         nearest = np.argmin(np.abs(touch.zeta[:, None] - zeta), axis=0)
-        zeta, _ = project(second, first.at(zeta)[0], touch.zeta_m[nearest])
+        zeta = pair.faced(first, second, zeta, touch.zeta_m[nearest]).zeta_m
     return np.sort(_arc_lengths(march, touch, zeta))
 
 

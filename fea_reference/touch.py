@@ -8,7 +8,8 @@ from functools import cache
 import numpy as np
 
 from fea_reference.edge import Edge
-from fea_reference.hermite import Index
+from fea_reference.facing import Facing, Tapers, facing
+from fea_reference.hermite import Index, NeutralLine
 from fea_reference.itself import Roles
 from fea_reference.leaning import Chain
 from fea_reference.outline import Outline
@@ -24,7 +25,8 @@ class Pair:
         first, second: their numbers; the first carries the integral.
         turned: whether the first is the scene's second.
         side: of the second on which the first lies; of a beam and itself its ``roles`` tell.
-        distance: T, of the neutral lines when they touch.
+        distance: T, of the neutral lines when they touch where the beams are thickest.
+        tapers: how the thickness varies, of beams that touch by their edges if it does.
         scale: what the penetration asked is a share of: the mean thickness, or a hundredth of the longest beam for
             lines, which have none.
         measure: what penetration is reported by: the same, but the longest beam for lines.
@@ -46,10 +48,27 @@ class Pair:
     stiffness: float
     stiffest: float
     roles: Roles | None = None
+    tapers: Tapers | None = None
 
     def sides(self, zeta: Array, zeta_m: Array, d: Array) -> Array:
         """The side at places ``zeta`` (k,) and ``zeta_m`` (k,), where n·(x − x_m) is ``d`` (k,)."""
         return np.full(zeta.shape, self.side) if self.roles is None else self.roles.sides(zeta, zeta_m, d)
+
+    def faced(self, first: NeutralLine, second: NeutralLine, zeta: Array, guess: Array) -> Facing:
+        """What places ``zeta`` (k,) of the first beam face on the second, sought from ``guess`` (k,)."""
+        there = first.around(zeta)
+        points = first.nodes[there.element] + there.way
+        return facing(second, self.edge_m, points, guess, lambda zeta_m, d: self.sides(zeta, zeta_m, d))
+
+    def apart(self, zeta: Array, zeta_m: Array) -> Array:
+        """How far apart the neutral lines are when they touch at places ``zeta`` and ``zeta_m`` (k,)."""
+        thinner = np.zeros(zeta.shape) if self.tapers is None else self.tapers.thinner(zeta, zeta_m)
+        return np.asarray(self.distance - thinner)
+
+    @property
+    def edge_m(self) -> Edge | None:
+        """How the second beam's thickness varies, if it does."""
+        return None if self.tapers is None else self.tapers.second
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,15 +21,16 @@ then its ends, which are found by Newton's method kept within the brackets.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from fea_reference.facing import Borders, Tapers, borders, facing
 from fea_reference.hermite import NeutralLine, apart
-from fea_reference.projection import closest, project
+from fea_reference.projection import project
 from fea_reference.state import Complex
 from scene.answer import Array
 
@@ -37,6 +38,7 @@ SAMPLES_PER_ELEMENT = 4
 _ITERATIONS = 60
 _END_ITERATIONS = 15
 _INSIDE = 1e-6  # elements
+_ON_RAY = 1e-6  # elements
 _ARRIVED = 1e-8  # elements
 _TABLE = 40_000  # distances: so many are found faster one and all than by a tree
 _EVEN = 3.0  # times its mean: a derivative below that at both ends keeps a cubic rising
@@ -127,25 +129,50 @@ class Zones:
     least: float
 
 
-def gap(first: NeutralLine, second: NeutralLine, side: float, T: float, zeta: Array, zeta_m: Array) -> Gap:
-    """The gap at ``zeta`` (k,), closest points sought from ``zeta_m`` (k,)."""
+def gap(
+    first: NeutralLine,
+    second: NeutralLine,
+    sides: Callable[[Array, Array, Array], Array],
+    T: float,
+    tapers: Tapers | None,
+    zeta: Array,
+    zeta_m: Array,
+) -> Gap:
+    """The gap at ``zeta`` (k,), closest points sought from ``zeta_m`` (k,).
+
+    ``sides`` are the sides (k,) at ζ and ζ_m where n·(x − x_m) is d.
+    """
     there = first.around(zeta)
-    zeta_m, found, across = closest(second, first.nodes[there.element] + there.way, zeta_m)
-    J = np.abs(across.ahead)
-    back = (1j * across.ahead / J).conj()  # n; of a product with it n·v is real, and −τ·v imaginary
+    points = first.nodes[there.element] + there.way
+    edge = None if tapers is None else tapers.second
+    faced = facing(second, edge, points, zeta_m, lambda at_m, d: sides(zeta, at_m, d))
+    across, J, zeta_m = faced.across, faced.c, faced.zeta_m
+    back = (1j * faced.w).conj()  # n; of a product with it n·v is real, and −τ·v imaginary
     d = (back * apart(first, there, second, across)).real
     a = (back * across.bent).real
     ahead = back * there.ahead
-    curvature = (back * there.bent).real - a * ahead.imag**2 / (J**2 - d * a)
-    return Gap(side * d - T, side * ahead.real, side * curvature, zeta_m, found)
+    bend = -a / (J**2 - d * a)
+    if faced.fixed.any():
+        bend = np.where(faced.fixed, 1.0 / np.where(d == 0.0, 1.0, d), bend)
+    curvature = (back * there.bent).real + bend * ahead.imag**2
+    side = sides(zeta, zeta_m, d)
+    g, slope = side * d - T, side * ahead.real
+    if tapers is not None:
+        g, slope = g + tapers.thinner(zeta, zeta_m), slope - tapers.first.slope(zeta)
+    return Gap(g, slope, side * curvature, zeta_m, faced.found)
+
+
+def one_side(side: float) -> Callable[[Array, Array, Array], Array]:
+    """The same side everywhere."""
+    return lambda zeta, _zeta_m, _d: np.full(zeta.shape, side)
 
 
 def side_of(first: NeutralLine, second: NeutralLine) -> float:
     """On which side of the second beam the first lies: +1 to the left of its direction, −1 to the right."""
-    zeta = _samples(first, second, np.arange(first.n), _reach(first, second, 0.0))
+    zeta = _samples(first, borders(second, None, 1.0), np.arange(first.n), _reach(first, second, 0.0))
     x = first.around(zeta)
     near = _nearest(first.nodes[x.element] + x.way, second.nodes)[1].astype(float)
-    there = gap(first, second, 1.0, 0.0, zeta, near)
+    there = gap(first, second, one_side(1.0), 0.0, None, zeta, near)
     d = there.g[there.found]
     if d.size == 0:
         return 1.0
@@ -161,11 +188,11 @@ def ends_over(first: NeutralLine, second: NeutralLine) -> bool:
     return bool((found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)).any())
 
 
-def seen(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Survey:
+def seen(first: NeutralLine, second: NeutralLine, side: float, T: float, tapers: Tapers | None = None) -> Survey:
     """The gap of two beams wherever it is less than the second's longest element."""
 
     def at(where: Array, guess: Array) -> Gap:
-        return gap(first, second, side, T, where, guess)
+        return gap(first, second, one_side(side), T, tapers, where, guess)
 
     reach, none_there = _reach(first, second, T), np.empty(0)
     apart_by, _ = _nearest(first.nodes, second.nodes)
@@ -173,7 +200,10 @@ def seen(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Surv
     if not beside.size:
         nothing = Gap(none_there, none_there, none_there, none_there, none_there.astype(bool))
         return Survey(at, none_there, nothing, none_there.astype(bool), (), float(apart_by.min()) - T)
-    zeta = _samples(first, second, beside, reach)
+    zeta = _samples(first, borders(second, None if tapers is None else tapers.second, side), beside, reach)
+    knots = () if tapers is None else tapers.first.knots
+    if knots:
+        zeta = np.union1d(zeta, [knot for knot in knots if min(int(knot), first.n - 1) in beside])
     x = first.around(zeta)
     distance, nearest = _nearest(first.nodes[x.element] + x.way, second.nodes)
     near = np.flatnonzero(distance < reach)
@@ -183,17 +213,23 @@ def seen(first: NeutralLine, second: NeutralLine, side: float, T: float) -> Surv
     if not usable.any():
         return Survey(at, zeta[:0], there.chosen(near[:0]), np.empty(0, dtype=bool), (), float(distance.min()) - T)
     near, there = near[usable], there.chosen(usable)
-    return survey(at, zeta[near], there, np.diff(near) == 1)
+    return survey(at, zeta[near], there, np.diff(near) == 1, knots)
 
 
-def overlap(first: NeutralLine, second: NeutralLine, T: float, where: Survey, level: float) -> Zones:
+def overlap(
+    first: NeutralLine, second: NeutralLine, T: float, where: Survey, level: float, rays: Sequence[Borders]
+) -> Zones:
     """All intervals on which the gap that was seen is below a ``level``, which is less than the second's element.
 
     Below by more than the gap is rounded to: beams that are held side by side lie on each other without pressing.
+    Intervals end where the first beam passes one of the second's ``rays``.
     """
     lengths = abs(T) + first.lengths.max() + second.lengths.max()
     inside = where.below(level - float(np.finfo(float).eps * lengths))
-    return Zones(*_split_at_nodes(first, second, inside.intervals, inside.zeta_m), inside.least)
+    split = inside.intervals, inside.zeta_m
+    for one in rays:
+        split = _split_at(first, one, *split)
+    return Zones(*split, inside.least)
 
 
 def negative(
@@ -290,18 +326,18 @@ def _nearest(points: Complex, nodes: Complex) -> tuple[Array, NDArray[np.int64]]
     return every[np.arange(points.size), which], which
 
 
-def _samples(first: NeutralLine, second: NeutralLine, elements: NDArray[np.int64], reach: float) -> Array:
+def _samples(first: NeutralLine, rays: Borders, elements: NDArray[np.int64], reach: float) -> Array:
     """Equal steps within those ``elements``, and the places straight across from the second beam's nodes in reach.
 
     Beyond an end there is no gap, and a zone that reaches up to one may be narrower than a step; at the others the
     gap's curvature jumps.
     """
     even = (elements[:, None] + np.arange(SAMPLES_PER_ELEMENT + 1) / SAMPLES_PER_ELEMENT).ravel()
-    distance, nearest = _nearest(second.nodes, first.nodes)
+    distance, nearest = _nearest(rays.points, first.nodes)
     near = distance < reach
     if not near.any():
         return np.unique(even)
-    nodes, back = second.nodes[near], second.tangents[0, near] - 1j * second.tangents[1, near]
+    nodes, back = rays.points[near], rays.w[near].conj()
     zeta = nearest[near].astype(float)
     for _ in range(_END_ITERATIONS):
         there = first.around(zeta)
@@ -381,28 +417,33 @@ def _parabola(zeta: Array, g: Array, slope: Array, curvature: Array, left: NDArr
     return np.where(forward, distance, 1.0 - distance)
 
 
-def _split_at_nodes(first: NeutralLine, second: NeutralLine, intervals: Array, closest: Array) -> tuple[Array, Array]:
-    """Cut intervals where the closest point passes a node of the second beam: the curvature jumps there."""
-    low, high = closest.min(axis=1), closest.max(axis=1)
-    lowest, highest = np.floor(low) + 1.0, np.ceil(high) - 1.0
-    count = np.maximum(highest - lowest + 1.0, 0.0).astype(int)
-    if not count.any():
+def _split_at(first: NeutralLine, rays: Borders, intervals: Array, closest: Array) -> tuple[Array, Array]:
+    """Cut intervals where the first beam passes a ray: the gap's curvature jumps there."""
+    low, high = closest.min(axis=1) - _ON_RAY, closest.max(axis=1) + _ON_RAY
+    owner, ray = np.nonzero((rays.zeta > low[:, None]) & (rays.zeta < high[:, None]))
+    if not owner.size:
         return intervals, closest
-    owner = np.repeat(np.arange(count.size), count)
-    node = lowest[owner] + np.arange(owner.size) - np.repeat(np.cumsum(count) - count, count)
-    at = second.points[:, node.astype(int)]
-    tangent = second.tangents[:, node.astype(int)]
-    share = (node - closest[owner, 0]) / (closest[owner, 1] - closest[owner, 0])
-    zeta = intervals[owner, 0] + share * (intervals[owner, 1] - intervals[owner, 0])
-    for _ in range(_ITERATIONS):
-        x, x1, _x2 = first.at(zeta)
-        step = ((x - at) * tangent).sum(axis=0) / (x1 * tangent).sum(axis=0)
-        zeta = np.clip(zeta - step, intervals[owner, 0], intervals[owner, 1])
-        if np.abs(step).max() < 1e-12:
+
+    def off(zeta: Array) -> tuple[Array, Array]:
+        there, back = first.around(zeta), rays.w[ray].conj()
+        r = first.nodes[there.element] + there.way - rays.points[ray]
+        return (r * back).real, (there.ahead * back).real
+
+    before, behind = (off(intervals[owner, i])[0] for i in (0, 1))
+    nothing = _ARRIVED * np.diff(intervals[owner])[:, 0] * np.abs(off(intervals[owner].mean(axis=1))[1])
+    passes = (before * behind < 0.0) & (np.minimum(np.abs(before), np.abs(behind)) > nothing)
+    owner, ray, before, behind = owner[passes], ray[passes], before[passes], behind[passes]
+    zeta = intervals[owner, 0] + before / (before - behind) * np.diff(intervals[owner])[:, 0]
+    for _ in range(_ITERATIONS if owner.size else 0):
+        value, slope = off(zeta)
+        moved = np.clip(zeta - value / slope, intervals[owner, 0], intervals[owner, 1])
+        step, zeta = float(np.abs(moved - zeta).max()), moved
+        if step < 1e-12:
             break
     places = np.concatenate([intervals[:, 0], intervals[:, 1], zeta])
-    closest_all = np.concatenate([closest[:, 0], closest[:, 1], node])
-    owners = np.concatenate([np.arange(count.size), np.arange(count.size), owner])
+    closest_all = np.concatenate([closest[:, 0], closest[:, 1], rays.zeta[ray]])
+    every = np.arange(len(intervals))
+    owners = np.concatenate([every, every, owner])
     order = np.lexsort((places, owners))
     places, closest_all, owners = places[order], closest_all[order], owners[order]
     same = np.flatnonzero(owners[:-1] == owners[1:])

@@ -12,10 +12,11 @@ from scene.check_shapes import MEETING, is_beam
 from scene.geometry import arc_length, closest_pair, distance, largest_coordinate, points_on, scaled, tangents_on
 from scene.mistakes import Mistake, written_place
 from scene.statement import Beam, BeamContact, BeamEnd, Curve, Scene, SelfContact, WeldedEnd
+from scene.surfaces import Range, surfaces_apart
 
 Side = Literal["start", "end"]
 
-OVERLAP = 1e-6  # of the mean thickness
+OVERLAP = 1e-6  # of the mean thickness, where both beams are thinnest
 HELD_OVERLAP = 1e-3  # of the mean thickness, beside ends that one body holds: coordinates that were rounded
 CROSSING_ANGLE = 1e-3  # rad; lines that meet at less are taken as tangent
 JOINED = 5.0  # mean thicknesses beside a shared end in which an overlap is no mistake
@@ -54,7 +55,7 @@ def overlaps(scene: Scene) -> Iterator[Mistake]:
         first, second = (scene.beams.get(beam) for beam in contact.between)
         if first is None or second is None or contact.between[0] == contact.between[1]:
             continue
-        if not (is_beam(first) and is_beam(second)) or (contact.thick and (first.tapered or second.tapered)):
+        if not (is_beam(first) and is_beam(second)):
             continue
         found = _overlap(first, second, _welded_to(scene, first, second), thick=contact.thick)
         if found is not None:
@@ -83,30 +84,36 @@ def _overlap(first: Beam, second: Beam, welded: list[tuple[Side, Side]], *, thic
     """What is wrong between two beams, and what is allowed; None where nothing is."""
     size = max(largest_coordinate(first.curve), largest_coordinate(second.curve))
     curve1, curve2 = scaled(first.curve, size), scaled(second.curve, size)
-    mean = 0.5 * (first.thickest + second.thickest) / size
-    left_out = JOINED * mean if thick else CROSSING_ANGLE * min(arc_length(curve1), arc_length(curve2))
+    largest = 0.5 * (first.thickest + second.thickest) / size
+    mean = 0.5 * (first.thinnest + second.thinnest) / size
+    left_out = JOINED * largest if thick else CROSSING_ANGLE * min(arc_length(curve1), arc_length(curve2))
     range1, range2 = (
         _apart_from_shared(curve1, curve2, left_out),
         _apart_from_shared(curve2, curve1, left_out),
     )
     if range1[0] >= range1[1] or range2[0] >= range2[1]:
         return None
-    pair = closest_pair(curve1, curve2, range1, range2)
+
+    def depth_in(ranges: tuple[Range, Range]) -> float:
+        if first.tapered or second.tapered:
+            return -surfaces_apart((first, second), (curve1, curve2), size, ranges)
+        return mean - closest_pair(curve1, curve2, *ranges).distance
+
     if thick:
-        depth = mean - pair.distance
+        depth = depth_in((range1, range2))
         if depth <= OVERLAP * mean:
             return None
         if depth <= HELD_OVERLAP * mean:
-            beside = _apart_from_held(curve1, curve2, welded, mean, (range1, range2))
+            beside = _apart_from_held(curve1, curve2, welded, largest, (range1, range2))
             if not all(low < high for low, high in beside):
                 return None
-            away = closest_pair(curve1, curve2, *beside)
-            if beside != (range1, range2) and mean - away.distance <= OVERLAP * mean:
+            if beside != (range1, range2) and depth_in(beside) <= OVERLAP * mean:
                 return None
         return (
             f"that overlap at the start by {depth * size:.3g} m, {depth / mean:.3g} of their mean thickness",
             f"beams that touch or are apart (overlap at most {OVERLAP:g} of the mean thickness)",
         )
+    pair = closest_pair(curve1, curve2, range1, range2)
     t1 = tangents_on(curve1, np.array([pair.u1]))[0]
     t2 = tangents_on(curve2, np.array([pair.u2]))[0]
     inside = all(1e-6 < u < 1.0 - 1e-6 for u in (pair.u1, pair.u2))
@@ -118,7 +125,7 @@ def _overlap(first: Beam, second: Beam, welded: list[tuple[Side, Side]], *, thic
     return f"that cross at the start, at {where} m", "neutral lines that touch or are apart"
 
 
-def _apart_from_shared(curve: Curve, other: Curve, left_out: float) -> tuple[float, float]:
+def _apart_from_shared(curve: Curve, other: Curve, left_out: float) -> Range:
     """Range of u on ``curve`` without ``left_out`` metres beside an end that is an end of ``other`` too."""
     length = arc_length(curve)
     share = left_out / length
@@ -137,8 +144,8 @@ def _apart_from_held(
     curve2: Curve,
     welded: list[tuple[Side, Side]],
     mean: float,
-    ranges: tuple[tuple[float, float], tuple[float, float]],
-) -> tuple[tuple[float, float], tuple[float, float]]:
+    ranges: tuple[Range, Range],
+) -> tuple[Range, Range]:
     """The ranges of u without the stretches beside ends that one body holds side by side."""
     shares = JOINED * mean / arc_length(curve1), JOINED * mean / arc_length(curve2)
     cut = list(ranges)

@@ -5,6 +5,7 @@ import pytest
 
 from fea_reference import Settings, answer
 from fea_reference.crossing import cross
+from fea_reference.facing import borders
 from fea_reference.hermite import NeutralLine
 from fea_reference.zones import Gap, negative, overlap, seen
 from scene import Ending
@@ -217,7 +218,7 @@ def test_a_tip_s_zone_ends_where_its_gap_does(depth, angle):
     steep = NeutralLine.through(
         points, np.full(n + 1, -angle), np.full(n, 1 / n), np.zeros((2, n + 1)), np.zeros(n), np.zeros(n)
     )
-    found = overlap(steep, level, 0.0, seen(steep, level, 1.0, 0.0), 0.0)
+    found = overlap(steep, level, 0.0, seen(steep, level, 1.0, 0.0), 0.0, [borders(level, None, 1.0)])
     begin, end = found.intervals.min(), found.intervals.max()
     assert end == n
     assert n - begin == pytest.approx(n * depth / np.sin(angle), rel=1e-6, abs=4e-14 * n)

@@ -1,0 +1,181 @@
+"""From which place of a beam's neutral line its surface is nearest to a point.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+x, x_m  a point, and the place of the beam's neutral line that it faces, at ζ_m
+T_m     half of the beam's thickness at ζ_m, straight between its knots; T_m' by ζ_m
+D, u    distance of x from x_m, negative if it is on the other side, and the unit vector: x = x_m + D u
+u₀, d   side·u and side·D, so that u₀ points to the left of the beam
+w       u₀ turned clockwise
+α       lean of u₀ from the normal: side·α counter-clockwise, sin α = T_m'/|x_m'|
+c, a    w·x_m' and u₀·x_m'';  Z = c² − d a
+======  =====================================================================================
+
+A beam fills the circles of radius T about its neutral line, for all places on it.  Its surface is their envelope, and
+the distance from it, x being nearest to the circle about x_m, is the least value along the beam of
+
+    D − T_m,     where  u·x_m' + T_m' = 0:   u leans from the normal by α.
+
+A beam of one thickness, and a line, has α = 0: then x_m is the closest point and w the tangent.  As x moves, ζ_m moves
+by c (w·δx)/Z.  As D − T_m is stationary, what moves ζ_m adds nothing to its derivative, so that a force along u, on the
+line through both places, is all there is.
+
+Where T_m' falls at a knot, the surface has a corner that juts out, an arc about the knot: ζ_m stays there while u
+turns from one lean to the other.  Where it rises, the corner goes in, and the mean of both leans parts the places
+before it from those behind; on that line either circle is as near, but for the third order of T_m'.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea_reference.edge import Edge
+from fea_reference.hermite import Around, NeutralLine
+from fea_reference.projection import closest
+from fea_reference.state import Complex
+from scene.answer import Array, Flags, Ints
+
+_ITERATIONS = 40
+_ARRIVED = 1e-8  # elements: the step that was just made leaves an error of the order of its square
+_STEEPEST = 0.99  # sine of a lean
+_NEAR = 2.0  # times the way along the beam that the largest lean makes: knots farther away lie where they seem to
+_NOTHING = 1e-300
+
+
+@dataclass(frozen=True)
+class Tapers:
+    """T of two beams of which one or both have a varying thickness; of a beam and itself twice the same."""
+
+    first: Edge
+    second: Edge
+
+    def thinner(self, zeta: Array, zeta_m: Array) -> Array:
+        """How much nearer than at their thickest the neutral lines are when they touch at places (k,)."""
+        return (self.first.farthest - self.first.at(zeta)) + (self.second.farthest - self.second.at(zeta_m))
+
+
+@dataclass(frozen=True, slots=True)
+class Facing:
+    """Of k points: ζ_m, whether it was ``found``, what is ``across`` there, w and c; ``fixed`` are those at a knot."""
+
+    zeta_m: Array
+    found: Flags
+    across: Around
+    w: Complex
+    c: Array
+    fixed: Flags
+
+
+@dataclass(frozen=True, slots=True)
+class Borders:
+    """Rays on which the points lie that face a place of a beam where its curvature or its lean jumps.
+
+    Places ``zeta`` (b,), their ``points`` x + i y (b,), and w (b,).
+    """
+
+    zeta: Array
+    points: Complex
+    w: Complex
+
+
+def facing(
+    second: NeutralLine, edge: Edge | None, points: Complex, guess: Array, sides: Callable[[Array, Array], Array]
+) -> Facing:
+    """What points x + i y (k,) face, sought from ``guess`` (k,); an ``edge`` tells how the beam's thickness varies.
+
+    ``sides`` are the sides (k,) on which they lie, of the closest places ζ_m (k,) and d (k,) there.
+    """
+    zeta, found, across = closest(second, points, guess)
+    J = np.abs(across.ahead)
+    w = across.ahead / J
+    foot = Facing(zeta, found, across, w, J, np.zeros(zeta.shape, dtype=bool))
+    if edge is None or not edge.varies or not zeta.size:
+        return foot
+    d = ((1j * w).conj() * (points - second.nodes[across.element] - across.way)).real
+    return _leaning(second, edge, points, foot, d, sides(zeta, d))
+
+
+def lean(ahead: Complex, slope: Array, side: Array | float) -> Complex:
+    """w (k,) where x_m' is ``ahead`` (k,) and T_m' the ``slope`` (k,)."""
+    J = np.abs(ahead)
+    sine = np.clip(slope / J, -_STEEPEST, _STEEPEST)
+    return np.asarray(ahead / J * (np.sqrt(1.0 - sine**2) + 1j * side * sine))
+
+
+def borders(second: NeutralLine, edge: Edge | None, side: float) -> Borders:
+    """Of the nodes of a beam, and of the corners of its ``edge``, seen from a ``side``."""
+    nodes = np.arange(second.n + 1.0)
+    if edge is None or not edge.varies:
+        return Borders(nodes, second.nodes, second.tangents[0] + 1j * second.tangents[1])
+    corners, before, behind = edge.corners
+    nodes = np.setdiff1d(nodes, corners)
+    at_node, at_corner = second.around(nodes), second.around(corners)
+    first, last, middle = _rays(at_corner.ahead, before, behind, side)
+    out = before > behind
+    w = np.concatenate([lean(at_node.ahead, edge.slope(nodes), side), np.where(out, first, middle), last[out]])
+    zeta = np.concatenate([nodes, corners, corners[out]])
+    there = second.around(zeta)
+    return Borders(zeta, second.nodes[there.element] + there.way, w)
+
+
+def _rays(ahead: Complex, before: Array, behind: Array, side: Array | float) -> tuple[Complex, Complex, Complex]:
+    """w of the leans before and behind corners, and of their mean."""
+    first, last = lean(ahead, before, side), lean(ahead, behind, side)
+    middle = first + last
+    return first, last, middle / np.abs(middle)
+
+
+def _leaning(second: NeutralLine, edge: Edge, points: Complex, foot: Facing, d: Array, side: Array) -> Facing:
+    """What points (k,) face, whose closest points are at their ``foot``, ``d`` away on a ``side`` (k,)."""
+    slope, corner = _piece(second, edge, points, foot, d, side)
+    zeta, done = foot.zeta_m, False
+    for iteration in range(_ITERATIONS):
+        there = second.around(zeta)
+        w = lean(there.ahead, slope, side)
+        r = points - second.nodes[there.element] - there.way
+        f, across = (w.conj() * r).real, (1j * w).conj()
+        c = (w.conj() * there.ahead).real
+        turned = c - (across * there.bent).real * (across * r).real / c
+        step = np.clip(f / np.where(turned > 0.1 * c, turned, c), -1.0, 1.0)
+        if iteration > _ITERATIONS // 4:
+            step *= 0.5  # as for closest points
+        moved = np.clip(zeta + step, 0.0, float(second.n))
+        done = bool(np.abs(moved - zeta).max(initial=0.0) < _ARRIVED)
+        zeta = moved
+        if done:
+            break
+    found = np.abs(f) <= 1e-6 * np.sqrt(r.real**2 + r.imag**2 + c**2)
+    fixed = corner >= 0
+    if fixed.any():
+        zeta = np.where(fixed, edge.corners[0][corner], zeta)
+        found |= fixed
+    there = second.around(zeta)
+    w = lean(there.ahead, slope, side)
+    if fixed.any():
+        r = points - second.nodes[there.element] - there.way
+        out = np.where(d < 0.0, -1.0, 1.0) * r  # u₀
+        w = np.where(fixed, -1j * out / np.maximum(np.abs(out), _NOTHING), w)
+    return Facing(zeta, found, there, w, (w.conj() * there.ahead).real, fixed)
+
+
+def _piece(second: NeutralLine, edge: Edge, points: Complex, foot: Facing, d: Array, side: Array) -> tuple[Array, Ints]:
+    """T_m' (k,) where the points face the surface between corners, and the corner (k,) that they face, or −1."""
+    corners, before, behind = edge.corners
+    if not corners.size:
+        return edge.slope(foot.zeta_m), np.full(foot.zeta_m.shape, -1)
+    slopes = np.append(before, behind[-1:])
+    at = second.around(corners)
+    r = points[:, None] - (second.nodes[at.element] + at.way)
+    first, last, middle = ((w.conj() * r).real for w in _rays(at.ahead, before, behind, side[:, None]))
+    is_before, is_behind = first < 0.0, last > 0.0
+    parted = (before <= behind) | (is_before & is_behind)
+    where = np.where(parted, np.where(middle > 0.0, 1, -1), is_behind.astype(int) - is_before)
+    reach = _NEAR * np.abs(d) * np.abs(slopes).max() / foot.c**2 + _ARRIVED
+    away = foot.zeta_m[:, None] - corners
+    where = np.where(np.abs(away) > reach[:, None], np.sign(away).astype(int), where)
+    corner = np.where((where == 0).any(axis=1), np.argmax(where == 0, axis=1), -1)
+    return slopes[(where > 0).sum(axis=1)], corner
