@@ -32,6 +32,7 @@ from cprbm.nearest import (
     ARCHING,
     REACH,
     SAME,
+    STRAIGHT,
     Lines,
     Pair,
     feet_near,
@@ -42,10 +43,12 @@ from cprbm.nearest import (
 from cprbm.pairs import Pressed
 from cprbm.strands import NO_FACES, QUARTER, Faces, Strand, facing_samples, in_coil, sides, strands, turned_enough
 from scene import Scene, SelfContact
-from scene.answer import Array
+from scene.answer import Array, Flags
 
 LEVEL = 1.0 / 16.0  # h² times curvatures, 1/ℓ added: lines that lie on each other cross no more deeply; it is twice
 # as much as chords of two arcs cross by, each over half an element
+
+DEEPER = 2.0  # times the depth by which the line crosses itself, which is about that by which parts lie beyond others
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,8 +156,8 @@ class Itself:
         G = lines[0].sampled
         if np.ptp(G.psi) <= QUARTER:
             return Facing(lines, (), None)
-        crossed = self._crosses(lines) > 0.0
-        tip = self._tip(plain, lines, crossed=crossed)
+        depth = self._crosses(lines)
+        tip = self._tip(plain, lines, depth)
         here, there = facing_samples(G.x, G.y)
         if here.size:
             A = plain.on_a(lines, G.s[here])
@@ -165,15 +168,18 @@ class Itself:
         else:
             distance, sigma, turn = np.zeros((3, 0))
         s, side, coiled = G.s[here], sides(turn), in_coil(turn)
-        side[coiled] = self.known.of(s[coiled], sigma[coiled], np.sign(distance[coiled]), crossed=crossed)
+        side[coiled] = self.known.of(s[coiled], sigma[coiled], np.sign(distance[coiled]), crossed=depth > 0.0)
+        seen = ~self._hidden(side * distance, depth)
+        here, distance, sigma, turn = here[seen], distance[seen], sigma[seen], turn[seen]
+        s, side, coiled = s[seen], side[seen], coiled[seen]
         new = coiled & ~self.known.know(s, sigma)[0]
         faces, fresh = Faces(s, sigma, side), float(np.min(np.abs(distance[new]), initial=np.inf))
         if tip is not None:
-            faces, fresh = faces.joined(tip.s, float(G.s[-1]), tip.across), min(fresh, tip.fresh)
+            faces, fresh = faces.joined(tip.s, float(G.s[-1]), -tip.side), min(fresh, tip.fresh)
         return Facing(lines, strands(G.s, here, sigma, distance, turn, side), tip, faces, fresh)
 
-    def _tip(self, plain: Pair, lines: Lines, *, crossed: bool) -> Tip | None:
-        """The beam's end, if it faces a part of the beam: of several the nearest."""
+    def _tip(self, plain: Pair, lines: Lines, depth: float) -> Tip | None:
+        """The beam's end, if it faces a part of the beam: of several the nearest; ``depth`` is that of a crossing."""
         G, last = lines[0].sampled, len(lines[0].sampled.s) - 1
         d = np.hypot(G.x - G.x[last], G.y - G.y[last])
         low = 1 + np.flatnonzero((d[1:-1] <= d[:-2]) & (d[1:-1] < d[2:]))
@@ -188,14 +194,22 @@ class Itself:
         real = foot & turned_enough(turn) & (s > SAME * h) & (s < self.a.s[-1] - SAME * h)
         side, coiled = sides(turn), in_coil(turn)
         # beside the end of a coil both run the same way: what is on the left of the one has it on the right
-        seen = -self.known.of(s, E.s, -np.sign(distance), crossed=crossed)
+        seen = -self.known.of(s, E.s, -np.sign(distance), crossed=depth > 0.0)
         side = np.where(coiled, seen, side)
+        real &= ~self._hidden(side * distance, depth)
         D = np.where(real, side * distance, np.inf)
         i = int(np.argmin(D))
         if not real[i]:
             return None
         fresh = np.where(coiled & ~self.known.know(s, E.s)[0], np.abs(distance), np.inf)
         return Tip(float(side[i]), round(float(turn[i] / np.pi)), float(D[i]), float(s[i]), float(fresh[i]))
+
+    def _hidden(self, D: Array, depth: float) -> Flags:
+        """Which places (k,), that see others from the wrong side at D, do so over a part of the beam in between.
+
+        They have come there round an end: through the beam, it would cross itself by a ``depth`` like that.
+        """
+        return np.asarray(D + self.offset + 2.0 * STRAIGHT * self.a.h < -DEEPER * depth)
 
     def _crosses(self, lines: Lines) -> float:
         """How deeply the line crosses itself; nought where strands of a line only lie on each other."""

@@ -90,6 +90,43 @@ def test_a_coils_side_is_what_it_was_before():
     assert rows.values[np.argmin(np.abs(rows.arc - found.tip.s))] == pytest.approx(away, rel=1e-4)
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_tip_that_hangs_down_to_its_beam_stays_on_its_side(sign):
+    # three quarters of a turn, a little less and a little more: reference: by sight, the tip hangs above the start
+    def hanging(turn):
+        mechanism, state = strip(lambda s: sign * turn * np.clip((s - 0.4) / 0.55, 0.0, 1.0), 0.005)
+        return mechanism.pairs["lap"], state, positions(mechanism.problem.model, state)
+
+    pair, state, at = hanging(1.5 * np.pi - 0.02)
+    before = pair.facing(state, at)
+    assert before.tip is not None
+    assert before.tip.side == sign
+    _, state, at = hanging(1.5 * np.pi + 0.02)
+    now = pair.seen(before.faces).facing(state, at)
+    assert now.tip is not None
+    assert (now.tip.side, now.fresh) == (sign, np.inf)
+    radius = 0.55 / (1.5 * np.pi)
+    assert pytest.approx(radius - 0.05, abs=0.04 * radius) == before.tip.D
+    assert not pair.seen(before.faces).passed([(state, at)], (state, at), 0.0)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_what_is_seen_over_a_part_in_between_is_not_beyond_it(sign):
+    # a tip that hangs into a dip of the beam, below its start, which it would see over the edge of the dip; reference:
+    # a line that does not cross itself lies nowhere beyond itself
+    def angle(s):
+        return sign * np.interp(s, (0.0, 0.05, 0.35, 0.9), (0.0, -0.3, -0.3, 4.5))
+
+    pair, state, at, found = faced(angle, 0.002)
+    assert not pair.crosses(state, at)
+    assert all(np.min(strand.D) > 0.0 for strand in found.strands)
+    assert found.tip is not None
+    dense = found.lines[0].at(np.linspace(0.0, 0.5, 20001))
+    end = found.lines[0].at(np.ones(1))
+    away = np.min(np.hypot(dense.x - end.x, dense.y - end.y))
+    assert pair.least_gap(state, at) == pytest.approx(away - pair.offset, rel=1e-4)
+
+
 def test_going_through_itself_is_seen_on_the_way():
     mechanism, state = strip(coil, 0.005)
     model, pair = mechanism.problem.model, mechanism.pairs["lap"]
