@@ -95,7 +95,7 @@ def test_only_the_thickness_where_a_line_bends_must_fit_its_bend():
 
 
 @pytest.mark.parametrize(
-    ("values", "apart"), [([0.002, 0.001], 0.002), ([0.001, 0.0013, 0.001], 0.00165), ([0.0012, 0.001, 0.0018], 0.0019)]
+    ("values", "apart"), [([0.001, 0.002], 0.002), ([0.001, 0.0013, 0.001], 0.00165), ([0.0012, 0.001, 0.0018], 0.0019)]
 )
 def test_edges_of_a_varying_thickness_touch_where_it_is_thickest(values, apart):
     """Two level lines, the upper one 2 mm thick."""
