@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from scene.mistakes import Mistake
-from scene.statement import Beam, BeamContact, Profile, Scene, SelfContact
+from scene.statement import Beam, Profile, Scene, SelfContact
 
 CLOSEST = 1e-6  # of the beam's length, between places; nearer ones would state a jump
 MOST_PLACES = 1001
@@ -24,9 +24,9 @@ def wrong_profiles(scene: Scene) -> Iterator[Mistake]:
 
 
 def thick_contacts(scene: Scene) -> Iterator[Mistake]:
-    """Contacts of two beams, or of one and itself, by their edges where the thickness of one varies."""
+    """Contacts of a beam with itself by its edges where its thickness varies."""
     for name, contact in scene.contacts.items():
-        if not isinstance(contact, BeamContact | SelfContact):
+        if not isinstance(contact, SelfContact):
             continue
         for beam in contact.beams:
             if contact.thick and beam in scene.beams and scene.beams[beam].tapered:
