@@ -231,7 +231,9 @@ class Pair:
 
     def _distances(self, lines: Lines, gone: float = np.inf) -> tuple[Array, Array]:
         """D along A and at the ends of B, infinite where there is no foot, ``gone`` where that is round an end."""
-        s = np.concatenate((smooth.halves(self.a), minima(self, lines, *_sampled(self, lines))[0]))
+        sampled = _sampled(self, lines)
+        ridges = feet_of_ridges(self, lines, *sampled)[0]
+        s = np.concatenate((smooth.halves(self.a), minima(self, lines, *sampled)[0], ridges))
         ends = self.b.s[[0, -1]]
         D, sigma, foot = distance_along(self, lines, s)
         E, feet, facing = distance_along(self.exchanged(), lines[::-1], ends)
@@ -495,16 +497,29 @@ def places_along(pair: Pair, lines: Lines, D: Array, sigma: Array, ends: Array) 
         np.concatenate((sigma[::2][joints], turned)),
         np.concatenate((joints, a.n + 6 + np.arange(len(s)) if pair.fixed else np.full(len(s), -1))),
     )
-    return found.joined(_corners(pair, lines, reach)) if pair.tapered and a.section.ridges.size else found
+    return found.joined(_corners(pair, lines, D, sigma)) if pair.tapered and a.section.ridges.size else found
 
 
-def _corners(pair: Pair, lines: Lines, reach: float) -> Places:
+def _corners(pair: Pair, lines: Lines, D: Array, sigma: Array) -> Places:
     """Where corners of A's edge stand out within reach, unless a joint has a row there, and their feet on B."""
-    a, ridges = pair.a, pair.a.section.ridges
-    D, sigma, foot = distance_along(pair, lines, ridges)
-    near = foot & (reach > D) & (np.min(np.abs(ridges[:, None] - a.s), axis=1) > SAME * a.h)
+    a = pair.a
+    s, E, feet, number = feet_of_ridges(pair, lines, D, sigma)
+    near = (pair.offset + REACH > E) & (np.min(np.abs(s[:, None] - a.s), axis=1) > SAME * a.h)
     # behind the keys of places that are fixed
-    return Places(ridges[near], sigma[near], a.n + 6 + len(pair.kinks[0].places) + np.flatnonzero(near))
+    return Places(s[near], feet[near], a.n + 6 + len(pair.kinks[0].places) + number[near])
+
+
+def feet_of_ridges(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array, Array, Ints]:
+    """Corners of A's edge that stand out and face B: s, D, σ and which they are (k,), from D and σ at A's samples."""
+    ridges, known = pair.a.section.ridges if pair.tapered else NO_RIDGES, np.isfinite(D)
+    samples = smooth.halves(pair.a)
+    behind = np.searchsorted(samples, ridges)
+    number = np.flatnonzero(known[behind - 1] & known[behind])
+    if not number.size:
+        return NO_RIDGES, NO_RIDGES, NO_RIDGES, number
+    s = ridges[number]
+    E, feet, foot = feet_near(pair, lines, pair.on_a(lines, s), np.interp(s, samples[known], sigma[known]))
+    return s[foot], E[foot], feet[foot], number[foot]
 
 
 def _facing_ends(pair: Pair, lines: Lines) -> Places:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from scene.mistakes import Mistake
-from scene.statement import Beam, Profile, Scene, SelfContact
+from scene.statement import Beam, Profile, Scene
 
 CLOSEST = 1e-6  # of the beam's length, between places; nearer ones would state a jump
 MOST_PLACES = 1001
@@ -21,20 +21,6 @@ def wrong_profiles(scene: Scene) -> Iterator[Mistake]:
             mistake = _wrong_profile(f"beams.{name}.{size}", getattr(beam, size))
             if mistake is not None:
                 yield mistake
-
-
-def thick_contacts(scene: Scene) -> Iterator[Mistake]:
-    """Contacts of a beam with itself by its edges where its thickness varies."""
-    for name, contact in scene.contacts.items():
-        if not isinstance(contact, SelfContact):
-            continue
-        for beam in contact.beams:
-            if contact.thick and beam in scene.beams and scene.beams[beam].tapered:
-                yield Mistake(
-                    f"contacts.{name}.thick",
-                    f"contact with a beam by the edges of {beam!r}, whose thickness varies: that is not offered yet",
-                    "thick = false, or a beam of one thickness",
-                )
 
 
 def has_sizes(beam: Beam) -> bool:

@@ -16,7 +16,7 @@ from scene.check_names import repeated_names, unknown_names
 from scene.check_overlaps import overlaps, wrong_contacts
 from scene.check_paper import wrong_hints, wrong_spacings
 from scene.check_pins import loose_bodies, wrong_pins
-from scene.check_profiles import thick_contacts, wrong_profiles
+from scene.check_profiles import wrong_profiles
 from scene.check_questions import wrong_claims, wrong_probes
 from scene.check_shapes import wrong_curves, wrong_ends, wrong_sections
 from scene.check_stops import wrong_stops
@@ -41,7 +41,6 @@ _CHECKS = (
     wrong_beam_loads,
     wrong_drives,
     wrong_contacts,
-    thick_contacts,
     wrong_spacings,
     wrong_hints,
     overlaps,
