@@ -20,6 +20,12 @@ ends of A and, with the beams' parts exchanged, of B.  At a minimum s moves with
 
 with dψ_B/dz_l = ψ_B,l + ψ_B'·dσ/dz_l, and nothing divides by D.
 
+Where thickness varies along the beams the edges lean against the neutral lines (:mod:`cprbm.leaning`).  A place on
+either is then closest to a place on the other by |r| − ½t_A(s) − ½t_B(σ): with t and n turned by the angle by which the
+edge of B leans, and ψ_A by that of A, all of the above holds as it stands.  D is side·n·r less what ½(t₁+t₂) is more
+there than where both beams are thinnest.  Where an edge has a corner that stands out, a row stands too, and the feet of
+what faces such a corner stay there.
+
 Beams that lie on each other over a length share any pressure among A's joints.  A is the beam with the longer
 elements: rows at the joints of both would ask one element for two curvatures.  At a joint stands the mean gap
 over the length of one element of B, and so the force is spread over it: the curvature of B, even over each
@@ -93,7 +99,11 @@ class Places:
 
     def joined(self, more: Places) -> Places:
         """With others."""
-        return Places(*map(np.concatenate, ((self.s, more.s), (self.sigma, more.sigma), (self.keys, more.keys))))
+        return Places(
+            np.concatenate((self.s, more.s)),
+            np.concatenate((self.sigma, more.sigma)),
+            np.concatenate((self.keys, more.keys)),
+        )
 
     def only(self, these: Flags) -> Places:
         """Some of the places."""
