@@ -289,7 +289,9 @@ def bowed() -> Data:
 
 def itself() -> Data:
     """A strip that is rolled up by its narrow end until its laps press on each other."""
-    data = cantilever(drives={"r": {"kind": "rotation", "body": "tip"}}, asked=("T.displacement", "tip.reaction_moment"))
+    data = cantilever(
+        drives={"r": {"kind": "rotation", "body": "tip"}}, asked=("T.displacement", "tip.reaction_moment")
+    )
     sizes = {"thickness": 0.35e-3, "width": {"at": [0.0, 0.3, 0.9, 1.0], "values": [0.02, 0.0155, 0.017, 0.01]}}
     data["beams"]["beam"] |= sizes
     data["contacts"] = {"c": {"kind": "beam-self", "beam": "beam"}}
@@ -298,9 +300,9 @@ def itself() -> Data:
 
 
 def itself_tapered() -> Data:
-    """The same strip, thinner where it is wide, and rolled up farther."""
+    """The same strip, thicker towards its narrow end, and rolled up farther."""
     data = itself()
-    data["beams"]["beam"]["thickness"] = {"at": [0.0, 1.0], "values": [0.35e-3, 0.33e-3]}
+    data["beams"]["beam"]["thickness"] = {"at": [0.0, 1.0], "values": [0.35e-3, 0.37e-3]}
     data["stages"] = [{"name": "roll", "steps": "r", "stations": [8.0]}]
     return data
 
