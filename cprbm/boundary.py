@@ -183,7 +183,8 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
     """One of the scene's contacts in the paper's form.
 
     Raises:
-        SceneError: the contact does not say what the paper's form must know, or has too few related joints.
+        SceneError: the contact does not say what the paper's form must know, has too few related joints, or a
+            thickness varies that it would need.
     """
     contact = scene.contacts[name]
     hints = contact.paper if isinstance(contact, BeamContact) else None
@@ -198,6 +199,11 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
                 )
             ]
         )
+    for beam in contact.between:
+        if contact.thick and scene.beams[beam].tapered:
+            found = f"contact of two beams by the edges of {beam!r}, whose thickness varies"
+            allowed = "thick = false, a beam of one thickness, or the formulation 'auto'"
+            raise SceneError([Mistake(f"contacts.{name}.thick", found, allowed, scene.file)])
     other = next(beam for beam in contact.between if beam != hints.boundary)
     boundary, constrained = model.chain(hints.boundary), model.chain(other)
     points = related_joints(scene, model, name, boundary, FEWEST_POINTS)

@@ -3,7 +3,7 @@
 ==========  ==================================================================================
 s, σ        arc lengths of two places that face each other, s < σ
 Θ, a        turning from the one to the other, and on which side of σ the place s lies, :mod:`cprbm.strands`
-D           a·n(σ)·(C(s) − C(σ)); the gap is D − t, of a line D
+D           a·n(σ)·(C(s) − C(σ)); the gap is D − t, of a line D; where t varies it is as of two beams
 ==========  ==================================================================================
 
 A beam that has turned far enough lies beside itself in strands, and two strands are two beams (:mod:`cprbm.nearest`)
@@ -36,6 +36,7 @@ from cprbm.nearest import (
     Lines,
     Pair,
     feet_near,
+    feet_of_ridges,
     held_together,
     minima,
     places_along,
@@ -97,8 +98,9 @@ class Itself:
     Attributes:
         name: of the contact.
         a: the beam's chain.
-        offset: t, zero for a line; units of length.
+        offset: t where the beam is thinnest, zero for a line; units of length.
         unit_length: ℓ, m.
+        tapered: whether the beam touches itself by edges that lean against its line.
         own_places: whether minima of D have rows of their own.
         kinks: of the places s and σ where the contact is in points.
         known: from which sides parts faced each other in a state before.
@@ -108,6 +110,7 @@ class Itself:
     a: Chain
     offset: float
     unit_length: float
+    tapered: bool = False
     own_places: bool = True
     kinks: tuple[Kinks, ...] = (NO_KINKS, NO_KINKS)
     known: Faces = NO_FACES
@@ -145,13 +148,14 @@ class Itself:
             across=across,
             offset=self.offset,
             unit_length=self.unit_length,
+            tapered=self.tapered,
             own_places=self.own_places,
             kinks=self.kinks,
         )
 
     def facing(self, state: State, at: Positions) -> Facing:
         """What faces what in a state."""
-        plain = self._sided(1.0, 1.0)
+        plain = replace(self._sided(1.0, 1.0), tapered=False)
         lines = plain.lines(state, at)
         G = lines[0].sampled
         if np.ptp(G.psi) <= QUARTER:
@@ -174,9 +178,21 @@ class Itself:
         s, side, coiled = s[seen], side[seen], coiled[seen]
         new = coiled & ~self.known.know(s, sigma)[0]
         faces, fresh = Faces(s, sigma, side), float(np.min(np.abs(distance[new]), initial=np.inf))
+        if self.tapered:
+            distance, sigma = self._by_edges(lines, s, sigma, side)
         if tip is not None:
             faces, fresh = faces.joined(tip.s, float(G.s[-1]), -tip.side), min(fresh, tip.fresh)
         return Facing(lines, strands(G.s, here, sigma, distance, turn, side), tip, faces, fresh)
+
+    def _by_edges(self, lines: Lines, s: Array, sigma: Array, side: Array) -> tuple[Array, Array]:
+        """aD and σ (k,) from those of the neutral lines."""
+        signed, feet = np.zeros(len(s)), sigma.copy()
+        for of in (-1.0, 1.0):
+            mine, pair = np.flatnonzero(side == of), self._sided(of, of)
+            if mine.size:
+                D, feet[mine], _ = feet_near(pair, lines, pair.on_a(lines, s[mine]), sigma[mine])
+                signed[mine] = of * D
+        return signed, feet
 
     def _tip(self, plain: Pair, lines: Lines, depth: float) -> Tip | None:
         """The beam's end, if it faces a part of the beam: of several the nearest; ``depth`` is that of a crossing."""
@@ -197,11 +213,13 @@ class Itself:
         seen = -self.known.of(s, E.s, -np.sign(distance), crossed=depth > 0.0)
         side = np.where(coiled, seen, side)
         real &= ~self._hidden(side * distance, depth)
+        fresh = np.where(coiled & ~self.known.know(s, E.s)[0], np.abs(distance), np.inf)
+        if self.tapered:
+            distance, s = self._by_edges(lines[::-1], E.s, s, side)
         D = np.where(real, side * distance, np.inf)
         i = int(np.argmin(D))
         if not real[i]:
             return None
-        fresh = np.where(coiled & ~self.known.know(s, E.s)[0], np.abs(distance), np.inf)
         return Tip(float(side[i]), round(float(turn[i] / np.pi)), float(D[i]), float(s[i]), float(fresh[i]))
 
     def _hidden(self, D: Array, depth: float) -> Flags:
@@ -269,7 +287,8 @@ class Itself:
             pair = self._pair(strand)
             s, sigma = minima(pair, facing.lines, strand.D, strand.sigma)
             D = feet_near(pair, facing.lines, pair.on_a(facing.lines, s), sigma)[0] if s.size else np.zeros(0)
-            least = min(least, float(np.min(strand.D)), float(np.min(D, initial=np.inf)))
+            ridges = feet_of_ridges(pair, facing.lines, strand.D, strand.sigma)[1]
+            least = min(least, float(np.min(strand.D)), float(np.min(np.append(D, ridges), initial=np.inf)))
         depth = self._crosses(facing.lines)
         return float(min(least, -depth) if depth > 0.0 else least) - self.offset
 
@@ -312,8 +331,11 @@ class Itself:
     def touching(self, state: State, at: Positions, s: Array) -> Array:
         """Where the edges touch that touch at arc lengths ``s``, (k, 2), units of length."""
         facing = self.facing(state, at)
-        A, B = facing.lines[0].at(s), facing.lines[1].at(self._faced(facing, s)[1])
-        return np.stack((0.5 * (A.x + B.x), 0.5 * (A.y + B.y)), axis=1)
+        sigma = self._faced(facing, s)[1]
+        A, B = facing.lines[0].at(s), facing.lines[1].at(sigma)
+        mine, other = self.a.section.thickness_at(s), self.a.section.thickness_at(sigma)
+        share = mine / (mine + other)
+        return np.stack((A.x + share * (B.x - A.x), A.y + share * (B.y - A.y)), axis=1)
 
     def pressed(self, state: State, at: Positions, s: Array) -> tuple[Pressed, ...]:
         """On the beam at s and at σ what lies at ``s``."""
@@ -330,7 +352,7 @@ class Itself:
         for of in (-1.0, 1.0):
             mine, pair = side == of, self._sided(of, of)
             A, B = pair.on_a(facing.lines, s[mine]), pair.on_b(facing.lines, sigma[mine])
-            D = of * (np.cos(B.psi) * (A.y - B.y) - np.sin(B.psi) * (A.x - B.x))
+            D = of * (np.cos(B.psi) * (A.y - B.y) - np.sin(B.psi) * (A.x - B.x)) - pair.wider(s[mine], sigma[mine])
             parting[mine] = pair.parting_at(facing.lines, s[mine], sigma[mine], D)
         return parting
 
@@ -343,7 +365,8 @@ def itself_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Itself:
     return Itself(
         name=name,
         a=chain,
-        offset=chain.thickness if contact.thick else 0.0,
+        offset=float(chain.section.thickness.min()) if contact.thick else 0.0,
         unit_length=model.unit_length,
+        tapered=contact.thick and float(chain.section.thickness.min()) != chain.thickness,
         kinks=fit.kinks.get(name, (NO_KINKS, NO_KINKS)),
     )

@@ -20,6 +20,12 @@ ends of A and, with the beams' parts exchanged, of B.  At a minimum s moves with
 
 with dψ_B/dz_l = ψ_B,l + ψ_B'·dσ/dz_l, and nothing divides by D.
 
+Where thickness varies along the beams the edges lean against the neutral lines (:mod:`cprbm.leaning`).  A place on
+either is then closest to a place on the other by |r| − ½t_A(s) − ½t_B(σ): with t and n turned by the angle by which the
+edge of B leans, and ψ_A by that of A, all of the above holds as it stands.  D is side·n·r less what ½(t₁+t₂) is more
+there than where both beams are thinnest.  Where an edge has a corner that stands out, a row stands too, and the feet of
+what faces such a corner stay there.
+
 Beams that lie on each other over a length share any pressure among A's joints.  A is the beam with the longer
 elements: rows at the joints of both would ask one element for two curvatures.  At a joint stands the mean gap
 over the length of one element of B, and so the force is spread over it: the curvature of B, even over each
@@ -42,7 +48,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cprbm import smooth, wells
+from cprbm import leaning, smooth, wells
 from cprbm.contact import Group
 from cprbm.crossing import cross
 from cprbm.gathering import Touches, gathered
@@ -54,6 +60,8 @@ from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
 
 FOOT_ITERATIONS = 8
+CORNER_ITERATIONS = 40  # where edges have corners that stand out, at each of which a step ends
+NO_RIDGES = np.zeros(0)
 CLOSE = 1e-9  # units of length: a step whose square is nothing
 CLOSEST_ITERATIONS = 50
 LEAST_CURVATURE = 1e-3  # of D, 1/ℓ: elements that end elsewhere on either beam leave as much in a zone
@@ -90,6 +98,14 @@ class Places:
     sigma: Array
     keys: Ints
 
+    def joined(self, more: Places) -> Places:
+        """With others."""
+        return Places(
+            np.concatenate((self.s, more.s)),
+            np.concatenate((self.sigma, more.sigma)),
+            np.concatenate((self.keys, more.keys)),
+        )
+
     def only(self, these: Flags) -> Places:
         """Some of the places."""
         return Places(self.s[these], self.sigma[these], self.keys[these])
@@ -104,8 +120,9 @@ class Pair:
         a, b: their chains; ``b`` gives tangent and normal.
         side: +1 where A starts on the left of B, −1 on the right.
         across: +1 where B starts on the left of A, −1 on the right.
-        offset: ½(t₁+t₂), zero for lines; units of length.
+        offset: ½(t₁+t₂) where the beams are thinnest, zero for lines; units of length.
         unit_length: ℓ, m.
+        tapered: whether beams touch by edges that lean against their neutral lines, :mod:`cprbm.leaning`.
         clamps: for the start and the end of A and of B, whether it is clamped together with an end of the other.
         own_places: whether minima of D have rows of their own.
         kinks: of A and of B where the contact is in points.
@@ -119,6 +136,7 @@ class Pair:
     across: float
     offset: float
     unit_length: float
+    tapered: bool = False
     clamps: tuple[tuple[bool, bool], tuple[bool, bool]] = ((False, False), (False, False))
     own_places: bool = True
     kinks: tuple[Kinks, ...] = (NO_KINKS, NO_KINKS)
@@ -138,6 +156,21 @@ class Pair:
     def on_b(self, lines: Lines, sigma: Array) -> smooth.Points:
         """Points of B at arc lengths ``sigma`` (k,), bent as its kinks say."""
         return kinked(self.b, self.kinks[1], lines[1].at(sigma))
+
+    def foot(self, lines: Lines, A: smooth.Points, sigma: Array) -> smooth.Points:
+        """Points of B at arc lengths ``sigma`` (k,) with the tangents of the edge that faces A."""
+        B = self.on_b(lines, sigma)
+        return leaning.facing(self.b, B, self.side, *_seen_from(B, A)) if self.tapered else B
+
+    def beside(self, A: smooth.Points, B: smooth.Points) -> smooth.Points:
+        """Points of A with the tangents of the edge that faces B."""
+        if not self.tapered:
+            return A
+        return leaning.leant(self.a, A, -self.side * np.sign(np.cos(A.psi - B.psi)))
+
+    def wider(self, s: Array, sigma: Array) -> Array | float:
+        """By how much ½(t₁+t₂) is more than where both are thinnest, at arc lengths of A and of B."""
+        return leaning.half_less(self.a, s) + leaning.half_less(self.b, sigma) if self.tapered else 0.0
 
     def exchanged(self) -> Pair:
         """The same contact with the parts of A and B exchanged."""
@@ -179,7 +212,14 @@ class Pair:
             np.interp(places, line.chain.s[1:-1], line.sampled.bend[2:-2:2])
             for line, places in zip(lines, (s, sigma), strict=True)
         )
-        return np.asarray(self.side * (facing * bend_A - bend_B / (1.0 - self.side * D * bend_B)))
+        if not self.tapered:
+            return np.asarray(self.side * (facing * bend_A - bend_B / (1.0 - self.side * D * bend_B)))
+        # dψ and dσ over ds by the tangents of the edges
+        B = self.foot(lines, self.on_a(lines, s), sigma)
+        A = self.beside(self.on_a(lines, s), B)
+        pace_A, pace_B = A.pace / A.speed, B.pace / B.speed
+        along = pace_A / (pace_B - self.side * (D + self.wider(s, sigma)) * bend_B)
+        return np.asarray(self.side * pace_A * (facing * bend_A - along * bend_B))
 
     @property
     def arching(self) -> float:
@@ -204,25 +244,35 @@ class Pair:
         """D along A and at the ends of B, infinite where there is no foot, ``gone`` where that is round an end."""
         known, what = lines[0].known, (self.name, "distances")
         if what not in known:
-            s = np.concatenate((smooth.halves(self.a), minima(self, lines, *_sampled(self, lines))[0]))
-            D, _, foot = distance_along(self, lines, s)
-            E, _, facing = distance_along(self.exchanged(), lines[::-1], self.b.s[[0, -1]])
-            known[what] = np.where(foot, D, np.inf), np.where(facing, E, np.inf)
-        D, E = known[what]
-        return _not_gone_round(self, lines, D, gone), _not_gone_round(self.exchanged(), lines[::-1], E, gone)
+            sampled = _sampled(self, lines)
+            ridges = feet_of_ridges(self, lines, *sampled)[0]
+            s = np.concatenate((smooth.halves(self.a), minima(self, lines, *sampled)[0], ridges))
+            ends = self.b.s[[0, -1]]
+            D, sigma, foot = distance_along(self, lines, s)
+            E, feet, facing = distance_along(self.exchanged(), lines[::-1], ends)
+            D, E = np.where(foot, D, np.inf), np.where(facing, E, np.inf)
+            known[what] = D, self.wider(s, sigma) + np.zeros_like(D), E, self.wider(feet, ends) + np.zeros_like(E)
+        D, wider, E, wider_at_ends = known[what]
+        return (
+            _not_gone_round(self, lines, D, wider, gone),
+            _not_gone_round(self.exchanged(), lines[::-1], E, wider_at_ends, gone),
+        )
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
         """Where the edges touch that touch at arc lengths ``s`` of A, (k, 2), units of length."""
         lines = self.lines(state, at)
-        A, B = self.on_a(lines, s), self.on_b(lines, distance_along(self, lines, s)[1])
-        share = self.a.thickness / (self.a.thickness + self.b.thickness)
+        sigma = distance_along(self, lines, s)[1]
+        A, B = self.on_a(lines, s), self.on_b(lines, sigma)
+        mine, other = self.a.section.thickness_at(s), self.b.section.thickness_at(sigma)
+        share = mine / (mine + other)
         return np.stack((A.x + share * (B.x - A.x), A.y + share * (B.y - A.y)), axis=1)
 
     def slopes(self, state: State, at: Positions, s: Array) -> Array:
         """dD/ds at arc lengths ``s``."""
         lines = self.lines(state, at)
-        sigma = distance_along(self, lines, s)[1]
-        return np.asarray(self.side * np.sin(self.on_a(lines, s).psi - self.on_b(lines, sigma).psi))
+        A = self.on_a(lines, s)
+        B = self.foot(lines, A, distance_along(self, lines, s)[1])
+        return np.asarray(self.side * np.sin(self.beside(A, B).psi - B.psi))
 
     def pressed(self, state: State, at: Positions, s: Array) -> tuple[Pressed, ...]:
         """On A and on B what lies at ``s`` of A."""
@@ -301,15 +351,20 @@ class Pair:
         Gauss's points on either side of the border of B's elements that lies within, where the curvature steps.
         """
         s, sigma = joints.s, joints.sigma
-        A, B = self.on_a(lines, s), self.on_b(lines, sigma)
-        ratio = (B.speed - B.bend * _seen_from(B, A)[1]) / (np.cos(A.psi - B.psi) * A.speed)  # ds/dσ
+        A = self.on_a(lines, s)
+        B = self.foot(lines, A, sigma)
+        ratio = (B.pace - B.bend * _seen_from(B, A)[1]) / (np.cos(A.psi - B.psi) * A.speed)  # ds/dσ
         borders = self.b.borders
         after = np.clip(np.searchsorted(borders, sigma), 1, self.b.n)
         # the length on A in steps, so that it does not change with the state where it is differentiated
         stretch = np.round(np.abs(ratio) / STRETCH) * STRETCH
-        half = 0.5 * np.minimum(self.b.sizes[after - 1] * stretch, self.a.sizes[joints.keys - 1])[:, None]
         ahead, behind = borders[after] - sigma, borders[after - 1] - sigma
-        cut = np.clip((np.where(ahead < -behind, ahead, behind) * ratio)[:, None], -half, half)
+        cut = np.where(ahead < -behind, ahead, behind) * ratio
+        if self.tapered:  # beside a corner of B's edge D is less even than at a border: a length that stays, cut midway
+            cornered = _beside_any(self.b.section.corners, sigma, self.b.sizes[after - 1])
+            stretch, cut = np.where(cornered, 1.0, stretch), np.where(cornered, 0.0, cut)
+        half = 0.5 * np.minimum(self.b.sizes[after - 1] * stretch, self.a.sizes[joints.keys - 1])[:, None]
+        cut = np.clip(cut[:, None], -half, half)
         x, w = 0.5 * (POINTS + 1.0), 0.5 * WEIGHTS
         off = np.concatenate((-half + (cut + half) * x, cut + (half - cut) * x), axis=1)
         weights = 0.5 * np.concatenate(((1.0 + cut / half) * w, (1.0 - cut / half) * w), axis=1)
@@ -334,7 +389,9 @@ class Pair:
 
     def touches(self, lines: Lines, s: Array, sigma: Array, free: Flags) -> Touches:
         """The constraint at feet (s, σ); where ``free`` (k,) the place moves with the minimum."""
-        A, B = self.on_a(lines, s), self.on_b(lines, sigma)
+        A = self.on_a(lines, s)
+        B = self.foot(lines, A, sigma)
+        A, angle_slopes = self.beside(A, B), leaning.angle_slopes if self.tapered else smooth.angle_slopes
         m, k = len(s), smooth.LOCALS
         tangent = np.stack((np.cos(B.psi), np.sin(B.psi)), axis=1)
         normal = np.stack((-tangent[:, 1], tangent[:, 0]), axis=1)
@@ -344,20 +401,23 @@ class Pair:
         n_r = np.einsum("mi,mik->mk", normal, r_z)
         t_r = np.einsum("mi,mik->mk", tangent, r_z)
         facing = np.cos(A.psi - B.psi)
-        of_foot = -B.speed + distance * B.bend
+        of_foot = -B.pace + distance * B.bend
         # what D gains over s by the tangents' γ, the foot going along
         more_A, more_B = missed(self.a, self.kinks[0], s), missed(self.b, self.kinks[1], sigma)
-        gained = np.sign(facing) * (more_A.integral + of_foot / (facing * A.speed) * more_B.integral)
+        back = of_foot / (facing * A.pace)
+        if self.tapered:  # no tangents of B's go along what stays at a corner
+            back[leaning.at_corner(B)] = 0.0
+        gained = np.sign(facing) * (more_A.integral + back * more_B.integral)
 
         def bent() -> Array:
             # ds/dz and dσ/dz from (i) and (ii)
             zeros = np.zeros((m, k))
-            psi_B = np.concatenate((zeros, smooth.angle_slopes(B)), axis=1)
-            psi_A = np.concatenate((smooth.angle_slopes(A), zeros), axis=1)
+            psi_B = np.concatenate((zeros, angle_slopes(B)), axis=1)
+            psi_A = np.concatenate((angle_slopes(A), zeros), axis=1)
             one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
-            determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.speed, 1.0)
+            determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.pace, 1.0)
             s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
-            sigma_z = (two - (facing * A.speed)[:, None] * s_z) / of_foot[:, None]
+            sigma_z = (two - (facing * A.pace)[:, None] * s_z) / of_foot[:, None]
             turning = psi_B + B.bend[:, None] * sigma_z
             second = np.zeros((m, 2 * k, 2 * k))
             second[:, :k, :k] = smooth.position_curvature(A, normal)
@@ -370,11 +430,16 @@ class Pair:
             return np.asarray(-self.side * 0.5 * (second + np.swapaxes(second, 1, 2)))
 
         return Touches(
-            values=self.offset - self.side * (distance + gained),
+            values=self.offset + self.wider(s, sigma) - self.side * (distance + gained),
             slopes=-self.side * n_r,
             bent=bent,
             links=np.stack((A.link, B.link)),
         )
+
+
+def _beside_any(corners: Array, sigma: Array, size: Array) -> Flags:
+    """Which places ``sigma`` (k,) lie within a ``size`` (k,) of one of the ``corners`` (j,)."""
+    return np.asarray(np.any(np.abs(sigma[:, None] - corners) <= size[:, None], axis=1))
 
 
 def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Flags]:
@@ -389,18 +454,29 @@ def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Fl
 
 def feet_near(pair: Pair, lines: Lines, A: smooth.Points, sigma: Array) -> tuple[Array, Array, Flags]:
     """D, σ and whether there is a foot, by Newton's method on (i) from the guess ``sigma``."""
-    for _ in range(FOOT_ITERATIONS):
-        B = pair.on_b(lines, sigma)
+    ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
+    for _ in range(FOOT_ITERATIONS if not ridges.size else CORNER_ITERATIONS):
+        B = pair.foot(lines, A, sigma)
         along, across = _seen_from(B, A)
         # along the circle of curvature, where that is round the foot
         left = along / np.maximum(1.0 - B.bend * across, 0.2)
-        step = left / (B.speed * (1.0 + (B.bend * left) ** 2 / 3.0))
+        step = left / (B.pace * (1.0 + (B.bend * left) ** 2 / 3.0))
         before = sigma
         sigma = np.minimum(np.maximum(before + np.minimum(np.maximum(step, -pair.b.h), pair.b.h), 0.0), pair.b.s[-1])
+        if ridges.size:
+            sigma = _up_to(ridges, before, sigma)
         if np.abs(sigma - before).max() < CLOSE:
             break
     foot = np.abs(along) <= PARALLEL * np.maximum(np.abs(across), pair.b.h)
-    return pair.side * across, sigma, foot
+    return pair.side * across - pair.wider(A.s, sigma), sigma, foot
+
+
+def _up_to(ridges: Array, before: Array, after: Array) -> Array:
+    """Places ``after`` (k,), but the first of the ``ridges`` (j,) where one lies between them and those ``before``."""
+    fenced = np.concatenate(([-np.inf], ridges, [np.inf]))
+    low = fenced[np.searchsorted(ridges, before, side="left")]
+    high = fenced[np.searchsorted(ridges, before, side="right") + 1]
+    return np.minimum(np.maximum(after, low), high)
 
 
 def _seen_from(B: smooth.Points, A: smooth.Points) -> tuple[Array, Array]:
@@ -434,11 +510,34 @@ def places_along(pair: Pair, lines: Lines, D: Array, sigma: Array, ends: Array) 
     for end in (0, -1):
         near[end] = reach > D[end] and not held_together(a, b, end, float(sigma[end]))
     joints = np.flatnonzero(near)
-    return Places(
+    found = Places(
         np.concatenate((a.s[joints], s)),
         np.concatenate((sigma[::2][joints], turned)),
         np.concatenate((joints, a.n + 6 + np.arange(len(s)) if pair.fixed else np.full(len(s), -1))),
     )
+    return found.joined(_corners(pair, lines, D, sigma)) if pair.tapered and a.section.ridges.size else found
+
+
+def _corners(pair: Pair, lines: Lines, D: Array, sigma: Array) -> Places:
+    """Where corners of A's edge stand out within reach, unless a joint has a row there, and their feet on B."""
+    a = pair.a
+    s, E, feet, number = feet_of_ridges(pair, lines, D, sigma)
+    near = (pair.offset + REACH > E) & (np.min(np.abs(s[:, None] - a.s), axis=1) > SAME * a.h)
+    # behind the keys of places that are fixed
+    return Places(s[near], feet[near], a.n + 6 + len(pair.kinks[0].places) + number[near])
+
+
+def feet_of_ridges(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array, Array, Ints]:
+    """Corners of A's edge that stand out and face B: s, D, σ and which they are (k,), from D and σ at A's samples."""
+    ridges, known = pair.a.section.ridges if pair.tapered else NO_RIDGES, np.isfinite(D)
+    samples = smooth.halves(pair.a)
+    behind = np.searchsorted(samples, ridges)
+    number = np.flatnonzero(known[behind - 1] & known[behind])
+    if not number.size:
+        return NO_RIDGES, NO_RIDGES, NO_RIDGES, number
+    s = ridges[number]
+    E, feet, foot = feet_near(pair, lines, pair.on_a(lines, s), np.interp(s, samples[known], sigma[known]))
+    return s[foot], E[foot], feet[foot], number[foot]
 
 
 def _facing_ends(pair: Pair, lines: Lines) -> Places:
@@ -450,7 +549,7 @@ def _facing_ends(pair: Pair, lines: Lines) -> Places:
     if not near.size:
         return Places(np.zeros(0), np.zeros(0), near)
     E, foot, facing = distance_along(pair.exchanged(), lines[::-1], ends.s[near])
-    E = _not_gone_round(pair.exchanged(), lines[::-1], E)
+    E = _not_gone_round(pair.exchanged(), lines[::-1], E, pair.wider(foot, ends.s[near]))
     facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
     for i, end in enumerate(near):
         facing[i] &= not held_together(b, a, int(-end), float(foot[i]))
@@ -492,12 +591,12 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     if close.size:
         distance, sigma[close], foot = feet_near(pair, lines, pair.on_a(lines, A.s[close]), G.s[nearest[close]])
         D[close] = np.where(foot, distance, np.inf)
-    return _not_gone_round(pair, lines, D), sigma
+    return _not_gone_round(pair, lines, D, pair.wider(A.s, sigma)), sigma
 
 
-def _not_gone_round(pair: Pair, lines: Lines, D: Array, gone: float = np.inf) -> Array:
+def _not_gone_round(pair: Pair, lines: Lines, D: Array, wider: Array | float, gone: float = np.inf) -> Array:
     """D, but ``gone`` where A lies beyond B and has not come there through it, but round an end."""
-    beyond = D + pair.offset + STRAIGHT * (pair.a.h + pair.b.h) < 0.0
+    beyond = D + 2.0 * wider + pair.offset + STRAIGHT * (pair.a.h + pair.b.h) < 0.0
     if not np.any(beyond):
         return D
     A, B = (np.stack((line.sampled.x, line.sampled.y), axis=1) for line in lines)
@@ -532,28 +631,36 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     before, here, behind = found.samples - 1, found.samples, found.samples + 1
     low, high = s[before], s[behind]
     s, sigma = _lowest_of_parabola(s, D, sigma, before, here, behind)
+    ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
     for _ in range(CLOSEST_ITERATIONS):
-        A, B = pair.on_a(lines, s), pair.on_b(lines, sigma)
+        A = pair.on_a(lines, s)
+        B = pair.foot(lines, A, sigma)
+        A = pair.beside(A, B)
         along, across = _seen_from(B, A)
-        facing, shortened = np.cos(A.psi - B.psi), B.speed - B.bend * across
+        facing, shortened = np.cos(A.psi - B.psi), B.pace - B.bend * across
         # what is left to the foot, and the slope there
         left = along / shortened
         slope = pair.side * (np.sin(A.psi - B.psi) - facing * B.bend * left)
-        towards = facing * A.speed / shortened  # dσ/ds
+        towards = facing * A.pace / shortened  # dσ/ds
         convex = pair.side * facing * (A.bend - B.bend * towards)
         low, high = np.where(slope < 0.0, s, low), np.where(slope < 0.0, high, s)
         ahead = s - slope / np.where(convex > LEAST_CURVATURE, convex, np.inf)
         newton = (convex > LEAST_CURVATURE) & (ahead >= low) & (ahead <= high)
         step = np.where(newton, ahead, 0.5 * (low + high)) - s
-        s, sigma = s + step, np.minimum(np.maximum(sigma + left + towards * step, 0.0), pair.b.s[-1])
+        ahead = np.minimum(np.maximum(sigma + left + towards * step, 0.0), pair.b.s[-1])
+        if ridges.size:
+            ahead = np.where(leaning.at_corner(B), sigma, _up_to(ridges, sigma, ahead))
+        s, sigma = s + step, ahead
         if np.all((np.abs(step) < CLOSE) & (np.abs(along) < CLOSE) & (np.abs(slope) < SETTLED)):
             break
-    held = found.held(pair.side * across - pair.offset)
+    held = found.held(pair.side * across - pair.wider(s, sigma) - pair.offset)
     settled = held & (convex > LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
     return s[settled], sigma[settled]
 
 
-def _lowest_of_parabola(s: Array, D: Array, sigma: Array, before: Ints, here: Ints, behind: Ints) -> tuple[Array, Array]:
+def _lowest_of_parabola(
+    s: Array, D: Array, sigma: Array, before: Ints, here: Ints, behind: Ints
+) -> tuple[Array, Array]:
     """Where parabolas through D at three samples are lowest, and σ there; at the middle one where they are not known."""
     one, other = s[before] - s[here], s[behind] - s[here]
     with np.errstate(invalid="ignore"):
@@ -574,10 +681,12 @@ def pair_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Pair:
     a, b = (model.chain(beam) for beam in contact.between)
     state = rest_state(model)
     at = positions(model, state)
-    half = 0.5 * (a.thickness + b.thickness) if contact.thick else 0.0
+    thinnest = float(a.section.thickness.min()), float(b.section.thickness.min())
+    half = 0.5 * sum(thinnest) if contact.thick else 0.0
     pair = Pair(name, a, b, 1.0, 1.0, half, model.unit_length)
     lines = pair.lines(state, at)
-    pair = replace(pair, side=_side(pair, lines), across=_side(pair.exchanged(), lines[::-1]))
+    tapered = contact.thick and (a.thickness, b.thickness) != thinnest
+    pair = replace(pair, side=_side(pair, lines), across=_side(pair.exchanged(), lines[::-1]), tapered=tapered)
     clamps = _clamped(pair, lines), _clamped(pair.exchanged(), lines[::-1])
     return replace(pair, clamps=clamps, kinks=fit.kinks.get(name, pair.kinks), fixed=name in fit.fixed)
 
@@ -586,7 +695,9 @@ def _clamped(pair: Pair, lines: Lines) -> tuple[bool, bool]:
     """For the start and the end of A, whether it is clamped beside an end of B, touching and parallel."""
     ends = pair.a.s[[0, -1]]
     D, sigma, foot = distance_along(pair, lines, ends)
-    turn = np.sin(pair.on_a(lines, ends).psi - pair.on_b(lines, sigma).psi)
+    A = pair.on_a(lines, ends)
+    B = pair.foot(lines, A, sigma)
+    turn = np.sin(pair.beside(A, B).psi - B.psi)
     at_end = np.minimum(sigma, pair.b.s[-1] - sigma)
     touching = foot & (np.abs(D - pair.offset) <= ON_IT) & (np.abs(turn) <= ON_IT) & (at_end <= ON_IT)
     start, end = (

@@ -53,8 +53,20 @@ class Section:
     @property
     def ridges(self) -> Array:
         """Arc lengths (k,) at which the edges have a corner that stands out."""
+        steeper, least = self._steeper
+        return np.asarray(self.places[1:-1][steeper < -least])
+
+    @property
+    def corners(self) -> Array:
+        """Arc lengths (k,) at which the edges have a corner, whether that stands out or not."""
+        steeper, least = self._steeper
+        return np.asarray(self.places[1:-1][np.abs(steeper) > least])
+
+    @property
+    def _steeper(self) -> tuple[Array, float]:
+        """By how much dt/ds steps at the inner places, and what is no step."""
         slopes = np.diff(self.thickness) / np.diff(self.places)
-        return np.asarray(self.places[1:-1][np.diff(slopes) < -SAME * self.thickness.max() / self.places[-1]])
+        return np.diff(slopes), SAME * float(self.thickness.max() / self.places[-1])
 
     def rigidity_at(self, s: Array) -> Array:
         """E·I at arc lengths ``s`` (n,), units of S and of length."""

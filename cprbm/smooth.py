@@ -64,6 +64,7 @@ class Points:
         s: arc length; off: from the border at the half's end, negative before it.
         x, y: position; tangent: angle of the line's tangent; psi: that of the beam's, the same but for kinks.
         speed: |dC/ds|; bend: dψ/ds; gain: d|dC/ds|/ds.
+        pace: what of dC/ds goes along ψ, where that is the tangent of an edge (:mod:`cprbm.leaning`); else the speed.
     """
 
     line: SmoothLine
@@ -77,6 +78,7 @@ class Points:
     speed: Array
     bend: Array
     gain: Array
+    pace: Array
 
     @cached_property
     def link(self) -> Ints:
@@ -234,6 +236,7 @@ class SmoothLine:
             speed=R,
             bend=rate,
             gain=np.zeros(len(s)),
+            pace=R,
         )
 
     def _beside(self, piece: Piece, half: Ints, s: Array, off: Array, rate: Array, R: Array) -> Points:
@@ -267,6 +270,7 @@ class SmoothLine:
             speed=speed,
             bend=(a1 * w2 - w1 * a2) / squared,
             gain=(a1 * a2 + w1 * w2) / speed,
+            pace=speed,
         )
 
 
@@ -366,7 +370,7 @@ def _over_turn_twice(points: Points) -> Array:
     return np.stack(_leant(points.lean, sign * A_2, W_2))
 
 
-def _over_angles(points: Points) -> Array:
+def over_angles(points: Points) -> Array:
     """∂δ of the point's element over (θ_{i−1}, θ_i, θ_{i+1}), (k, 3)."""
     return np.where(points.before[:, None], (-1.0, 1.0, 0.0), (0.0, -1.0, 1.0))
 
@@ -380,7 +384,7 @@ def position_slopes(points: Points) -> Array:
     """∂C over the local numbers (x_i, y_i, θ_{i−1}, θ_i, θ_{i+1}), (k, 2, 5)."""
     slopes = np.zeros((len(points.s), 2, LOCALS))
     slopes[:, 0, 0] = slopes[:, 1, 1] = 1.0
-    slopes[:, :, 2:] = _vector(points, points.over_turn[0])[:, :, None] * _over_angles(points)[:, None, :]
+    slopes[:, :, 2:] = _vector(points, points.over_turn[0])[:, :, None] * over_angles(points)[:, None, :]
     a, w = points.in_link
     slopes[:, :, 3] += a[:, None] * points.n - w[:, None] * points.e
     return slopes
@@ -391,7 +395,7 @@ def position_curvature(points: Points, along: Array) -> Array:
     second = np.zeros((len(points.s), LOCALS, LOCALS))
     on_e, on_n = np.sum(along * points.e, axis=1), np.sum(along * points.n, axis=1)
     once, twice = points.over_turn[0], points.over_turn_twice
-    turns = _over_angles(points)
+    turns = over_angles(points)
     second[:, 2:, 2:] = (twice[0] * on_e + twice[1] * on_n)[:, None, None] * turns[:, :, None] * turns[:, None, :]
     over = (once[0] * on_n - once[1] * on_e)[:, None] * turns
     second[:, 3, 2:] += over
@@ -405,7 +409,7 @@ def angle_slopes(points: Points) -> Array:
     """∂ψ over the local numbers, (k, 5)."""
     slopes = np.zeros((len(points.s), LOCALS))
     (a1, w1), (a1_, w1_) = points.in_link_1, points.over_turn[1]
-    slopes[:, 2:] = ((a1 * w1_ - w1 * a1_) / points.speed**2)[:, None] * _over_angles(points)
+    slopes[:, 2:] = ((a1 * w1_ - w1 * a1_) / points.speed**2)[:, None] * over_angles(points)
     slopes[:, 3] += 1.0
     return slopes
 
@@ -413,7 +417,7 @@ def angle_slopes(points: Points) -> Array:
 def tangent_slopes(points: Points) -> Array:
     """∂C_s over the local numbers, (k, 2, 5)."""
     slopes = np.zeros((len(points.s), 2, LOCALS))
-    slopes[:, :, 2:] = _vector(points, points.over_turn[1])[:, :, None] * _over_angles(points)[:, None, :]
+    slopes[:, :, 2:] = _vector(points, points.over_turn[1])[:, :, None] * over_angles(points)[:, None, :]
     a1, w1 = points.in_link_1
     slopes[:, :, 3] += a1[:, None] * points.n - w1[:, None] * points.e
     return slopes

@@ -23,6 +23,13 @@ to either derivative, and what is integrated is smooth in between.  It does not 
 because the second beam does; there ½ ε (δ − g)²/|x'·τ| along τ is missing, x' by arc length.  So a beam whose end
 lies over the inside of the other is the first, and what is missing all the same is measured.
 
+Where a thickness varies, g is the least of |x − x_m| − T − T_m over x_m, T and T_m being half of the thickness at
+either place (:mod:`fea_reference.facing`): a zone's middle is where that is least over x as well, n·x' = T' and, away
+from corners, −n·x_m' = T_m'.  n leans from the second beam's normal and τ with it, J is τ·x_m', and all the rest stays
+as it is; at a corner that juts out ζ_m is fixed, and δ²g = side { n·δ²r + p_τ²/d }.  At one that goes in, n jumps from
+one side to the other; as in :mod:`fea_reference.face` the place at which it does moves, and adds −ε g (Δδg)²/Δg' to the
+second derivatives, of the first order in the jump of T_m' and in what the beams sink in there.  That is left out.
+
 Beams that lie on each other are parallel, and each is in balance across.  Per length of the first that is
 p = N₁ κ − EI₁ κ'' and −p = N₂ κ − EI₂ κ'', but for the thickness over the radius in what belongs to κ''.  Hence
 

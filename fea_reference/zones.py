@@ -15,6 +15,9 @@ The closest point moves with ζ by J (τ·x')/(J² − d a), and with it n; then
 
     g' = side n·x',     g'' = side [ n·x'' − a (τ·x')²/(J² − d a) ].
 
+Where thicknesses vary, T does, n leans with the second beam's surface (:mod:`fea_reference.facing`), τ with it, J is
+τ·x_m', and g' has − T' besides, by the first beam's half.
+
 A zone may be far narrower than an element: samples of g and g' along the beam bracket its least values and
 then its ends, which are found by Newton's method kept within the brackets.
 """

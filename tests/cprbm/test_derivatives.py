@@ -37,6 +37,11 @@ def bent_hinge(formulation, scene):
     return mechanism, equilibrium(problem, {"M": 0.43}, start, 1e-11, 30).point.state
 
 
+def taper(*values):
+    """A thickness that varies, stated at equal steps."""
+    return {"at": np.linspace(0.0, 1.0, len(values)).tolist(), "values": list(values)}
+
+
 @pytest.fixture(
     params=[
         partial(bent_hinge, "auto", hinge),
@@ -48,6 +53,10 @@ def bent_hinge(formulation, scene):
         partial(strip, coil, 0.005),
         partial(strip, coil, 0.005, held="T"),
         partial(strip, hooked, 0.002),
+        partial(strip, neck, taper(0.011, 0.007)),
+        partial(strip, coil, taper(0.0025, 0.005), held="T"),
+        partial(strip, hooked, taper(0.002, 0.001)),
+        partial(strip, coil, taper(0.0025, 0.005, 0.0025)),
     ]
 )
 def bent(request):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from scene import Scene
@@ -16,7 +18,7 @@ LENGTH = 0.24  # m, of the strip
 AT, SHARES = (0.0, 0.3, 0.9, 1.0), (1.0, 0.75, 0.8, 0.4)
 
 
-def arch(thickness: float, clamps: list[float], *, thick: bool, backwards: bool = False) -> Scene:
+def arch(thickness: float | dict[str, Any], clamps: list[float], *, thick: bool, backwards: bool = False) -> Scene:
     """The clamps pushed together to ``clamps`` (m) from the mirror; ``backwards`` drawn from the other end."""
     left, right, centre = [-START, 0.0], [START, 0.0], [0.0, -START / np.tan(BETA)]
     names = ("B", "A") if backwards else ("A", "B")
@@ -107,8 +109,18 @@ def strip(
     )
 
 
-def half(thickness: float, clamps: list[float]) -> Scene:
-    """The left half of the arch, as a line, against a rigid half-plane where the mirror is."""
+MIRROR = {
+    "kind": "beam-half-plane",
+    "beam": "half",
+    "body": "wall",
+    "point": [0.0, 0.0],
+    "normal": [-1.0, 0.0],
+    "thick": False,
+}
+
+
+def half(thickness: float | dict[str, Any], clamps: list[float], mirror: dict[str, Any] | None = None) -> Scene:
+    """The left half of the arch, as a line, against a rigid half-plane where the mirror is, or against another."""
     top = [0.0, START * np.tan(0.5 * BETA)]
     centre = [0.0, -START / np.tan(BETA)]
     left = [-START, 0.0]
@@ -132,16 +144,7 @@ def half(thickness: float, clamps: list[float]) -> Scene:
                 }
             },
             "drives": {"press": {"kind": "displacement", "point": "A", "direction": [1.0, 0.0]}},
-            "contacts": {
-                "mirror": {
-                    "kind": "beam-half-plane",
-                    "beam": "half",
-                    "body": "wall",
-                    "point": [0.0, 0.0],
-                    "normal": [-1.0, 0.0],
-                    "thick": False,
-                }
-            },
+            "contacts": {"mirror": mirror or MIRROR},
             "stages": [{"name": "press", "steps": "press", "stations": [START - one for one in clamps]}],
             "probes": [
                 {"of": "mirror", "quantity": "force"},

@@ -94,7 +94,24 @@ def test_only_the_thickness_where_a_line_bends_must_fit_its_bend():
     assert "radius of curvature" in mistakes((f"{BEAM}/thickness", inner), base=base)["beams.lower.thickness"]
 
 
-def test_contact_by_the_edges_of_a_varying_thickness_is_not_offered():
-    found = mistakes((f"{BEAM}/thickness", size()), base=two_lines(0.01))
-    assert "'lower', whose thickness varies" in found["contacts.touch.thick"]
-    assert mistakes((f"{BEAM}/thickness", size()), base=two_lines(0.01, thick=False)) == {}
+@pytest.mark.parametrize(
+    ("values", "apart"), [([0.001, 0.002], 0.002), ([0.001, 0.0013, 0.001], 0.00165), ([0.0012, 0.001, 0.0018], 0.0019)]
+)
+def test_edges_of_a_varying_thickness_touch_where_it_is_thickest(values, apart):
+    """Two level lines, the upper one 2 mm thick."""
+    at = [0.0, 0.37, 1.0] if len(values) == 3 else [0.0, 1.0]
+    for gap, fits in ((apart, True), (apart + 1e-5, True), (apart - 1e-8, False), (0.4 * apart, False)):
+        found = mistakes((f"{BEAM}/thickness", {"at": at, "values": values}), base=two_lines(gap))
+        assert (found == {}) if fits else (f"overlap at the start by {apart - gap:.3g} m" in found["contacts.touch"])
+
+
+def test_edges_of_a_varying_thickness_lean():
+    """Lines that are not parallel, and whose edges touch all along: u is normal to these."""
+    sine = 0.01
+    u, along = np.array([-sine, np.sqrt(1.0 - sine**2)]), np.array([np.sqrt(1.0 - sine**2), sine])
+    thickness = {"at": [0.0, 1.0], "values": [0.001, 0.001 + 2.0 * sine * 0.1]}
+    for closer, fits in ((0.0, True), (1e-8, False)):
+        middle = np.array([0.05, 0.0]) + (0.5e-3 + sine * 0.05 + 0.001 - closer) * u
+        ends = tuple(tuple((middle + way * along).tolist()) for way in (-0.04, 0.04))
+        found = mistakes((f"{BEAM}/thickness", thickness), base=two_lines(0.0, second=ends))
+        assert (found == {}) == fits, found

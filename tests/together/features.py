@@ -287,6 +287,26 @@ def bowed() -> Data:
     return data
 
 
+def itself() -> Data:
+    """A strip that is rolled up by its narrow end until its laps press on each other."""
+    data = cantilever(
+        drives={"r": {"kind": "rotation", "body": "tip"}}, asked=("T.displacement", "tip.reaction_moment")
+    )
+    sizes = {"thickness": 0.35e-3, "width": {"at": [0.0, 0.3, 0.9, 1.0], "values": [0.02, 0.0155, 0.017, 0.01]}}
+    data["beams"]["beam"] |= sizes
+    data["contacts"] = {"c": {"kind": "beam-self", "beam": "beam"}}
+    data["stages"] = [{"name": "roll", "steps": "r", "stations": [7.0]}]
+    return data
+
+
+def itself_tapered() -> Data:
+    """The same strip, thicker towards its narrow end, and rolled up farther."""
+    data = itself()
+    data["beams"]["beam"]["thickness"] = {"at": [0.0, 1.0], "values": [0.35e-3, 0.37e-3]}
+    data["stages"] = [{"name": "roll", "steps": "r", "stations": [8.0]}]
+    return data
+
+
 FEATURES = (
     Feature("beams", "line", cantilever()),
     Feature("beams", "circular arc", cantilever(arc(0.5 * pi))),
@@ -343,7 +363,7 @@ FEATURES = (
     ),
     Feature("contacts", "two beams by their edges", two_beams()),
     Feature("contacts", "two beams as lines", two_beams(thick=False)),
-    Feature("contacts", "two beams by their edges, of thickness that varies", two_tapered(), frozenset()),
+    Feature("contacts", "two beams by their edges, of thickness that varies", two_tapered(), BOTH),
     Feature("contacts", "circle", held_by(CIRCLE)),
     Feature("contacts", "circle on a body that moves", moved(CIRCLE), NOT_EXACT),
     Feature("contacts", "half-plane", held_by(PLANE), NOT_EXACT),
@@ -355,6 +375,8 @@ FEATURES = (
     Feature("contacts", "polyline on a body that moves", moved(ROOF), BOTH),
     Feature("contacts", "function on a body that moves", moved(HILL), NOT_EXACT),
     Feature("contacts", "beam pinned to what it touches", lying_on_its_pin(), NOT_EXACT),
+    Feature("contacts", "beam with itself", itself(), BOTH),
+    Feature("contacts", "beam with itself, of thickness that varies", itself_tapered(), BOTH),
     Feature("stages", "assembly first, by moments and pins", bowed(), NOT_EXACT),
     Feature(
         "probes",
