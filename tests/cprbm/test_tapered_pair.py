@@ -11,6 +11,7 @@ from cprbm.mechanism import mechanism_of
 from scene import SceneError
 from scene.reading import scene_from
 from scene.statement import Profile
+from tests.cprbm import necks
 from tests.cprbm.test_lying import bowl
 
 STEP = 1e-6
@@ -217,3 +218,18 @@ def test_derivatives_of_gaps_and_of_the_lagrangian(load, A, B, links):
         upper = found.factors.tridiagonal.times(d[:n, None])[:, 0] + border[:, :bodies] @ d[n:] + border[:, low] @ s
         lower = border[:, :bodies].T @ d[:n] + corner[:bodies, :bodies] @ d[n:] + corner[:bodies, low] @ s
         assert np.concatenate((upper, lower)) == pytest.approx(product, rel=1e-5, abs=1e-5 * np.max(np.abs(product)))
+
+
+@pytest.mark.parametrize("values", [(1.0, 0.9, 1.0), (0.9, 1.0, 0.9)], ids=["waist", "belly"])
+def test_a_neck_of_varying_thickness_is_one_half_against_a_wall(values):
+    # reference: symmetry, and contact with a rigid line, which has formulas of its own
+    whole, half = (
+        tapered(necks.whole(0.01, [70.0]), column=values),
+        tapered(necks.half(0.01, [70.0]), column=values[:2]),
+    )
+    found, wanted = solved(whole, 80), solved(half, 40)
+    assert wanted["neck.force"][0] > 0.0
+    assert found["neck.force"] == pytest.approx(wanted["neck.force"], rel=3e-3)
+    assert found["neck.centre"] == pytest.approx(wanted["neck.centre"], rel=2e-3)
+    assert found["neck.closing_load"] == pytest.approx(wanted["neck.closing_load"], rel=1e-7)
+    assert found["scene.potential_energy"] == pytest.approx(2.0 * wanted["scene.potential_energy"], rel=2e-3)
