@@ -118,13 +118,6 @@ def kinked(chain: Chain, kinks: Kinks, points: Points) -> Points:
     return replace(points, psi=psi, bend=bend)
 
 
-def _integral(u: Array, h: Array, p: Array, q: Array) -> Array:
-    """∫ γ from the element's first border."""
-    return np.asarray(
-        -(p * u**3 * (h / 3.0 - u / 4.0) + q * u**2 * (h * h / 2.0 - 2.0 * h * u / 3.0 + u * u / 4.0)) / (2.0 * h)
-    )
-
-
 def _element(chain: Chain, s: Array) -> Ints:
     return np.minimum(np.maximum(chain.borders.searchsorted(s, side="right") - 1, 0), chain.n - 1)
 

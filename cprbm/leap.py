@@ -120,8 +120,3 @@ def _landed(mechanism: Mechanism, settings: Settings, values: dict[str, float], 
         return None
     before, after = (potential_energy(mechanism.problem, each) for each in (point, found.point))
     return Landed(found.point, certificate) if after <= before + ROUNDED * abs(before) else None
-
-
-def _too_far(mechanism: Mechanism, before: Point, after: Point) -> bool:
-    """Whether a step is too long, or goes through something."""
-    return most_turned(before.state, after.state) > STEP or bool(mechanism.passed(before, after))
