@@ -12,7 +12,7 @@ rotation                               largest rotation of any body, driven ones
 angle                                  largest angle of any stop
 force, reaction                        largest of them, of the force loads' resultants, and of the moments over length
 reaction_moment, moment                largest of them, of the moment loads, and of the forces times length
-bending_stress                         largest stress in any beam
+bending_stress, combined_stress        largest of them in any beam
 potential_energy                       largest energy
 closing_load                           largest value that the stage steps to
 centre, ends                           length of the contact's first beam, which is also the probe's scale
@@ -143,6 +143,8 @@ def family_size(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[A
                 largest("force", "reaction") * lever,
                 _stepped_force(scene, stage) * lever,
             )
+        case "bending_stress" | "combined_stress":
+            return largest("bending_stress", "combined_stress")
         case "closing_load":
             return max(abs(station) for station in stage.stations)
         case "centre" | "ends":

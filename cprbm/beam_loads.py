@@ -65,8 +65,8 @@ class MomentOnBeam:
 
     Attributes:
         chain: number of the beam's chain.
-        s: its place; links: the two that turn with it, in the shared numbering, by the ``weights`` (2,).
-        moment: of value one, in units of S; give: M f(1 − f) h/(E·I), of the place by a moment of one.
+        s: its place; links: the two that turn with it, in the shared numbering, by the ``weights`` (2,): 1 − f and f.
+        moment: of value one, in units of S; bends: h/(E·I) of the element.
     """
 
     chain: int
@@ -74,12 +74,23 @@ class MomentOnBeam:
     links: tuple[int, int]
     weights: Array
     moment: float
-    give: float
+    bends: float
 
     def work(self, value: float, turned: Array) -> float:
         """W at links ``turned`` (n_links,) from rest, under a ``value`` (SI)."""
         M = value * self.moment
-        return float(M * (self.weights @ turned[list(self.links)]) + 0.5 * M**2 * self.give)
+        return float(M * (self.weights @ turned[list(self.links)]) + 0.5 * M**2 * self._give(self))
+
+    def shared_work(self, value: float, other: MomentOnBeam, its_value: float) -> float:
+        """What it does as another in the same element turns its place, under their values (SI); else nothing."""
+        if other.links != self.links:
+            return 0.0
+        return value * self.moment * its_value * other.moment * self._give(other)
+
+    def _give(self, other: MomentOnBeam) -> float:
+        """f(1 − f') h/(E·I), f ≤ f': by what a moment of one at either place turns the other beyond the links."""
+        before, beyond = (min(self.weights[1], other.weights[1]), min(self.weights[0], other.weights[0]))
+        return float(before * beyond * 0.5 * (self.bends + other.bends))
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,9 +129,9 @@ def _moment(model: Model, load: BeamMoment) -> MomentOnBeam:
     e = int(np.clip(np.searchsorted(chain.borders, s) - 1, 0, chain.n - 1))
     h = float(chain.sizes[e])
     part = min(max((s - float(chain.borders[e])) / h, 0.0), 1.0)
-    give = part * (1.0 - part) * h / float(chain.section.rigidity_at(np.array([s]))[0])
+    bends = h / float(chain.section.rigidity_at(np.array([s]))[0])
     links = (chain.first_link + e, chain.first_link + e + 1)
-    return MomentOnBeam(number, s, links, np.array([1.0 - part, part]), 1.0 / model.unit_moment, give)
+    return MomentOnBeam(number, s, links, np.array([1.0 - part, part]), 1.0 / model.unit_moment, bends)
 
 
 def _beam_load(model: Model, load: BeamForce | DistributedLoad) -> BeamLoad:

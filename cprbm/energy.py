@@ -141,7 +141,7 @@ def load_work(
     second = np.zeros(len(model.free_bodies))
     diagonal, off = np.zeros(model.n_links), np.zeros(model.n_links - 1)
     on_x, on_y = np.zeros(model.n_joints), np.zeros(model.n_joints)
-    on_beams, moments = [], []
+    on_beams, moments = list[tuple[BeamLoad, float]](), list[tuple[MomentOnBeam, float]]()
     for name, load in loads.items():
         value = values.get(name, 0.0)
         if isinstance(load, BeamLoad):
@@ -162,6 +162,8 @@ def load_work(
             continue
         if isinstance(load, MomentOnBeam):
             total += load.work(value, state.theta - model.rest)
+            for other, its_value in moments:
+                total += load.shared_work(value, other, its_value)
             gradient[list(load.links)] += value * load.moment * load.weights
             moments.append((load, value))
             continue

@@ -29,7 +29,7 @@ and tangent n', t' there has
     dψ = n'·dx'/g,    d²ψ = n'·d²x'/g − 2 (n'·dx')(t'·dx')/g²
 
 and, as a force has, a give of its place in an element whose ends are held, c' = (u v/L)(1 − 3 u v/L²)/EI: a constant
-½ c' M².
+½ c' M².  Two in one element, at u ≤ u', turn each other's places by (u v'/L)(1 − 3 v u'/L²)/EI.
 """
 
 from __future__ import annotations
@@ -104,11 +104,10 @@ def _beam_moment(model: Model, part: BeamMomentPart, value: float, z: State) -> 
     """A moment of a ``value`` in state ``z``."""
     beam, zeta = model.beams[part.beam], np.array([part.zeta])
     line = model.line(beam, z)
-    e, xi = line.locate(zeta)
+    e, _ = line.locate(zeta)
     psi, local, twice = _turning(line, zeta)
     rest, _, _ = _turning(model.line(beam, model.start), zeta)
-    L, part_of = line.lengths[e], xi * (1.0 - xi)
-    give = float((L * part_of * (1.0 - 3.0 * part_of) / beam.bending(zeta / line.n))[0])
+    give = _mutual(model, part, part, line)
     chain = model.chain([(beam, e)], z)
     local, twice = value * local, value * twice
     work = value * float(psi[0] - rest[0]) + 0.5 * value**2 * give
@@ -116,6 +115,24 @@ def _beam_moment(model: Model, part: BeamMomentPart, value: float, z: State) -> 
     return BeamLoad(
         part, value, none, line.at(zeta)[0], work, chain, chain.gradient(local), chain.hessian(twice, local)
     )
+
+
+def shared_work(model: Model, part: BeamMomentPart, other: BeamMomentPart, z: State) -> float:
+    """Work of two moments of one as either turns the other's place within one element; zero where they share none."""
+    if part.beam != other.beam:
+        return 0.0
+    return _mutual(model, part, other, model.line(model.beams[part.beam], z))
+
+
+def _mutual(model: Model, part: BeamMomentPart, other: BeamMomentPart, line: NeutralLine) -> float:
+    zeta = np.array([part.zeta, other.zeta])
+    e, xi = line.locate(zeta)
+    if e[0] != e[1]:
+        return 0.0
+    first, last = float(xi.min()), float(xi.max())
+    straight = first * (1.0 - last)
+    bending = float(model.beams[part.beam].bending(zeta / line.n).mean())
+    return float(line.lengths[e[0]]) * straight * (1.0 - 3.0 * last * (1.0 - first)) / bending
 
 
 def _turning(line: NeutralLine, zeta: Array) -> tuple[Array, Array, Array]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from fea_reference.beam_loads import beam_load
-from fea_reference.model import Model, OnBeam
+from itertools import combinations
+
+from fea_reference.beam_loads import beam_load, shared_work
+from fea_reference.model import BeamMomentPart, Model, OnBeam
 from fea_reference.system import System
 from scene.answer import Array
 
@@ -25,6 +27,9 @@ def potential_energy(model: Model, system: System, values: Array) -> float:
         else:
             moved = model.carried(body, part.arm, z) - (body.centre + part.arm)
             energy -= float(load * (part.direction @ moved))
+    moments = [(part, float(values[i])) for i, part in enumerate(model.loads) if isinstance(part, BeamMomentPart)]
+    for (part, load), (other, its_load) in combinations(moments, 2):
+        energy -= load * its_load * shared_work(model, part, other, z)
     return energy
 
 

@@ -12,6 +12,7 @@ from scene.statement import (
     DisplacementDrive,
     EdgeContact,
     FreeEnd,
+    PinnedEnd,
     Quantity,
     RotationDrive,
     Scene,
@@ -119,6 +120,21 @@ def _bearers(scene: Scene) -> dict[str, list[str]]:
         "support": list(dict.fromkeys((*supports, *pivots, *points, *slides))),
         "turned": list(dict.fromkeys((*supports, *bodies))),
         "stop": list(scene.stops),
-        "holding": [*scene.stops, *(name for name, each in scene.contacts.items() if isinstance(each, EdgeContact))],
+        "holding": [
+            *scene.stops,
+            *(name for name, each in scene.contacts.items() if isinstance(each, EdgeContact) and _pinned(scene, each)),
+        ],
         RESERVED: [RESERVED],
     }
+
+
+def _pinned(scene: Scene, contact: EdgeContact) -> bool:
+    """Whether an end of the beam is pinned to the edge's body, or to what is pinned to that at the same point."""
+    beam = scene.beams.get(contact.beam)
+    ends = () if beam is None else (beam.start, beam.end)
+    together = {end.point for end in ends if isinstance(end, PinnedEnd)}
+    for _ in scene.pins:
+        together |= {point for pin in scene.pins.values() if together & set(pin.points) for point in pin.points}
+    fixed = [body for body in scene.bodies.values() if body.motion == "fixed"]
+    own = scene.bodies.get(contact.body)
+    return any(together & set(body.points) for body in (fixed if own in fixed else [own]) if body is not None)

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import isclose
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, ClassVar, Literal, TypeVar
 
 import numpy as np
 from frozendict import frozendict
@@ -429,7 +429,7 @@ class SelfContact(Record):
     kind: Literal["beam-self"]
     beam: Name
     thick: bool = True
-    paper: None = None
+    paper: ClassVar[None] = None  # its formulation has no form for this
 
     @property
     def beams(self) -> tuple[str, ...]:

@@ -198,6 +198,20 @@ def test_a_displacement_that_nearly_vanishes_is_measured_by_its_scale(hinge, rig
     assert row.denominator == row.scale
 
 
+def test_stresses_of_both_kinds_are_one_family(hinge, right):
+    """A beam that only is pulled at shows round-off in bending; what that is measured by is the other one's stress."""
+    runs = paired(hinge, Choices(), right)
+    stage, station = hinge.stages[0], runs.reference.stations[0]
+    bent = float(np.max(np.abs(station.values["beam1.bending_stress"])))
+    values = frozendict({"beam1.bending_stress": frozen_array([bent]), "beam2.combined_stress": frozen_array([1e-9])})
+    answer = replace(runs.reference, stations=(replace(station, values=values),))
+    asked = tuple(Probe(of=of, quantity=q) for of, q in (("beam1", "bending_stress"), ("beam2", "combined_stress")))
+    scene = hinge.model_copy(update={"probes": asked})
+    assert [probe_scale(scene, probe, stage, (answer,)) for probe in asked] == pytest.approx(
+        [bent, SMALLEST_SHARE * bent]
+    )
+
+
 def test_a_probe_that_vanishes_by_symmetry_is_measured_by_its_family(hinge, right):
     """Reactions of 1e-17 N are no scale: a moment of 0.67 N·m on beams π·25 mm long makes forces of 8.5 N."""
     runs = paired(hinge, Choices(), right)

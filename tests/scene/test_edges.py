@@ -149,6 +149,8 @@ def test_a_moment_is_asked_of_what_may_have_a_pin():
     assert not mistakes(("probes/1", probe), base=base)
     circle = {"kind": "beam-circle", "beam": "beam", "body": "ground", "center": [0.0, -0.5], "radius": 0.1}
     assert "'moment' of 'touch'" in mistakes(("probes/1", probe), ("contacts/touch", circle), base=base)["probes[1]"]
+    # without a pin there is nothing that the moment could be about
+    assert mistakes(("probes/1", probe), base=over(LINE))["probes[1]"].endswith("there is none")
 
 
 def sampled(points, p):

@@ -48,6 +48,17 @@ def test_a_cantilever_is_an_arc_up_to_the_moment_and_straight_beyond(solver: str
         assert stress == pytest.approx([1.0] * 6 + [0.0] * 3, abs=1e-9)
 
 
+@pytest.mark.parametrize(("solver", "error"), [("cprbm", 1e-6), ("fea", 1e-6)])
+def test_two_moments_in_one_element_turn_each_other(solver: str, error: float) -> None:
+    # closed form: energy −½ ∫ m²/EI with m the sum of the moments that act beyond a place
+    a, b, one, other = 0.62, 0.64, 1.5, -1.1
+    loads = {name: {"kind": "beam_moment", "beam": "beam", "at": at} for name, at in (("M", a), ("N", b))}
+    stages = [{"name": n, "steps": n, "stations": [v * MOMENT]} for n, v in (("M", one), ("N", other))]
+    data = cantilever() | {"loads": loads, "stages": stages, "probes": probes("scene.potential_energy")}
+    energy = station(data, solver, 10).values["scene.potential_energy"][0] / MOMENT
+    assert energy == pytest.approx(-0.5 * (a * (one + other) ** 2 + (b - a) * other**2), rel=error)
+
+
 def test_in_a_clamped_arch_both_go_to_the_same() -> None:
     # reference: the other solver, by Richardson's extrapolation where the order is two
     asked = ("R.reaction", "R.reaction_moment", "scene.potential_energy", "beam.bending_stress")
