@@ -106,6 +106,14 @@ def equilibrium(
             z = advance(model, z, step)
             system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
         settled = iteration >= _HELD or correction < _SETTLED
+        lost = {} if settled else {
+            one.pair: depths[one.pair]
+            for one in system.touches
+            if one.pair in depths and one.pair not in held and not one.closed and foreseen[one.pair].sum() > 0.0
+        }
+        if lost:
+            held = {**held, **lost}
+            system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
         free = [
             one.pair
             for one in system.touches
