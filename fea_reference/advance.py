@@ -50,8 +50,8 @@ def carried(model: Model, before: State, now: State, rate: Array) -> Array:
 def bend(model: Model, before: State, now: State, rates: tuple[Array, Array], by: float) -> tuple[Array, Array]:
     """What bends the way from one state to another while a value changes ``by`` so much: c₂ and c₃, (size,) each.
 
-    Over u from −1 in the state ``before`` to 0 ``now`` it is u times the last rate, + c₂ u² + c₃ u³; ``rates`` are those
-    at both ends, (size,) each, by the value.
+    Over u from −1 in the state ``before`` to 0 ``now`` it is ``by`` times u times the last rate, + c₂ u² + c₃ u³;
+    ``rates`` are those at both ends, (size,) each, by the value.
     """
     here = by * rates[1]
     come = way_to(model, now, before) + here

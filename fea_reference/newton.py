@@ -67,8 +67,9 @@ def equilibrium(
     """Seek the equilibrium near ``z`` under load ``values``, with those stops ``acting`` that do, whatever their sign.
 
     ``depths`` are the penetrations of the contacts that were closed in the equilibrium before: where they are not near
-    that, these are held until they are again, or until they pull.  Who neither arrives nor comes nearer gives up.  ``before`` is what the points of the contacts
-    pushed with there, (k,) each.  A ``drag`` resists the motions.
+    that, or open before they pull, these are held until they are again, or until they pull.  ``before`` is what the
+    points of the contacts pushed with there, (k,) each.  A ``drag`` resists the motions.  A search whose corrections
+    stay as small as they are without arriving is given up.
     """
     moving = model.moving
     correction, last, iteration, far = np.inf, np.inf, 0, 0
@@ -106,6 +107,10 @@ def equilibrium(
             z = advance(model, z, step)
             system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
         settled = iteration >= _HELD or correction < _SETTLED
+        lost = [one.pair for one in system.touches if _lost(one, depths, foreseen) and one.pair not in held]
+        if lost and not settled:
+            held = {**held, **{pair: depths[pair] for pair in lost}}
+            system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
         free = [
             one.pair
             for one in system.touches
@@ -124,6 +129,11 @@ def _to_hold(one: Touch, depths: Mapping[Contact, float], before: Mapping[Contac
         return False
     pressed = one.pair in before and float(before[one.pair].sum()) > 0.0
     return pressed or one.penetration > _TOUCHING * one.pair.scale
+
+
+def _lost(one: Touch, depths: Mapping[Contact, float], foreseen: Mapping[Contact, Array]) -> bool:
+    """Whether a contact that was closed has opened, though it was foreseen to press."""
+    return one.pair in depths and not one.closed and float(foreseen[one.pair].sum()) > 0.0
 
 
 def _near(one: Touch, depth: float) -> bool:
