@@ -157,8 +157,8 @@ class Itself:
         tip = self._tip(plain, lines, crossed=crossed)
         here, there = facing_samples(G.x, G.y)
         if here.size:
-            A = plain.on_a(lines, G.s[here])
-            distance, sigma, foot = feet_near(plain, lines, A, G.s[there])
+            A = plain.a_sampled(lines, here)
+            distance, sigma, foot = feet_near(plain, lines, A, plain.b_sampled(lines, there))
             turn = plain.on_b(lines, sigma).psi - A.psi
             real = foot & turned_enough(turn) & (sigma > A.s)
             here, distance, sigma, turn = here[real], distance[real], sigma[real], turn[real]
@@ -182,7 +182,7 @@ class Itself:
             return None
         turned = plain.exchanged()
         E = turned.on_a(lines, np.full(low.size, G.s[last]))
-        distance, s, foot = feet_near(turned, lines, E, G.s[low])
+        distance, s, foot = feet_near(turned, lines, E, turned.b_sampled(lines, low))
         turn = E.psi - turned.on_b(lines, s).psi
         h = self.a.h
         real = foot & turned_enough(turn) & (s > SAME * h) & (s < self.a.s[-1] - SAME * h)
@@ -254,7 +254,8 @@ class Itself:
         for strand in facing.strands:
             pair = self._pair(strand)
             s, sigma = minima(pair, facing.lines, strand.D, strand.sigma)
-            D = feet_near(pair, facing.lines, pair.on_a(facing.lines, s), sigma)[0] if s.size else np.zeros(0)
+            A, B = pair.on_a(facing.lines, s), pair.on_b(facing.lines, sigma)
+            D = feet_near(pair, facing.lines, A, B)[0] if s.size else np.zeros(0)
             least = min(least, float(np.min(strand.D)), float(np.min(D, initial=np.inf)))
         depth = self._crosses(facing.lines)
         return float(min(least, -depth) if depth > 0.0 else least) - self.offset
@@ -285,7 +286,7 @@ class Itself:
             if not near.size:
                 continue
             guess = np.interp(s[near], samples[on], strand.sigma[on])
-            D, feet, foot = feet_near(pair, lines, pair.on_a(lines, s[near]), guess)
+            D, feet, foot = feet_near(pair, lines, pair.on_a(lines, s[near]), pair.on_b(lines, guess))
             nearer = foot & (feet > s[near]) & (least[near] > D)
             better = near[nearer]
             side[better], sigma[better], least[better] = strand.side, feet[nearer], D[nearer]
@@ -317,7 +318,7 @@ class Itself:
             mine, pair = side == of, self._sided(of, of)
             A, B = pair.on_a(facing.lines, s[mine]), pair.on_b(facing.lines, sigma[mine])
             D = of * (np.cos(B.psi) * (A.y - B.y) - np.sin(B.psi) * (A.x - B.x))
-            parting[mine] = pair.parting_at(facing.lines, s[mine], sigma[mine], D)
+            parting[mine] = pair.parting_at(facing.lines, A, sigma[mine], D)
         return parting
 
 

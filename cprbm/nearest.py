@@ -139,6 +139,14 @@ class Pair:
         """Points of B at arc lengths ``sigma`` (k,), bent as its kinks say."""
         return kinked(self.b, self.kinks[1], lines[1].at(sigma))
 
+    def a_sampled(self, lines: Lines, these: Flags | Ints | slice) -> smooth.Points:
+        """Some of A's samples, bent as its kinks say."""
+        return kinked(self.a, self.kinks[0], lines[0].sampled.only(these))
+
+    def b_sampled(self, lines: Lines, these: Flags | Ints | slice) -> smooth.Points:
+        """Some of B's samples, bent as its kinks say."""
+        return kinked(self.b, self.kinks[1], lines[1].sampled.only(these))
+
     def exchanged(self) -> Pair:
         """The same contact with the parts of A and B exchanged."""
         return replace(
@@ -170,14 +178,14 @@ class Pair:
         """Curvature D″ with which A parts from B, at arc lengths ``s``."""
         lines = self.lines(state, at)
         D, sigma, _ = distance_along(self, lines, s)
-        return self.parting_at(lines, s, sigma, D)
+        return self.parting_at(lines, self.on_a(lines, s), sigma, D)
 
-    def parting_at(self, lines: Lines, s: Array, sigma: Array, D: Array) -> Array:
-        """D″ at arc lengths ``s`` of A whose feet are at ``sigma``; between springs the curvature goes evenly."""
-        facing = np.sign(np.cos(self.on_a(lines, s).psi - self.on_b(lines, sigma).psi))
+    def parting_at(self, lines: Lines, A: smooth.Points, sigma: Array, D: Array) -> Array:
+        """D″ at points of A whose feet are at ``sigma``; between springs the curvature goes evenly."""
+        facing = np.sign(np.cos(A.psi - self.on_b(lines, sigma).psi))
         bend_A, bend_B = (
             np.interp(places, line.chain.s[1:-1], line.sampled.bend[2:-2:2])
-            for line, places in zip(lines, (s, sigma), strict=True)
+            for line, places in zip(lines, (A.s, sigma), strict=True)
         )
         return np.asarray(self.side * (facing * bend_A - bend_B / (1.0 - self.side * D * bend_B)))
 
@@ -301,7 +309,7 @@ class Pair:
         Gauss's points on either side of the border of B's elements that lies within, where the curvature steps.
         """
         s, sigma = joints.s, joints.sigma
-        A, B = self.on_a(lines, s), self.on_b(lines, sigma)
+        A, B = self.a_sampled(lines, 2 * joints.keys), self.on_b(lines, sigma)
         ratio = (B.speed - B.bend * _seen_from(B, A)[1]) / (np.cos(A.psi - B.psi) * A.speed)  # ds/dσ
         borders = self.b.borders
         after = np.clip(np.searchsorted(borders, sigma), 1, self.b.n)
@@ -315,7 +323,7 @@ class Pair:
         weights = 0.5 * np.concatenate(((1.0 + cut / half) * w, (1.0 - cut / half) * w), axis=1)
         at_A = s[:, None] + off
         guess = (sigma[:, None] + off / ratio[:, None]).ravel()
-        at_B = feet_near(self, lines, self.on_a(lines, at_A.ravel()), guess)[1].reshape(at_A.shape)
+        at_B = feet_near(self, lines, self.on_a(lines, at_A.ravel()), self.on_b(lines, guess))[1].reshape(at_A.shape)
         # beside an end of B, where it faces no element of B, the joint alone
         alone = ~np.all((at_B > 0.0) & (at_B < self.b.s[-1]), axis=1)[:, None]
         return np.where(alone, s[:, None], at_A), np.where(alone, sigma[:, None], at_B), weights
@@ -379,18 +387,23 @@ class Pair:
 
 def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Flags]:
     """Signed distance D of A from B at arc lengths ``s``: D, σ (k,), and whether a foot exists (k,)."""
-    A, G = pair.on_a(lines, s), lines[1].sampled
-    if len(s) <= FEW:
+    return _distance_of(pair, lines, pair.on_a(lines, s))
+
+
+def _distance_of(pair: Pair, lines: Lines, A: smooth.Points) -> tuple[Array, Array, Flags]:
+    """The same of points of A."""
+    G = lines[1].sampled
+    if len(A.s) <= FEW:
         nearest = ((A.x[:, None] - G.x) ** 2 + (A.y[:, None] - G.y) ** 2).argmin(axis=1)
     else:
         _, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(np.stack((A.x, A.y), axis=1))
-    return feet_near(pair, lines, A, G.s[nearest])
+    return feet_near(pair, lines, A, pair.b_sampled(lines, nearest))
 
 
-def feet_near(pair: Pair, lines: Lines, A: smooth.Points, sigma: Array) -> tuple[Array, Array, Flags]:
-    """D, σ and whether there is a foot, by Newton's method on (i) from the guess ``sigma``."""
+def feet_near(pair: Pair, lines: Lines, A: smooth.Points, B: smooth.Points) -> tuple[Array, Array, Flags]:
+    """D, σ and whether there is a foot, by Newton's method on (i) from points ``B`` of B."""
+    sigma = B.s
     for _ in range(FOOT_ITERATIONS):
-        B = pair.on_b(lines, sigma)
         along, across = _seen_from(B, A)
         # along the circle of curvature, where that is round the foot
         left = along / np.maximum(1.0 - B.bend * across, 0.2)
@@ -399,6 +412,7 @@ def feet_near(pair: Pair, lines: Lines, A: smooth.Points, sigma: Array) -> tuple
         sigma = np.minimum(np.maximum(before + np.minimum(np.maximum(step, -pair.b.h), pair.b.h), 0.0), pair.b.s[-1])
         if np.abs(sigma - before).max() < CLOSE:
             break
+        B = pair.on_b(lines, sigma)
     foot = np.abs(along) <= PARALLEL * np.maximum(np.abs(across), pair.b.h)
     return pair.side * across, sigma, foot
 
@@ -426,7 +440,7 @@ def places_along(pair: Pair, lines: Lines, D: Array, sigma: Array, ends: Array) 
         s, turned = minima(pair, lines, D, sigma)
 
     # D and feet at the joints are every other sample
-    bends = np.abs(pair.on_a(lines, a.s).bend) + np.abs(pair.on_b(lines, sigma[::2]).bend)
+    bends = np.abs(pair.a_sampled(lines, slice(None, None, 2)).bend) + np.abs(pair.on_b(lines, sigma[::2]).bend)
     near = D[::2] - pair.offset < JOINT_REACH * a.h**2 * (1.0 + bends)
     for places, apart in ((s, wells.BESIDE), (ends, BESIDE_END)):
         for place in places:
@@ -444,12 +458,12 @@ def places_along(pair: Pair, lines: Lines, D: Array, sigma: Array, ends: Array) 
 def _facing_ends(pair: Pair, lines: Lines) -> Places:
     """The ends of B that face A within reach, and their feet on A; the keys follow A's joints."""
     a, b, reach = pair.a, pair.b, pair.offset + REACH
-    A, ends = lines[0].sampled, pair.on_b(lines, b.s[[0, -1]])
+    A, ends = lines[0].sampled, pair.b_sampled(lines, np.array([0, -1]))
     away = np.array([np.min(np.hypot(A.x - x, A.y - y)) for x, y in zip(ends.x, ends.y, strict=True)])
     near = np.flatnonzero(away < reach + a.h)
     if not near.size:
         return Places(np.zeros(0), np.zeros(0), near)
-    E, foot, facing = distance_along(pair.exchanged(), lines[::-1], ends.s[near])
+    E, foot, facing = _distance_of(pair.exchanged(), lines[::-1], ends.only(near))
     E = _not_gone_round(pair.exchanged(), lines[::-1], E)
     facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
     for i, end in enumerate(near):
@@ -490,7 +504,9 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     close = np.flatnonzero(np.isfinite(rough))
     D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
     if close.size:
-        distance, sigma[close], foot = feet_near(pair, lines, pair.on_a(lines, A.s[close]), G.s[nearest[close]])
+        distance, sigma[close], foot = feet_near(
+            pair, lines, pair.a_sampled(lines, close), pair.b_sampled(lines, nearest[close])
+        )
         D[close] = np.where(foot, distance, np.inf)
     return _not_gone_round(pair, lines, D), sigma
 
@@ -525,13 +541,16 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     first, last = (4 * pair.shared if clamped else 0 for clamped in pair.clamped)
     lowest = lowest[pair.own_places & (lowest > first) & (lowest < 2 * (pair.a.n + 1) - last)]
     parting, near = np.full(pair.a.n + 2, np.inf), np.isfinite(D[::2])
-    parting[near] = pair.parting_at(lines, pair.a.s[near], sigma[::2][near], D[::2][near])
+    joints = pair.a_sampled(lines, 2 * np.flatnonzero(near))
+    parting[near] = pair.parting_at(lines, joints, sigma[::2][near], D[::2][near])
     found = wells.wells(pair.a, D - pair.offset, parting, lowest, LEAST_CURVATURE, pair.kinks[0].places)
     if not found.samples.size:
         return np.zeros(0), np.zeros(0)
-    before, here, behind = found.samples - 1, found.samples, found.samples + 1
-    low, high = s[before], s[behind]
-    s, sigma = _lowest_of_parabola(s, D, sigma, before, here, behind)
+    here, feet = found.samples, sigma
+    low, high, ahead = s[here - 1], s[here + 1], wells.ahead(s, D, here)
+    beside = np.where(ahead > 0.0, here + 1, here - 1)
+    share = np.where(ahead != 0.0, ahead / (s[beside] - s[here]), 0.0)
+    s, sigma = s[here] + ahead, feet[here] + share * (feet[beside] - feet[here])
     for _ in range(CLOSEST_ITERATIONS):
         A, B = pair.on_a(lines, s), pair.on_b(lines, sigma)
         along, across = _seen_from(B, A)
@@ -551,20 +570,6 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     held = found.held(pair.side * across - pair.offset)
     settled = held & (convex > LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
     return s[settled], sigma[settled]
-
-
-def _lowest_of_parabola(s: Array, D: Array, sigma: Array, before: Ints, here: Ints, behind: Ints) -> tuple[Array, Array]:
-    """Where parabolas through D at three samples are lowest, and σ there; at the middle one where they are not known."""
-    one, other = s[before] - s[here], s[behind] - s[here]
-    with np.errstate(invalid="ignore"):
-        rise, fall = (D[behind] - D[here]) / other, (D[before] - D[here]) / one
-        curved = (rise - fall) / (other - one)
-        ahead = -0.5 * (rise - curved * other) / curved
-    known = np.isfinite(ahead) & (ahead > one) & (ahead < other)
-    ahead = np.where(known, ahead, 0.0)
-    beside = np.where(ahead > 0.0, behind, before)
-    share = ahead / (s[beside] - s[here])
-    return s[here] + ahead, np.where(known, sigma[here] + share * (sigma[beside] - sigma[here]), sigma[here])
 
 
 def pair_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Pair:

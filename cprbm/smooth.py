@@ -78,6 +78,22 @@ class Points:
     bend: Array
     gain: Array
 
+    def only(self, these: Flags | Ints | slice) -> Points:
+        """Some of the points."""
+        return Points(
+            line=self.line,
+            half=self.half[these],
+            s=self.s[these],
+            off=self.off[these],
+            x=self.x[these],
+            y=self.y[these],
+            tangent=self.tangent[these],
+            psi=self.psi[these],
+            speed=self.speed[these],
+            bend=self.bend[these],
+            gain=self.gain[these],
+        )
+
     @cached_property
     def link(self) -> Ints:
         """The link each lies on, in the beam's own numbering."""

@@ -35,6 +35,18 @@ def lowest(D: Array, reach: float) -> Ints:
     return np.flatnonzero((D[:-2] >= D[1:-1]) & (D[2:] > D[1:-1]) & (reach > D[1:-1])) + 1
 
 
+def ahead(s: Array, D: Array, samples: Ints) -> Array:
+    """How far ahead of the lowest samples (k,) parabolas through their neighbours are lowest; 0 where they are not."""
+    inner = np.clip(samples, 1, len(D) - 2)
+    one, other = s[inner - 1] - s[inner], s[inner + 1] - s[inner]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        rise, fall = (D[inner + 1] - D[inner]) / other, (D[inner - 1] - D[inner]) / one
+        curved = (rise - fall) / (other - one)
+        away = 0.5 * (other - rise / curved)
+    within = (inner == samples) & (curved > 0.0) & (away > one) & (away < other)
+    return np.where(within, away, 0.0)
+
+
 @dataclass(frozen=True, slots=True)
 class Wells:
     """Minima that may have a place of their own.
