@@ -239,16 +239,16 @@ class Circle:
         first, last = (4 if clamped else -1 for clamped in self.clamped)
         lowest = lowest[self.own_places & (lowest > first) & (lowest < 2 * (self.a.n + 1) - last)]
         found = wells.wells(self.a, D, self._convexity(A)[::2], lowest, LEAST_CURVATURE, self.kinks.places)
-        places, settled = self._refined(line, s[found.samples], wells.ahead(s, D, found.samples))
+        places, settled = self._refined(line, s[found.samples])
         places = places[settled & found.held(self.distance(line.at(places)) - self.offset)]
         for place in places:
             near &= np.abs(s - place) > wells.BESIDE * self.a.size_at(place)
         fixed = np.concatenate((s[near], self.ends))
         return np.concatenate((fixed, places)), np.arange(len(fixed) + len(places)) >= len(fixed)
 
-    def _refined(self, line: smooth.SmoothLine, start: Array, ahead: Array) -> tuple[Array, Flags]:
-        """Newton's method on D_s = 0 from ``ahead`` of ``start``; the flags say where it settled, nearby."""
-        s = start + ahead
+    def _refined(self, line: smooth.SmoothLine, s: Array) -> tuple[Array, Flags]:
+        """Newton's method on D_s = 0; the flags say where it settled at a minimum nearby."""
+        start = s
         if not s.size:
             return s, np.zeros(0, dtype=bool)
         for _ in range(CLOSEST_ITERATIONS):

@@ -169,6 +169,8 @@ class Edge:
         """Which places ``q`` (k, 2), as the body sees them, face a piece: before it, or behind it and none nearer."""
         mine = face.seen(q)
         facing = mine.within & (mine.distance >= 0.0)
+        if np.all(facing == mine.within):  # there is none behind it
+            return np.asarray(facing)
         nearest = mine.within.copy()
         for other in self.faces:
             if other is not face:
@@ -352,7 +354,7 @@ class Edge:
         lowest = lowest[self.own_places & ~self._ruled(s[lowest])]
         parting = self._convexity(A, seen.normal, seen.bend)[::2]
         found = wells.wells(self.a, D, parting, lowest, LEAST_CURVATURE, self.kinks.places)
-        places, settled = self._refined(face, line, frame, s[found.samples], wells.ahead(s, D, found.samples))
+        places, settled = self._refined(face, line, frame, s[found.samples])
         B = line.at(places)
         settled &= found.held(self._seen(face, B, frame).distance - self.offset)
         settled &= self._next_to(face, B, frame) & ~self._ruled(places)
@@ -384,11 +386,9 @@ class Edge:
                 lying[i] |= arched < bent * max(h**2, FLAT * (high - low) ** 2)
         return lying
 
-    def _refined(
-        self, face: Face, line: smooth.SmoothLine, frame: Frame, start: Array, ahead: Array
-    ) -> tuple[Array, Flags]:
-        """Newton's method on D_s = 0 from ``ahead`` of ``start``; the flags say where it settled, nearby."""
-        s = start + ahead
+    def _refined(self, face: Face, line: smooth.SmoothLine, frame: Frame, s: Array) -> tuple[Array, Flags]:
+        """Newton's method on D_s = 0; the flags say where it settled at a minimum nearby."""
+        start = s
         if not s.size:
             return s, np.zeros(0, dtype=bool)
         for _ in range(CLOSEST_ITERATIONS):
