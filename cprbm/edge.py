@@ -169,6 +169,8 @@ class Edge:
         """Which places ``q`` (k, 2), as the body sees them, face a piece: before it, or behind it and none nearer."""
         mine = face.seen(q)
         facing = mine.within & (mine.distance >= 0.0)
+        if np.all(facing == mine.within):  # there is none behind it
+            return np.asarray(facing)
         nearest = mine.within.copy()
         for other in self.faces:
             if other is not face:

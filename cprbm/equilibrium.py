@@ -190,10 +190,11 @@ def contact_rows(model: Model, point: Point) -> Array:
             continue
         m, p = group.joints.shape
         over_x, over_y = position_rows(model, point.state, point.at, group.joints.ravel())
-        found = group.slopes[:, :p].reshape(m, 1, p) @ over_x.reshape(m, p, -1)
-        found += group.slopes[:, p : 2 * p].reshape(m, 1, p) @ over_y.reshape(m, p, -1)
-        np.add.at(found, (np.arange(m)[:, None], 0, group.angles), group.slopes[:, 2 * p :])
-        parts.append(found[:, 0])
+        found = (group.slopes[:, :p].reshape(m, 1, p) @ over_x.reshape(m, p, -1))[:, 0]
+        found += (group.slopes[:, p : 2 * p].reshape(m, 1, p) @ over_y.reshape(m, p, -1))[:, 0]
+        flat = np.arange(m)[:, None] * found.shape[1] + group.angles
+        found += np.bincount(flat.ravel(), group.slopes[:, 2 * p :].ravel(), found.size).reshape(found.shape)
+        parts.append(found)
     return np.concatenate(parts)
 
 

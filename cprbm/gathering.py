@@ -112,7 +112,7 @@ def gathered(
         over_row.append(further)
         parts.append(own[past, x] * along + own[past, x + 1] * across)
     flat = np.concatenate(rows) * size + np.concatenate(over_row)
-    slopes = np.bincount(flat, np.concatenate(parts), m * size).reshape(m, size)
+    slopes: Array = np.bincount(flat, np.concatenate(parts), m * size).astype(float).reshape(m, size)
     joints = np.stack([chain.first_joint + begin for chain, begin in zip(chains, first, strict=True)], axis=1)
     over = np.concatenate(angles, axis=1)
 

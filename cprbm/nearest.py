@@ -661,7 +661,7 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
 def _lowest_of_parabola(
     s: Array, D: Array, sigma: Array, before: Ints, here: Ints, behind: Ints
 ) -> tuple[Array, Array]:
-    """Where parabolas through D at three samples are lowest, and σ there; at the middle one where they are not known."""
+    """Where parabolas through D at three samples are lowest, and σ there; at the middle one where none is."""
     one, other = s[before] - s[here], s[behind] - s[here]
     with np.errstate(invalid="ignore"):
         rise, fall = (D[behind] - D[here]) / other, (D[before] - D[here]) / one

@@ -172,7 +172,7 @@ def test_a_run_beside_that_ends_early_leaves_the_rest_without():
     scene = driven(("push", (0.001, 0.002, 0.003)))
 
     def early(scene, choices):
-        return Spring(until=4 if len(scene.stages[0].stations) > 3 else None)(scene, choices)
+        return Spring(until=3 if len(scene.stages[0].stations) > 3 else None)(scene, choices)
 
     comparison = found(scene, early)
     assert [each.work_energy is None for each in comparison.reactions] == [False, True, True]

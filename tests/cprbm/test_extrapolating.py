@@ -44,3 +44,23 @@ def test_the_guess_is_far_nearer_than_the_last_state():
     assert np.max(np.abs(guess.state.theta - here)) < 1e-3 * np.max(np.abs(before - here))
     assert continued(problem, {"P": 9.0}, trail, 9.0) is None  # farther than the states are from each other
     assert continued(problem, {"P": 1.3}, trail[-2:], 1.3) is None  # too few
+
+
+def test_states_close_to_each_other_are_one_and_between_states_the_guess_is_nearest():
+    # reference: the state that is left out
+    close = [value * (1.0 + part) for value in STATIONS for part in (-2e-3, 2e-3)]
+    march = March(scene_from(cantilever_data(force(0.0, 1.0), close)), (Settings(links=20),))
+    march.run()
+    trail = [(one.value, one.point) for one in march.on.trail]
+    problem = march.on.mechanism.problem
+
+    def off(known, of):
+        value, point = of
+        guess = continued(problem, {"P": value}, known, value)
+        return np.max(np.abs(guess.state.theta - point.state.theta))
+
+    before, last = trail[-3][1].state.theta, trail[-1][1].state.theta
+    far = np.max(np.abs(last - before))
+    assert off(trail[:-2], trail[-2]) < 1e-2 * far  # of the last pairs one each
+    assert off(trail[:-1], trail[-1]) < 1e-4 * far  # its neighbour is known
+    assert off([*trail[:-3], trail[-2], trail[-1]], trail[-3]) < 1e-4 * far
