@@ -43,7 +43,7 @@ LEAST = 1e-3  # of the largest pressure, on a joint within a zone
 SHARE = 4  # a span between marks has one of so many of the beam's elements at least
 BEYOND = 16  # one of so many of the beam's elements follow on a place in the size of the finer ones beside it
 FIXED = 0.75  # of a beam's elements, the most that such shares may take
-SHORTEST = 0.1  # elements: marks closer than this leave the elements even
+SHORTEST = 0.01  # elements: marks closer than this leave the elements even
 BENT = 1e-6  # of the largest slope of a curvature beside a place: slopes that differ by less are the same
 MOVED = 0.02  # elements: ends that have moved less since the mesh was made are where the mesh has them
 
