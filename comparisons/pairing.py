@@ -19,6 +19,7 @@ which takes no part in the verdict either.
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import threading
@@ -40,6 +41,9 @@ from scene.statement import Curve
 
 Solver = Callable[[Scene, Choices], Answer]
 Job = tuple[Solver, Scene, Choices]
+
+COLLECTED = (50_000, 20, 100)
+"""Of a worker's collector of cycles: objects, and collections, after which it looks at the young and the older."""
 
 PAPER_BESIDE_AUTO = 160
 """Most links per beam with which ``paper`` is run beside ``auto``: its time grows with the cube of N."""
@@ -236,7 +240,7 @@ def crew_of(workers: int) -> Iterator[Crew]:
     if workers <= 1:
         yield ALONE
         return
-    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_quiet_worker)
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_prepared_worker)
     try:
         yield Crew(pool)
     finally:
@@ -357,7 +361,7 @@ def _job(solver: Solver, scene: Scene, choices: Choices) -> Answer | tuple[Mista
 
 @contextmanager
 def _workers_deaf_at_first() -> Iterator[None]:
-    """Start workers that ignore interrupts, until :func:`_quiet_worker` says otherwise.
+    """Start workers that ignore interrupts, until :func:`_prepared_worker` says otherwise.
 
     A process inherits that an interrupt is ignored, and nothing else of its parent's handling; one that is
     interrupted while it still loads its modules would print a traceback.
@@ -372,8 +376,13 @@ def _workers_deaf_at_first() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _quiet_worker() -> None:
-    """Let an interrupt end a worker at once and without a word: the main process says what happened."""
+def _prepared_worker() -> None:
+    """An interrupt ends a worker at once and without a word: the main process says what happened.
+
+    Its collector of cycles looks less often, and never at what is loaded: records of a march are many and make none.
+    """
+    gc.freeze()
+    gc.set_threshold(*COLLECTED)
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
