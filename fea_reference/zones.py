@@ -399,7 +399,8 @@ def _turning(zeta: Array, slope: Array, curvature: Array, left: NDArray[np.int64
     right = left + 1
     rise = slope[right] - slope[left]
     linear = -slope[left] / rise
-    by_width = rise / (zeta[right] - zeta[left])
+    width = zeta[right] - zeta[left]
+    by_width = rise / np.where(width == 0.0, np.inf, width)  # a kink is a place twice
     first, last = (by_width / np.where(curvature[i] == 0.0, np.inf, curvature[i]) for i in (left, right))
     rest = 1.0 - linear
     cubic = linear * (linear * (3.0 - 2.0 * linear) + rest * (rest * first - linear * last))

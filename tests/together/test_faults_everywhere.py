@@ -11,9 +11,9 @@ How each is planted, with cases picked by what their scenes hold and never by na
 * *sign of a value*: all probes of one quantity that has a sign have the wrong one;
 * *stops early*: the last station is left out, with and without saying so.
 
-Each case is asked in its first stage, at the first station and at the next one at which every contact presses with some
-force (the last one if there is no contact) before a branch ends, in one theory and coarsely: there the right solvers
-agree, so that what is not AGREE is the fault's doing.
+Each case is asked in its longest stage, at the first station and at the next one at which every contact presses with
+some force (the last one if there is no contact) before a branch ends, in one theory and coarsely: there the right
+solvers agree, so that what is not AGREE is the fault's doing.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ from comparisons.verdict import compared
 from comparisons.words import Word
 from scene import Answer, Ending, Probe, Scene, StationAnswer
 from scene.answer import Array, frozen_array
-from scene.statement import Arc, CircleContact, Polynomial
+from scene.statement import Arc, BeamContact, CircleContact, Polynomial
 from tests.together.planted import remembered, stiffer, without_contact
 
 CHOICES = Choices(links=40, elements=20, kinematics="bending")
@@ -59,20 +59,29 @@ EACH = pytest.mark.parametrize("solver", ["cprbm", "fea"])
 
 @cache
 def thinned(case: str) -> Scene:
-    """The case at its first station and at the next at which every contact presses with some force."""
+    """The case at its longest stage's first station and at the next at which every contact presses with some force.
+
+    A probe that may be less certain than others may be so by twice as much here.
+    """
     scene = SCENES[case]
-    stage = scene.stages[0]
+    number = int(np.argmax([len(stage.stations) for stage in scene.stages]))
+    before, stage = scene.stages[:number], scene.stages[number]
     station = stage.stations[-1]
     if scene.contacts:
         forces = tuple(Probe(of=contact, quantity="force") for contact in scene.contacts)
         some = {"stations": stage.stations[:: max(1, len(stage.stations) // 10)], "shown": ()}
         looked = stage.model_copy(update=some if stage.beyond is None else {**some, "beyond": "stop"})
-        found = cprbm_answer(scene.model_copy(update={"probes": forces, "stages": (looked,)}), FIRST_LOOK).stations
+        asked = scene.model_copy(update={"probes": forces, "stages": (*before, looked)})
+        found = [each for each in cprbm_answer(asked, FIRST_LOOK).stations if each.stage == stage.name]
         pressing = np.array([[each.values[force.name][0] for force in forces] for each in found])
         enough = (pressing >= SOME * pressing.max(axis=0)).all(axis=1)
         station = found[1 + int(np.argmax(enough[1:]))].value
     stage = stage.model_copy(update={"stations": tuple(dict.fromkeys((stage.stations[0], station))), "shown": ()})
-    return scene.model_copy(update={"stages": (stage,), "claims": ()})
+    probes = tuple(
+        probe if probe.verdict_limit is None else probe.model_copy(update={"verdict_limit": 2.0 * probe.verdict_limit})
+        for probe in scene.probes
+    )
+    return scene.model_copy(update={"stages": (*before, stage), "probes": probes, "claims": ()})
 
 
 @cache
@@ -165,7 +174,15 @@ def test_a_contact_ignored(case, contact, solver):
     assert word(case, solver, without_contact(REAL[solver], contact)(thinned(case), CHOICES)) is not Word.AGREE
 
 
-@pytest.mark.parametrize("case", [name for name, scene in SCENES.items() if scene.contacts])
+# which sides of a beam meet where it touches itself is no number that could have the wrong sign
+SIDED = [
+    name
+    for name, scene in SCENES.items()
+    if any(isinstance(contact, BeamContact | CircleContact) for contact in scene.contacts.values())
+]
+
+
+@pytest.mark.parametrize("case", SIDED)
 def test_a_contact_of_the_wrong_sign_in_the_cprbm(case, monkeypatch):
     monkeypatch.setattr(cprbm.nearest, "_side", _turned(cprbm.nearest._side))
     if any(isinstance(contact, CircleContact) for contact in SCENES[case].contacts.values()):
@@ -173,7 +190,7 @@ def test_a_contact_of_the_wrong_sign_in_the_cprbm(case, monkeypatch):
     assert word(case, "cprbm", asked_in_vain(case, "cprbm")) is not Word.AGREE
 
 
-@pytest.mark.parametrize("case", [name for name, scene in SCENES.items() if scene.contacts])
+@pytest.mark.parametrize("case", SIDED)
 def test_a_contact_of_the_wrong_sign_in_the_finite_elements(case, monkeypatch):
     monkeypatch.setattr(fea_reference.contact, "side_of", _turned(fea_reference.contact.side_of))
     clearance = fea_reference.circle._clearance
