@@ -375,7 +375,7 @@ class Edge:
             D: at the samples (2N+3,).
             parting: D″ at the joints (N+2,).
         """
-        s, joints = smooth.halves(self.a), self.a.s
+        s, joints = self.a.halves, self.a.s
         lying = np.zeros(len(places), dtype=bool)
         for end in joints[[0, -1]][[pin is not None for pin in self.pins]]:
             for i, place in enumerate(places):

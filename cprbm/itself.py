@@ -22,7 +22,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cprbm import smooth
 from cprbm.contact import Group
 from cprbm.crossing import own_crossings
 from cprbm.gathering import gathered
@@ -309,7 +308,7 @@ class Itself:
 
     def _faced(self, facing: Facing, s: Array) -> tuple[Array, Array]:
         """What faces the beam at arc lengths ``s`` most closely: a and σ (k,)."""
-        samples, lines = smooth.halves(self.a), facing.lines
+        samples, lines = self.a.halves, facing.lines
         side, sigma, least = np.ones(len(s)), s.copy(), np.full(len(s), np.inf)
         for strand in facing.strands:
             pair, on = self._pair(strand), np.isfinite(strand.D)

@@ -246,7 +246,7 @@ class Pair:
         if what not in known:
             sampled = _sampled(self, lines)
             ridges = feet_of_ridges(self, lines, *sampled)[0]
-            s = np.concatenate((smooth.halves(self.a), minima(self, lines, *sampled)[0], ridges))
+            s = np.concatenate((self.a.halves, minima(self, lines, *sampled)[0], ridges))
             ends = self.b.s[[0, -1]]
             D, sigma, foot = distance_along(self, lines, s)
             E, feet, facing = distance_along(self.exchanged(), lines[::-1], ends)
@@ -530,7 +530,7 @@ def _corners(pair: Pair, lines: Lines, D: Array, sigma: Array) -> Places:
 def feet_of_ridges(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array, Array, Ints]:
     """Corners of A's edge that stand out and face B: s, D, σ and which they are (k,), from D and σ at A's samples."""
     ridges, known = pair.a.section.ridges if pair.tapered else NO_RIDGES, np.isfinite(D)
-    samples = smooth.halves(pair.a)
+    samples = pair.a.halves
     behind = np.searchsorted(samples, ridges)
     number = np.flatnonzero(known[behind - 1] & known[behind])
     if not number.size:
@@ -617,7 +617,7 @@ def minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Arr
 
 
 def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:
-    s, lowest = smooth.halves(pair.a), wells.lowest(D, pair.offset + REACH)
+    s, lowest = pair.a.halves, wells.lowest(D, pair.offset + REACH)
     if not lowest.size:
         return np.zeros(0), np.zeros(0)
     # the joints beside a common clamp press together, a place of its own among them would part them
@@ -708,7 +708,7 @@ def _clamped(pair: Pair, lines: Lines) -> tuple[bool, bool]:
 
 def _side(pair: Pair, lines: Lines) -> float:
     """+1 where A lies on the left of B at their closest places, else −1."""
-    D, _, foot = distance_along(pair, lines, smooth.halves(pair.a))
+    D, _, foot = distance_along(pair, lines, pair.a.halves)
     size = np.where(foot, np.abs(D), np.inf)
     if not np.isfinite(size.min()):
         size = np.abs(D)

@@ -120,7 +120,7 @@ def shapes(mechanism: Mechanism, point: Point) -> dict[str, Shape]:
     model = mechanism.problem.model
     found = {}
     for chain in model.chains:
-        s = smooth.halves(chain)
+        s = chain.halves
         line = smooth.smooth_line(chain, model.unit_length, point.state, point.at).at(s)
         found[chain.name] = Shape(
             frozen_array(s * model.unit_length),

@@ -307,11 +307,6 @@ def _smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) 
     )
 
 
-def halves(chain: Chain) -> Array:
-    """Arc lengths of the joints and of the places half-way between them, (2N+3,)."""
-    return chain.halves
-
-
 def _series(coefficients: tuple[float, ...], z: Array) -> Array:
     """Σ c_k z^k."""
     total = coefficients[-1] * z

@@ -21,7 +21,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.model import Chain
-from cprbm.smooth import halves
 from scene.answer import Array, Flags, Ints
 
 BESIDE = 2.5  # a joint closer than this many h to a place of its own leaves what presses to that
@@ -65,7 +64,7 @@ def wells(chain: Chain, gap: Array, parting: Array, samples: Ints, least: float,
         least: D″ that is no more than the lines' own unevenness.
         known: arc lengths (j,) where the contact is known to be in a point: what is near is one.
     """
-    s = halves(chain)[samples]
+    s = chain.halves[samples]
     h = chain.size_at(s)
     near = np.any(np.abs(s[:, None] - known) <= NEAR * h[:, None], axis=1)
     parted, apart = near | _parted(parting, samples, least), _apart(gap, samples, h)

@@ -48,7 +48,7 @@ def held_on(scene: Scene, contact: EdgeContact, origin: Array, unit: float) -> t
         place = (np.array(scene.place_of(end.point)) - origin) / unit
         if abs(float(outline.near(place[:, None]).distance[0]) - T) <= _SAME:
             held[which] = place
-    on_it = [place for place, T in zip(held.values(), half, strict=False) if T == 0.0]
+    on_it = [] if contact.thick else list(held.values())
     return outline_of(contact, origin, unit, on_it), held
 
 

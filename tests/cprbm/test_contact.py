@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import minimize
 
 import cprbm
-from cprbm import nearest, smooth
+from cprbm import nearest
 from cprbm.contact import NO_ROWS, Rows
 from cprbm.equilibrium import LONGEST_TURN, equilibrium, point_at
 from cprbm.kinematics import State, positions, rest_state
@@ -48,7 +48,7 @@ def test_the_constraint_stands_at_the_smallest_distance_and_not_at_a_sample(seed
         moving = places.keys < 0
         (s,), (sigma,) = places.s[moving], places.sigma[moving]
         assert not ends.s.size
-        assert np.min(np.abs(s - smooth.halves(pair.a))) > 1e-3 * pair.a.h
+        assert np.min(np.abs(s - pair.a.halves)) > 1e-3 * pair.a.h
         smallest = smallest_distance(pair.lines(state, at), s + 0.01, sigma - 0.013)
         rows = Rows(pair.groups(state, at))
         row = np.max(rows.values)

@@ -8,10 +8,11 @@ import pytest
 import cprbm
 from cprbm import equilibrium as newton
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import contact_gradient, contact_rows, equilibrium, point_at, system
+from cprbm.equilibrium import equilibrium, point_at
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
 from scene.reading import scene_from
+from tests.cprbm.lagrangian import check
 from tests.references.lying import Lying, Strip
 
 # elements of one length where B has four for every five of A
@@ -226,7 +227,7 @@ def test_derivatives_of_gaps_and_of_the_lagrangian(links):
     mechanism = mechanism_of(lying(), cprbm.Settings(links=links))
     problem, values = mechanism.problem, {"P": PAIR.force}
     model, closure = problem.model, problem.closure
-    n, B = model.n_links, 3 * len(model.free_bodies)
+    n = model.n_links
     random = np.random.default_rng(99)
     state = State(loaded(mechanism, PAIR.force).state.theta + 1e-3 * random.standard_normal(n), np.zeros((2, 3)))
     mu = random.standard_normal(closure.rows)
@@ -236,25 +237,4 @@ def test_derivatives_of_gaps_and_of_the_lagrangian(links):
     # a row for the joints beside the clamp, rows at joints, and one at an end
     assert ("c", coarse + 4) in point.rows.keys
     assert point.rows.size > 8
-    q = np.concatenate((state.theta, state.bodies.ravel()))
-
-    def at(z):
-        there = point_at(problem, values, State(z[:n], z[n:].reshape(-1, 3)), mu, point.lam, point.rows)
-        assert there.rows.keys == point.rows.keys
-        return there.gradient + there.A_E.T @ mu + contact_gradient(model, there), there
-
-    found = system(problem, point, np.zeros(point.rows.size), 0.0)
-    for _ in range(3):
-        d = random.standard_normal(len(q))
-        d[closure.fixed] = 0.0
-        (plus, ahead), (minus, behind) = at(q + STEP * d), at(q - STEP * d)
-        gaps = (ahead.rows.values - behind.rows.values) / (2 * STEP)
-        assert gaps == pytest.approx(contact_rows(model, point) @ d, rel=1e-6, abs=1e-7)
-        product = (plus - minus) / (2 * STEP)
-        product[closure.fixed] = 0.0
-        low = slice(B, len(found.base) - closure.rows)
-        border, corner = found.factors.border, found.factors.corner
-        s = -np.linalg.solve(corner[low, low], border[:, low].T @ d[:n] + corner[low, :B] @ d[n:])
-        upper = found.factors.tridiagonal.times(d[:n, None])[:, 0] + border[:, :B] @ d[n:] + border[:, low] @ s
-        lower = border[:, :B].T @ d[:n] + corner[:B, :B] @ d[n:] + corner[:B, low] @ s
-        assert np.concatenate((upper, lower)) == pytest.approx(product, rel=1e-5, abs=1e-5 * np.max(np.abs(product)))
+    check(problem, values, point, random)

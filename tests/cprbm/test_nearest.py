@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 import cprbm
-from cprbm import nearest, smooth, wells
+from cprbm import nearest, wells
 from cprbm.contact import Rows
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.mechanism import mechanism_of
@@ -66,7 +66,7 @@ def test_every_minimum_is_found_where_the_curvature_jumps_too(monkeypatch, seed)
     lines = pair.lines(state, positions(model, state))
     D, sigma = nearest._sampled(pair, lines)
     places, feet = nearest.minima(pair, lines, D, sigma)
-    s = smooth.halves(pair.a)
+    s = pair.a.halves
     found = 0
     for k in range(1, len(s) - 1):
         if not (D[k] < min(D[k - 1], D[k + 1]) and D[k] < pair.offset + nearest.REACH):

@@ -5,13 +5,14 @@ import pytest
 
 import cprbm
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import contact_gradient, contact_rows, equilibrium, point_at, system
+from cprbm.equilibrium import equilibrium, point_at
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
 from scene import SceneError
 from scene.reading import scene_from
 from scene.statement import Profile
 from tests.cprbm import necks
+from tests.cprbm.lagrangian import check
 from tests.cprbm.test_lying import bowl
 
 STEP = 1e-6
@@ -133,9 +134,11 @@ def wedge(material):
 
 
 @pytest.mark.parametrize(
-    ("values", "load"), [(EVEN, 0.02), (THICKER, 0.02), (THINNER, 0.1)], ids=["even", "place", "length"]
+    ("values", "load", "gain"),
+    [(EVEN, 0.02, 8.0), (THICKER, 0.02, 8.0), (THINNER, 0.1, 4.0)],
+    ids=["even", "place", "length"],
 )
-def test_a_hard_wedge_is_a_half_plane(values, load):
+def test_a_hard_wedge_is_a_half_plane(values, load, gain):
     # reference: contact with a rigid edge; what the wedge yields falls with its modulus
     flat = solved(tapered(pressed_down(load, HALF_PLANE), A=values), 20)
     errors = []
@@ -145,7 +148,7 @@ def test_a_hard_wedge_is_a_half_plane(values, load):
         errors.append(solved(tapered(scene, A=values), 20)["T.displacement"] - flat["T.displacement"])
     soft, hard = (np.hypot(*error) for error in errors)
     assert hard < 1e-2 * np.hypot(*flat["T.displacement"])
-    assert hard < soft / 4.0
+    assert hard < soft / gain
 
 
 @pytest.mark.parametrize("load", [12.0, 60.0], ids=["length", "place"])
@@ -189,35 +192,14 @@ def test_derivatives_of_gaps_and_of_the_lagrangian(load, A, B, links):
     mechanism, start = loaded(tapered(bowl(load), A=A, B=B), load, links)
     problem, values = mechanism.problem, {"P": load}
     model, closure = problem.model, problem.closure
-    n, bodies = model.n_links, 3 * len(model.free_bodies)
+    n = model.n_links
     random = np.random.default_rng(99)
     state = State(start.state.theta + 1e-3 * random.standard_normal(n), start.state.bodies)
     mu = random.standard_normal(closure.rows)
     moved = point_at(problem, values, state, mu, np.zeros(0), NO_ROWS)
     assert moved.rows.size > 0
     point = point_at(problem, values, state, mu, 0.5 + random.random(moved.rows.size), moved.rows)
-    q = np.concatenate((state.theta, state.bodies.ravel()))
-
-    def at(z):
-        there = point_at(problem, values, State(z[:n], z[n:].reshape(-1, 3)), mu, point.lam, point.rows)
-        assert there.rows.keys == point.rows.keys
-        return there.gradient + there.A_E.T @ mu + contact_gradient(model, there), there
-
-    found = system(problem, point, np.zeros(point.rows.size), 0.0)
-    for _ in range(3):
-        d = random.standard_normal(len(q))
-        d[closure.fixed] = 0.0
-        (plus, ahead), (minus, behind) = at(q + STEP * d), at(q - STEP * d)
-        gaps = (ahead.rows.values - behind.rows.values) / (2 * STEP)
-        assert gaps == pytest.approx(contact_rows(model, point) @ d, rel=1e-6, abs=1e-7)
-        product = (plus - minus) / (2 * STEP)
-        product[closure.fixed] = 0.0
-        low = slice(bodies, len(found.base) - closure.rows)
-        border, corner = found.factors.border, found.factors.corner
-        s = -np.linalg.solve(corner[low, low], border[:, low].T @ d[:n] + corner[low, :bodies] @ d[n:])
-        upper = found.factors.tridiagonal.times(d[:n, None])[:, 0] + border[:, :bodies] @ d[n:] + border[:, low] @ s
-        lower = border[:, :bodies].T @ d[:n] + corner[:bodies, :bodies] @ d[n:] + corner[:bodies, low] @ s
-        assert np.concatenate((upper, lower)) == pytest.approx(product, rel=1e-5, abs=1e-5 * np.max(np.abs(product)))
+    check(problem, values, point, random)
 
 
 @pytest.mark.parametrize("values", [(1.0, 0.9, 1.0), (0.9, 1.0, 0.9)], ids=["waist", "belly"])

@@ -15,6 +15,7 @@ from fea_reference.state import State
 from fea_reference.touch import Penalty
 from scene import Answer, Ending, Scene
 from scene.reading import scene_from
+from tests.fea_reference.differences import check
 from tests.fea_reference.meeting_itself import HALF, START, arch, half
 
 YOUNG, WIDTH, LENGTH = 2e9, 0.01, 0.1
@@ -258,16 +259,7 @@ def test_the_contacts_derivatives(first, second):
     value, gradient, hessian, one = gathered(z)
     assert value > 0.0
     assert hessian == pytest.approx(hessian.T, abs=1e-12 * np.abs(hessian).max())
-    rng = np.random.default_rng(7)
-    for _ in range(2):
-        v = np.zeros(model.size)
-        v[model.node_dofs] = rng.standard_normal(model.node_dofs.shape)
-        v[model.element_dofs[6]] = rng.standard_normal(model.element_dofs.shape[1])
-        h = 1e-7
-        ahead, behind = gathered(z + h * v), gathered(z - h * v)
-        assert gradient @ v == pytest.approx((ahead[0] - behind[0]) / (2 * h), rel=1e-6)
-        slope = (ahead[1] - behind[1]) / (2 * h)
-        assert hessian @ v == pytest.approx(slope, abs=1e-5 * np.abs(slope).max())
+    check(model, gathered, z, times=2, rel=1e-6, tangent=1e-5)
     force = gradient[model.node_dofs]
     at = z[model.node_dofs]
     scale = np.abs(one.gradient).sum()
