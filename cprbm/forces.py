@@ -14,10 +14,11 @@ from typing import Literal
 import numpy as np
 
 from cprbm.closure import closure_forces
-from cprbm.equilibrium import NOTHING, Point, Problem, contact_gradient
+from cprbm.equilibrium import NOTHING
 from cprbm.holding import Held, held
 from cprbm.kinematics import place
 from cprbm.model import Chain
+from cprbm.point import Point, Problem, contact_gradient
 from scene.answer import Array
 
 
