@@ -129,7 +129,7 @@ class Chain:
         """The largest one; of beams that touch by their edges the same everywhere."""
         return float(self.section.thickness.max())
 
-    @property
+    @cached_property
     def links(self) -> slice:
         """This beam's links in the shared numbering."""
         return slice(self.first_link, self.first_link + self.n + 1)
@@ -138,13 +138,13 @@ class Chain:
         """h of the elements at arc lengths ``arc`` (k,), units of length."""
         return np.asarray(self.sizes[np.clip(np.searchsorted(self.borders, arc) - 1, 0, self.n - 1)])
 
-    @property
+    @cached_property
     def joints(self) -> slice:
         """This beam's joints in the shared numbering."""
         return slice(self.first_joint, self.first_joint + self.n + 2)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Model:
     """The mechanism without units.
 
@@ -174,27 +174,27 @@ class Model:
     rest: Array
     marks: Mapping[str, Attachment]
 
-    @property
+    @cached_property
     def n_links(self) -> int:
         """Links of all beams."""
         return len(self.lengths)
 
-    @property
+    @cached_property
     def n_unknowns(self) -> int:
         """Link angles, and u, v, φ of the free bodies."""
         return self.n_links + 3 * len(self.free_bodies)
 
-    @property
+    @cached_property
     def n_joints(self) -> int:
         """Joints of all beams, ends included, and the marks behind them."""
         return self.first_mark + len(self.marks)
 
-    @property
+    @cached_property
     def first_mark(self) -> int:
         """Number of the first mark, which is that of all joints."""
         return self.n_links + len(self.chains)
 
-    @property
+    @cached_property
     def unit_force(self) -> float:
         """S/ℓ, N."""
         return self.unit_moment / self.unit_length
