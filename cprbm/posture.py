@@ -67,9 +67,7 @@ class Linear:
     def over_phi(self, standing: Posture) -> Array:
         """∂ℓ/∂φ without A_φ, (r, B)."""
         count = len(standing.cos)
-        return np.asarray(
-            standing.cos * self.over[:, 4 * count :] - standing.sin * self.over[:, 3 * count : 4 * count]
-        )
+        return np.asarray(standing.cos * self.over[:, 4 * count :] - standing.sin * self.over[:, 3 * count : 4 * count])
 
     def gradient(self, standing: Posture, weights: Array) -> tuple[Array, Array]:
         """f·∂ℓ over the bodies (..., 3B) and f·∂²ℓ over φ of each (..., B), for ``weights`` f (..., r)."""
