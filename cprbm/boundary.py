@@ -13,16 +13,34 @@ c_j         ±(P_q(a_j) − o_j) ≤ 0, eq. (11)
 
 The fit is done in Chebyshev polynomials over the present range of A: the curve is the same for any
 basis, so that centre and width of the range are constants for the derivatives.
+
+==========  =====================================================================================
+L           Σ w_j (P_q(a_j) − o_j), w = ±λ
+ρ           P_q(A_i) − B_i, what the fit misses its points by
+U           μ·φ(A_i); U', U'' likewise
+C, K        over (a, A, B): ∂²(L + μ·Vᵀ(V q − B))/∂z∂q, and ∂q/∂z
+t           −∂L/∂A_i n_A − ∂L/∂B_i n_B, of n = (n_A, n_B) from p_i to b_i
+==========  =====================================================================================
+
+With dτ = ½(dθ_{i−1} + dθ_i) the second derivative of L is
+
+    Σ w_j P_q''(a_j) da_j² + Σ (U''ρ + 2 U'P_q' + U P_q'') dA_i² − 2 U' dA_i dB_i + t dτ_i² + C Kᵀ + K Cᵀ,
+
+squares and products of two factors; a product is a difference of two squares,
+
+    2 f g = ½ (αf + g/α)² − ½ (αf − g/α)²,    α² = |g|/|f|.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from scipy.linalg import lapack
 
-from cprbm.contact import Blocks, Group
+from cprbm.contact import Blocks, Factored, Group, Local
 from cprbm.kinematics import Positions, State
 from cprbm.model import Model
 from cprbm.offset_points import offset_vectors
@@ -31,9 +49,10 @@ from scene import BeamContact, Mistake, Scene, SceneError
 from scene.answer import Array, Ints
 
 FEWEST_POINTS = 3
+TINY = float(np.finfo(float).tiny)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class FittedBoundary:
     """One contact in the paper's form.
 
@@ -62,83 +81,121 @@ class FittedBoundary:
     arc: Array
     on_first: bool
 
+    @cached_property
+    def _local(self) -> tuple[Ints, Ints]:
+        """Joints and angles of each row, (m, m + n) and (m, n + 1)."""
+        joints = np.concatenate((self.joints, self.points))
+        return tuple(np.broadcast_to(each, (len(self.joints), len(each))) for each in (joints, self.links))
+
+    @cached_property
+    def _keys(self) -> tuple[int, ...]:
+        return tuple(self.joints.tolist())
+
+    @cached_property
+    def _derivative(self) -> Array:
+        """Coefficients of the polynomials' derivatives, column by column (degree+1, degree+1)."""
+        found = np.zeros((self.degree + 1, self.degree + 1))
+        found[:-1] = chebyshev.chebder(np.eye(self.degree + 1))
+        return found
+
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
-        """The constraints at a state, with exact derivatives."""
-        m, n = len(self.joints), len(self.points)
+        """The constraints at a state, with exact derivatives.
+
+        Raises:
+            np.linalg.LinAlgError: the points do not determine the polynomial.
+        """
+        m, n, size = len(self.joints), len(self.points), self.degree + 1
         _, nx, ny = offset_vectors(state.theta[self.links], self.side * self.offset)
         bx, by = at.x[self.points] + nx, at.y[self.points] + ny
         if self.along_x:
             A, B, a, o = bx, by, at.x[self.joints], at.y[self.joints]
         else:
             A, B, a, o = by, bx, at.y[self.joints], at.x[self.joints]
-        centre, width = 0.5 * (A.max() + A.min()), 0.5 * (A.max() - A.min())
-        at_points = _basis(A, centre, width, self.degree)
-        at_joints = _basis(a, centre, width, self.degree)
-        V = at_points[0]
-        inverse = np.linalg.inv(V.T @ V)
-        q = inverse @ (V.T @ B)
-        P, P1, P2 = (basis @ q for basis in at_points)
-        g, g1, g2 = (basis @ q for basis in at_joints)
-        rest = P - B
+        low, high = float(A.min()), float(A.max())
+        centre, width = 0.5 * (high + low), 0.5 * (high - low)
+        D = self._derivative / width
+        # the basis at points and joints, a row for each polynomial
+        basis = _basis((np.concatenate((A, a)) - centre) / width, self.degree)
+        V, at_joints = basis[:, :n], basis[:, n:]
+        lu, pivots, q_B, failed = lapack.dgesv(V @ V.T, V)
+        if failed:
+            raise np.linalg.LinAlgError("the points of a fitted boundary are too few or in one place")
+        q = q_B @ B
+        q1 = D @ q
+        g, g1 = q @ at_joints, q1 @ at_joints
+        rest, P1 = q @ V - B, q1 @ V
 
         # dq over A and B, and with it the slopes of c over (a, o, A, B)
-        q_A = -inverse @ (at_points[1].T * rest + V.T * P1)
-        q_B = inverse @ V.T
-        slopes = self.sense * np.hstack((np.diag(g1), -np.eye(m), at_joints[0] @ q_A, at_joints[0] @ q_B))
+        V1 = D.T @ V
+        q_A = -lapack.dgetrs(lu, pivots, V1 * rest + V * P1)[0]
+        over_A, over_B = self.sense * (at_joints.T @ q_A), self.sense * (at_joints.T @ q_B)
         # (A, B) over (x, y, τ) of the boundary's joints; τ halves onto two links
         nA, nB = (nx, ny) if self.along_x else (ny, nx)
         tA, tB = (-ny, nx) if self.along_x else (nx, -ny)
 
-        def over_locals(over: Array) -> Array:
+        def over_locals(over_a: Array, over_o: Array, over_A: Array, over_B: Array) -> Array:
             """Columns (a, o, A, B) to columns (x of joints and points, y of the same, θ of links)."""
-            over_a, over_o, over_A, over_B = np.split(over, [m, 2 * m, 2 * m + n], axis=1)
-            along, across = np.hstack((over_a, over_A)), np.hstack((over_o, over_B))
-            over_tau = over_A * tA + over_B * tB
-            angles = np.zeros((len(over), n + 1))
-            angles[:, :-1] += 0.5 * over_tau
-            angles[:, 1:] += 0.5 * over_tau
-            xy = (along, across) if self.along_x else (across, along)
-            return np.hstack((*xy, angles))
+            k = over_a.shape[1]
+            found = np.zeros((len(over_A), 2 * (k + n) + n + 1))
+            along, across = (0, k + n) if self.along_x else (k + n, 0)
+            found[:, along : along + k], found[:, along + k : along + k + n] = over_a, over_A
+            found[:, across : across + k], found[:, across + k : across + k + n] = over_o, over_B
+            half = 0.5 * (over_A * tA + over_B * tB)
+            found[:, -n - 1 : -1] = half
+            found[:, -n:] += half
+            return found
 
-        def curvature(multipliers: Array) -> Array:
-            weights = self.sense * multipliers
-            mu = -inverse @ (at_joints[0].T @ weights)
-            U, U1, U2 = (basis @ mu for basis in at_points)
-            second = np.zeros((2 * m + 2 * n, 2 * m + 2 * n))
-            ia, iA, iB = np.arange(m), 2 * m + np.arange(n), 2 * m + n + np.arange(n)
-            second[ia, ia] = weights * g2
-            second[iA, iA] = U2 * rest + 2.0 * U1 * P1 + U * P2
-            second[iA, iB] = second[iB, iA] = -U1
-            over_q = np.zeros((2 * m + 2 * n, self.degree + 1))
-            over_q[ia] = weights[:, None] * at_joints[1]
-            over_q[iA] = U1[:, None] * V + U[:, None] * at_points[1]
-            q_z = np.zeros((self.degree + 1, 2 * m + 2 * n))
-            q_z[:, iA], q_z[:, iB] = q_A, q_B
-            cross = over_q @ q_z
-            second += cross + cross.T
-            local = over_locals(over_locals(second).T)
-            # the offset points turn with τ: d²(A, B)/dτ² = −(nA, nB)
-            slope = weights @ (self.sense * slopes[:, 2 * m :])
-            turning = -0.25 * (slope[:n] * nA + slope[n:] * nB)
-            k = 2 * (m + n)
+        def factors(multipliers: Array) -> Factored:
+            pressing = multipliers.nonzero()[0]
+            k = len(pressing)
+            w, phi = self.sense * multipliers[pressing], at_joints[:, pressing]
+            mu = -lapack.dgetrs(lu, pivots, phi @ w)[0]
+            q2, mu1 = D @ q1, D @ mu
+            U, U1, U2, P2 = mu @ V, mu1 @ V, (D @ mu1) @ V, q2 @ V
+            bend = w * (q2 @ phi)
+            # over (a, A, B), τ apart: squares of a, then the factors (f; g) of products
+            f, g = np.zeros((2, n + size, k + 2 * n))
             i = np.arange(n)
-            local[k + i, k + i] += turning
-            local[k + i + 1, k + i + 1] += turning
-            local[k + i, k + i + 1] += turning
-            local[k + i + 1, k + i] += turning
-            return local
+            f[i, k + i] = 1.0
+            g[i, k + i], g[i, k + n + i] = 0.5 * (U2 * rest + 2.0 * U1 * P1 + U * P2), -U1
+            f[n:, :k], f[n:, k : k + n] = w * (D.T @ phi), U1 * V + U * V1
+            g[n:, k : k + n], g[n:, k + n :] = q_A, q_B
+            sizes = np.maximum(np.sqrt(np.einsum("spk,spk->sp", (f, g), (f, g))), TINY)
+            alpha = np.sqrt(sizes[1] / sizes[0])[:, None]
+            f, g = np.sqrt(0.5) * alpha * f, np.sqrt(0.5) / alpha * g
+            over = np.concatenate((np.zeros((k, k + 2 * n)), f + g, f - g))
+            over[np.arange(k), np.arange(k)] = np.sqrt(np.abs(bend))
+            # the offset points turn with τ: d²(A, B)/dτ² = −(nA, nB)
+            turning = -(multipliers @ over_A) * nA - (multipliers @ over_B) * nB
+            columns = np.zeros((len(over) + n, 2 * (k + n) + n + 1))
+            columns[:-n] = over_locals(over[:, :k], np.zeros((1, k)), over[:, k : k + n], over[:, k + n :])
+            columns[len(over) + i, 2 * (k + n) + i] = 0.5 * np.sqrt(np.abs(turning))
+            columns[len(over) + i, 2 * (k + n) + i + 1] = 0.5 * np.sqrt(np.abs(turning))
+            signs = np.ones(n + size)
+            joints = np.concatenate((self.joints[pressing], self.points))
+            return Factored(
+                Local(joints[None], self.links[None], columns),
+                np.concatenate((np.copysign(1.0, bend), signs, -signs, np.copysign(1.0, turning))),
+            )
 
-        joints = np.concatenate((self.joints, self.points))
+        def curvature(multipliers: Array) -> Blocks:
+            found = factors(multipliers)
+            v = found.columns.slopes
+            return Blocks(found.columns.joints, found.columns.angles, ((v.T * found.sigma) @ v)[None])
+
+        joints, angles = self._local
         return (
             Group(
                 contact=self.name,
                 values=self.sense * (g - o),
-                joints=np.tile(joints, (m, 1)),
-                angles=np.tile(self.links, (m, 1)),
-                slopes=over_locals(slopes),
-                curvature=lambda lam: Blocks(joints[None], self.links[None], curvature(lam)[None]),
-                keys=tuple(int(j) for j in self.joints),
-                arc=self.arc if self.on_first else at_joints[0] @ q_B @ self.arc,
+                joints=joints,
+                angles=angles,
+                slopes=over_locals(np.diag(self.sense * g1), np.diag(np.full(m, -self.sense)), over_A, over_B),
+                curvature=curvature,
+                keys=self._keys,
+                arc=self.arc if self.on_first else at_joints.T @ (q_B @ self.arc),
+                shared=True,
+                factors=factors,
             ),
         )
 
@@ -165,18 +222,15 @@ class FittedBoundary:
         return (bx, by) if self.along_x else (by, bx)
 
 
-def _basis(at: Array, centre: float, width: float, degree: int) -> tuple[Array, Array, Array]:
-    """Chebyshev polynomials up to ``degree`` and their two derivatives at some places, (k, degree+1) each."""
-    scaled = (at - centre) / width
-    values = np.asarray(chebyshev.chebvander(scaled, degree), dtype=float)
-    identity = np.eye(degree + 1)
-    first = np.zeros(values.shape)
-    second = np.zeros(values.shape)
-    if degree >= 1:
-        first = np.asarray(chebyshev.chebvander(scaled, degree - 1) @ chebyshev.chebder(identity, 1) / width)
-    if degree >= 2:
-        second = np.asarray(chebyshev.chebvander(scaled, degree - 2) @ chebyshev.chebder(identity, 2) / width**2)
-    return values, first, second
+def _basis(at: Array, degree: int) -> Array:
+    """Chebyshev polynomials up to ``degree`` ≥ 1 at some places (k,), (degree+1, k)."""
+    values = np.empty((degree + 1, len(at)))
+    values[0], values[1] = 1.0, at
+    twice = at + at
+    for i in range(2, degree + 1):
+        np.multiply(twice, values[i - 1], out=values[i])
+        values[i] -= values[i - 2]
+    return values
 
 
 def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> FittedBoundary:

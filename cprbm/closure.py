@@ -10,22 +10,27 @@ Z_h         of slides and drives, :mod:`cprbm.holding`
 
 The first joint of a beam sits at its point by construction.  A first link that
 is welded to the ground does not turn and is no unknown at all.
+
+What the bodies have in an equality is linear in their posture, :mod:`cprbm.posture`; of its derivatives only those over
+the links of beams that end somewhere and over bodies' rotations change from state to state.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from cprbm.hinging import Hinge
 from cprbm.holding import Hold
-from cprbm.kinematics import Positions, State, arm, place, position_rows
+from cprbm.kinematics import Positions, State
 from cprbm.model import Model
+from cprbm.posture import Linear, point_of, stacked, turn_of
 from scene.answer import Array, Ints
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Closure:
     """Which equalities a mechanism has, in the order of their rows: ends' x, y, welds, pins' x, y, slides, drives.
 
@@ -36,6 +41,11 @@ class Closure:
         fixed: links that do not turn (ground welds at a beam's start).
         hinges: pins between bodies.
         holds: slides and drives.
+        own: Z less the last joints' places and the welded links' angles, without drives.
+        whole: the same with what the last joints go with the points where their beams start.
+        weld_links: the links of ``welds``.
+        even: those derivatives of Z that are the same in all states, (rows, n_links + 3B).
+        given: name of each value that is given, its row, and what the row has of it per unit (SI).
     """
 
     ends: tuple[int, ...]
@@ -44,11 +54,16 @@ class Closure:
     fixed: Ints
     hinges: tuple[Hinge, ...]
     holds: tuple[Hold, ...]
+    own: Linear
+    whole: Linear
+    weld_links: Ints
+    even: Array
+    given: tuple[tuple[str, int, float], ...]
 
     @property
     def rows(self) -> int:
         """Number of equalities."""
-        return self.first_hold + len(self.holds)
+        return len(self.even)
 
     @property
     def first_hinge(self) -> int:
@@ -66,6 +81,8 @@ def closure_of(
 ) -> Closure:
     """The equalities of a mechanism; the ends of some beams are ``free`` as yet."""
     ends, welds, fixed = [], [], []
+    starts, places, given = [], [], []
+    count = len(model.free_bodies)
     for c, chain in enumerate(model.chains):
         start, end = chain.start, chain.end
         if start.welded:
@@ -74,12 +91,39 @@ def closure_of(
             else:
                 welds.append((chain.first_link, start.body))
         if end is not None and chain.name not in free:
+            names = enumerate(apart_by(chain.name), start=2 * len(ends))
+            given += [(name, row, 1.0 / model.unit_length) for row, name in names]
             ends.append(c)
+            starts.append(point_of(start.body, start.point, model.references))
+            places.append(point_of(end.body, end.point, model.references))
             if end.welded:
                 welds.append((chain.first_link + chain.n, end.body))
-    last = [model.chains[c].first_joint + model.chains[c].n + 1 for c in ends]
+    first_hold = 2 * len(ends) + len(welds) + 2 * len(hinges)
+    given += [(hold.drive, row, hold.unit) for row, hold in enumerate(holds, start=first_hold) if hold.unit]
+    rest = [Linear(np.array([-model.rest[link]]), -turn_of(body, count)) for link, body in welds]
+    rest += [hinge.linear(model) for hinge in hinges]
+    rest += [hold.linear(model) for hold in holds]
+    own = stacked([*(-place for place in places), *rest], count)
+    weld_links = np.array([link for link, _ in welds], dtype=np.intp)
+    moved = np.zeros_like(own.over)
+    for r, point in enumerate(starts):
+        moved[2 * r : 2 * r + 2] = point.over
+    whole = Linear(own.base, own.over + moved)
+    even = np.zeros((len(own.base), model.n_unknowns))
+    even[2 * len(ends) + np.arange(len(welds)), weld_links] = 1.0
+    even[:, model.n_links :] = whole.over[:, : 3 * count]
     return Closure(
-        tuple(ends), np.array(last, dtype=np.intp), tuple(welds), np.array(fixed, dtype=np.intp), hinges, holds
+        ends=tuple(ends),
+        end_joints=np.array([model.chains[c].joints.stop - 1 for c in ends], dtype=np.intp),
+        welds=tuple(welds),
+        fixed=np.array(fixed, dtype=np.intp),
+        hinges=hinges,
+        holds=holds,
+        own=own,
+        whole=whole,
+        weld_links=weld_links,
+        even=even,
+        given=tuple(given),
     )
 
 
@@ -88,52 +132,26 @@ def apart_by(beam: str) -> tuple[str, str]:
     return f"{beam}.apart.x", f"{beam}.apart.y"  # no name in a scene holds a dot
 
 
-def closure_values(model: Model, closure: Closure, state: State, at: Positions, given: dict[str, float]) -> Array:
+def closure_values(model: Model, closure: Closure, state: State, at: Positions, given: Mapping[str, float]) -> Array:
     """Z (rows,) with the ``given`` values (SI) of drives and of how far ends are apart; without one they are zero."""
-    values = []
-    for c, joint in zip(closure.ends, closure.end_joints, strict=True):
-        end = model.chains[c].end
-        assert end is not None
-        px, py = place(model, end, state.bodies)
-        gx, gy = (given.get(name, 0.0) / model.unit_length for name in apart_by(model.chains[c].name))
-        values += [at.x[joint] - px - gx, at.y[joint] - py - gy]
-    for link, body in closure.welds:
-        turned = state.bodies[body, 2] if body >= 0 else 0.0
-        values.append(state.theta[link] - model.rest[link] - turned)
-    for hinge in closure.hinges:
-        values += hinge.values(model, state)
-    values += [hold.value(state, given) for hold in closure.holds]
-    return np.array(values, dtype=float)
+    values = closure.own.values(state.posture)
+    k = 2 * len(closure.ends)
+    values[0:k:2] += at.x[closure.end_joints]
+    values[1:k:2] += at.y[closure.end_joints]
+    values[k : k + len(closure.welds)] += state.theta[closure.weld_links]
+    for name, row, unit in closure.given:
+        values[row] -= unit * given.get(name, 0.0)
+    return values
 
 
 def closure_rows(model: Model, closure: Closure, state: State, at: Positions) -> Array:
     """∂Z over all unknowns, (rows, n_links + 3B)."""
-    n = model.n_links
-    rows = np.zeros((closure.rows, n + 3 * len(model.free_bodies)))
-    rows_x, rows_y = position_rows(model, state, at, closure.end_joints)
-    k = 2 * len(closure.ends)
-    rows[0:k:2], rows[1:k:2] = rows_x, rows_y
+    rows = closure.even.copy()
     for r, c in enumerate(closure.ends):
-        end = model.chains[c].end
-        assert end is not None
-        if end.body >= 0:
-            rx, ry = arm(end, state.bodies)
-            b = n + 3 * end.body
-            rows[2 * r, b] -= 1.0
-            rows[2 * r, b + 2] += ry
-            rows[2 * r + 1, b + 1] -= 1.0
-            rows[2 * r + 1, b + 2] -= rx
-    for r, (link, body) in enumerate(closure.welds, start=k):
-        rows[r, link] = 1.0
-        if body >= 0:
-            rows[r, n + 3 * body + 2] = -1.0
-    for p, hinge in enumerate(closure.hinges):
-        r = closure.first_hinge + 2 * p
-        for body, block in hinge.rows(state):
-            rows[r : r + 2, n + 3 * body : n + 3 * body + 3] += block
-    for r, hold in enumerate(closure.holds, start=closure.first_hold):
-        b = n + 3 * hold.at.body
-        rows[r, b : b + 3] = hold.row(state)
+        links = model.layout.links[c]
+        np.negative(at.dy[links], out=rows[2 * r, links])
+        rows[2 * r + 1, links] = at.dx[links]
+    rows[:, model.n_links + 2 :: 3] += closure.whole.over_phi(state.posture)
     return rows
 
 
@@ -148,17 +166,4 @@ def closure_forces(model: Model, closure: Closure, multipliers: Array) -> tuple[
 
 def closure_second(model: Model, closure: Closure, state: State, multipliers: Array) -> Array:
     """Second derivative over φ of each body (B,) of Σ μ·Z, the part of the bodies' own points."""
-    second = np.zeros(len(model.free_bodies))
-    for r, c in enumerate(closure.ends):
-        end = model.chains[c].end
-        assert end is not None
-        if end.body >= 0:
-            rx, ry = arm(end, state.bodies)
-            second[end.body] += multipliers[2 * r] * rx + multipliers[2 * r + 1] * ry
-    for p, hinge in enumerate(closure.hinges):
-        r = closure.first_hinge + 2 * p
-        for body, bent in hinge.second(state, multipliers[r : r + 2]):
-            second[body] += bent
-    for mu, hold in zip(multipliers[closure.first_hold :], closure.holds, strict=True):
-        second[hold.at.body] += mu * hold.second(state)
-    return second
+    return closure.own.gradient(state.posture, multipliers)[1]

@@ -7,17 +7,75 @@ on the unknowns is the same for all and lives in :mod:`cprbm.kinematics`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate, pairwise
 
 import numpy as np
 from frozendict import frozendict
 
+from cprbm import kinematics
 from cprbm.kinematics import Positions, State
-from cprbm.model import Chain
+from cprbm.model import Chain, Model
 from cprbm.strands import Faces
 from scene.answer import Array, Flags, Ints
+
+REAL = 1e-13  # of the largest curvature of a group; what is below it is round-off
+
+
+@dataclass(frozen=True, slots=True)
+class Local:
+    """Rows over local numbers.
+
+    Attributes:
+        joints, angles: what enters each row, (r, p) and (r, a), or all of them, (1, p) and (1, a), no joint twice.
+        slopes: derivatives over x of the joints, y of the joints, angles (r, 2p + a).
+    """
+
+    joints: Ints
+    angles: Ints
+    slopes: Array
+
+
+def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Local]) -> Array:
+    """Derivatives of rows over all unknowns, part behind part (Σr, n_links + 3B)."""
+    J, n = model.n_joints, model.n_unknowns
+    forces = np.zeros((2, sum(len(part.slopes) for part in parts), J))
+    along, across = forces.reshape(2, -1)
+    first = 0
+    for part in parts:
+        r, p = len(part.slopes), part.joints.shape[1]
+        if len(part.joints) == 1:
+            forces[0, first : first + r, part.joints[0]] = part.slopes[:, :p].T
+            forces[1, first : first + r, part.joints[0]] = part.slopes[:, p : 2 * p].T
+        elif p:
+            places = (np.arange(first, first + r)[:, None] * J + part.joints).ravel()
+            np.add.at(along, places, part.slopes[:, :p].ravel())
+            np.add.at(across, places, part.slopes[:, p : 2 * p].ravel())
+        first += r
+    rows = kinematics.over_unknowns(model, state, at, forces[0], forces[1])
+    first = 0
+    for part in parts:
+        r, p = len(part.slopes), part.joints.shape[1]
+        if len(part.angles) == 1:
+            rows[first : first + r, part.angles[0]] += part.slopes[:, 2 * p :]
+        elif part.angles.size:
+            places = (np.arange(first, first + r)[:, None] * n + part.angles).ravel()
+            np.add.at(rows.reshape(-1), places, part.slopes[:, 2 * p :].ravel())
+        first += r
+    return rows
+
+
+@dataclass(frozen=True, slots=True)
+class Factored:
+    """A second derivative Σ σ v vᵀ: the ``columns`` v as rows over local numbers, and σ ``sigma`` (r,), none nought.
+
+    A column may be nought.
+    """
+
+    columns: Local
+    sigma: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +90,16 @@ class Blocks:
     joints: Ints
     angles: Ints
     matrices: Array
+
+    def factored(self) -> Factored:
+        """The same by eigenvalues."""
+        if not self.matrices.size:
+            return Factored(Local(self.joints[:0], self.angles[:0], np.zeros((0, self.matrices.shape[1]))), np.zeros(0))
+        sigma, vectors = np.linalg.eigh(self.matrices)
+        size = np.abs(sigma)
+        block, number = np.nonzero(size > REAL * size.max())
+        columns = Local(self.joints[block], self.angles[block], vectors[block, :, number])
+        return Factored(columns, sigma[block, number])
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +116,8 @@ class Group:
         arc: arc length on the contact's first beam where each row acts (m,).
         reach: length of the first beam, before and behind ``arc``, whose joints have these rows and no others.
         itself: whether a beam touches itself, at two places of which the first has the first joint.
+        shared: whether the joints and angles of all rows are the same, no joint among them twice.
+        factors: λ (m,) ↦ the same second derivative by its factors, where these are known.
     """
 
     contact: str
@@ -60,6 +130,18 @@ class Group:
     arc: Array
     reach: float = 0.0
     itself: bool = False
+    shared: bool = False
+    factors: Callable[[Array], Factored] | None = None
+
+    @property
+    def local(self) -> Local:
+        """∂c."""
+        joints, angles = (self.joints[:1], self.angles[:1]) if self.shared else (self.joints, self.angles)
+        return Local(joints, angles, self.slopes)
+
+    def factored(self, multipliers: Array) -> Factored:
+        """∂²(λ·c)."""
+        return self.curvature(multipliers).factored() if self.factors is None else self.factors(multipliers)
 
     @property
     def holds_angles(self) -> bool:
@@ -88,6 +170,8 @@ class Rows:
     @cached_property
     def values(self) -> Array:
         """c (m,)."""
+        if len(self.groups) == 1:
+            return self.groups[0].values
         return np.concatenate([group.values for group in self.groups]) if self.groups else np.zeros(0)
 
     @cached_property
@@ -128,21 +212,46 @@ class Rows:
         near = np.flatnonzero(mine & (away <= reach))
         return near[np.argsort(away[near], kind="stable")[:1]]
 
+    @cached_property
+    def spans(self) -> tuple[slice, ...]:
+        """Where the rows of each group are."""
+        ends = [0, *accumulate(len(group.values) for group in self.groups)]
+        return tuple(slice(begin, end) for begin, end in pairwise(ends))
+
+    def same(self, before: Rows) -> bool:
+        """Whether these are the rows of another state, by contacts and keys."""
+        return len(self.groups) == len(before.groups) and all(
+            mine.contact == other.contact and mine.keys == other.keys
+            for mine, other in zip(self.groups, before.groups, strict=True)
+        )
+
     def shares(self, multipliers: Array) -> list[tuple[Group, Array]]:
         """Every group with its part of the multipliers (m,)."""
-        ends = np.cumsum([len(group.values) for group in self.groups])
-        return list(zip(self.groups, np.split(multipliers, ends[:-1]), strict=True)) if self.groups else []
+        return [(group, multipliers[span]) for group, span in zip(self.groups, self.spans, strict=True)]
 
     def forces(self, multipliers: Array, n_joints: int, n_unknowns: int) -> tuple[Array, Array, Array]:
         """∂(λ·c) over x and y of all joints (n_joints,), and what is over unknown angles at once (n_unknowns,)."""
         fx, fy, moments = np.zeros(n_joints), np.zeros(n_joints), np.zeros(n_unknowns)
         for group, lam in self.shares(multipliers):
+            pressing = lam.nonzero()[0]
+            if not pressing.size:
+                continue
             p = group.joints.shape[1]
-            local = lam[:, None] * group.slopes
-            np.add.at(fx, group.joints, local[:, :p])
-            np.add.at(fy, group.joints, local[:, p : 2 * p])
-            np.add.at(moments, group.angles, local[:, 2 * p :])
+            if group.shared:
+                total = lam @ group.slopes
+                fx[group.joints[0]] += total[:p]
+                fy[group.joints[0]] += total[p : 2 * p]
+                moments[group.angles[0]] += total[2 * p :]
+                continue
+            local, joints = lam[pressing, None] * group.slopes[pressing], group.joints[pressing].ravel()
+            np.add.at(fx, joints, local[:, :p].ravel())
+            np.add.at(fy, joints, local[:, p : 2 * p].ravel())
+            np.add.at(moments, group.angles[pressing].ravel(), local[:, 2 * p :].ravel())
         return fx, fy, moments
+
+    def over_unknowns(self, model: Model, state: State, at: Positions) -> Array:
+        """∂c over all unknowns (m, n_links + 3B)."""
+        return over_unknowns(model, state, at, [group.local for group in self.groups])
 
 
 Formulation = Callable[[State, Positions, Rows], Rows]

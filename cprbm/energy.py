@@ -19,6 +19,7 @@ import numpy as np
 from cprbm.beam_loads import BeamLoad, MomentOnBeam, beam_loads, beam_moments, beam_work
 from cprbm.kinematics import Positions, State, pulled_back
 from cprbm.model import Model
+from cprbm.posture import turned
 from scene import Scene
 from scene.answer import Array
 from scene.statement import Force, Moment
@@ -82,30 +83,34 @@ def end_moments(scene: Scene, model: Model) -> dict[str, EndMoment]:
 
 def spring_moments(model: Model, state: State) -> Array:
     """m_i of every spring in the shared numbering (n_links−1,), zero between beams."""
-    return model.couplings * (np.diff(state.theta) - model.rest_turns)
+    return model.couplings * _turns(model, state)
+
+
+def _turns(model: Model, state: State) -> Array:
+    """δ_i (n_links−1,)."""
+    turns = state.theta[1:] - state.theta[:-1]
+    turns -= model.rest_turns
+    return turns
 
 
 def strain_energy(model: Model, state: State) -> float:
     """Σ ½ k_i δ_i²."""
-    turns = np.diff(state.theta) - model.rest_turns
-    return float(0.5 * np.sum(model.couplings * turns * turns))
+    turns = _turns(model, state)
+    return float(0.5 * (model.couplings @ (turns * turns)))
 
 
 def strain_gradient(model: Model, state: State) -> Array:
     """∂/∂θ of the strain energy (n_links,)."""
     moments = spring_moments(model, state)
     gradient = np.zeros(model.n_links)
-    gradient[1:] += moments
+    gradient[1:] = moments
     gradient[:-1] -= moments
     return gradient
 
 
 def strain_hessian(model: Model) -> tuple[Array, Array]:
-    """Diagonal (n_links,) and off-diagonal (n_links−1,) of the strain energy's Hessian."""
-    diagonal = np.zeros(model.n_links)
-    diagonal[1:] += model.couplings
-    diagonal[:-1] += model.couplings
-    return diagonal, -model.couplings
+    """Diagonal (n_links,) and off-diagonal (n_links−1,) of the strain energy's Hessian, both the model's own."""
+    return model.stiffness
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,16 +140,23 @@ def load_work(
     model: Model, loads: Mapping[str, AnyLoad], values: dict[str, float], state: State, at: Positions
 ) -> LoadWork:
     """Work of all loads at their present ``values`` (SI)."""
-    total = 0.0
+    total, standing = 0.0, state.posture
+    B = len(model.free_bodies)
+    linear = np.zeros(5 * B)  # the work of loads on bodies over their posture
     gradient = np.zeros(model.n_unknowns)
-    over_bodies = gradient[model.n_links :].reshape(-1, 3)  # a view
-    second = np.zeros(len(model.free_bodies))
     diagonal, off = np.zeros(model.n_links), np.zeros(model.n_links - 1)
     on_x, on_y = np.zeros(model.n_joints), np.zeros(model.n_joints)
     on_beams, moments = list[tuple[BeamLoad, float]](), list[tuple[MomentOnBeam, float]]()
     for name, load in loads.items():
         value = values.get(name, 0.0)
-        if isinstance(load, BeamLoad):
+        if isinstance(load, DeadLoad):
+            b, (fx, fy), (px, py) = load.body, load.force, load.point
+            linear[3 * b] += value * fx
+            linear[3 * b + 1] += value * fy
+            linear[3 * b + 2] += value * load.moment
+            linear[3 * B + b] += value * (fx * px + fy * py)
+            linear[4 * B + b] += value * (fy * px - fx * py)
+        elif isinstance(load, BeamLoad):
             if value == 0.0:
                 continue
             work = beam_work(model, load, state, at)
@@ -155,26 +167,18 @@ def load_work(
             on_x += value * work.fx
             on_y += value * work.fy
             on_beams.append((load, value))
-            continue
-        if isinstance(load, EndMoment):
+        elif isinstance(load, EndMoment):
             total += value * load.moment * (state.theta[load.link] - model.rest[load.link])
             gradient[load.link] += value * load.moment
-            continue
-        if isinstance(load, MomentOnBeam):
+        else:
             total += load.work(value, state.theta - model.rest)
             for other, its_value in moments:
                 total += load.shared_work(value, other, its_value)
             gradient[list(load.links)] += value * load.moment * load.weights
             moments.append((load, value))
-            continue
-        u, v, phi = state.bodies[load.body]
-        fx, fy = value * load.force[0], value * load.force[1]
-        px, py = load.point
-        cos, sin = np.cos(phi), np.sin(phi)
-        rx, ry = cos * px - sin * py, sin * px + cos * py
-        total += value * load.moment * phi + fx * (u + rx - px) + fy * (v + ry - py)
-        over_bodies[load.body] += (fx, fy, value * load.moment + rx * fy - ry * fx)
-        second[load.body] -= fx * rx + fy * ry
+    total += linear @ standing.w
+    over_bodies, second = turned(standing, linear)
+    gradient[model.n_links :] = over_bodies
     if on_beams:
         over_theta, bodies, twice, twice_bodies = pulled_back(model, state, at, on_x, on_y)
         gradient += np.concatenate((over_theta, bodies))

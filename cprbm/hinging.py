@@ -7,7 +7,7 @@ Z_p     p − q
 μ       multiplier; −μ is the force at p on the body one, μ that at q on the body other
 ======  ======================================================================================
 
-    ∂p/∂(u, v, φ) = [I, J r],    ∂²p/∂φ² = −r        (J turns by a right angle, counter-clockwise)
+    ∂p/∂(u, v, φ) = [I, J r]        (J turns by a right angle, counter-clockwise)
 
 One of the two may be a point of the ground; the pin is a support then.
 """
@@ -22,6 +22,7 @@ import numpy as np
 from cprbm.holding import Held
 from cprbm.kinematics import State, arm, place
 from cprbm.model import Attachment, Model, attached
+from cprbm.posture import Linear, point_of
 from scene import Scene
 from scene.answer import Array
 
@@ -33,21 +34,16 @@ class Hinge:
     names: tuple[str, str]
     points: tuple[Attachment, Attachment]
 
-    def values(self, model: Model, state: State) -> list[float]:
+    def linear(self, model: Model) -> Linear:
         """Z_p, two numbers."""
-        (px, py), (qx, qy) = (place(model, point, state.bodies) for point in self.points)
-        return [px - qx, py - qy]
+        p, q = (point_of(point.body, point.point, model.references) for point in self.points)
+        return p - q
 
     def rows(self, state: State) -> Iterator[tuple[int, Array]]:
         """∂Z_p over u, v, φ, (2, 3), of each body that moves."""
         for point, sign in self._moving():
             rx, ry = arm(point, state.bodies)
             yield point.body, sign * np.array([[1.0, 0.0, -ry], [0.0, 1.0, rx]])
-
-    def second(self, state: State, multipliers: Array) -> Iterator[tuple[int, float]]:
-        """∂²(μ·Z_p) over φ of each body that moves, with ``multipliers`` μ (2,)."""
-        for point, sign in self._moving():
-            yield point.body, -sign * float(multipliers @ arm(point, state.bodies))
 
     def held(self, model: Model, state: State, multipliers: Array) -> Iterator[Held]:
         """What the ground does to the other body, if one of the points is the ground's."""

@@ -19,6 +19,7 @@ import numpy as np
 
 from cprbm.kinematics import State, arm
 from cprbm.model import Attachment, Model, attached
+from cprbm.posture import Linear, point_of, turn_of
 from scene import Scene
 from scene.answer import Array
 from scene.statement import DisplacementDrive, SlidingBody, TurningBody
@@ -43,26 +44,17 @@ class Hold:
     turn: float
     unit: float
 
-    def value(self, state: State, values: dict[str, float]) -> float:
-        """Z_h with the drives' ``values`` (SI); drives without one are at zero."""
-        u, v, phi = state.bodies[self.at.body]
-        px, py = self.at.point
-        # cos φ − 1 as −2 sin²(φ/2), which keeps small rotations exact
-        less, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
-        ex, ey = self.along
-        moved = ex * (u + less * px - sin * py) + ey * (v + sin * px + less * py)
-        return float(moved + self.turn * phi - self.unit * values.get(self.drive, 0.0))
+    def linear(self, model: Model) -> Linear:
+        """Z_h with the drive at zero, one number."""
+        point = point_of(self.at.body, self.at.point, model.references)
+        moved = np.array([self.along]) @ point.over
+        return Linear(np.zeros(1), moved + self.turn * turn_of(self.at.body, len(model.free_bodies)))
 
     def row(self, state: State) -> tuple[float, float, float]:
         """∂Z_h over the body's u, v, φ."""
         rx, ry = arm(self.at, state.bodies)
         ex, ey = self.along
         return ex, ey, rx * ey - ry * ex + self.turn
-
-    def second(self, state: State) -> float:
-        """∂²Z_h over φ."""
-        rx, ry = arm(self.at, state.bodies)
-        return -(rx * self.along[0] + ry * self.along[1])
 
 
 @dataclass(frozen=True, slots=True)

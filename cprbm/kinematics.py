@@ -11,14 +11,16 @@ f_j         generalised force on joint j; F_i = Σ_{j>i} f_j of the same beam
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from cprbm.model import Attachment, Model
+from cprbm.posture import Posture, posture
 from scene.answer import Array, Ints
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class State:
     """The unknowns: link angles ``theta`` (n_links,) and ``bodies`` (B, 3) of u, v, φ."""
 
@@ -28,6 +30,11 @@ class State:
     def moved(self, step: Array, n_links: int) -> State:
         """The state after a ``step`` (n_links + 3B,) of all unknowns."""
         return State(self.theta + step[:n_links], self.bodies + step[n_links:].reshape(-1, 3))
+
+    @cached_property
+    def posture(self) -> Posture:
+        """How the bodies stand."""
+        return posture(self.bodies)
 
 
 def most_turned(before: State, after: State) -> float:
@@ -75,30 +82,36 @@ class Positions:
 
 def positions(model: Model, state: State) -> Positions:
     """Eq. (6) for all beams."""
-    dx = model.lengths * np.cos(state.theta)
-    dy = model.lengths * np.sin(state.theta)
-    x, y = np.empty(model.n_joints), np.empty(model.n_joints)
-    for chain in model.chains:
-        x0, y0 = place(model, chain.start, state.bodies)
-        first = chain.first_joint
-        x[first], y[first] = x0, y0
-        np.cumsum(dx[chain.links], out=x[first + 1 : first + chain.n + 2])
-        np.cumsum(dy[chain.links], out=y[first + 1 : first + chain.n + 2])
-        x[first + 1 : first + chain.n + 2] += x0
-        y[first + 1 : first + chain.n + 2] += y0
-    for j, mark in enumerate(model.marks.values(), start=model.first_mark):
-        x[j], y[j] = place(model, mark, state.bodies)
-    return Positions(x, y, dx, dy)
+    layout = model.layout
+    links, joints = np.empty((2, model.n_links)), np.empty((2, model.n_joints))
+    np.cos(state.theta, out=links[0])
+    np.sin(state.theta, out=links[1])
+    links *= model.lengths
+    roots = layout.places.values(state.posture).reshape(2, -1)
+    joints[:, layout.roots] = roots
+    for c, (own, behind) in enumerate(zip(layout.links, layout.behind, strict=True)):
+        further = joints[:, behind]
+        np.add.accumulate(links[:, own], axis=1, out=further)
+        further += roots[:, c : c + 1]
+    return Positions(joints[0], joints[1], links[0], links[1])
 
 
-def beyond(model: Model, forces: Array) -> tuple[Array, Array]:
-    """F_i, the sum of ``forces`` (n_joints,) beyond link i, (n_links,), and each beam's total (chains,)."""
-    sums, totals = np.empty(model.n_links), np.empty(len(model.chains))
-    for c, chain in enumerate(model.chains):
-        backwards = np.cumsum(forces[chain.joints][::-1])[::-1]
-        sums[chain.links] = backwards[1:]
-        totals[c] = backwards[0]
-    return sums, totals
+def beyond(model: Model, fx: Array, fy: Array) -> tuple[Array, Array]:
+    """Sums of forces ``fx``, ``fy`` (..., n_joints).
+
+    Returns:
+        F_i, of all beyond link i, (2, ..., n_links), and of all that starts and marks hold, in x and then y (..., 2k).
+    """
+    layout = model.layout
+    sums = np.empty((2, *fx.shape[:-1], model.n_links))
+    for own, behind in zip(layout.links_back, layout.behind_back, strict=True):
+        np.add.accumulate(fx[..., behind], axis=-1, out=sums[0][..., own])
+        np.add.accumulate(fy[..., behind], axis=-1, out=sums[1][..., own])
+    held = np.concatenate((fx[..., layout.roots], fy[..., layout.roots]), axis=-1)
+    k, chains = len(layout.roots), len(layout.first_links)
+    held[..., :chains] += sums[0][..., layout.first_links]
+    held[..., k : k + chains] += sums[1][..., layout.first_links]
+    return sums, held
 
 
 def pulled_back(model: Model, state: State, at: Positions, fx: Array, fy: Array) -> tuple[Array, Array, Array, Array]:
@@ -108,23 +121,20 @@ def pulled_back(model: Model, state: State, at: Positions, fx: Array, fy: Array)
         gradient over θ (n_links,) and over the bodies (3B,) of Σ f_j·p_j, and its second derivatives:
         the diagonal over θ (n_links,) and over φ of each body (B,).
     """
-    Fx, tx = beyond(model, fx)
-    Fy, ty = beyond(model, fy)
-    over_theta = at.dx * Fy - at.dy * Fx
-    second = -(at.dx * Fx + at.dy * Fy)
-    over_bodies = np.zeros((len(model.free_bodies), 3))
-    second_bodies = np.zeros(len(model.free_bodies))
-    for c, chain in enumerate(model.chains):
-        start = chain.start
-        if start.body >= 0:
-            rx, ry = arm(start, state.bodies)
-            over_bodies[start.body] += (tx[c], ty[c], rx * ty[c] - ry * tx[c])
-            second_bodies[start.body] -= rx * tx[c] + ry * ty[c]
-    for j, mark in enumerate(model.marks.values(), start=model.first_mark):
-        rx, ry = arm(mark, state.bodies)
-        over_bodies[mark.body] += (fx[j], fy[j], rx * fy[j] - ry * fx[j])
-        second_bodies[mark.body] -= rx * fx[j] + ry * fy[j]
-    return over_theta, over_bodies.ravel(), second, second_bodies
+    (Fx, Fy), held = beyond(model, fx, fy)
+    over_bodies, second_bodies = model.layout.places.gradient(state.posture, held)
+    return at.dx * Fy - at.dy * Fx, over_bodies, -(at.dx * Fx + at.dy * Fy), second_bodies
+
+
+def over_unknowns(model: Model, state: State, at: Positions, fx: Array, fy: Array) -> Array:
+    """The gradients (r, n_links + 3B) of r sums Σ f_j·p_j over all unknowns, for rows of forces (r, n_joints)."""
+    (Fx, Fy), held = beyond(model, fx, fy)
+    rows = np.empty((len(fx), model.n_unknowns))
+    over_theta = rows[:, : model.n_links]
+    np.multiply(at.dx, Fy, out=over_theta)
+    over_theta -= at.dy * Fx
+    rows[:, model.n_links :], _ = model.layout.places.gradient(state.posture, held)
+    return rows
 
 
 def position_rows(model: Model, state: State, at: Positions, joints: Ints) -> tuple[Array, Array]:

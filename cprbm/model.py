@@ -27,6 +27,7 @@ from frozendict import frozendict
 
 from cprbm.curves import NeutralLine, neutral_line
 from cprbm.pieces import Piece, Pieces, pieces
+from cprbm.posture import Linear, point_of, stacked
 from cprbm.section import Section, largest_rigidity, section_of
 from cprbm.settings import Settings
 from cprbm.spacing import spaced
@@ -41,7 +42,7 @@ from scene import (
     Scene,
     WeldedEnd,
 )
-from scene.answer import Array
+from scene.answer import Array, Ints
 from scene.statement import BeamMoment
 
 
@@ -144,7 +145,32 @@ class Chain:
         return slice(self.first_joint, self.first_joint + self.n + 2)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True, eq=False)
+class Layout:
+    """Where chains and what they begin at stand in the shared numbering, once for all states.
+
+    Attributes:
+        links, behind: of each chain, its links and the joints behind them.
+        links_back, behind_back: the same from the last to the first.
+        first_links: of each chain (chains,).
+        roots: the first joint of each chain, then the marks (k,): these are points of bodies or of the ground.
+        places: their x, then their y (2k,).
+    """
+
+    links: tuple[slice, ...]
+    behind: tuple[slice, ...]
+    links_back: tuple[slice, ...]
+    behind_back: tuple[slice, ...]
+    first_links: Ints
+    roots: Ints
+    places: Linear
+
+
+def _backwards(of: slice) -> slice:
+    return slice(of.stop - 1, of.start - 1 if of.start > 0 else None, -1)
+
+
+@dataclass(frozen=True, eq=False)
 class Model:
     """The mechanism without units.
 
@@ -188,6 +214,39 @@ class Model:
     def n_joints(self) -> int:
         """Joints of all beams, ends included, and the marks behind them."""
         return self.first_mark + len(self.marks)
+
+    @cached_property
+    def layout(self) -> Layout:
+        """Where everything stands."""
+        links = tuple(chain.links for chain in self.chains)
+        behind = tuple(slice(chain.first_joint + 1, chain.joints.stop) for chain in self.chains)
+        attachments = [*(chain.start for chain in self.chains), *self.marks.values()]
+        points = [point_of(at.body, at.point, self.references) for at in attachments]
+        places = stacked(points, len(self.free_bodies))
+        return Layout(
+            links=links,
+            behind=behind,
+            links_back=tuple(_backwards(each) for each in links),
+            behind_back=tuple(_backwards(each) for each in behind),
+            first_links=np.array([chain.first_link for chain in self.chains], dtype=np.intp),
+            roots=np.array(
+                [*(chain.first_joint for chain in self.chains), *range(self.first_mark, self.n_joints)], dtype=np.intp
+            ),
+            places=Linear(
+                np.concatenate((places.base[::2], places.base[1::2])),
+                np.concatenate((places.over[::2], places.over[1::2])),
+            ),
+        )
+
+    @cached_property
+    def stiffness(self) -> tuple[Array, Array]:
+        """Diagonal (n_links,) and off-diagonal (n_links−1,) of the strain energy's Hessian."""
+        diagonal = np.zeros(self.n_links)
+        diagonal[1:] += self.couplings
+        diagonal[:-1] += self.couplings
+        off = -self.couplings
+        diagonal.flags.writeable = off.flags.writeable = False
+        return diagonal, off
 
     @cached_property
     def first_mark(self) -> int:

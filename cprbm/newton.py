@@ -25,17 +25,15 @@ import numpy as np
 from cprbm.bordered import Bordered, Kept, Symmetric, anchored, bordered, factorised, without
 from cprbm.closure import closure_forces, closure_second
 from cprbm.complementarity import pressing
-from cprbm.contact import Rows
+from cprbm.contact import Rows, over_unknowns
 from cprbm.kinematics import pulled_back
 from cprbm.local import LocalSystem, local_step, local_system
 from cprbm.point import Point, Problem
-from cprbm.slopes import over_unknowns
 from scene.answer import Array, Flags, Ints
 
 CONTACT_STIFFNESS = (1e4, 1e6)  # of pressing contacts while the energy alone is not convex, S/ℓ²; the first that helps
 MANY = 40  # contact rows beyond which the system is solved with the joints' positions as unknowns
 LOCAL = 8  # joints in a row that is local
-FLAT = 1e-13  # of the largest curvature of contacts: what is smaller is none
 
 
 @dataclass(frozen=True)
@@ -181,20 +179,11 @@ def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System
 
 def _curvatures(point: Point) -> tuple[Array, Array, Array]:
     """Rows (JᵀV)ᵀ over q (r, n_links + 3B), σ (r,) and their right-hand sides, of the contacts that press."""
-    model, rows, curvatures = point.model, [np.zeros((0, point.model.n_unknowns))], [np.zeros(0)]
-    for group, lam in point.rows.shares(point.lam):
-        if not (lam > 0.0).any():
-            continue
-        blocks = group.curvature(lam)
-        if not blocks.matrices.size:
-            continue
-        sigma, V = np.linalg.eigh(blocks.matrices)
-        size = np.abs(sigma)
-        g, j = np.nonzero(size > FLAT * size.max())
-        curvatures.append(sigma[g, j])
-        rows.append(over_unknowns(model, point.state, point.at, blocks.joints[g], blocks.angles[g], V[g, :, j]))
-    found = np.concatenate(curvatures)
-    return np.concatenate(rows), found, np.zeros(len(found))
+    pressing = [(group, lam) for group, lam in point.rows.shares(point.lam) if lam.any()]
+    factors = [group.factored(lam) for group, lam in pressing]
+    found = np.concatenate([np.zeros(0), *(each.sigma for each in factors)])
+    rows = over_unknowns(point.model, point.state, point.at, [each.columns for each in factors])
+    return rows, found, np.zeros(len(found))
 
 
 def own_system(problem: Problem, point: Point) -> System:

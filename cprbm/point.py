@@ -23,7 +23,6 @@ from cprbm.contact import Formulation, Rows
 from cprbm.energy import AnyLoad, LoadWork, load_work, strain_energy, strain_gradient, strain_hessian
 from cprbm.kinematics import Positions, State, positions, pulled_back
 from cprbm.model import Model
-from cprbm.slopes import over_unknowns
 from scene.answer import Array, Ints
 
 if TYPE_CHECKING:
@@ -180,11 +179,7 @@ def _point(
 
 def contact_rows(model: Model, point: Point) -> Array:
     """∂c over q, (m, n_links + 3B)."""
-    parts = [
-        over_unknowns(model, point.state, point.at, group.joints, group.angles, group.slopes)
-        for group in point.rows.groups
-    ]
-    return np.concatenate(parts) if parts else np.zeros((0, model.n_unknowns))
+    return point.rows.over_unknowns(model, point.state, point.at)
 
 
 def contact_gradient(model: Model, point: Point) -> Array:
@@ -198,7 +193,7 @@ def contact_gradient(model: Model, point: Point) -> Array:
 
 def carried(before: Rows, lam: Array, rows: Rows, model: Model) -> Array:
     """Contact forces of an earlier state on the rows of this one: by key, or to the nearest place."""
-    if rows.keys == before.keys:
+    if rows.same(before):
         return lam
     forces = np.zeros(rows.size)
     reach = 2.0 * max(chain.h for chain in model.chains)

@@ -6,11 +6,10 @@ from pydantic import TypeAdapter
 
 import cprbm
 from cprbm import newton
-from cprbm.contact import NO_ROWS
+from cprbm.contact import NO_ROWS, Local, over_unknowns
 from cprbm.kinematics import State, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import contact_gradient, contact_rows, point_at
-from cprbm.slopes import over_unknowns
 from scene import Ending
 from scene.reading import scene_from
 from scene.statement import Contact, PaperRigid, Related
@@ -224,8 +223,7 @@ def test_rows_and_blocks_are_derivatives(kind, moves, formulation):
         blocks = group.curvature(share)
         for joints, angles, matrix in zip(blocks.joints, blocks.angles, blocks.matrices, strict=True):
             k = len(matrix)
-            each = (np.tile(joints, (k, 1)), np.tile(angles, (k, 1)))
-            J = over_unknowns(model, point.state, point.at, *each, np.eye(k))
+            J = over_unknowns(model, point.state, point.at, [Local(joints[None], angles[None], np.eye(k))])
             second += J.T @ matrix @ J
     fx, fy, _ = point.rows.forces(lam, model.n_joints, model.n_unknowns)
     _, _, over_theta, over_phi = pulled_back(model, point.state, point.at, fx, fy)
