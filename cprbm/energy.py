@@ -135,6 +135,14 @@ class LoadWork:
     on_beams: tuple[tuple[BeamLoad, float], ...]
     moments: tuple[tuple[MomentOnBeam, float], ...]
 
+    def curved_as(self, other: LoadWork) -> bool:
+        """Whether the second derivatives are those of another work at the same state."""
+        return (
+            np.array_equal(self.second, other.second)
+            and np.array_equal(self.diagonal, other.diagonal)
+            and np.array_equal(self.off, other.off)
+        )
+
 
 def load_work(
     model: Model, loads: Mapping[str, AnyLoad], values: dict[str, float], state: State, at: Positions

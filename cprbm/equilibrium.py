@@ -12,7 +12,7 @@ import numpy as np
 
 from cprbm.energy import spring_moments
 from cprbm.kinematics import most_turned
-from cprbm.newton import newton_step
+from cprbm.newton import knows_system, many, newton_step, own_system
 from cprbm.point import Point, Problem, point_at, point_under
 
 LONGEST_TURN = 0.5  # of any link in one iteration, rad
@@ -88,9 +88,10 @@ def equilibrium(
     seen: list[float] = []
     part, circles = 1.0, 0
     grown, last = 0, np.inf
+    near: Point | None = None
     for iteration in range(1, iterations + 1):
         try:
-            change, mu, lam = newton_step(problem, point, thorough=iteration > PATIENCE)
+            change, mu, lam = newton_step(problem, point, thorough=iteration > PATIENCE, near=near)
         except np.linalg.LinAlgError:
             return Equilibrium(point, now, iteration, converged=False)
         longest = float(np.abs(change[: model.n_links]).max())
@@ -109,13 +110,28 @@ def equilibrium(
         seen.append(now.residual)
         scale = min(part, LONGEST_TURN / longest) if longest > 0.0 else part
         state = point.state.moved(scale * change, model.n_links)
-        point = point_at(problem, values, state, mu, lam, point.rows)
+        before, point = point, point_at(problem, values, state, mu, lam, point.rows)
         now = measure(problem, point)
         if most_turned(start.state, state) > farthest:
             return Equilibrium(point, now, iteration, converged=False)
         if scale == 1.0 and _settled(now, longest, tolerance):
             return Equilibrium(point, now, iteration, converged=True)
+        near = before if near is None and _serves(problem, before, point, now.residual * longest, tolerance) else None
     return Equilibrium(point, now, iterations, converged=False)
+
+
+def _serves(problem: Problem, before: Point, point: Point, left: float, tolerance: float) -> bool:
+    """Whether the system of the state ``before`` is good enough for the next step, after which about ``left`` is left.
+
+    That is the residual times the length of the last step: by so much the system is another.
+    """
+    return (
+        left <= tolerance
+        and not many(point.rows)
+        and point.rows.same(before.rows)
+        and knows_system(problem, before)
+        and own_system(problem, before).convex
+    )
 
 
 def _returns(seen: list[float], residual: float) -> bool:

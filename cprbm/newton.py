@@ -83,7 +83,7 @@ class System:
         """Factors of S without the contacts."""
         return Symmetric(self.factors.schur[: self.n_base, : self.n_base])
 
-    @property
+    @cached_property
     def convex(self) -> bool:
         """Whether the Hessian is positive definite where the equalities hold."""
         return self.factors.tridiagonal.negative() + self.schur.negative == self.expected
@@ -200,6 +200,11 @@ def own_system(problem: Problem, point: Point) -> System:
     return found
 
 
+def knows_system(problem: Problem, point: Point) -> bool:
+    """Whether :func:`own_system` has been asked."""
+    return any(its is problem for its, _ in point.systems)
+
+
 def _convex_system(problem: Problem, point: Point) -> System:
     """A system that is positive definite on the feasible directions.
 
@@ -244,7 +249,9 @@ def local_system_at(problem: Problem, point: Point) -> LocalSystem:
     )
 
 
-def newton_step(problem: Problem, point: Point, *, thorough: bool = False) -> tuple[Array, Array, Array]:
+def newton_step(
+    problem: Problem, point: Point, *, thorough: bool = False, near: Point | None = None
+) -> tuple[Array, Array, Array]:
     """Change of q and the new multipliers μ, λ.
 
     Args:
@@ -252,13 +259,14 @@ def newton_step(problem: Problem, point: Point, *, thorough: bool = False) -> tu
         point: where the step begins.
         thorough: of many contacts too, find the set that presses by the complementarity problem's own rule, and
             make the energy convex; dear where they are many.
+        near: a state nearby with few contacts and the same, whose system is known and good enough.
 
     Raises:
         np.linalg.LinAlgError: the linearised problem has no solution.
     """
     if many(point.rows) and not thorough:
         return local_step(local_system_at(problem, point), point.lam > 0.0)
-    found = _convex_system(problem, point)
+    found = _convex_system(problem, point) if near is None else own_system(problem, near)
     n, base = problem.model.n_links, found.n_base
     f = -problem.moves * (point.gradient + point.held + point.pressed)
     right = np.concatenate((f[n:], f[found.anchors], found.added, -point.Z))

@@ -150,7 +150,10 @@ def point_under(problem: Problem, values: dict[str, float], point: Point) -> Poi
     """The state of a ``point`` under other values; its rows are the same where they are found in the same way."""
     if point.formulation is not problem.formulation:
         return point_at(problem, values, point.state, point.mu, point.lam, point.rows)
-    return _point(problem, values, point.state, point.at, point.mu, point.lam, point.rows)
+    found = _point(problem, values, point.state, point.at, point.mu, point.lam, point.rows)
+    if found.work.curved_as(point.work):
+        found.systems.extend(point.systems)
+    return found
 
 
 def _point(
