@@ -21,7 +21,6 @@ from cprbm.model import Chain, Model
 from cprbm.strands import Faces
 from scene.answer import Array, Flags, Ints
 
-
 REAL = 1e-13  # of the largest curvature of a group; what is below it is round-off
 
 
@@ -48,8 +47,8 @@ def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Loc
     for part in parts:
         r, p = len(part.slopes), part.joints.shape[1]
         if len(part.joints) == 1:
-            forces[0, first : first + r, part.joints[0]] = part.slopes[:, :p].T
-            forces[1, first : first + r, part.joints[0]] = part.slopes[:, p : 2 * p].T
+            forces[0][first : first + r, part.joints[0]] = part.slopes[:, :p]
+            forces[1][first : first + r, part.joints[0]] = part.slopes[:, p : 2 * p]
         elif p:
             places = (np.arange(first, first + r)[:, None] * J + part.joints).ravel()
             np.add.at(along, places, part.slopes[:, :p].ravel())
@@ -77,6 +76,13 @@ class Factored:
 
     columns: Local
     sigma: Array
+
+    def blocks(self) -> Blocks:
+        """The same as matrices: one, or of each column where these have local numbers of their own."""
+        joints, angles, v = self.columns.joints, self.columns.angles, self.columns.slopes
+        if len(joints) == 1:
+            return Blocks(joints, angles, ((v.T * self.sigma) @ v)[None])
+        return Blocks(joints, angles, self.sigma[:, None, None] * v[:, :, None] * v[:, None, :])
 
 
 @dataclass(frozen=True, slots=True)
