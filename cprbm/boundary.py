@@ -127,9 +127,10 @@ class FittedBoundary:
         # the basis at points and joints, a row for each polynomial
         basis = _basis((np.concatenate((A, a)) - centre) / width, self.degree)
         V, at_joints = basis[:, :n], basis[:, n:]
-        lu, pivots, q_B, failed = lapack.dgesv(V @ V.T, V)
+        *_, inverse, failed = lapack.dgesv(V @ V.T, np.eye(size))
         if failed:
             raise np.linalg.LinAlgError("the points of a fitted boundary are too few or in one place")
+        q_B = inverse @ V
         q = q_B @ B
         q1 = D @ q
         g, g1 = q @ at_joints, q1 @ at_joints
@@ -137,7 +138,7 @@ class FittedBoundary:
 
         # dq over A and B, and with it the slopes of c over (a, o, A, B)
         V1 = D.T @ V
-        q_A = -lapack.dgetrs(lu, pivots, V1 * rest + V * P1)[0]
+        q_A = -inverse @ (V1 * rest + V * P1)
         over_A, over_B = self.sense * (at_joints.T @ q_A), self.sense * (at_joints.T @ q_B)
         # (A, B) over (x, y, τ) of the boundary's joints; τ halves onto two links
         nA, nB = (nx, ny) if self.along_x else (ny, nx)
@@ -163,7 +164,7 @@ class FittedBoundary:
             pressing = multipliers.nonzero()[0]
             k = len(pressing)
             w, phi = self.sense * multipliers[pressing], at_joints[:, pressing]
-            mu = -lapack.dgetrs(lu, pivots, phi @ w)[0]
+            mu = -inverse @ (phi @ w)
             q2, mu1 = D @ q1, D @ mu
             U, U1, U2, P2 = mu @ V, mu1 @ V, (D @ mu1) @ V, q2 @ V
             bend = w * (q2 @ phi)

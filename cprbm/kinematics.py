@@ -137,30 +137,3 @@ def _held(model: Model, state: State, sums: Array) -> tuple[Array, Array]:
         return np.zeros((*shape, 3 * count)), np.zeros((*shape, count))
     held = np.concatenate((sums[0][..., moving], sums[1][..., moving]), axis=-1)
     return model.layout.moved.gradient(state.posture, held)
-
-
-def position_rows(model: Model, state: State, at: Positions, joints: Ints) -> tuple[Array, Array]:
-    """Derivatives of x and y of some ``joints`` (k,) over all unknowns: two arrays (k, n_links + 3B)."""
-    n = model.n_links
-    rows_x = np.zeros((len(joints), n + 3 * len(model.free_bodies)))
-    rows_y = np.zeros_like(rows_x)
-    for chain in model.chains:
-        mine = np.flatnonzero((joints >= chain.first_joint) & (joints < chain.first_joint + chain.n + 2))
-        if not mine.size:
-            continue
-        before = np.arange(chain.n + 1) < (joints[mine] - chain.first_joint)[:, None]
-        rows_x[mine, chain.links] = np.where(before, -at.dy[chain.links], 0.0)
-        rows_y[mine, chain.links] = np.where(before, at.dx[chain.links], 0.0)
-        start = chain.start
-        if start.body >= 0:
-            rx, ry = arm(start, state.bodies)
-            b = n + 3 * start.body
-            rows_x[mine, b], rows_x[mine, b + 2] = 1.0, -ry
-            rows_y[mine, b + 1], rows_y[mine, b + 2] = 1.0, rx
-    for j, mark in enumerate(model.marks.values(), start=model.first_mark):
-        mine = np.flatnonzero(joints == j)
-        rx, ry = arm(mark, state.bodies)
-        b = n + 3 * mark.body
-        rows_x[mine, b], rows_x[mine, b + 2] = 1.0, -ry
-        rows_y[mine, b + 1], rows_y[mine, b + 2] = 1.0, rx
-    return rows_x, rows_y
