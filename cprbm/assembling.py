@@ -14,9 +14,9 @@ import numpy as np
 
 from cprbm.closure import apart_by, closure_of
 from cprbm.energy import moment_on
-from cprbm.equilibrium import Point, Problem, point_at
 from cprbm.kinematics import place
 from cprbm.mechanism import Mechanism
+from cprbm.point import Point, Problem, point_at
 from scene import Mistake, PinnedEnd, Scene, SceneError
 
 APART = 1e-6  # of the beam's length

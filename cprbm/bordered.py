@@ -20,7 +20,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigvalsh_tridiagonal, lapack
+from scipy.linalg import lapack
 
 from scene.answer import Array, Ints
 
@@ -29,8 +29,21 @@ REFINED = 1e-14  # of the right-hand side
 
 
 SINGULAR = 1e-4  # EI/ℓ²: a curvature of Q alone below it costs digits
+SUSPECT = 30.0 * SINGULAR  # what a vector with a part in every direction is bent by, times this, is one or more
 ANCHORS = 8  # at most, beside the given ones
 ROUNDED = 1e-14  # of the largest entry
+
+
+def generic(metric: Array, held: Ints) -> Array:
+    """A right-hand side of size one that no symmetry makes orthogonal to anything, but zero at the unknowns ``held``.
+
+    Args:
+        metric: diagonal of the matrix M by which vectors are measured (n,).
+        held: unknowns that do not move.
+    """
+    vector = np.cos(0.7 * np.arange(len(metric))) + 1.5
+    vector[held] = 0.0
+    return np.asarray(metric * vector / np.sqrt(metric @ vector**2))
 
 
 def without(diagonal: Array, off: Array, held: Ints) -> tuple[Array, Array]:
@@ -55,12 +68,10 @@ def anchored(diagonal: Array, off: Array, metric: Array, given: Ints, held: Ints
         gone = np.concatenate((anchors, held))
         kept, beside = without(diagonal, off, gone)
         factors = factorised(kept + ROUNDED * float(np.max(np.abs(kept))), beside)
-        # two steps of inverse iteration, from a start that no symmetry makes orthogonal to what is sought
-        vector = np.cos(0.7 * np.arange(len(kept))) + 1.5
-        for _ in range(2):
-            vector[gone] = 0.0
-            vector /= np.sqrt(metric @ vector**2)
-            vector = factors.solve((metric * vector)[:, None])[:, 0]
+        # two steps of inverse iteration
+        vector = factors.solve(generic(metric, gone)[:, None])[:, 0]
+        vector[gone] = 0.0
+        vector = factors.solve((metric * vector / np.sqrt(metric @ vector**2))[:, None])[:, 0]
         vector[gone] = 0.0
         if float(np.sqrt(metric @ vector**2)) * SINGULAR < 1.0:
             break
@@ -100,10 +111,18 @@ class Tridiagonal:
         """ν(Q), by Sturm sequences where Q is not positive definite."""
         if self.positive:
             return 0
-        lowest = -2.0 * (np.max(np.abs(self.diagonal)) + 2.0 * np.max(np.abs(self.off), initial=0.0))
-        return len(
-            eigvalsh_tridiagonal(self.diagonal, self.off, select="v", select_range=(lowest, 0.0), check_finite=False)
-        )
+        lowest = -2.0 * float(np.abs(self.diagonal).max() + 2.0 * np.abs(self.off).max(initial=0.0))
+        # of the eigenvalues from there to zero only the number is wanted: they need not be parted from each other
+        by_values, unsorted = 1, "B"
+        number, _, _, _, info = lapack.dstebz(self.diagonal, self.off, by_values, lowest, 0.0, 1, 1, -lowest, unsorted)
+        if info > 1:
+            raise np.linalg.LinAlgError("eigenvalues cannot be counted")
+        return int(number)
+
+    def nearly_singular(self, right: Array, metric: Array) -> bool:
+        """Whether Q may be: a ``right`` side (n,) of size one, as :func:`generic` makes it, bends it far."""
+        bent = self.solve(right[:, None])[:, 0]
+        return not SUSPECT**2 * float(metric @ bent**2) < 1.0
 
 
 def factorised(diagonal: Array, off: Array) -> Tridiagonal:
@@ -121,6 +140,81 @@ def factorised(diagonal: Array, off: Array) -> Tridiagonal:
     return Tridiagonal(diagonal, off, tuple(factors), positive=False)
 
 
+class Symmetric:
+    """A factorised symmetric matrix (m, m), indefinite as it may be: LDLᵀ with blocks of one and two (Bunch, Kaufman).
+
+    Attributes:
+        negative: number of its negative eigenvalues.
+
+    Raises:
+        np.linalg.LinAlgError: it is exactly singular.
+    """
+
+    def __init__(self, matrix: Array) -> None:
+        self.negative = 0
+        if not len(matrix):
+            return
+        self._factors, self._pivots, info = lapack.dsytrf(matrix, lower=1)
+        if info != 0:
+            raise np.linalg.LinAlgError("singular Schur complement")
+        # of every block of two one eigenvalue is negative, and two entries of the pivots are
+        paired = self._pivots < 0
+        self.negative = int(np.count_nonzero((self._factors.diagonal() < 0.0) & ~paired)) + int(paired.sum()) // 2
+
+    def solve(self, right: Array) -> Array:
+        """Solution for columns (m, k)."""
+        if not len(right):
+            return right
+        solution, _ = lapack.dsytrs(self._factors, self._pivots, right, lower=1)
+        return np.asarray(solution)
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """A factorised bordered system with some of the border's columns only, as :class:`Bordered` has them."""
+
+    tridiagonal: Tridiagonal
+    border: Array
+    corner: Array
+    solved: Array
+    schur: Symmetric
+
+    @property
+    def negative(self) -> int:
+        """ν(K)."""
+        return self.tridiagonal.negative() + self.schur.negative
+
+    def solve(self, f: Array, g: Array) -> tuple[Array, Array]:
+        """Solution.
+
+        Args:
+            f: (n,) or (n, k); g: (m,) or (m, k).
+
+        Returns:
+            a and b, shaped as f and g.
+        """
+        upper = f.reshape(len(f), -1)
+        lower = g.reshape(len(g), upper.shape[1])
+        a, b = self.once(upper, lower)
+        # Q alone can be close to singular where the whole system is not: refine until that is mended
+        size = np.abs(upper).max(initial=0.0) + np.abs(lower).max(initial=0.0)
+        for _ in range(REFINEMENTS):
+            left_upper = upper - self.tridiagonal.times(a) - self.border @ b
+            left_lower = lower - self.border.T @ a - self.corner @ b
+            left = np.abs(left_upper).max(initial=0.0) + np.abs(left_lower).max(initial=0.0)
+            if not left > REFINED * size:
+                break
+            da, db = self.once(left_upper, left_lower)
+            a, b = a + da, b + db
+        return a.reshape(f.shape), b.reshape(g.shape)
+
+    def once(self, upper: Array, lower: Array) -> tuple[Array, Array]:
+        """Solution for columns (n, k) and (m, k), not refined."""
+        first = self.tridiagonal.solve(upper)
+        b = self.schur.solve(lower - self.border.T @ first)
+        return first - self.solved @ b, b
+
+
 @dataclass(frozen=True, slots=True)
 class Bordered:
     """A factorised tridiagonal matrix with a border: Q, B (n, m), C (m, m), Q⁻¹B and S (m, m)."""
@@ -131,55 +225,24 @@ class Bordered:
     solved: Array
     schur: Array
 
-    def solve(self, f: Array, g: Array, keep: Ints) -> tuple[Array, Array]:
-        """Solution with only the border's columns ``keep`` (indices) in the system.
-
-        Args:
-            f: (n,) or (n, k); g: (len(keep),) or (len(keep), k).
-            keep: which border columns belong to the system.
-
-        Returns:
-            a and b, shaped as f and g.
+    def kept(self, keep: Ints) -> Kept:
+        """The system with only the border's columns ``keep`` (indices).
 
         Raises:
-            np.linalg.LinAlgError: the system is singular.
+            np.linalg.LinAlgError: it is exactly singular.
         """
-        upper = f.reshape(len(f), -1)
-        lower = g.reshape(len(keep), upper.shape[1])
-        a, b = self._once(upper, lower, keep)
-        # Q alone can be close to singular where the whole system is not: refine until that is mended
-        size = np.max(np.abs(upper), initial=0.0) + np.max(np.abs(lower), initial=0.0)
-        for _ in range(REFINEMENTS):
-            left_upper = upper - self.tridiagonal.times(a) - self.border[:, keep] @ b
-            left_lower = lower - self.border[:, keep].T @ a - self.corner[np.ix_(keep, keep)] @ b
-            left = np.max(np.abs(left_upper), initial=0.0) + np.max(np.abs(left_lower), initial=0.0)
-            if not left > REFINED * size:
-                break
-            da, db = self._once(left_upper, left_lower, keep)
-            a, b = a + da, b + db
-        return a.reshape(f.shape), b.reshape(g.shape)
-
-    def _once(self, upper: Array, lower: Array, keep: Ints) -> tuple[Array, Array]:
-        first = self.tridiagonal.solve(upper)
-        lower = lower - self.border[:, keep].T @ first
-        b: Array = (
-            np.asarray(np.linalg.solve(self.schur[np.ix_(keep, keep)], lower), dtype=float) if len(keep) else lower
+        square = keep[:, None], keep
+        return Kept(
+            self.tridiagonal,
+            self.border[:, keep],
+            self.corner[square],
+            self.solved[:, keep],
+            Symmetric(self.schur[square]),
         )
-        return first - self.solved[:, keep] @ b, b
-
-    def negative(self, keep: Ints) -> int:
-        """ν of the system with only the border's columns ``keep``."""
-        schur = self.schur[np.ix_(keep, keep)]
-        return self.tridiagonal.negative() + (int(np.sum(np.linalg.eigvalsh(schur) < 0.0)) if len(keep) else 0)
 
 
-def bordered(diagonal: Array, off: Array, border: Array, corner: Array) -> Bordered:
-    """Factorise Q and form S.
-
-    Raises:
-        np.linalg.LinAlgError: Q is exactly singular.
-    """
-    tridiagonal = factorised(diagonal, off)
+def bordered(tridiagonal: Tridiagonal, border: Array, corner: Array) -> Bordered:
+    """Form S."""
     solved = tridiagonal.solve(border)
     schur = corner - border.T @ solved
     return Bordered(tridiagonal, border, corner, solved, 0.5 * (schur + schur.T))

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from cprbm.boundary import FittedBoundary
-from cprbm.equilibrium import Equilibrium, Point
+from cprbm.equilibrium import Equilibrium
 from cprbm.forces import balances
 from cprbm.itself import Itself
 from cprbm.mechanism import Mechanism
 from cprbm.model import Model
+from cprbm.point import Point
 from cprbm.settings import Settings
 from cprbm.stability import smallest_curvature
 from scene import Certificate, Ending

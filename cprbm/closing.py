@@ -20,9 +20,10 @@ import numpy as np
 from scipy.optimize import brentq
 
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import Point, equilibrium, point_at
+from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import most_turned
 from cprbm.mechanism import Mechanism, mechanism_of
+from cprbm.point import Point, point_at
 from cprbm.refining import all_zones, carried_over, fits, fitted
 from cprbm.settings import Settings
 from scene import Scene

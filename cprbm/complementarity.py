@@ -18,8 +18,9 @@ way there; a set that was built by descent has the few rows that press.
 from __future__ import annotations
 
 import numpy as np
+from scipy.linalg import lapack
 
-from scene.answer import Array, Flags
+from scene.answer import Array, Flags, Ints
 
 PATIENCE = 4
 RIGID = 1e-13  # of the largest compliance
@@ -31,31 +32,33 @@ def pressing(G: Array, b: Array, first: Flags) -> tuple[Array, Flags]:
     Raises:
         np.linalg.LinAlgError: no solution was found; G is not positive semidefinite or too degenerate.
     """
-    compliance = np.diag(G)
+    compliance = G.diagonal()
     # a gap between places that cannot move is no unknown: it is open or the question has no answer
-    yields = compliance > RIGID * np.max(compliance, initial=0.0)
-    if np.any(b[~yields] > 0.0):
-        raise np.linalg.LinAlgError("a closed contact that nothing yields to")
-    if not np.all(yields):
+    yields = compliance > RIGID * compliance.max(initial=0.0)
+    if not yields.all():
+        if (b[~yields] > 0.0).any():
+            raise np.linalg.LinAlgError("a closed contact that nothing yields to")
         lam, active = np.zeros(len(b)), np.zeros(len(b), dtype=bool)
-        if np.any(yields):
+        if yields.any():
             lam[yields], active[yields] = pressing(G[np.ix_(yields, yields)], b[yields], first[yields])
         return lam, active
     m = len(b)
     scale = np.sqrt(compliance)
     # rows in units of their own compliance; a trace of the identity parts rows that are the same twice
-    H = G / np.outer(scale, scale) + 1e-13 * np.eye(m)
+    H = G / (scale * scale[:, None])
+    H.flat[:: m + 1] += 1e-13
     c = b / scale
     active = first.copy()
     fewest, patience = m + 1, PATIENCE
-    slack = 1e-14 * (1.0 + np.max(np.abs(c)))
+    slack = 1e-14 * (1.0 + float(np.abs(c).max(initial=0.0)))
     while patience > 0:
-        force = np.zeros(m)
-        if np.any(active):
-            force[active] = np.linalg.solve(H[np.ix_(active, active)], c[active])
-        gap = H @ force - c
-        wrong = np.where(active, force < -slack, gap < -slack)
-        count = int(np.sum(wrong))
+        force, gap = np.zeros(m), -c
+        held = active.nonzero()[0]
+        if held.size:
+            force[held] = _balancing(H, c, held)
+            gap = H[:, held] @ force[held] - c
+        wrong = np.where(active, force, gap) < -slack
+        count = int(np.count_nonzero(wrong))
         if count == 0:
             return np.maximum(force, 0.0) / scale, active
         if count < fewest:
@@ -67,6 +70,18 @@ def pressing(G: Array, b: Array, first: Flags) -> tuple[Array, Flags]:
     return force / scale, active
 
 
+def _balancing(H: Array, c: Array, held: Ints) -> Array:
+    """Forces of the rows ``held`` (k,) by which their gaps are closed, (k,).
+
+    Raises:
+        np.linalg.LinAlgError: two of them are the same.
+    """
+    _, _, force, info = lapack.dgesv(H[held[:, None], held], c[held])
+    if info != 0:
+        raise np.linalg.LinAlgError("contacts that are the same")
+    return np.asarray(force)
+
+
 def _descended(H: Array, c: Array, first: Flags, slack: float) -> tuple[Array, Flags]:
     """The minimum of ½ λᵀHλ − cᵀλ over λ ≥ 0, from the rows ``first``."""
     m = len(c)
@@ -74,7 +89,7 @@ def _descended(H: Array, c: Array, first: Flags, slack: float) -> tuple[Array, F
     for _ in range(50 + 10 * m):
         while np.any(active):
             aim = np.zeros(m)
-            aim[active] = np.linalg.solve(H[np.ix_(active, active)], c[active])
+            aim[active] = _balancing(H, c, active.nonzero()[0])
             pulling = active & (aim <= 0.0)
             if not np.any(pulling):
                 force = aim

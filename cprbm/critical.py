@@ -19,8 +19,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm.equilibrium import Point
 from cprbm.mechanism import Mechanism
+from cprbm.point import Point
 from cprbm.stability import Softest, released, softest
 from scene import Certificate, Loss
 from scene.answer import Array

@@ -14,9 +14,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cprbm.equilibrium import Point, Problem, point_at
 from cprbm.kinematics import State
 from cprbm.model import Fit
+from cprbm.point import Point, Problem, point_at
 
 FEWEST = 3  # states: of two the way goes on straight, and so does Newton's first step
 MOST = 5

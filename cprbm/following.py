@@ -16,10 +16,11 @@ import numpy as np
 
 from cprbm.certifying import certify
 from cprbm.critical import Minimum, foreseen
-from cprbm.equilibrium import Equilibrium, Point, equilibrium
+from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import KEPT, continued
 from cprbm.kinematics import most_turned
 from cprbm.mechanism import Mechanism
+from cprbm.point import Point
 from cprbm.rate import rate, strayed
 from cprbm.settings import Settings
 from scene import Certificate, Ending

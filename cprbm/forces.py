@@ -9,15 +9,17 @@ R, M        force and moment of the ground on what is joined at a point
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import hypot
 from typing import Literal
 
 import numpy as np
 
 from cprbm.closure import closure_forces
-from cprbm.equilibrium import NOTHING, Point, Problem, contact_gradient
+from cprbm.equilibrium import NOTHING
 from cprbm.holding import Held, held
 from cprbm.kinematics import place
 from cprbm.model import Chain
+from cprbm.point import Point, Problem
 from scene.answer import Array
 
 
@@ -85,15 +87,15 @@ def supports(problem: Problem, point: Point) -> tuple[Support, ...]:
     model, closure = problem.model, problem.closure
     fx, fy = closure_forces(model, closure, point.mu)
     contact = contact_forces(problem, point)
+    on_x, on_y = fx - contact.fx - point.work.fx, fy - contact.fy - point.work.fy
     # ∂L/∂θ of the whole, whose entry at a link that does not turn is the moment that holds it
-    held = point.gradient + point.A_E.T @ point.mu + contact_gradient(problem.model, point)
+    held = point.gradient + point.held + point.pressed
     found = []
     for chain in model.chains:
         if chain.start.body < 0:
             j = chain.joints
-            others = contact.fx[j] + point.work.fx[j], contact.fy[j] + point.work.fy[j]
-            force = np.array([np.sum(fx[j] - others[0]), np.sum(fy[j] - others[1])])
-            place = np.array([point.at.x[chain.first_joint], point.at.y[chain.first_joint]])
+            force = np.array((on_x[j].sum(), on_y[j].sum()))
+            place = np.array((point.at.x[chain.first_joint], point.at.y[chain.first_joint]))
             moment = float(held[chain.first_link]) if chain.start.welded else 0.0
             found.append(Support(chain.name, "start", place, force, moment))
         if chain.end is not None and chain.end.body < 0:
@@ -102,8 +104,8 @@ def supports(problem: Problem, point: Point) -> tuple[Support, ...]:
             if chain.end.welded:
                 row = 2 * len(closure.ends) + closure.welds.index((chain.first_link + chain.n, -1))
                 moment = -float(point.mu[row])
-            force = -np.array([fx[last], fy[last]])
-            found.append(Support(chain.name, "end", np.array([point.at.x[last], point.at.y[last]]), force, moment))
+            force = -np.array((fx[last], fy[last]))
+            found.append(Support(chain.name, "end", np.array((point.at.x[last], point.at.y[last])), force, moment))
     return tuple(found)
 
 
@@ -153,35 +155,38 @@ def balances(problem: Problem, point: Point) -> tuple[float, float]:
     other way round; where there is no load, by S.  A beam's own ΣF vanishes by construction, for the force at its
     start is what balances it: ΣF says whether the free bodies are in equilibrium, ΣM whether the beams are too.
     """
-    model = problem.model
-    parts: list[tuple[Array, Array, float]] = [
-        (support.place, support.force, support.moment) for support in supports(problem, point)
-    ]
-    parts += [(each.place, each.force, each.moment) for each in holding(problem, point)]
+    model, x, y = problem.model, point.at.x, point.at.y
+    # of every part its force, and its moment about the origin
+    parts = [_about(each.place, each.force, each.moment) for each in supports(problem, point)]
+    parts += [_about(each.place, each.force, each.moment) for each in holding(problem, point)]
     contact = contact_forces(problem, point)
     work, stops = (over[model.n_links :].reshape(-1, 3) for over in (point.work.gradient, contact.moments))
     for b in range(len(model.free_bodies)):
         place = model.references[b] + point.state.bodies[b, :2]
-        parts.append((place, work[b, :2], float(work[b, 2] + stops[b, 2])))
+        parts.append(_about(place, work[b, :2], float(work[b, 2] + stops[b, 2])))
     # of loads on beams that is the moment about the beam's start; where the ground holds that, the force is no body's
-    parts.append((np.zeros(2), np.zeros(2), float(np.sum(point.work.gradient[: model.n_links]))))
+    parts.append((0.0, 0.0, float(point.work.gradient[: model.n_links].sum())))
     # ends that are apart from their points pass forces on across the gap
-    parts += [(np.zeros(2), np.zeros(2), moment) for moment in _across_gaps(problem, point)]
+    parts += [(0.0, 0.0, moment) for moment in _across_gaps(problem, point)]
+    turning = x * contact.fy - y * contact.fx
     for chain in model.chains:
-        j = chain.joints
-        if chain.start.body < 0:
-            start = np.array([point.at.x[chain.first_joint], point.at.y[chain.first_joint]])
-            parts.append((start, np.array([np.sum(point.work.fx[j]), np.sum(point.work.fy[j])]), 0.0))
-        force = np.array([np.sum(contact.fx[j]), np.sum(contact.fy[j])])
-        moment = np.sum(point.at.x[j] * contact.fy[j] - point.at.y[j] * contact.fx[j])
-        moment += np.sum(contact.moments[chain.links])
-        parts.append((np.zeros(2), force, float(moment)))
+        j, start = chain.joints, chain.first_joint
+        if chain.start.body < 0 and point.work.on_beams:
+            force = (float(point.work.fx[j].sum()), float(point.work.fy[j].sum()))
+            parts.append((*force, float(x[start]) * force[1] - float(y[start]) * force[0]))
+        moment = float(turning[j].sum()) + float(contact.moments[chain.links].sum())
+        parts.append((float(contact.fx[j].sum()), float(contact.fy[j].sum()), moment))
     for mark in range(model.first_mark, model.n_joints):
-        force = np.array([contact.fx[mark], contact.fy[mark]])
-        parts.append((np.array([point.at.x[mark], point.at.y[mark]]), force, 0.0))
-    forces = np.array([force for _, force, _ in parts])
-    moments = np.array([m + place[0] * force[1] - place[1] * force[0] for place, force, m in parts])
-    largest_force = float(np.max(np.abs(forces), initial=0.0))
-    largest_moment = max(float(np.max(np.abs(moments), initial=0.0)), largest_force)
+        parts.append((float(contact.fx[mark]), float(contact.fy[mark]), float(turning[mark])))
+    fx, fy, moments = zip(*parts, strict=True)
+    largest_force = max(map(abs, fx + fy))
+    largest_moment = max(*map(abs, moments), largest_force)
     scale = largest_moment if largest_moment > NOTHING else 1.0
-    return float(np.hypot(*forces.sum(axis=0))) / scale, abs(float(moments.sum())) / scale
+    return hypot(sum(fx), sum(fy)) / scale, abs(sum(moments)) / scale
+
+
+def _about(place: Array, force: Array, moment: float) -> tuple[float, float, float]:
+    """A ``force`` (2,) at a ``place`` (2,) and its moment about the origin, a ``moment`` added."""
+    x, y = place.tolist()
+    fx, fy = force.tolist()
+    return fx, fy, moment + x * fy - y * fx

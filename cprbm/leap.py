@@ -22,9 +22,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cprbm.certifying import certify
-from cprbm.equilibrium import Drag, Equilibrium, Point, equilibrium, point_at, point_under, potential_energy
+from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.kinematics import State, most_turned
 from cprbm.mechanism import Mechanism
+from cprbm.point import Drag, Point, point_at, point_under, potential_energy
 from cprbm.settings import Settings
 from scene import Certificate, Ending
 from scene.answer import Array

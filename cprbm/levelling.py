@@ -19,11 +19,12 @@ from dataclasses import replace
 import numpy as np
 from frozendict import frozendict
 
-from cprbm.equilibrium import Equilibrium, Point, equilibrium
+from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.kinks import kinks_at
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.model import Fit, Kinks
 from cprbm.nearest import Pair
+from cprbm.point import Point
 from cprbm.refining import carried_over
 from cprbm.settings import Settings
 from scene import Scene

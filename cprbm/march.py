@@ -16,7 +16,7 @@ from cprbm.certifying import certify
 from cprbm.closing import Closings, Stood
 from cprbm.contact import NO_ROWS
 from cprbm.critical import BranchEnd, Minimum, branch_end, told
-from cprbm.equilibrium import Equilibrium, Point, equilibrium, point_at, potential_energy
+from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import KEPT, alike, continued
 from cprbm.following import Follower, Reached, Way, pressing, to
 from cprbm.kinematics import State, most_turned, rest_state
@@ -24,6 +24,7 @@ from cprbm.leap import Landed, leap
 from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.model import Fit
+from cprbm.point import Point, point_at, potential_energy
 from cprbm.probing import probed, shapes, touching
 from cprbm.refining import all_zones, carried_over, carried_state, fits, fitted, long_ones
 from cprbm.remarks import Remarks

@@ -13,13 +13,13 @@ from cprbm.closure import closure_of
 from cprbm.contact import Formulation, Group, Rows
 from cprbm.edge import Edge, edge_of
 from cprbm.energy import dead_loads, end_moments
-from cprbm.equilibrium import Point, Problem
 from cprbm.hinging import hinges_of
 from cprbm.holding import holds_of
 from cprbm.itself import Itself, itself_of
 from cprbm.kinematics import Positions, State, most_turned, positions
 from cprbm.model import EVEN, Fit, Model, build
 from cprbm.nearest import Pair, pair_of
+from cprbm.point import Point, Problem
 from cprbm.rigid import RigidCircle, rigid_circle
 from cprbm.rigid_edge import RigidEdge, rigid_edge
 from cprbm.settings import Settings

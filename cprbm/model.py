@@ -130,7 +130,7 @@ class Chain:
         """The largest one; of beams that touch by their edges the same everywhere."""
         return float(self.section.thickness.max())
 
-    @property
+    @cached_property
     def links(self) -> slice:
         """This beam's links in the shared numbering."""
         return slice(self.first_link, self.first_link + self.n + 1)
@@ -139,7 +139,7 @@ class Chain:
         """h of the elements at arc lengths ``arc`` (k,), units of length."""
         return np.asarray(self.sizes[np.clip(np.searchsorted(self.borders, arc) - 1, 0, self.n - 1)])
 
-    @property
+    @cached_property
     def joints(self) -> slice:
         """This beam's joints in the shared numbering."""
         return slice(self.first_joint, self.first_joint + self.n + 2)
@@ -244,12 +244,12 @@ class Model:
         diagonal.flags.writeable = off.flags.writeable = False
         return diagonal, off
 
-    @property
+    @cached_property
     def first_mark(self) -> int:
         """Number of the first mark, which is that of all joints."""
         return self.n_links + len(self.chains)
 
-    @property
+    @cached_property
     def unit_force(self) -> float:
         """S/ℓ, N."""
         return self.unit_moment / self.unit_length

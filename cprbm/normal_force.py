@@ -18,10 +18,10 @@ import numpy as np
 from cprbm import smooth
 from cprbm.beam_loads import spread_from
 from cprbm.closure import closure_forces
-from cprbm.equilibrium import Point
 from cprbm.forces import contact_forces
 from cprbm.mechanism import Mechanism
 from cprbm.model import Chain
+from cprbm.point import Point
 from scene.answer import Array
 
 

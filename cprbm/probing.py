@@ -6,10 +6,10 @@ import numpy as np
 
 from cprbm import smooth
 from cprbm.edge import Edge
-from cprbm.equilibrium import Point, Problem, potential_energy
 from cprbm.forces import contact_moment, contact_pressure, holding, resultant, supports
 from cprbm.mechanism import Mechanism
 from cprbm.normal_force import normal_force
+from cprbm.point import Point, Problem, potential_energy
 from cprbm.stress import bending_stress
 from cprbm.zones import zones_of
 from scene import Probe, Scene, Shape

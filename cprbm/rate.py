@@ -21,7 +21,8 @@ import numpy as np
 
 from cprbm.closure import apart_by
 from cprbm.energy import load_work
-from cprbm.equilibrium import Point, Problem, local_system_at, many, own_system
+from cprbm.newton import local_system_at, many, own_system
+from cprbm.point import Point, Problem
 from scene.answer import Array
 
 APART = 0.5  # of the mean way that the rates make: curvature of the way, and more than one contact
@@ -40,26 +41,16 @@ def rate(problem: Problem, point: Point, change: Mapping[str, float]) -> Array:
     driven += [0.0] * (closure.first_hold - len(driven))
     driven += [hold.unit * change.get(hold.drive, 0.0) for hold in closure.holds]
     try:
-        solve = _local if many(point.rows) else _bordered
-        return solve(problem, point, f, np.array(driven))
+        if many(point.rows):
+            return _local(problem, point, f, np.array(driven))
+        return own_system(problem, point).solved(f, np.array(driven))[: model.n_links]
     except (np.linalg.LinAlgError, RuntimeError):
         return np.zeros(model.n_links)
 
 
-def _bordered(problem: Problem, point: Point, f: Array, driven: Array) -> Array:
-    n = problem.model.n_links
-    found = own_system(problem, point)
-    keep = np.concatenate((found.base, found.contacts[point.lam > 0.0]))
-    right = np.zeros(len(keep))
-    right[: len(f) - n] = f[n:]
-    right[len(f) - n : len(f) - n + len(found.anchors)] = f[found.anchors]
-    right[found.equalities] = driven
-    return found.step(keep, right, f)[0][:n]
-
-
 def _local(problem: Problem, point: Point, f: Array, driven: Array) -> Array:
     found, active = local_system_at(problem, point), point.lam > 0.0
-    n, first = found.n_links, found.n_links + 2 * found.n_joints
+    n, first = problem.model.n_links, found.n_links + 2 * found.n_joints
     right = np.zeros(found.size + int(np.sum(active)))
     right[:n], right[first : first + found.n_bodies] = f[:n], f[n:]
     right[found.first_mu : found.size] = driven

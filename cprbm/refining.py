@@ -26,11 +26,11 @@ import numpy as np
 
 from cprbm.beam_loads import BeamLoad
 from cprbm.contact import Rows
-from cprbm.equilibrium import Point, point_at
 from cprbm.kinematics import State
 from cprbm.kinks import kinks_at, within
 from cprbm.mechanism import Mechanism
 from cprbm.model import Chain, Fit, Kinks, Model
+from cprbm.point import Point, point_at
 from cprbm.settings import Settings
 from cprbm.zones import Zone, zones_of
 from scene.answer import Array, Flags, Ints

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cprbm.boundary import FittedBoundary
-from cprbm.equilibrium import Point
 from cprbm.following import pressing
 from cprbm.forces import contact_imbalance
 from cprbm.mechanism import Mechanism
+from cprbm.point import Point
 from cprbm.rigid_edge import RigidEdge
 
 

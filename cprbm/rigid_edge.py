@@ -35,10 +35,10 @@ import numpy as np
 
 from cprbm.contact import Blocks, Group
 from cprbm.edge import Edge
-from cprbm.equilibrium import Point
 from cprbm.faces import Seen
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
+from cprbm.point import Point
 from cprbm.related import related_joints
 from scene import Scene
 from scene.answer import Array, Flags, Ints

@@ -13,13 +13,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import eigh_tridiagonal
+from scipy.linalg import eigh_tridiagonal, lapack
 
-from cprbm.equilibrium import Point, Problem, local_system_at, many, own_system
+from cprbm.newton import local_system_at, many, own_system
+from cprbm.point import Point, Problem
 from scene.answer import Array
 
 DENSE = 120  # unknowns up to which all curvatures are computed at once
 LANCZOS = 40  # steps
+BLOCK = 3  # vectors at once where the ones that are wanted are the highest
+BLOCKS = 10
+KNOWN = 1e-5  # of the eigenvalue: what is left of the equation that its vector solves
 SMALL = 1e-9  # of the largest compliance: negative ones below it are round-off
 
 
@@ -40,10 +44,11 @@ def softest(problem: Problem, point: Point) -> Softest:
     root[problem.closure.fixed] = 0.0
     try:
         if many(point.rows):
-            inverse, lowest = _local_inverse(problem, point, root), None
+            value, vector = _extreme(_local_inverse(problem, point, root), problem.model.n_links, lowest=None)
+        elif own_system(problem, point).stable:
+            value, vector = _highest(_bordered_inverse(problem, point, root), problem.model.n_links)
         else:
-            inverse, lowest = _bordered_inverse(problem, point, root)
-        value, vector = _extreme(inverse, problem.model.n_links, lowest=lowest)
+            value, vector = _extreme(_bordered_inverse(problem, point, root), problem.model.n_links, lowest=True)
     except (np.linalg.LinAlgError, RuntimeError):
         return Softest(float("-inf"), np.zeros(problem.model.n_links))
     direction = np.divide(vector, root, out=np.zeros_like(vector), where=root > 0.0)
@@ -61,22 +66,21 @@ def released(point: Point, rows: frozenset[tuple[str, int]]) -> Point:
     return replace(point, lam=np.where(others, point.lam, 0.0))
 
 
-def _bordered_inverse(problem: Problem, point: Point, root: Array) -> tuple[Callable[[Array], Array], bool]:
-    """√M K⁻¹ √M on columns over θ, and whether it has a negative eigenvalue."""
+def _bordered_inverse(problem: Problem, point: Point, root: Array) -> Callable[[Array], Array]:
+    """√M K⁻¹ √M on columns over θ."""
     found = own_system(problem, point)
-    keep = np.concatenate((found.base, found.contacts[point.lam > 0.0]))
-    n, n_bodies = found.n_links, 3 * len(problem.model.free_bodies)
-    place = slice(n_bodies, n_bodies + len(found.anchors))
+    kept = found.kept
+    place = slice(found.n_bodies, found.n_bodies + len(found.anchors))
 
     def inverse(x: Array) -> Array:
         columns = root[:, None] * x
-        right = np.zeros((len(keep), columns.shape[1]))
+        right = np.zeros((kept.corner.shape[0], columns.shape[1]))
         right[place] = columns[found.anchors]
-        a, b = found.factors.solve(columns, right, keep)
+        a, b = kept.once(columns, right)
         a[found.anchors] = b[place]
-        return np.asarray(root[:, None] * a[:n])
+        return np.asarray(root[:, None] * a)
 
-    return inverse, found.factors.negative(keep) > found.expected + int(np.sum(point.lam > 0.0))
+    return inverse
 
 
 def _local_inverse(problem: Problem, point: Point, root: Array) -> Callable[[Array], Array]:
@@ -108,6 +112,42 @@ def _extreme(inverse: Callable[[Array], Array], n: int, *, lowest: bool | None) 
         lowest = bool(values[0] < -SMALL * abs(values[-1]))
     end = 0 if lowest else -1
     return float(values[end]), vectors[:, end]
+
+
+def _highest(inverse: Callable[[Array], Array], n: int) -> tuple[float, Array]:
+    """The highest eigenvalue of a symmetric positive semidefinite operator on R^n, and its vector.
+
+    By Krylov spaces of a few vectors with no symmetry; the compliances of a beam fall with the square of their number
+    at least, so that a few steps settle the first.
+    """
+    columns = min(BLOCK, n)
+    vectors = np.cos(np.outer(np.arange(n), 0.7 + 0.31 * np.arange(columns))) + 1.5 / (1.0 + np.arange(columns))
+    basis, images = np.zeros((n, BLOCK * BLOCKS)), np.zeros((n, BLOCK * BLOCKS))
+    for step in range(BLOCKS):
+        so_far = columns * (step + 1)
+        if so_far > n:
+            break
+        new = basis[:, so_far - columns : so_far]
+        new[:] = _orthonormal(vectors)
+        image = inverse(new)
+        images[:, so_far - columns : so_far] = image
+        space = basis[:, :so_far]
+        values, parts = np.linalg.eigh(space.T @ images[:, :so_far])
+        found, value = space @ parts[:, -1], float(values[-1])
+        left = images[:, :so_far] @ parts[:, -1] - value * found
+        if float(left @ left) <= (KNOWN * value) ** 2:
+            return value, found
+        # twice, lest what is left of a vector that lay in the space is round-off in that space
+        vectors = image - space @ (space.T @ image)
+        vectors -= space @ (space.T @ vectors)
+    return _extreme(inverse, n, lowest=False)
+
+
+def _orthonormal(vectors: Array) -> Array:
+    """An orthonormal basis (n, k) of the space of some vectors, by Householder's reflections."""
+    factors, tau, _, _ = lapack.dgeqrf(vectors)
+    basis, _, _ = lapack.dorgqr(factors, tau)
+    return np.asarray(basis)
 
 
 def _ritz(inverse: Callable[[Array], Array], n: int) -> tuple[Array, Array]:

@@ -33,10 +33,10 @@ import numpy as np
 
 from cprbm.beam_loads import kinks
 from cprbm.energy import spring_moments
-from cprbm.equilibrium import Point
 from cprbm.forces import contact_forces
 from cprbm.mechanism import Mechanism
 from cprbm.model import Chain
+from cprbm.point import Point
 from cprbm.zones import zones_of
 from scene.answer import Array, Flags
 

@@ -19,9 +19,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm.equilibrium import Point
 from cprbm.model import Chain
 from cprbm.pairs import Touching
+from cprbm.point import Point
 from scene.answer import Array
 
 CLOSE = 1.6  # elements between joints that are close; farther, a joint between them is not

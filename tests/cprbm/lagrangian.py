@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from cprbm.equilibrium import contact_gradient, contact_rows, point_at, system
 from cprbm.kinematics import State
+from cprbm.newton import system
+from cprbm.point import contact_gradient, contact_rows, point_at
 
 STEP = 1e-6
 

@@ -8,9 +8,10 @@ import pytest
 import cprbm
 from cprbm.certifying import certify
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import equilibrium, point_at
+from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of
+from cprbm.point import point_at
 from scene import Ending
 from tests.cprbm.scenes import hinge
 

@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm import equilibrium as newton
+from cprbm import newton
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import contact_gradient, contact_rows, equilibrium, point_at, system
+from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
+from cprbm.newton import system
+from cprbm.point import contact_gradient, contact_rows, point_at
 from scene import Profile
 from scene.reading import scene_from
 from tests.cprbm.scenes import cantilever_data, force

@@ -7,9 +7,10 @@ from scipy.optimize import minimize
 import cprbm
 from cprbm import nearest
 from cprbm.contact import NO_ROWS, Rows
-from cprbm.equilibrium import LONGEST_TURN, equilibrium, point_at
+from cprbm.equilibrium import LONGEST_TURN, equilibrium
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.mechanism import mechanism_of
+from cprbm.point import point_at
 from scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH, hinge
 

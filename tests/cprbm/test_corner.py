@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm import equilibrium as newton
+from cprbm import newton
 from cprbm.corner import corners_of
 from cprbm.faces import faces_of
 from scene.statement import LineContact

@@ -7,9 +7,10 @@ import cprbm
 import exact
 from cprbm.contact import NO_ROWS
 from cprbm.crossing import cross
-from cprbm.equilibrium import equilibrium, point_at
+from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of
+from cprbm.point import point_at
 from scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
 

@@ -9,9 +9,11 @@ from cprbm import smooth
 from cprbm.closure import closure_forces, closure_rows, closure_second, closure_values
 from cprbm.contact import NO_ROWS
 from cprbm.energy import strain_energy, strain_gradient, strain_hessian
-from cprbm.equilibrium import contact_gradient, contact_rows, equilibrium, measure, newton_step, point_at, system
+from cprbm.equilibrium import equilibrium, measure
 from cprbm.kinematics import State, positions, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
+from cprbm.newton import newton_step, system
+from cprbm.point import contact_gradient, contact_rows, point_at
 from cprbm.settings import Settings
 from tests.cprbm.rolled import coil, hooked, neck, strip
 from tests.cprbm.scenes import hinge, hinge_data

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import cprbm
-import cprbm.equilibrium as newton
-from cprbm import Settings
+from cprbm import Settings, newton
 from cprbm.closure import closure_forces, closure_rows, closure_second, closure_values
 from cprbm.kinematics import State, positions, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of

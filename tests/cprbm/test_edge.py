@@ -5,11 +5,11 @@ import pytest
 from pydantic import TypeAdapter
 
 import cprbm
-from cprbm import equilibrium as newton
-from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import contact_gradient, contact_rows, local_rows, point_at
+from cprbm import newton
+from cprbm.contact import NO_ROWS, Local, over_unknowns
 from cprbm.kinematics import State, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
+from cprbm.point import contact_gradient, contact_rows, point_at
 from scene import Ending
 from scene.reading import scene_from
 from scene.statement import Contact, PaperRigid, Related
@@ -221,8 +221,10 @@ def test_rows_and_blocks_are_derivatives(kind, moves, formulation):
     second = np.zeros((len(base), len(base)))
     for group, share in point.rows.shares(lam):
         blocks = group.curvature(share)
-        J = local_rows(model, point.state, point.at, blocks.joints, blocks.angles)
-        second += np.einsum("gkn,gkl,glm->nm", J, blocks.matrices, J)
+        for joints, angles, matrix in zip(blocks.joints, blocks.angles, blocks.matrices, strict=True):
+            k = len(matrix)
+            J = over_unknowns(model, point.state, point.at, [Local(joints[None], angles[None], np.eye(k))])
+            second += J.T @ matrix @ J
     fx, fy, _ = point.rows.forces(lam, model.n_joints, model.n_unknowns)
     _, _, over_theta, over_phi = pulled_back(model, point.state, point.at, fx, fy)
     exact = contact_rows(model, point)

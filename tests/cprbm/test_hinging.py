@@ -6,10 +6,12 @@ import pytest
 import cprbm
 from cprbm.closure import closure_rows, closure_second, closure_values
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import equilibrium, local_system_at, newton_step, point_at
+from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.local import local_step
 from cprbm.mechanism import mechanism_of
+from cprbm.newton import local_system_at, newton_step
+from cprbm.point import point_at
 from scene.reading import scene_from
 from tests.together.pivots import FORCE, LENGTH, MATERIALS, MOMENT, STRIP, line, pin, weld
 

@@ -9,9 +9,10 @@ import pytest
 import cprbm
 from cprbm.contact import NO_ROWS, Rows
 from cprbm.crossing import own_crossings
-from cprbm.equilibrium import contact_gradient, local_system_at, newton_step, point_at
 from cprbm.kinematics import State, positions
 from cprbm.local import local_step
+from cprbm.newton import local_system_at, newton_step
+from cprbm.point import contact_gradient, point_at
 from scene import Ending, SceneError
 from tests.cprbm import necks
 from tests.cprbm.rolled import MODULUS, NARROWS, THICKNESS, WIDTH, coil, hooked, neck, roll, strip

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm import equilibrium as newton
+from cprbm import newton
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import equilibrium, point_at
+from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
+from cprbm.point import point_at
 from scene.reading import scene_from
 from tests.cprbm.lagrangian import check
 from tests.references.lying import Lying, Strip

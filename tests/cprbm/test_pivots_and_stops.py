@@ -5,9 +5,9 @@ import pytest
 
 import cprbm
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import contact_rows, point_at
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
+from cprbm.point import contact_rows, point_at
 from scene import Ending, SceneError
 from tests.fea_reference.cantilever import elastica
 from tests.together.pivots import FORCE, LENGTH, MOMENT, bowed, lever, straight, wheel

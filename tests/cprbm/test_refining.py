@@ -7,12 +7,12 @@ import pytest
 
 import cprbm
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import point_at
 from cprbm.kinematics import State, rest_state
 from cprbm.levelling import levelled
 from cprbm.march import March
 from cprbm.mechanism import mechanism_of
 from cprbm.model import Fit, Kinks, build
+from cprbm.point import point_at
 from cprbm.refining import BEYOND, SHARE, all_zones, carried_over, coarser, ends_of, fits, fitted, long_ones
 from cprbm.settings import Settings
 from cprbm.zones import Zone

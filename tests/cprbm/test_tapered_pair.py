@@ -5,9 +5,10 @@ import pytest
 
 import cprbm
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import equilibrium, point_at
+from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
+from cprbm.point import point_at
 from scene import SceneError
 from scene.reading import scene_from
 from scene.statement import Profile

@@ -5,9 +5,9 @@ import pytest
 
 import cprbm
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import point_at, potential_energy
 from cprbm.kinematics import State
 from cprbm.mechanism import mechanism_of
+from cprbm.point import point_at, potential_energy
 from scene.reading import scene_from
 from tests.cprbm.scenes import MODULUS, THICKNESS, WIDTH
 

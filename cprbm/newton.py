@@ -1,0 +1,281 @@
+"""One step of Newton's method at a state, under the contacts that will press.
+
+==========  =================================================================================
+q           unknowns: link angles θ, then u, v, φ of the free bodies
+L           PE + μ·Z + λ·c, Lagrangian
+H           its Hessian: tridiagonal over θ, plus JᵀWJ of the touching places
+W = VσVᵀ    second derivative of λ·c over its local numbers, entered as border columns JᵀV
+S           Schur complement of the tridiagonal part, :mod:`cprbm.bordered`
+Δq, Δμ, Δλ  the step: H Δq + A_Eᵀ Δμ + A_Iᵀ Δλ = −∂L, A_E Δq = −Z, A_I Δq ≤ −c
+G           compliance of the gaps: what Δλ opens them by
+==========  =================================================================================
+
+The step is sought in differences, so that what round-off leaves of one is the right-hand side of the next.  Which
+contacts press is a small complementarity problem in G.  H is made positive definite on the feasible directions where it
+is not, first by the stiffness of the contacts that press, then by a shift.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from cprbm.bordered import Bordered, Kept, Symmetric, anchored, bordered, factorised, without
+from cprbm.closure import closure_forces, closure_second
+from cprbm.complementarity import pressing
+from cprbm.contact import Rows, over_unknowns
+from cprbm.kinematics import pulled_back
+from cprbm.local import LocalSystem, local_step, local_system
+from cprbm.point import Point, Problem
+from scene.answer import Array, Flags, Ints
+
+CONTACT_STIFFNESS = (1e4, 1e6)  # of pressing contacts while the energy alone is not convex, S/ℓ²; the first that helps
+MANY = 40  # contact rows beyond which the system is solved with the joints' positions as unknowns
+LOCAL = 8  # joints in a row that is local
+
+
+@dataclass(frozen=True)
+class System:
+    """A factorised Newton system.
+
+    Attributes:
+        factors: the tridiagonal part, and the border: bodies, anchors, curvatures, equalities and contacts.
+        anchors: unknowns over θ that stand in the border, behind the bodies.
+        n_bodies: u, v, φ of all bodies.
+        active: the contacts that press (m,).
+        added: right-hand sides of the curvatures' columns (r,): of those that were added.
+        n_equalities: columns behind the curvatures'; those of the contacts stand behind them.
+        expected: negative eigenvalues of a minimum's system without contacts.
+    """
+
+    factors: Bordered
+    anchors: Ints
+    n_bodies: int
+    active: Flags
+    added: Array
+    n_equalities: int
+    expected: int
+
+    @property
+    def n_base(self) -> int:
+        """Border columns without those of the contacts."""
+        return self.n_bodies + len(self.anchors) + len(self.added) + self.n_equalities
+
+    @property
+    def base(self) -> Ints:
+        """Border columns without those of the contacts."""
+        return np.arange(self.n_base)
+
+    @property
+    def contacts(self) -> Ints:
+        """Border columns of the contacts."""
+        return np.arange(self.n_base, self.factors.corner.shape[0])
+
+    @property
+    def equalities(self) -> slice:
+        """Border columns of the equalities."""
+        return slice(self.n_base - self.n_equalities, self.n_base)
+
+    @cached_property
+    def schur(self) -> Symmetric:
+        """Factors of S without the contacts."""
+        return Symmetric(self.factors.schur[: self.n_base, : self.n_base])
+
+    @property
+    def convex(self) -> bool:
+        """Whether the Hessian is positive definite where the equalities hold."""
+        return self.factors.tridiagonal.negative() + self.schur.negative == self.expected
+
+    @cached_property
+    def kept(self) -> Kept:
+        """The system with the contacts that press, and no others.
+
+        Raises:
+            np.linalg.LinAlgError: it is exactly singular.
+        """
+        return self.factors.kept(np.concatenate((self.base, self.contacts[self.active])))
+
+    @property
+    def stable(self) -> bool:
+        """Whether the Hessian is positive definite where the equalities and the contacts that press hold."""
+        return self.kept.negative <= self.expected + int(np.count_nonzero(self.active))
+
+    def solved(self, f: Array, Z: Array) -> Array:
+        """Δq (n_links + 3B,) by which ∂L changes by ``f`` and Z by ``Z``, and no gap that presses."""
+        n = len(f) - self.n_bodies
+        right = np.zeros(self.kept.corner.shape[0])
+        right[: self.n_bodies] = f[n:]
+        right[self.n_bodies : self.n_bodies + len(self.anchors)] = f[self.anchors]
+        right[self.equalities] = Z
+        return self.change(*self.kept.solve(f[:n], right))
+
+    def change(self, a: Array, b: Array) -> Array:
+        """Change of q, from that over θ and the border's solution."""
+        change = np.concatenate((a, b[: self.n_bodies]))
+        change[self.anchors] = b[self.n_bodies : self.n_bodies + len(self.anchors)]
+        return change
+
+
+def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System:
+    """Assemble and factorise; ``stiff`` (m,) are stiffnesses of contacts that are added, nought of most.
+
+    Raises:
+        np.linalg.LinAlgError: the tridiagonal part is exactly singular.
+    """
+    model, closure, A_I = problem.model, problem.closure, point.slopes
+    n, n_bodies = model.n_links, 3 * len(model.free_bodies)
+    fx, fy = closure_forces(model, closure, point.mu)
+    if point.lam.any():
+        cx, cy, _ = point.rows.forces(point.lam, model.n_joints, model.n_unknowns)
+        fx, fy = fx + cx, fy + cy
+    _, _, second, second_bodies = pulled_back(model, point.state, point.at, fx, fy)
+    diagonal, off = problem.springs
+    diagonal, off = diagonal + second - point.work.diagonal, off - point.work.off
+    if shift:
+        diagonal += shift * model.lengths
+    over_phi = second_bodies + closure_second(model, closure, point.state, point.mu) - point.work.second
+
+    low_rank, sigma, added = _curvatures(point)
+    if stiff.any():
+        low_rank = np.concatenate((low_rank, A_I[stiff > 0.0]))
+        sigma = np.concatenate((sigma, stiff[stiff > 0.0]))
+        added = np.concatenate((added, -point.rows.values[stiff > 0.0]))
+    anchors = problem.loose
+    tridiagonal = factorised(*without(diagonal, off, problem.still))
+    if tridiagonal.nearly_singular(problem.generic, model.lengths):
+        anchors = anchored(diagonal, off, model.lengths, anchors, closure.fixed)
+        tridiagonal = factorised(*without(diagonal, off, np.concatenate((anchors, closure.fixed))))
+
+    r, k = len(sigma), len(anchors)
+    first, inner = n_bodies + k, n_bodies + k + r
+    size = inner + len(point.A_E) + len(A_I)
+    border, corner = np.zeros((n, size), order="F"), np.zeros((size, size))
+    wide = np.concatenate((low_rank, point.A_E, A_I))
+    border[:, first:] = wide[:, :n].T
+    corner[:n_bodies, first:] = wide[:, n:].T
+    body = np.arange(2, n_bodies, 3)
+    corner[body, body] = over_phi
+    i = np.arange(first, inner)
+    corner[i, i] = -1.0 / sigma
+    for place, link in enumerate(anchors.tolist(), start=n_bodies):
+        corner[place, place] = diagonal[link]
+        corner[place, first:] = border[link, first:]
+        border[link + 1 : link + 2, place] = off[link : link + 1]
+        border[max(link - 1, 0) : link, place] = off[max(link - 1, 0) : link]
+    corner[first:, :first] = corner[:first, first:].T
+    border[anchors] = border[closure.fixed] = 0.0
+    return System(
+        factors=bordered(tridiagonal, border, corner),
+        anchors=anchors,
+        n_bodies=n_bodies,
+        active=point.lam > 0.0,
+        added=added,
+        n_equalities=len(point.A_E),
+        expected=len(point.A_E) + int(np.count_nonzero(sigma > 0.0)),
+    )
+
+
+def _curvatures(point: Point) -> tuple[Array, Array, Array]:
+    """Rows (JᵀV)ᵀ over q (r, n_links + 3B), σ (r,) and their right-hand sides, of the contacts that press."""
+    pressing = [(group, lam) for group, lam in point.rows.shares(point.lam) if lam.any()]
+    factors = [group.factored(lam) for group, lam in pressing]
+    found = np.concatenate([np.zeros(0), *(each.sigma for each in factors)])
+    rows = over_unknowns(point.model, point.state, point.at, [each.columns for each in factors])
+    return rows, found, np.zeros(len(found))
+
+
+def own_system(problem: Problem, point: Point) -> System:
+    """The system with nothing added to it; for Newton's step, the rate and the curvatures at a state the same one.
+
+    Raises:
+        np.linalg.LinAlgError: the tridiagonal part is exactly singular.
+    """
+    for its, found in point.systems:
+        if its is problem:
+            return found
+    found = system(problem, point, np.zeros(point.rows.size), 0.0)
+    point.systems.append((problem, found))
+    return found
+
+
+def _convex_system(problem: Problem, point: Point) -> System:
+    """A system that is positive definite on the feasible directions.
+
+    Raises:
+        np.linalg.LinAlgError: no shift up to the springs' own stiffness helped.
+    """
+    none = np.zeros(point.rows.size)
+    tries = [(none, 0.0)]
+    if point.lam.any():
+        tries += [(np.where(point.lam > 0.0, stiffness, 0.0), 0.0) for stiffness in CONTACT_STIFFNESS]
+    tries += [(none, 4.0**i) for i in range(1, 12)]
+    for stiff, shift in tries:
+        try:
+            plain = shift == 0.0 and not stiff.any()
+            found = own_system(problem, point) if plain else system(problem, point, stiff, shift)
+            if found.convex:
+                return found
+        except np.linalg.LinAlgError:
+            continue
+    raise np.linalg.LinAlgError("the energy cannot be made convex")
+
+
+def many(rows: Rows) -> bool:
+    """Whether the contacts are many and each is local: the rows of a fitted boundary are not."""
+    return rows.size > MANY and all(group.joints.shape[1] <= LOCAL for group in rows.groups)
+
+
+def local_system_at(problem: Problem, point: Point) -> LocalSystem:
+    """The system with the joints' positions as unknowns, at a state."""
+    return local_system(
+        problem.model,
+        problem.closure,
+        point.state,
+        point.at,
+        point.mu,
+        point.lam,
+        point.Z,
+        point.rows,
+        point.gradient,
+        point.work,
+        problem.stiffened(),
+    )
+
+
+def newton_step(problem: Problem, point: Point, *, thorough: bool = False) -> tuple[Array, Array, Array]:
+    """Change of q and the new multipliers μ, λ.
+
+    Args:
+        problem: what stays the same.
+        point: where the step begins.
+        thorough: of many contacts too, find the set that presses by the complementarity problem's own rule, and
+            make the energy convex; dear where they are many.
+
+    Raises:
+        np.linalg.LinAlgError: the linearised problem has no solution.
+    """
+    if many(point.rows) and not thorough:
+        return local_step(local_system_at(problem, point), point.lam > 0.0)
+    found = _convex_system(problem, point)
+    n, base = problem.model.n_links, found.n_base
+    f = -problem.moves * (point.gradient + point.held + point.pressed)
+    right = np.concatenate((f[n:], f[found.anchors], found.added, -point.Z))
+    f[found.anchors] = 0.0
+    first = found.factors.tridiagonal.solve(f[:n, None])[:, 0]
+    alone = found.factors.border.T @ first
+    if not point.rows.size:
+        b = found.schur.solve((right - alone)[:, None])[:, 0]
+        return found.change(first - found.factors.solved @ b, b), point.mu + b[found.equalities], point.lam
+    S = found.factors.schur
+    across = S[:base, base:]
+    solved = found.schur.solve(np.concatenate(((right - alone[:base])[:, None], across), axis=1))
+    b, X = solved[:, 0], solved[:, 1:]
+    G = across.T @ X - S[base:, base:]
+    G = 0.5 * (G + G.T)
+    lam, _ = pressing(G, point.rows.values + alone[base:] + b @ across + G @ point.lam, point.lam > 0.0)
+    more = lam - point.lam
+    b = b - X @ more
+    change = found.change(first - found.factors.solved @ np.concatenate((b, more)), b)
+    return change, point.mu + b[found.equalities], lam
