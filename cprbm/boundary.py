@@ -195,7 +195,7 @@ class FittedBoundary:
             np.copysign(1.0, bend, out=sigma[:k])
             np.copysign(1.0, turning, out=sigma[first:])
             joints = np.concatenate((self.joints[pressing], self.points))
-            return Factored(Local(joints[None], self.links[None], columns), sigma)
+            return Factored(Local(joints[None], self.links[None], columns, alike=True), sigma)
 
         each, angles = self._local
         return (

@@ -17,7 +17,7 @@ import numpy as np
 
 from cprbm.model import Attachment, Model
 from cprbm.posture import Posture, posture
-from scene.answer import Array, Ints
+from scene.answer import Array
 
 
 @dataclass(frozen=True)
