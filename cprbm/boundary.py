@@ -40,7 +40,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.linalg import lapack
 
-from cprbm.contact import Blocks, Factored, Group, Local
+from cprbm.contact import Factored, Group, Local
 from cprbm.kinematics import Positions, State
 from cprbm.model import Model
 from cprbm.offset_points import offset_vectors
@@ -85,7 +85,16 @@ class FittedBoundary:
     def _local(self) -> tuple[Ints, Ints]:
         """Joints and angles of each row, (m, m + n) and (m, n + 1)."""
         joints = np.concatenate((self.joints, self.points))
-        return tuple(np.broadcast_to(each, (len(self.joints), len(each))) for each in (joints, self.links))
+        m = len(self.joints)
+        return np.broadcast_to(joints, (m, len(joints))), np.broadcast_to(self.links, (m, len(self.links)))
+
+    @cached_property
+    def _spans(self) -> tuple[slice, slice, slice]:
+        """The related joints of both beams and the links, which are neighbours."""
+        joints, points, links = (
+            slice(int(each[0]), int(each[-1]) + 1) for each in (self.joints, self.points, self.links)
+        )
+        return joints, points, links
 
     @cached_property
     def _keys(self) -> tuple[int, ...]:
@@ -105,21 +114,23 @@ class FittedBoundary:
             np.linalg.LinAlgError: the points do not determine the polynomial.
         """
         m, n, size = len(self.joints), len(self.points), self.degree + 1
-        _, nx, ny = offset_vectors(state.theta[self.links], self.side * self.offset)
-        bx, by = at.x[self.points] + nx, at.y[self.points] + ny
+        joints, points, links = self._spans
+        _, nx, ny = offset_vectors(state.theta[links], self.side * self.offset)
+        bx, by = at.x[points] + nx, at.y[points] + ny
         if self.along_x:
-            A, B, a, o = bx, by, at.x[self.joints], at.y[self.joints]
+            A, B, a, o = bx, by, at.x[joints], at.y[joints]
         else:
-            A, B, a, o = by, bx, at.y[self.joints], at.x[self.joints]
-        low, high = float(A.min()), float(A.max())
+            A, B, a, o = by, bx, at.y[joints], at.x[joints]
+        low, high = float(np.minimum.reduce(A)), float(np.maximum.reduce(A))
         centre, width = 0.5 * (high + low), 0.5 * (high - low)
         D = self._derivative / width
         # the basis at points and joints, a row for each polynomial
         basis = _basis((np.concatenate((A, a)) - centre) / width, self.degree)
         V, at_joints = basis[:, :n], basis[:, n:]
-        lu, pivots, q_B, failed = lapack.dgesv(V @ V.T, V)
+        *_, inverse, failed = lapack.dgesv(V @ V.T, np.eye(size))
         if failed:
             raise np.linalg.LinAlgError("the points of a fitted boundary are too few or in one place")
+        q_B = inverse @ V
         q = q_B @ B
         q1 = D @ q
         g, g1 = q @ at_joints, q1 @ at_joints
@@ -127,71 +138,74 @@ class FittedBoundary:
 
         # dq over A and B, and with it the slopes of c over (a, o, A, B)
         V1 = D.T @ V
-        q_A = -lapack.dgetrs(lu, pivots, V1 * rest + V * P1)[0]
+        q_A = -inverse @ (V1 * rest + V * P1)
         over_A, over_B = self.sense * (at_joints.T @ q_A), self.sense * (at_joints.T @ q_B)
         # (A, B) over (x, y, τ) of the boundary's joints; τ halves onto two links
         nA, nB = (nx, ny) if self.along_x else (ny, nx)
         tA, tB = (-ny, nx) if self.along_x else (nx, -ny)
 
-        def over_locals(over_a: Array, over_o: Array, over_A: Array, over_B: Array) -> Array:
-            """Columns (a, o, A, B) to columns (x of joints and points, y of the same, θ of links)."""
-            k = over_a.shape[1]
+        def over_locals(k: int, over_A: Array, over_B: Array) -> tuple[Array, int, int]:
+            """(A, B) to (x of ``k`` joints and the points, y of the same, θ of links), and where a and o begin."""
             found = np.zeros((len(over_A), 2 * (k + n) + n + 1))
             along, across = (0, k + n) if self.along_x else (k + n, 0)
-            found[:, along : along + k], found[:, along + k : along + k + n] = over_a, over_A
-            found[:, across : across + k], found[:, across + k : across + k + n] = over_o, over_B
-            half = 0.5 * (over_A * tA + over_B * tB)
+            found[:, along + k : along + k + n] = over_A
+            found[:, across + k : across + k + n] = over_B
+            half = over_A * (0.5 * tA) + over_B * (0.5 * tB)
             found[:, -n - 1 : -1] = half
             found[:, -n:] += half
-            return found
+            return found, along, across
+
+        slopes, along, across = over_locals(m, over_A, over_B)
+        diagonal, next_row = slopes.reshape(-1), slopes.shape[1] + 1
+        diagonal[along : m * (next_row - 1) : next_row] = self.sense * g1
+        diagonal[across : m * (next_row - 1) : next_row] = -self.sense
 
         def factors(multipliers: Array) -> Factored:
             pressing = multipliers.nonzero()[0]
             k = len(pressing)
             w, phi = self.sense * multipliers[pressing], at_joints[:, pressing]
-            mu = -lapack.dgetrs(lu, pivots, phi @ w)[0]
+            mu = -inverse @ (phi @ w)
             q2, mu1 = D @ q1, D @ mu
             U, U1, U2, P2 = mu @ V, mu1 @ V, (D @ mu1) @ V, q2 @ V
             bend = w * (q2 @ phi)
-            # over (a, A, B), τ apart: squares of a, then the factors (f; g) of products
-            f, g = np.zeros((2, n + size, k + 2 * n))
+            # the two factors of every product, over (a, A, B): of a point's own ones, and of those through q
+            both = np.zeros((2, n + size, k + 2 * n))
+            f, g = both
             i = np.arange(n)
-            f[i, k + i] = 1.0
-            g[i, k + i], g[i, k + n + i] = 0.5 * (U2 * rest + 2.0 * U1 * P1 + U * P2), -U1
+            f[i, k + i], g[i, k + i], g[i, k + n + i] = 1.0, 0.5 * (U2 * rest + 2.0 * U1 * P1 + U * P2), -U1
             f[n:, :k], f[n:, k : k + n] = w * (D.T @ phi), U1 * V + U * V1
             g[n:, k : k + n], g[n:, k + n :] = q_A, q_B
-            sizes = np.maximum(np.sqrt(np.einsum("spk,spk->sp", (f, g), (f, g))), TINY)
-            alpha = np.sqrt(sizes[1] / sizes[0])[:, None]
-            f, g = np.sqrt(0.5) * alpha * f, np.sqrt(0.5) / alpha * g
-            over = np.concatenate((np.zeros((k, k + 2 * n)), f + g, f - g))
-            over[np.arange(k), np.arange(k)] = np.sqrt(np.abs(bend))
+            sizes = np.maximum(np.einsum("spk,spk->sp", both, both), TINY)
+            alpha = (0.25 * sizes[1] / sizes[0]) ** 0.25
+            f *= alpha[:, None]
+            g *= 0.5 / alpha[:, None]
+            products = np.concatenate((f + g, f - g))
             # the offset points turn with τ: d²(A, B)/dτ² = −(nA, nB)
             turning = -(multipliers @ over_A) * nA - (multipliers @ over_B) * nB
-            columns = np.zeros((len(over) + n, 2 * (k + n) + n + 1))
-            columns[:-n] = over_locals(over[:, :k], np.zeros((1, k)), over[:, k : k + n], over[:, k + n :])
-            columns[len(over) + i, 2 * (k + n) + i] = 0.5 * np.sqrt(np.abs(turning))
-            columns[len(over) + i, 2 * (k + n) + i + 1] = 0.5 * np.sqrt(np.abs(turning))
-            signs = np.ones(n + size)
+            # a column for each a_j and each τ_i, and two for each product
+            first, last = k + len(products), k + len(products) + n
+            columns = np.zeros((last, 2 * (k + n) + n + 1))
+            columns[k:first], along, _ = over_locals(k, products[:, k : k + n], products[:, k + n :])
+            columns[k:first, along : along + k] = products[:, :k]
+            columns[np.arange(k), along + np.arange(k)] = np.sqrt(np.abs(bend))
+            halves = columns[first:, 2 * (k + n) :]
+            halves[i, i] = halves[i, i + 1] = 0.5 * np.sqrt(np.abs(turning))
+            sigma = np.ones(last)
+            sigma[first - n - size : first] = -1.0
+            np.copysign(1.0, bend, out=sigma[:k])
+            np.copysign(1.0, turning, out=sigma[first:])
             joints = np.concatenate((self.joints[pressing], self.points))
-            return Factored(
-                Local(joints[None], self.links[None], columns),
-                np.concatenate((np.copysign(1.0, bend), signs, -signs, np.copysign(1.0, turning))),
-            )
+            return Factored(Local(joints[None], self.links[None], columns, alike=True), sigma)
 
-        def curvature(multipliers: Array) -> Blocks:
-            found = factors(multipliers)
-            v = found.columns.slopes
-            return Blocks(found.columns.joints, found.columns.angles, ((v.T * found.sigma) @ v)[None])
-
-        joints, angles = self._local
+        each, angles = self._local
         return (
             Group(
                 contact=self.name,
                 values=self.sense * (g - o),
-                joints=joints,
+                joints=each,
                 angles=angles,
-                slopes=over_locals(np.diag(self.sense * g1), np.diag(np.full(m, -self.sense)), over_A, over_B),
-                curvature=curvature,
+                slopes=slopes,
+                curvature=lambda lam: factors(lam).blocks(),
                 keys=self._keys,
                 arc=self.arc if self.on_first else at_joints.T @ (q_B @ self.arc),
                 shared=True,

@@ -11,8 +11,7 @@ Z_h         of slides and drives, :mod:`cprbm.holding`
 The first joint of a beam sits at its point by construction.  A first link that
 is welded to the ground does not turn and is no unknown at all.
 
-What the bodies have in an equality is linear in their posture, :mod:`cprbm.posture`; of its derivatives only those over
-the links of beams that end somewhere and over bodies' rotations change from state to state.
+What the bodies have in an equality is linear in their posture, :mod:`cprbm.posture`.
 """
 
 from __future__ import annotations
@@ -44,7 +43,7 @@ class Closure:
         own: Z less the last joints' places and the welded links' angles, without drives.
         whole: the same with what the last joints go with the points where their beams start.
         weld_links: the links of ``welds``.
-        even: those derivatives of Z that are the same in all states, (rows, n_links + 3B).
+        welded: derivatives of Z over the welded links, which are the same in all states, (rows, n_links + 3B).
         given: name of each value that is given, its row, and what the row has of it per unit (SI).
     """
 
@@ -57,13 +56,13 @@ class Closure:
     own: Linear
     whole: Linear
     weld_links: Ints
-    even: Array
+    welded: Array
     given: tuple[tuple[str, int, float], ...]
 
     @property
     def rows(self) -> int:
         """Number of equalities."""
-        return len(self.even)
+        return len(self.welded)
 
     @property
     def first_hinge(self) -> int:
@@ -80,8 +79,8 @@ def closure_of(
     model: Model, hinges: tuple[Hinge, ...], holds: tuple[Hold, ...], free: frozenset[str] = frozenset()
 ) -> Closure:
     """The equalities of a mechanism; the ends of some beams are ``free`` as yet."""
-    ends, welds, fixed = [], [], []
-    starts, places, given = [], [], []
+    ends, welds, fixed = list[int](), list[tuple[int, int]](), list[int]()
+    starts, places, given = list[Linear](), list[Linear](), list[tuple[str, int, float]]()
     count = len(model.free_bodies)
     for c, chain in enumerate(model.chains):
         start, end = chain.start, chain.end
@@ -109,9 +108,8 @@ def closure_of(
     for r, point in enumerate(starts):
         moved[2 * r : 2 * r + 2] = point.over
     whole = Linear(own.base, own.over + moved)
-    even = np.zeros((len(own.base), model.n_unknowns))
-    even[2 * len(ends) + np.arange(len(welds)), weld_links] = 1.0
-    even[:, model.n_links :] = whole.over[:, : 3 * count]
+    welded = np.zeros((len(own.base), model.n_unknowns))
+    welded[2 * len(ends) + np.arange(len(welds)), weld_links] = 1.0
     return Closure(
         ends=tuple(ends),
         end_joints=np.array([model.chains[c].joints.stop - 1 for c in ends], dtype=np.intp),
@@ -122,7 +120,7 @@ def closure_of(
         own=own,
         whole=whole,
         weld_links=weld_links,
-        even=even,
+        welded=welded,
         given=tuple(given),
     )
 
@@ -146,12 +144,12 @@ def closure_values(model: Model, closure: Closure, state: State, at: Positions, 
 
 def closure_rows(model: Model, closure: Closure, state: State, at: Positions) -> Array:
     """∂Z over all unknowns, (rows, n_links + 3B)."""
-    rows = closure.even.copy()
+    rows = closure.welded.copy()
     for r, c in enumerate(closure.ends):
         links = model.layout.links[c]
         np.negative(at.dy[links], out=rows[2 * r, links])
         rows[2 * r + 1, links] = at.dx[links]
-    rows[:, model.n_links + 2 :: 3] += closure.whole.over_phi(state.posture)
+    rows[:, model.n_links :] = closure.whole.over @ state.posture.derivatives[:, : 3 * len(model.free_bodies)]
     return rows
 
 

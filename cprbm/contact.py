@@ -29,13 +29,15 @@ class Local:
     """Rows over local numbers.
 
     Attributes:
-        joints, angles: what enters each row, (r, p) and (r, a), or all of them, (1, p) and (1, a), no joint twice.
+        joints, angles: what enters each row, (r, p) and (r, a), or all of them, (1, p) and (1, a).
         slopes: derivatives over x of the joints, y of the joints, angles (r, 2p + a).
+        alike: whether the same enters all rows, and nothing twice.
     """
 
     joints: Ints
     angles: Ints
     slopes: Array
+    alike: bool = False
 
 
 def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Local]) -> Array:
@@ -46,9 +48,9 @@ def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Loc
     first = 0
     for part in parts:
         r, p = len(part.slopes), part.joints.shape[1]
-        if len(part.joints) == 1:
-            forces[0, first : first + r, part.joints[0]] = part.slopes[:, :p].T
-            forces[1, first : first + r, part.joints[0]] = part.slopes[:, p : 2 * p].T
+        if part.alike:
+            forces[0][first : first + r, part.joints[0]] = part.slopes[:, :p]
+            forces[1][first : first + r, part.joints[0]] = part.slopes[:, p : 2 * p]
         elif p:
             places = (np.arange(first, first + r)[:, None] * J + part.joints).ravel()
             np.add.at(along, places, part.slopes[:, :p].ravel())
@@ -58,7 +60,7 @@ def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Loc
     first = 0
     for part in parts:
         r, p = len(part.slopes), part.joints.shape[1]
-        if len(part.angles) == 1:
+        if part.alike:
             rows[first : first + r, part.angles[0]] += part.slopes[:, 2 * p :]
         elif part.angles.size:
             places = (np.arange(first, first + r)[:, None] * n + part.angles).ravel()
@@ -76,6 +78,13 @@ class Factored:
 
     columns: Local
     sigma: Array
+
+    def blocks(self) -> Blocks:
+        """The same as matrices: one, or of each column where these have local numbers of their own."""
+        joints, angles, v = self.columns.joints, self.columns.angles, self.columns.slopes
+        if self.columns.alike:
+            return Blocks(joints, angles, ((v.T * self.sigma) @ v)[None])
+        return Blocks(joints, angles, self.sigma[:, None, None] * v[:, :, None] * v[:, None, :])
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +146,7 @@ class Group:
     def local(self) -> Local:
         """∂c."""
         joints, angles = (self.joints[:1], self.angles[:1]) if self.shared else (self.joints, self.angles)
-        return Local(joints, angles, self.slopes)
+        return Local(joints, angles, self.slopes, self.shared)
 
     def factored(self, multipliers: Array) -> Factored:
         """∂²(λ·c)."""

@@ -19,7 +19,6 @@ import numpy as np
 from cprbm.beam_loads import BeamLoad, MomentOnBeam, beam_loads, beam_moments, beam_work
 from cprbm.kinematics import Positions, State, pulled_back
 from cprbm.model import Model
-from cprbm.posture import turned
 from scene import Scene
 from scene.answer import Array
 from scene.statement import Force, Moment
@@ -176,7 +175,7 @@ def load_work(
             on_y += value * work.fy
             on_beams.append((load, value))
         elif isinstance(load, EndMoment):
-            total += value * load.moment * (state.theta[load.link] - model.rest[load.link])
+            total += value * load.moment * float(state.theta[load.link] - model.rest[load.link])
             gradient[load.link] += value * load.moment
         else:
             total += load.work(value, state.theta - model.rest)
@@ -184,12 +183,12 @@ def load_work(
                 total += load.shared_work(value, other, its_value)
             gradient[list(load.links)] += value * load.moment * load.weights
             moments.append((load, value))
-    total += linear @ standing.w
-    over_bodies, second = turned(standing, linear)
-    gradient[model.n_links :] = over_bodies
+    total += float(linear @ standing.w)
+    over_posture = linear @ standing.derivatives
+    gradient[model.n_links :], second = over_posture[: 3 * B], over_posture[3 * B :]
     if on_beams:
         over_theta, bodies, twice, twice_bodies = pulled_back(model, state, at, on_x, on_y)
         gradient += np.concatenate((over_theta, bodies))
         diagonal += twice
         second += twice_bodies
-    return LoadWork(float(total), gradient, second, diagonal, off, on_x, on_y, tuple(on_beams), tuple(moments))
+    return LoadWork(total, gradient, second, diagonal, off, on_x, on_y, tuple(on_beams), tuple(moments))

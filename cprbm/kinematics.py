@@ -17,7 +17,7 @@ import numpy as np
 
 from cprbm.model import Attachment, Model
 from cprbm.posture import Posture, posture
-from scene.answer import Array, Ints
+from scene.answer import Array
 
 
 @dataclass(frozen=True)
@@ -96,22 +96,13 @@ def positions(model: Model, state: State) -> Positions:
     return Positions(joints[0], joints[1], links[0], links[1])
 
 
-def beyond(model: Model, fx: Array, fy: Array) -> tuple[Array, Array]:
-    """Sums of forces ``fx``, ``fy`` (..., n_joints).
-
-    Returns:
-        F_i, of all beyond link i, (2, ..., n_links), and of all that starts and marks hold, in x and then y (..., 2k).
-    """
-    layout = model.layout
-    sums = np.empty((2, *fx.shape[:-1], model.n_links))
-    for own, behind in zip(layout.links_back, layout.behind_back, strict=True):
-        np.add.accumulate(fx[..., behind], axis=-1, out=sums[0][..., own])
-        np.add.accumulate(fy[..., behind], axis=-1, out=sums[1][..., own])
-    held = np.concatenate((fx[..., layout.roots], fy[..., layout.roots]), axis=-1)
-    k, chains = len(layout.roots), len(layout.first_links)
-    held[..., :chains] += sums[0][..., layout.first_links]
-    held[..., k : k + chains] += sums[1][..., layout.first_links]
-    return sums, held
+def beyond(model: Model, fx: Array, fy: Array) -> Array:
+    """Sums of forces ``fx``, ``fy`` (..., n_joints) from each joint to its beam's end, (2, ..., n_joints)."""
+    layout, forces = model.layout, np.array((fx, fy))
+    for joints in layout.joints_back:
+        backwards = forces[..., joints]
+        np.add.accumulate(backwards, axis=-1, out=backwards)
+    return forces
 
 
 def pulled_back(model: Model, state: State, at: Positions, fx: Array, fy: Array) -> tuple[Array, Array, Array, Array]:
@@ -121,44 +112,28 @@ def pulled_back(model: Model, state: State, at: Positions, fx: Array, fy: Array)
         gradient over θ (n_links,) and over the bodies (3B,) of Σ f_j·p_j, and its second derivatives:
         the diagonal over θ (n_links,) and over φ of each body (B,).
     """
-    (Fx, Fy), held = beyond(model, fx, fy)
-    over_bodies, second_bodies = model.layout.places.gradient(state.posture, held)
+    sums = beyond(model, fx, fy)
+    Fx, Fy = sums[:, model.layout.next_joints]
+    over_bodies, second_bodies = _held(model, state, sums)
     return at.dx * Fy - at.dy * Fx, over_bodies, -(at.dx * Fx + at.dy * Fy), second_bodies
 
 
 def over_unknowns(model: Model, state: State, at: Positions, fx: Array, fy: Array) -> Array:
     """The gradients (r, n_links + 3B) of r sums Σ f_j·p_j over all unknowns, for rows of forces (r, n_joints)."""
-    (Fx, Fy), held = beyond(model, fx, fy)
+    sums = beyond(model, fx, fy)
     rows = np.empty((len(fx), model.n_unknowns))
-    over_theta = rows[:, : model.n_links]
-    np.multiply(at.dx, Fy, out=over_theta)
-    over_theta -= at.dy * Fx
-    rows[:, model.n_links :], _ = model.layout.places.gradient(state.posture, held)
+    for links, behind in zip(model.layout.links, model.layout.behind, strict=True):
+        np.multiply(at.dx[links], sums[1][:, behind], out=rows[:, links])
+        rows[:, links] -= at.dy[links] * sums[0][:, behind]
+    rows[:, model.n_links :], _ = _held(model, state, sums)
     return rows
 
 
-def position_rows(model: Model, state: State, at: Positions, joints: Ints) -> tuple[Array, Array]:
-    """Derivatives of x and y of some ``joints`` (k,) over all unknowns: two arrays (k, n_links + 3B)."""
-    n = model.n_links
-    rows_x = np.zeros((len(joints), n + 3 * len(model.free_bodies)))
-    rows_y = np.zeros_like(rows_x)
-    for chain in model.chains:
-        mine = np.flatnonzero((joints >= chain.first_joint) & (joints < chain.first_joint + chain.n + 2))
-        if not mine.size:
-            continue
-        before = np.arange(chain.n + 1) < (joints[mine] - chain.first_joint)[:, None]
-        rows_x[mine, chain.links] = np.where(before, -at.dy[chain.links], 0.0)
-        rows_y[mine, chain.links] = np.where(before, at.dx[chain.links], 0.0)
-        start = chain.start
-        if start.body >= 0:
-            rx, ry = arm(start, state.bodies)
-            b = n + 3 * start.body
-            rows_x[mine, b], rows_x[mine, b + 2] = 1.0, -ry
-            rows_y[mine, b + 1], rows_y[mine, b + 2] = 1.0, rx
-    for j, mark in enumerate(model.marks.values(), start=model.first_mark):
-        mine = np.flatnonzero(joints == j)
-        rx, ry = arm(mark, state.bodies)
-        b = n + 3 * mark.body
-        rows_x[mine, b], rows_x[mine, b + 2] = 1.0, -ry
-        rows_y[mine, b + 1], rows_y[mine, b + 2] = 1.0, rx
-    return rows_x, rows_y
+def _held(model: Model, state: State, sums: Array) -> tuple[Array, Array]:
+    """What forces, in :func:`beyond` summed, mean for the bodies that beams' starts and marks are on."""
+    moving, count = model.layout.moving, len(model.free_bodies)
+    if not moving.size:
+        shape = sums.shape[1:-1]
+        return np.zeros((*shape, 3 * count)), np.zeros((*shape, count))
+    held = np.concatenate((sums[0][..., moving], sums[1][..., moving]), axis=-1)
+    return model.layout.moved.gradient(state.posture, held)

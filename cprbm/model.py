@@ -151,23 +151,21 @@ class Layout:
 
     Attributes:
         links, behind: of each chain, its links and the joints behind them.
-        links_back, behind_back: the same from the last to the first.
-        first_links: of each chain (chains,).
+        joints_back: of each chain, all its joints from the last to the first.
+        next_joints: the joint behind each link (n_links,).
         roots: the first joint of each chain, then the marks (k,): these are points of bodies or of the ground.
         places: their x, then their y (2k,).
+        moving, moved: the same of those that are on bodies.
     """
 
     links: tuple[slice, ...]
     behind: tuple[slice, ...]
-    links_back: tuple[slice, ...]
-    behind_back: tuple[slice, ...]
-    first_links: Ints
+    joints_back: tuple[slice, ...]
+    next_joints: Ints
     roots: Ints
     places: Linear
-
-
-def _backwards(of: slice) -> slice:
-    return slice(of.stop - 1, of.start - 1 if of.start > 0 else None, -1)
+    moving: Ints
+    moved: Linear
 
 
 @dataclass(frozen=True, eq=False)
@@ -218,24 +216,22 @@ class Model:
     @cached_property
     def layout(self) -> Layout:
         """Where everything stands."""
-        links = tuple(chain.links for chain in self.chains)
-        behind = tuple(slice(chain.first_joint + 1, chain.joints.stop) for chain in self.chains)
-        attachments = [*(chain.start for chain in self.chains), *self.marks.values()]
-        points = [point_of(at.body, at.point, self.references) for at in attachments]
-        places = stacked(points, len(self.free_bodies))
+        behind = tuple(slice(chain.joints.start + 1, chain.joints.stop) for chain in self.chains)
+        firsts = [chain.first_joint for chain in self.chains]
+        roots = np.array([*firsts, *range(self.first_mark, self.n_joints)], dtype=np.intp)
+        held = [*(chain.start for chain in self.chains), *self.marks.values()]
+        on_bodies = np.array([at.body >= 0 for at in held], dtype=bool)
+        points = stacked([point_of(at.body, at.point, self.references) for at in held], len(self.free_bodies))
+        base, over = points.base.reshape(-1, 2).T, np.stack((points.over[::2], points.over[1::2]))
         return Layout(
-            links=links,
+            links=tuple(chain.links for chain in self.chains),
             behind=behind,
-            links_back=tuple(_backwards(each) for each in links),
-            behind_back=tuple(_backwards(each) for each in behind),
-            first_links=np.array([chain.first_link for chain in self.chains], dtype=np.intp),
-            roots=np.array(
-                [*(chain.first_joint for chain in self.chains), *range(self.first_mark, self.n_joints)], dtype=np.intp
-            ),
-            places=Linear(
-                np.concatenate((places.base[::2], places.base[1::2])),
-                np.concatenate((places.over[::2], places.over[1::2])),
-            ),
+            joints_back=tuple(slice(each.stop - 1, each.start - 2 if each.start > 1 else None, -1) for each in behind),
+            next_joints=np.concatenate([np.arange(each.start, each.stop) for each in behind]),
+            roots=roots,
+            places=Linear(base.ravel(), np.concatenate(list(over))),
+            moving=roots[on_bodies],
+            moved=Linear(base[:, on_bodies].ravel(), np.concatenate(list(over[:, on_bodies]))),
         )
 
     @cached_property

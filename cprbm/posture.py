@@ -2,49 +2,59 @@
 
 ======  ======================================================================================
 w       (u, v, φ) of every body, then cos φ − 1 of every body, then sin φ (5B,)
-A       (r, 5B), in the parts A_u over (u, v, φ), A_c and A_s; b (r,)
-ℓ       b + A w, r numbers
+ℓ       b + A w, r numbers; A (r, 5B), b (r,)
 f       (r,), or rows of them (k, r): weights of the numbers
+W       ∂w over (u, v, φ) of every body, then ∂²w over φ of every body (5B, 4B); ∂ℓ and ∂²ℓ are A W
 ======  ======================================================================================
 
 A body's point, r = (r_x, r_y) from its reference place o, is at
 
     o + r + (u, v) + (cos φ − 1)(r_x, r_y) + sin φ (−r_y, r_x),
 
-in which small rotations stay exact, and over a body's φ
+in which small rotations stay exact, and of a body's φ
 
-    ∂ℓ/∂φ = A_φ − sin φ A_c + cos φ A_s,    ∂²ℓ/∂φ² = −cos φ A_c − sin φ A_s.
+    ∂(cos φ − 1, sin φ) = (−sin φ, cos φ),    ∂²(cos φ − 1, sin φ) = (−cos φ, −sin φ).
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
-from scene.answer import Array
+from scene.answer import Array, Ints
 
 
 @dataclass(frozen=True, slots=True)
 class Posture:
-    """w (5B,), and of every body cos φ and sin φ (B,)."""
+    """``w`` (5B,) and ``derivatives`` W (5B, 4B)."""
 
     w: Array
-    cos: Array
-    sin: Array
+    derivatives: Array
 
 
 def posture(bodies: Array) -> Posture:
     """Of ``bodies`` (B, 3), their u, v, φ."""
-    count, phi = len(bodies), bodies[:, 2]
-    w = np.empty(5 * count)
-    w[: 3 * count] = bodies.ravel()
-    less, sin = w[3 * count : 4 * count], w[4 * count :]
+    turns = bodies[:, 2].tolist()  # a handful, for which plain numbers are faster
     # cos φ − 1 as −2 sin²(φ/2), which keeps small rotations exact
-    half = np.sin(0.5 * phi)
-    np.multiply(half, -2.0 * half, out=less)
-    np.sin(phi, out=sin)
-    return Posture(w, 1.0 + less, sin)
+    less, sin = [-2.0 * math.sin(0.5 * phi) ** 2 for phi in turns], [math.sin(phi) for phi in turns]
+    cos, minus = [1.0 + each for each in less], [-each for each in sin]
+    even, places = _even(len(turns))
+    derivatives = even.copy()
+    derivatives.reshape(-1)[places] = [*minus, *cos, *(-each for each in cos), *minus]
+    return Posture(np.array([*bodies.ravel().tolist(), *less, *sin]), derivatives)
+
+
+@cache
+def _even(count: int) -> tuple[Array, Ints]:
+    """W where it is the same in all postures of ``count`` bodies, and the places in it of −sin, cos, −cos and −sin."""
+    even, b = np.eye(5 * count, 4 * count), np.arange(count)
+    even[3 * count :] = 0.0
+    rows = 3 * count + np.concatenate((b, count + b, b, count + b))
+    columns = np.concatenate((3 * b + 2, 3 * b + 2, 3 * count + b, 3 * count + b))
+    return even, rows * (4 * count) + columns
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,26 +74,15 @@ class Linear:
         """ℓ (r,)."""
         return np.asarray(self.base + self.over @ standing.w)
 
-    def over_phi(self, standing: Posture) -> Array:
-        """∂ℓ/∂φ without A_φ, (r, B)."""
-        count = len(standing.cos)
-        return np.asarray(standing.cos * self.over[:, 4 * count :] - standing.sin * self.over[:, 3 * count : 4 * count])
-
     def gradient(self, standing: Posture, weights: Array) -> tuple[Array, Array]:
         """f·∂ℓ over the bodies (..., 3B) and f·∂²ℓ over φ of each (..., B), for ``weights`` f (..., r)."""
-        return turned(standing, weights @ self.over)
-
-
-def turned(standing: Posture, over: Array) -> tuple[Array, Array]:
-    """The derivatives of ``over`` · w, (..., 5B): over the bodies (..., 3B), and the second over φ of each (..., B)."""
-    count = len(standing.cos)
-    first, c, s = over[..., : 3 * count].copy(), over[..., 3 * count : 4 * count], over[..., 4 * count :]
-    first[..., 2::3] += standing.cos * s - standing.sin * c
-    return first, -(standing.cos * c + standing.sin * s)
+        both = weights @ self.over @ standing.derivatives
+        bodies = 3 * (both.shape[-1] // 4)
+        return both[..., :bodies], both[..., bodies:]
 
 
 def point_of(body: int, point: tuple[float, float], references: Array) -> Linear:
-    """Both coordinates of a ``point``, r on one of the bodies with ``references`` o (B, 2); itself on the ground (−1)."""
+    """Both coordinates of a ``point``, r on one of the bodies with ``references`` o (B, 2) or the ground (−1)."""
     count = len(references)
     over = np.zeros((2, 5 * count))
     if body < 0:

@@ -5,7 +5,7 @@ p_j, o      a related joint of the beam; the circle's centre
 R           r + t/2, radius of g_m, with the thickness of the place; r for a line
 ρ_j, n_j    |p_j − o| and (p_j − o)/ρ_j
 c_j         R − ρ_j ≤ 0
-P_j         (I − n_j n_jᵀ)/ρ_j, derivative of n_j over p_j
+t_j         (n_y, −n_x); t_j t_jᵀ/ρ_j is the derivative of n_j over p_j
 ==========  =======================================================================
 
 Departure from eq. (11): the paper writes c_j = ±(g_m(x_j) − y_j).  Where g_m is defined and the joint is on its side
@@ -22,10 +22,11 @@ moment with h, how clamp and circle share the force with √h only.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from cprbm.contact import Blocks, Group
+from cprbm.contact import Factored, Group, Local
 from cprbm.kinematics import Positions, State
 from cprbm.model import Model
 from cprbm.related import related_joints
@@ -33,7 +34,7 @@ from scene import CircleContact, Scene
 from scene.answer import Array, Ints
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class RigidCircle:
     """One contact with a circle in the paper's form.
 
@@ -54,38 +55,46 @@ class RigidCircle:
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
-        m, moves = len(self.joints), self.mark >= 0
+        moves = self.mark >= 0
         ox, oy = (at.x[self.mark], at.y[self.mark]) if moves else self.center
         rx, ry = at.x[self.joints] - ox, at.y[self.joints] - oy
         rho = np.hypot(rx, ry)
-        n = np.stack((rx, ry), axis=1) / rho[:, None]
-        # r = p − o over the local numbers: x of joint and centre, y of joint and centre
-        signs = np.array([1.0, -1.0] if moves else [1.0])
-        over = np.kron(np.eye(2), signs)
-        P = (np.eye(2) - n[:, :, None] * n[:, None, :]) / rho[:, None, None]
-        second = -np.einsum("ik,mij,jl->mkl", over, P, over)
-        joints = self.joints[:, None]
-        if moves:
-            joints = np.hstack((joints, np.full((m, 1), self.mark)))
-        angles = np.zeros((m, 0), dtype=np.intp)
+        nx, ny = rx / rho, ry / rho
 
-        def curvature(multipliers: Array) -> Blocks:
-            pressing = np.flatnonzero(multipliers)
-            weights = multipliers[pressing, None, None]
-            return Blocks(joints[pressing], angles[pressing], weights * second[pressing])
+        def factors(multipliers: Array) -> Factored:
+            pressing = multipliers.nonzero()[0]
+            columns = Local(joints[pressing], angles[pressing], self._over(ny[pressing], -nx[pressing]))
+            return Factored(columns, -multipliers[pressing] / rho[pressing])
 
+        joints, angles = self._local
         return (
             Group(
                 contact=self.name,
                 values=self.radius - rho,
                 joints=joints,
                 angles=angles,
-                slopes=-n @ over,
-                curvature=curvature,
-                keys=tuple(int(j) for j in self.joints),
+                slopes=self._over(-nx, -ny),
+                curvature=lambda lam: factors(lam).blocks(),
+                keys=self._keys,
                 arc=self.arc,
+                factors=factors,
             ),
         )
+
+    def _over(self, x: Array, y: Array) -> Array:
+        """What is ``x`` and ``y`` (k,) over p − o, over x of joint and centre, then y: (k, 4), or (k, 2)."""
+        return np.stack((x, -x, y, -y) if self.mark >= 0 else (x, y), axis=1)
+
+    @cached_property
+    def _local(self) -> tuple[Ints, Ints]:
+        """Joints and angles of each row, (m, 2) or (m, 1), and (m, 0)."""
+        m = len(self.joints)
+        joints = (self.joints, np.full(m, self.mark)) if self.mark >= 0 else (self.joints,)
+        return np.stack(joints, axis=1), np.zeros((m, 0), dtype=np.intp)
+
+    @cached_property
+    def _keys(self) -> tuple[int, ...]:
+        return tuple(self.joints.tolist())
 
 
 def rigid_circle(scene: Scene, model: Model, name: str) -> RigidCircle:
