@@ -185,7 +185,8 @@ def test_both_systems_make_the_same_step(angle, thickness):
     assert np.any(point.lam > 0.0)
     one, other = newton_step(problem, point), local_step(local_system_at(problem, point), point.lam > 0.0)
     for mine, theirs in zip(one, other, strict=True):
-        assert mine == pytest.approx(theirs, rel=1e-7, abs=1e-7 * np.max(np.abs(mine), initial=0.0))
+        # multipliers that vanish do so but for round-off of the present one's forces, 0.3
+        assert mine == pytest.approx(theirs, rel=1e-7, abs=1e-14 + 1e-7 * np.max(np.abs(mine), initial=0.0))
 
 
 @cache
