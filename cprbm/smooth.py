@@ -183,6 +183,7 @@ class SmoothLine:
         turns, radii: δ and R of the springs (N,).
         x, y: joints (N+2,).
         known: what contacts have found along it, by the contact's name and what it is.
+        faced: by the contact's name, distances along it, and points of it and their feet for those.
     """
 
     chain: Chain
@@ -195,6 +196,7 @@ class SmoothLine:
     x: Array
     y: Array
     known: dict[tuple[str, str], tuple[Array, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
+    faced: dict[str, tuple[Array, Points, Points]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
     def sampled(self) -> Points:
