@@ -45,6 +45,7 @@ from scene.answer import Array, Flags, Ints
 # local numbers (x, y, θθθ, centre) to (x of joints, y of joints, θθθ)
 ALONE, WITH_CENTRE = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4])
 CLOSEST_ITERATIONS = 12
+CLOSE = 1e-10  # units of length: a step whose square is nothing
 LEAST_CURVATURE = 1e-6  # of D, 1/ℓ, below which its minimum has no place of its own
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 ON_IT = 1e-9  # gap of a clamped end, and how far its normal passes from the centre, where it is clamped on the circle
@@ -239,28 +240,32 @@ class Circle:
         first, last = (4 if clamped else -1 for clamped in self.clamped)
         lowest = lowest[self.own_places & (lowest > first) & (lowest < 2 * (self.a.n + 1) - last)]
         found = wells.wells(self.a, D, self._convexity(A)[::2], lowest, LEAST_CURVATURE, self.kinks.places)
-        places, settled = self._refined(line, s[found.samples])
-        places = places[settled & found.held(self.distance(line.at(places)) - self.offset)]
+        places, distance, settled = self._refined(line, D, found.samples)
+        places = places[settled & found.held(distance - self.offset)]
         for place in places:
             near &= np.abs(s - place) > wells.BESIDE * self.a.size_at(place)
         fixed = np.concatenate((s[near], self.ends))
         return np.concatenate((fixed, places)), np.arange(len(fixed) + len(places)) >= len(fixed)
 
-    def _refined(self, line: smooth.SmoothLine, s: Array) -> tuple[Array, Flags]:
-        """Newton's method on D_s = 0; the flags say where it settled at a minimum nearby."""
-        start = s
-        if not s.size:
-            return s, np.zeros(0, dtype=bool)
+    def _refined(self, line: smooth.SmoothLine, D: Array, samples: Ints) -> tuple[Array, Array, Flags]:
+        """Newton's method on D_s = 0 from the lowest ``samples`` (k,) of D: s, D, and where it settled nearby."""
+        start = line.sampled.s[samples]
+        if not samples.size:
+            return start, start, np.zeros(0, dtype=bool)
+        # an end has no parabola through it
+        inner = np.clip(samples, 1, len(D) - 2)
+        s = start + np.where(inner == samples, wells.lowest_of_parabola(line.sampled.s, D, inner), 0.0)
         for _ in range(CLOSEST_ITERATIONS):
             A, beyond = line.at(s), missed(self.a, self.kinks, s)
             leading = self._leading(A)
             D_ss = self._convexity(A) + leading * beyond.bend
             step = -(self.slope(A) + leading * beyond.angle) / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
             s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
-            if np.max(np.abs(step)) < 1e-13:
+            if np.max(np.abs(step)) < CLOSE:
                 break
         settled = (D_ss > LEAST_CURVATURE) & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
-        return s, settled
+        # at a minimum the last step changes it by less than round-off
+        return s, self.distance(A), settled
 
     def passed(self, before: Positions, after: Positions) -> bool:
         """Whether the beam has swept over the circle's centre between two states.

@@ -50,7 +50,7 @@ class Touches:
         """∂²c/∂z² (k, 10, 10)."""
         return self.bent()
 
-    def only(self, these: Flags | Ints) -> Touches:
+    def only(self, these: Flags | Ints | slice) -> Touches:
         """Some of the places."""
         return Touches(self.values[these], self.slopes[these], lambda: self.second[these], self.links[:, these])
 

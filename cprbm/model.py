@@ -27,6 +27,7 @@ from frozendict import frozendict
 
 from cprbm.curves import NeutralLine, neutral_line
 from cprbm.pieces import Piece, Pieces, pieces
+from cprbm.polynomial import ComplexArray
 from cprbm.posture import Linear, point_of, stacked
 from cprbm.section import Section, largest_rigidity, section_of
 from cprbm.settings import Settings
@@ -119,6 +120,16 @@ class Chain:
             return None
         link = np.minimum(np.arange(2 * self.n + 3) // 2, self.n)
         return self.pieces.seen(link, self.halves, self.halves - self.s[link], self.line.length / float(self.s[-1]))
+
+    @cached_property
+    def leans(self) -> ComplexArray:
+        """:attr:`lean` as numbers cos + i·sin (N+1,)."""
+        return np.asarray(self.lean[0] + 1j * self.lean[1])
+
+    @cached_property
+    def rest_rates(self) -> Array:
+        """Θ⁰/h of the elements (N,)."""
+        return np.asarray(self.turns / self.sizes)
 
     @cached_property
     def breaks(self) -> Array:
@@ -415,7 +426,7 @@ def _at_borders(carried: Pieces | None, borders: Array, begins: Array, unit_leng
     if carried is None:
         return np.stack((t, np.zeros_like(t)))
     piece = carried.seen(np.arange(len(t)), borders / unit_length, t, unit_length)
-    return np.stack((piece.a, piece.w))
+    return np.stack((piece.at.real, piece.at.imag))
 
 
 def attached(scene: Scene, model: Model, point: str) -> Attachment:

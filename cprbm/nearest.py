@@ -71,6 +71,7 @@ JOINT_REACH = 2.0  # joints with gaps wider than this many h²·(|ψ_A'| + |ψ_B
 PARALLEL = 1e-3  # a foot whose perpendicular misses by more (sine) is an end, not a foot
 SAME = 1e-3  # lengths that differ by less than this part are one
 SETTLED = 1e-9  # slope of D at a minimum
+STEEP = 1e-3  # slope of D where there is no minimum within CLOSE
 BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces A leaves its place to that
 
 DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even
@@ -157,6 +158,10 @@ class Pair:
         """Points of B at arc lengths ``sigma`` (k,), bent as its kinks say."""
         return kinked(self.b, self.kinks[1], lines[1].at(sigma))
 
+    def samples_on_a(self, lines: Lines, these: Ints) -> smooth.Points:
+        """The same at some of the samples of A, by their numbers (k,), which are worked out once in a state."""
+        return kinked(self.a, self.kinks[0], lines[0].sampled.only(these))
+
     def foot(self, lines: Lines, A: smooth.Points, sigma: Array) -> smooth.Points:
         """Points of B at arc lengths ``sigma`` (k,) with the tangents of the edge that faces A."""
         B = self.on_b(lines, sigma)
@@ -203,11 +208,12 @@ class Pair:
         """Curvature D″ with which A parts from B, at arc lengths ``s``."""
         lines = self.lines(state, at)
         D, sigma, _ = distance_along(self, lines, s)
-        return self.parting_at(lines, s, sigma, D)
+        return self.parting_at(lines, self.on_a(lines, s), self.on_b(lines, sigma), D)
 
-    def parting_at(self, lines: Lines, s: Array, sigma: Array, D: Array) -> Array:
-        """D″ at arc lengths ``s`` of A whose feet are at ``sigma``; between springs the curvature goes evenly."""
-        facing = np.sign(np.cos(self.on_a(lines, s).psi - self.on_b(lines, sigma).psi))
+    def parting_at(self, lines: Lines, A: smooth.Points, B: smooth.Points, D: Array) -> Array:
+        """D″ at points of A and the feet of B that face them; between springs the curvature goes evenly."""
+        s, sigma = A.s, B.s
+        facing = np.sign(np.cos(A.psi - B.psi))
         bend_A, bend_B = (
             np.interp(places, line.chain.s[1:-1], line.sampled.bend[2:-2:2])
             for line, places in zip(lines, (s, sigma), strict=True)
@@ -215,8 +221,8 @@ class Pair:
         if not self.tapered:
             return np.asarray(self.side * (facing * bend_A - bend_B / (1.0 - self.side * D * bend_B)))
         # dψ and dσ over ds by the tangents of the edges
-        B = self.foot(lines, self.on_a(lines, s), sigma)
-        A = self.beside(self.on_a(lines, s), B)
+        B = self.foot(lines, A, sigma)
+        A = self.beside(A, B)
         pace_A, pace_B = A.pace / A.speed, B.pace / B.speed
         along = pace_A / (pace_B - self.side * (D + self.wider(s, sigma)) * bend_B)
         return np.asarray(self.side * pace_A * (facing * bend_A - along * bend_B))
@@ -300,14 +306,24 @@ class Pair:
     def rows_along(self, lines: Lines, at: Positions, along: Places) -> list[tuple[Group, Array]]:
         """Rows at places of A; with each group the places on B."""
         inner = (along.keys > 0) & (along.keys <= self.a.n)
-        found = []
-        if np.any(inner):
-            eased = self._eased()
-            means = self._mean_rows(lines, at, along.only(inner))
-            found += [(replace(rows, values=rows.values - eased), sigma) for rows, sigma in means]
-        if not np.all(inner):
-            places = along.only(~inner)
-            found.append((self.rows_at(lines, at, places), places.sigma))
+        if not along.s.size:
+            return []
+        if not np.any(inner):
+            return [(self.rows_at(lines, at, along), along.sigma)]
+        # what touches is worked out in one go: around the joints, and behind that at single places
+        joints, single = along.only(inner), along.only(~inner)
+        s, sigma, weights = self._around(lines, joints)
+        touches = self.touches(
+            lines,
+            np.concatenate((s.ravel(), single.s)),
+            np.concatenate((sigma.ravel(), single.sigma)),
+            np.concatenate((np.zeros(s.size, dtype=bool), single.keys < 0)),
+        )
+        around = touches.only(slice(0, s.size)) if single.s.size else touches
+        means, eased = self._mean_rows(at, joints, around, weights), self._eased()
+        found = [(replace(rows, values=rows.values - eased), other) for rows, other in means]
+        if single.s.size:
+            found.append((self._single(at, single, touches.only(slice(s.size, None))), single.sigma))
         return found
 
     def _eased(self) -> float:
@@ -322,15 +338,17 @@ class Pair:
 
     def rows_at(self, lines: Lines, at: Positions, places: Places) -> Group:
         """Rows at single places."""
-        touches = self.touches(lines, places.s, places.sigma, places.keys < 0)
+        return self._single(at, places, self.touches(lines, places.s, places.sigma, places.keys < 0))
+
+    def _single(self, at: Positions, places: Places, touches: Touches) -> Group:
         weights = np.ones((len(places.s), 1))
         return gathered(self.name, (self.a, self.b), at, touches, weights, places.keys, places.s)
 
-    def _mean_rows(self, lines: Lines, at: Positions, joints: Places) -> list[tuple[Group, Array]]:
-        """Rows of the mean gap around joints of A; those next to a clamp of both beams in one."""
-        s, sigma, weights = self._around(lines, joints)
-        (m, q), chains = s.shape, (self.a, self.b)
-        touches = self.touches(lines, s.ravel(), sigma.ravel(), np.zeros(m * q, dtype=bool))
+    def _mean_rows(
+        self, at: Positions, joints: Places, touches: Touches, weights: Array
+    ) -> list[tuple[Group, Array]]:
+        """Rows of the mean gap around joints of A, ``weights`` (m, q); those next to a clamp of both beams in one."""
+        (m, q), chains = weights.shape, (self.a, self.b)
         number, alone, found = np.arange(m * q).reshape(m, q), np.ones(m, dtype=bool), []
         for key, beside in self._beside_clamps(joints.keys):
             alone[beside] = False
@@ -339,6 +357,8 @@ class Pair:
             arc, other = np.mean(joints.s[beside], keepdims=True), np.mean(joints.sigma[beside], keepdims=True)
             rows = gathered(self.name, chains, at, tied, shares, np.array([key]), arc)
             found.append((replace(rows, reach=0.5 * float(np.ptp(joints.s[beside]))), other))
+        if not found:
+            return [(gathered(self.name, chains, at, touches, weights, joints.keys, joints.s), joints.sigma)]
         if np.any(alone):
             rest = joints.only(alone)
             own = touches.only(number[alone].ravel())
@@ -351,7 +371,7 @@ class Pair:
         Gauss's points on either side of the border of B's elements that lies within, where the curvature steps.
         """
         s, sigma = joints.s, joints.sigma
-        A = self.on_a(lines, s)
+        A = self.samples_on_a(lines, 2 * joints.keys)
         B = self.foot(lines, A, sigma)
         ratio = (B.pace - B.bend * _seen_from(B, A)[1]) / (np.cos(A.psi - B.psi) * A.speed)  # ds/dσ
         borders = self.b.borders
@@ -501,9 +521,12 @@ def places_along(pair: Pair, lines: Lines, D: Array, sigma: Array, ends: Array) 
     else:
         s, turned = minima(pair, lines, D, sigma)
 
-    # D and feet at the joints are every other sample
-    bends = np.abs(pair.on_a(lines, a.s).bend) + np.abs(pair.on_b(lines, sigma[::2]).bend)
-    near = D[::2] - pair.offset < JOINT_REACH * a.h**2 * (1.0 + bends)
+    near = np.zeros(a.n + 2, dtype=bool)
+    facing = np.flatnonzero(np.isfinite(D[::2]))
+    if facing.size:
+        A, B = _faced(pair, lines, D, sigma, facing)
+        bends = np.abs(A.bend) + np.abs(B.bend)
+        near[facing] = D[2 * facing] - pair.offset < JOINT_REACH * a.h**2 * (1.0 + bends)
     for places, apart in ((s, wells.BESIDE), (ends, BESIDE_END)):
         for place in places:
             near[1:-1] &= np.abs(a.s[1:-1] - place) > apart * a.size_at(place)
@@ -543,17 +566,25 @@ def feet_of_ridges(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Ar
 def _facing_ends(pair: Pair, lines: Lines) -> Places:
     """The ends of B that face A within reach, and their feet on A; the keys follow A's joints."""
     a, b, reach = pair.a, pair.b, pair.offset + REACH
-    A, ends = lines[0].sampled, pair.on_b(lines, b.s[[0, -1]])
-    away = np.array([np.min(np.hypot(A.x - x, A.y - y)) for x, y in zip(ends.x, ends.y, strict=True)])
+    A, B, ends = lines[0].sampled, lines[1].sampled, b.s[[0, -1]]
+    away = np.hypot(A.x - B.x[[0, -1], None], A.y - B.y[[0, -1], None]).min(axis=1)
     near = np.flatnonzero(away < reach + a.h)
     if not near.size:
         return Places(np.zeros(0), np.zeros(0), near)
-    E, foot, facing = distance_along(pair.exchanged(), lines[::-1], ends.s[near])
-    E = _not_gone_round(pair.exchanged(), lines[::-1], E, pair.wider(foot, ends.s[near]))
+    E, foot, facing = distance_along(pair.exchanged(), lines[::-1], ends[near])
+    E = _not_gone_round(pair.exchanged(), lines[::-1], E, pair.wider(foot, ends[near]))
     facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
     for i, end in enumerate(near):
         facing[i] &= not held_together(b, a, int(-end), float(foot[i]))
-    return Places(ends.s[near][facing], foot[facing], a.n + 2 + near[facing])
+    return Places(ends[near][facing], foot[facing], a.n + 2 + near[facing])
+
+
+def _faced(pair: Pair, lines: Lines, D: Array, sigma: Array, joints: Ints) -> tuple[smooth.Points, smooth.Points]:
+    """Some joints of A, by their numbers (k,), and their feet, ``D`` and ``sigma`` being those of A's samples."""
+    known, what = lines[0].faced, pair.name
+    if what not in known or known[what][0] is not D:
+        known[what] = D, pair.samples_on_a(lines, 2 * joints), pair.on_b(lines, sigma[2 * joints])
+    return known[what][1:]
 
 
 def held_together(one: Chain, other: Chain, end: int, foot: float) -> bool:
@@ -589,7 +620,7 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     close = np.flatnonzero(np.isfinite(rough))
     D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
     if close.size:
-        distance, sigma[close], foot = feet_near(pair, lines, pair.on_a(lines, A.s[close]), G.s[nearest[close]])
+        distance, sigma[close], foot = feet_near(pair, lines, pair.samples_on_a(lines, close), G.s[nearest[close]])
         D[close] = np.where(foot, distance, np.inf)
     return _not_gone_round(pair, lines, D, pair.wider(A.s, sigma)), sigma
 
@@ -623,14 +654,21 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     # the joints beside a common clamp press together, a place of its own among them would part them
     first, last = (4 * pair.shared if clamped else 0 for clamped in pair.clamped)
     lowest = lowest[pair.own_places & (lowest > first) & (lowest < 2 * (pair.a.n + 1) - last)]
-    parting, near = np.full(pair.a.n + 2, np.inf), np.isfinite(D[::2])
-    parting[near] = pair.parting_at(lines, pair.a.s[near], sigma[::2][near], D[::2][near])
+    if not lowest.size:
+        return np.zeros(0), np.zeros(0)
+    parting, near = np.full(pair.a.n + 2, np.inf), np.flatnonzero(np.isfinite(D[::2]))
+    parting[near] = pair.parting_at(lines, *_faced(pair, lines, D, sigma, near), D[2 * near])
     found = wells.wells(pair.a, D - pair.offset, parting, lowest, LEAST_CURVATURE, pair.kinks[0].places)
     if not found.samples.size:
         return np.zeros(0), np.zeros(0)
     before, here, behind = found.samples - 1, found.samples, found.samples + 1
     low, high = s[before], s[behind]
-    s, sigma = _lowest_of_parabola(s, D, sigma, before, here, behind)
+    ahead = wells.lowest_of_parabola(s, D, here)
+    beside = np.where(ahead > 0.0, behind, before)
+    share = ahead / (s[beside] - s[here])
+    # where no parabola goes through, the middle one's foot
+    sigma = np.where(ahead == 0.0, sigma[here], sigma[here] + share * (sigma[beside] - sigma[here]))
+    s = s[here] + ahead
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
     for _ in range(CLOSEST_ITERATIONS):
         A = pair.on_a(lines, s)
@@ -651,27 +689,14 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
         if ridges.size:
             ahead = np.where(leaning.at_corner(B), sigma, _up_to(ridges, sigma, ahead))
         s, sigma = s + step, ahead
-        if np.all((np.abs(step) < CLOSE) & (np.abs(along) < CLOSE) & (np.abs(slope) < SETTLED)):
+        there = (np.abs(step) < CLOSE) & (np.abs(along) < CLOSE) & (np.abs(slope) < SETTLED)
+        if not ridges.size:  # no slope as steep as that goes through zero in so little
+            there |= (high - low < CLOSE) & (np.abs(slope) > STEEP)
+        if np.all(there):
             break
     held = found.held(pair.side * across - pair.wider(s, sigma) - pair.offset)
     settled = held & (convex > LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
     return s[settled], sigma[settled]
-
-
-def _lowest_of_parabola(
-    s: Array, D: Array, sigma: Array, before: Ints, here: Ints, behind: Ints
-) -> tuple[Array, Array]:
-    """Where parabolas through D at three samples are lowest, and σ there; at the middle one where none is."""
-    one, other = s[before] - s[here], s[behind] - s[here]
-    with np.errstate(invalid="ignore"):
-        rise, fall = (D[behind] - D[here]) / other, (D[before] - D[here]) / one
-        curved = (rise - fall) / (other - one)
-        ahead = -0.5 * (rise - curved * other) / curved
-    known = np.isfinite(ahead) & (ahead > one) & (ahead < other)
-    ahead = np.where(known, ahead, 0.0)
-    beside = np.where(ahead > 0.0, behind, before)
-    share = ahead / (s[beside] - s[here])
-    return s[here] + ahead, np.where(known, sigma[here] + share * (sigma[beside] - sigma[here]), sigma[here])
 
 
 def pair_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Pair:

@@ -3,7 +3,7 @@
 ==========  ==============================================================================
 s, t        arc length from the beam's start and from the start of link i
 e_i, n_i    direction of link i and its left normal
-a⁰, w⁰      coordinates of a point of the piece along e_i and n_i from joint i
+a⁰, w⁰      coordinates of a point of the piece along e_i and n_i from joint i; together the number a⁰ + i·w⁰
 ==========  ==============================================================================
 
 They are at rest: a link carries its piece along as it moves.  Arc lengths and coordinates are over the unit of
@@ -18,20 +18,17 @@ from typing import NamedTuple
 import numpy as np
 
 from cprbm.curves import EvenLine, NeutralLine
-from cprbm.polynomial import PolynomialLine
+from cprbm.polynomial import ComplexArray, PolynomialLine
 from cprbm.spline import SplineLine
 from scene.answer import Array, Ints
 
 
 class Piece(NamedTuple):
-    """a⁰, w⁰ and their first and second derivatives over s, (k,) each."""
+    """Points a⁰ + i·w⁰ ``at`` some places and their first and second derivatives over s, (k,) each."""
 
-    a: Array
-    w: Array
-    a1: Array
-    w1: Array
-    a2: Array
-    w2: Array
+    at: ComplexArray
+    first: ComplexArray
+    second: ComplexArray
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,11 +42,8 @@ class ArcPieces:
         """Points at arc lengths ``s`` (k,), on links ``link``, ``t`` from their starts."""
         curvature = self.curvature * unit_length
         first, half = self.start[link], 0.5 * curvature * t
-        chord = t * np.sinc(half / np.pi)
-        a1, w1 = np.cos(first + 2.0 * half), np.sin(first + 2.0 * half)
-        return Piece(
-            chord * np.cos(first + half), chord * np.sin(first + half), a1, w1, -curvature * w1, curvature * a1
-        )
+        along = np.exp(1j * (first + 2.0 * half))
+        return Piece(t * np.sinc(half / np.pi) * np.exp(1j * (first + half)), along, 1j * curvature * along)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,24 +52,22 @@ class CurvePieces:
 
     Attributes:
         line: the neutral line.
-        x, y: where the links begin, from its start, m (N+1,).
-        angle: of the links (N+1,).
+        start: where the links begin, from its start, x + i·y, m (N+1,).
+        direction: e_i of the links, as numbers (N+1,).
     """
 
     line: PolynomialLine | SplineLine
-    x: Array
-    y: Array
-    angle: Array
+    start: ComplexArray
+    direction: ComplexArray
 
     def seen(self, link: Ints, s: Array, t: Array, unit_length: float) -> Piece:
         """Points at arc lengths ``s`` (k,), on links ``link``, ``t`` from their starts."""
         here = self.line.at(s * unit_length)
-        dx, dy = (here.x - self.x[link]) / unit_length, (here.y - self.y[link]) / unit_length
-        angle = self.angle[link]
-        cos, sin = np.cos(angle), np.sin(angle)
-        a1, w1 = np.cos(here.angle - angle), np.sin(here.angle - angle)
-        curvature = here.curvature * unit_length
-        return Piece(dx * cos + dy * sin, dy * cos - dx * sin, a1, w1, -curvature * w1, curvature * a1)
+        against = self.direction[link].conj()
+        off = here.x + 1j * here.y
+        off -= self.start[link]
+        along = here.tangent * against
+        return Piece(off * (against / unit_length), along, (1j * unit_length) * here.curvature * along)
 
 
 Pieces = ArcPieces | CurvePieces
@@ -88,4 +80,4 @@ def pieces(line: NeutralLine, s: Array, angle: Array) -> Pieces | None:
             return None
         return ArcPieces(line.curvature, line.angle(s[:-1]) - angle)
     joints = line.at(s[:-1])
-    return CurvePieces(line, joints.x, joints.y, angle)
+    return CurvePieces(line, joints.x + 1j * joints.y, np.exp(1j * angle))

@@ -18,21 +18,27 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cprbm.panels import Panels, panelled
 from scene import Polynomial
 from scene.answer import Array
+
+ComplexArray = NDArray[np.complex128]
 
 FEWEST_PANELS = 64
 
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """Some places of a line, arrays (k,): ``x``, ``y`` from the line's start, m, ``angle`` θ and ``curvature`` κ."""
+    """Some places of a line, (k,) each: ``x`` and ``y`` from the line's start, m, and ``curvature`` κ.
+
+    ``tangent`` are unit tangents cos θ + i·sin θ.
+    """
 
     x: Array
     y: Array
-    angle: Array
+    tangent: ComplexArray
     curvature: Array
 
 
@@ -61,7 +67,8 @@ class PolynomialLine:
 
     def angle(self, s: Array) -> Array:
         """Tangent angle θ(s), rad."""
-        return self.at(s).angle
+        g1 = np.polynomial.polynomial.polyval(self.panels.inverted(s), self.slope)
+        return self._turned(np.arctan(g1))
 
     def position(self, s: Array) -> tuple[Array, Array]:
         """Position x(s), y(s), m."""
@@ -86,11 +93,15 @@ class PolynomialLine:
             g1 = g1 * v + self.slope[k]
             g = g * v + self.slope[k] / (k + 1)
         g = g * v
+        speed = np.hypot(1.0, g1)
+        tangent = np.empty(v.shape, dtype=complex)
+        tangent.real = (self.along[0] + g1 * self.across[0]) / speed
+        tangent.imag = (self.along[1] + g1 * self.across[1]) / speed
         return Places(
             x=v * self.along[0] + g * self.across[0],
             y=v * self.along[1] + g * self.across[1],
-            angle=self._turned(np.arctan(g1)),
-            curvature=self._sense() * g2 / np.hypot(1.0, g1) ** 3,
+            tangent=tangent,
+            curvature=self._sense() * g2 / speed**3,
         )
 
     def _sense(self) -> float:

@@ -41,6 +41,7 @@ import numpy as np
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
 from cprbm.pieces import CurvePieces, Piece
+from cprbm.polynomial import ComplexArray
 from scene.answer import Array, Flags, Ints
 
 STRAIGHT = 1e-150  # rad: what turns less is straight, and its sine the angle
@@ -79,6 +80,23 @@ class Points:
     bend: Array
     gain: Array
     pace: Array
+
+    def only(self, these: Ints) -> Points:
+        """Some of the points."""
+        return Points(
+            self.line,
+            self.half[these],
+            self.s[these],
+            self.off[these],
+            self.x[these],
+            self.y[these],
+            self.tangent[these],
+            self.psi[these],
+            self.speed[these],
+            self.bend[these],
+            self.gain[these],
+            self.pace[these],
+        )
 
     @cached_property
     def link(self) -> Ints:
@@ -165,6 +183,7 @@ class SmoothLine:
         turns, radii: δ and R of the springs (N,).
         x, y: joints (N+2,).
         known: what contacts have found along it, by the contact's name and what it is.
+        faced: by the contact's name, distances along it, and points of it and their feet for those.
     """
 
     chain: Chain
@@ -177,11 +196,22 @@ class SmoothLine:
     x: Array
     y: Array
     known: dict[tuple[str, str], tuple[Array, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
+    faced: dict[str, tuple[Array, Points, Points]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
     def sampled(self) -> Points:
         """Points at :func:`halves`."""
         return self._at(self.chain.halves, self.chain.at_halves)
+
+    @cached_property
+    def starts(self) -> ComplexArray:
+        """First joints of the links, x + i·y, (N+1,)."""
+        return np.asarray(self.x[:-1] + 1j * self.y[:-1])
+
+    @cached_property
+    def directions(self) -> ComplexArray:
+        """Of the links, cos θ + i·sin θ, (N+1,)."""
+        return np.asarray(self.cos + 1j * self.sin)
 
     @cached_property
     def radii_1(self) -> Array:
@@ -240,36 +270,41 @@ class SmoothLine:
         )
 
     def _beside(self, piece: Piece, half: Ints, s: Array, off: Array, rate: Array, R: Array) -> Points:
-        """Points of which the stress-free ``piece`` is no arc; see :meth:`at`."""
+        """Points of which the stress-free ``piece`` is no arc; see :meth:`at`.
+
+        All in numbers a + i·w of the link's frame; of two arcs the first is that of Θ, the second that of Θ⁰.
+        """
         chain, link, spring = self.chain, (half + 1) // 2, half // 2
-        a, w, a1, w1, a2, w2 = piece
-        rest = chain.turns[spring] / chain.sizes[spring]
-        phi, phi_rest = rate * off, rest * off
-        R_cos, R_sin, cos, sin = R * np.cos(phi), R * np.sin(phi), np.cos(phi_rest), np.sin(phi_rest)
-        lean = chain.lean[:, link]
-        (A, W), (A_rest, W_rest) = _arc(off, rate, R), _arc(off, rest, 1.0)
-        along, across = _leant(lean, A - A_rest, W - W_rest)
-        a, w = a + along, w + across
-        along, across = _leant(lean, R_cos - cos, R_sin - sin)
-        a1, w1 = a1 + along, w1 + across
-        along, across = _leant(lean, rest * sin - rate * R_sin, rate * R_cos - rest * cos)
-        a2, w2 = a2 + along, w2 + across
-        squared = a1 * a1 + w1 * w1
+        rates, radii = np.empty((2, len(s))), np.ones((2, len(s)))
+        rates[0], rates[1], radii[0] = rate, chain.rest_rates[spring], R
+        turned = (0.5 * off) * rates
+        turned[turned == 0.0] = STRAIGHT
+        middle = np.empty(turned.shape, dtype=complex)
+        middle.real, middle.imag = np.cos(turned), np.sin(turned)
+        tangents = radii * middle * middle
+        bends = rates * tangents
+        off_arc = ((radii * off) * (middle.imag / turned)) * middle
+        lean = chain.leans[link]
+        place = piece.at + lean * (off_arc[0] - off_arc[1])
+        first = piece.first + lean * (tangents[0] - tangents[1])
+        second = piece.second + (1j * lean) * (bends[0] - bends[1])
+        turning = first.conj() * second
+        squared = first.real**2 + first.imag**2
         speed = np.sqrt(squared)
-        cos, sin = self.cos[link], self.sin[link]
-        tangent = self.theta[link] + np.arctan2(w1, a1)
+        tangent = self.theta[link] + np.arctan2(first.imag, first.real)
+        at = self.starts[link] + place * self.directions[link]
         return Points(
             line=self,
             half=half,
             s=s,
             off=off,
-            x=self.x[link] + a * cos - w * sin,
-            y=self.y[link] + a * sin + w * cos,
+            x=at.real.copy(),
+            y=at.imag.copy(),
             tangent=tangent,
             psi=tangent,
             speed=speed,
-            bend=(a1 * w2 - w1 * a2) / squared,
-            gain=(a1 * a2 + w1 * w2) / speed,
+            bend=turning.imag / squared,
+            gain=turning.real / speed,
             pace=speed,
         )
 

@@ -52,7 +52,12 @@ class SplineLine:
 
     def angle(self, s: Array) -> Array:
         """Tangent angle θ(s), rad."""
-        return self.at(s).angle
+        t = self.panels.inverted(s)
+        x1, y1 = self.curves[1](t).T
+        panel = np.minimum(np.searchsorted(self.panels.v, t, side="right") - 1, len(self.angles) - 2)
+        begin = self.angles[panel]
+        cos, sin = np.cos(begin), np.sin(begin)
+        return np.asarray(begin + np.arctan2(y1 * cos - x1 * sin, x1 * cos + y1 * sin))
 
     def position(self, s: Array) -> tuple[Array, Array]:
         """Position x(s), y(s), m."""
@@ -71,11 +76,8 @@ class SplineLine:
         """Places at arc lengths ``s`` (k,), m; beyond the ends the end itself."""
         t = self.panels.inverted(s)
         (x, y), (x1, y1), (x2, y2) = (curve(t).T for curve in self.curves)
-        panel = np.minimum(np.searchsorted(self.panels.v, t, side="right") - 1, len(self.angles) - 2)
-        begin = self.angles[panel]
-        cos, sin = np.cos(begin), np.sin(begin)
-        angle = begin + np.arctan2(y1 * cos - x1 * sin, x1 * cos + y1 * sin)
-        return Places(x=x, y=y, angle=angle, curvature=(x1 * y2 - y1 * x2) / np.hypot(x1, y1) ** 3)
+        speed = np.hypot(x1, y1)
+        return Places(x=x, y=y, tangent=(x1 + 1j * y1) / speed, curvature=(x1 * y2 - y1 * x2) / speed**3)
 
 
 def spline_line(curve: Spline) -> SplineLine:

@@ -34,6 +34,17 @@ def lowest(D: Array, reach: float) -> Ints:
     return np.flatnonzero((D[:-2] >= D[1:-1]) & (D[2:] > D[1:-1]) & (reach > D[1:-1])) + 1
 
 
+def lowest_of_parabola(s: Array, D: Array, samples: Ints) -> Array:
+    """How far from ``samples`` (k,) at ``s`` the parabolas through D there and beside are lowest; nought without one."""
+    before, behind = samples - 1, samples + 1
+    one, other = s[before] - s[samples], s[behind] - s[samples]
+    with np.errstate(invalid="ignore"):
+        rise, fall = (D[behind] - D[samples]) / other, (D[before] - D[samples]) / one
+        curved = (rise - fall) / (other - one)
+        ahead = -0.5 * (rise - curved * other) / curved
+    return np.where(np.isfinite(ahead) & (ahead > one) & (ahead < other), ahead, 0.0)
+
+
 @dataclass(frozen=True, slots=True)
 class Wells:
     """Minima that may have a place of their own.
