@@ -584,7 +584,7 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     A, G = lines[0].sampled, lines[1].sampled
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
     rough, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(
-        np.stack((A.x, A.y), axis=1), distance_upper_bound=pair.offset + REACH + pair.a.h + pair.b.h
+        np.stack((A.x, A.y), axis=1), distance_upper_bound=pair.offset + reach(pair.a, pair.b)
     )
     close = np.flatnonzero(np.isfinite(rough))
     D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
@@ -672,6 +672,11 @@ def _lowest_of_parabola(
     beside = np.where(ahead > 0.0, behind, before)
     share = ahead / (s[beside] - s[here])
     return s[here] + ahead, np.where(known, sigma[here] + share * (sigma[beside] - sigma[here]), sigma[here])
+
+
+def reach(one: Chain, other: Chain) -> float:
+    """Gap of two beams beyond which there are no rows, units of length."""
+    return REACH + one.h + other.h
 
 
 def pair_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Pair:
