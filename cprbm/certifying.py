@@ -7,7 +7,6 @@ import numpy as np
 from cprbm.boundary import FittedBoundary
 from cprbm.equilibrium import Equilibrium
 from cprbm.forces import balances
-from cprbm.itself import Itself
 from cprbm.mechanism import Mechanism
 from cprbm.model import Model
 from cprbm.point import Point
@@ -65,13 +64,14 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
         Ending.BEAMS_CROSSED,
         f"the beams of a contact overlap by {penetration:.1e} of the mean thickness, allowed {limit:.0e}",
     )
-    for name, pair in mechanism.pairs.items():
+    for name, pair in mechanism.alone.items():
         ask(
-            not isinstance(pair, Itself) or not pair.crosses(point.state, point.at),
+            not pair.crosses(point.state, point.at),
             Ending.BEAMS_CROSSED,
             f"in contact '{name}' the beam passes through itself",
         )
-    for boundary in mechanism.boundaries.values():
+    for name in mechanism.near(point.state, point.at) if mechanism.boundaries else []:
+        boundary = mechanism.boundaries[name]
         if not isinstance(boundary, FittedBoundary):
             continue  # what is rigid ends where it does
         beyond = _pressed_beyond(boundary, point)
@@ -139,7 +139,7 @@ def penetration_of(mechanism: Mechanism, found: Equilibrium) -> float:
     """Largest overlap of the smooth beams of all contacts, over the mean thickness (the longest beam for lines)."""
     deepest = 0.0
     state, at = found.point.state, found.point.at
-    for name in mechanism.pairs:
+    for name in mechanism.near(state, at):
         pair = mechanism.seen(name, found.point.rows)
         deepest = max(deepest, -pair.least_gap(state, at) / pair.thickness)
     return deepest

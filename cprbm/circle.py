@@ -225,7 +225,7 @@ class Circle:
         s = A.s
         D = self.distance(A) - self.offset
         near = np.zeros(len(s), dtype=bool)
-        near[::2] = D[::2] < JOINT_REACH * self.a.h**2 * (1.0 / self.radius + 1.0)
+        near[::2] = D[::2] < _beside(self.a, self.radius)
         # an end that the circle's own body holds cannot move against it: its gap is no unknown
         held = self.a.start.body == self.body, self.a.end is not None and self.a.end.body == self.body
         near[[0, -1]] &= ~np.array(held)
@@ -312,6 +312,16 @@ class Circle:
         s, _ = here._places(line)
         D = np.concatenate((here.distance(line.sampled), here.distance(line.at(s))))
         return float(np.min(D)) - self.offset
+
+
+def reach(chain: Chain, radius: float) -> float:
+    """Gap of a beam and a circle of some radius beyond which there are no rows, units of length."""
+    return max(REACH, _beside(chain, radius))
+
+
+def _beside(chain: Chain, radius: float) -> float:
+    """Gap beyond which joints have none."""
+    return JOINT_REACH * chain.h**2 * (1.0 / radius + 1.0)
 
 
 def _turned(angle: Array) -> Array:

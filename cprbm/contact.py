@@ -238,6 +238,10 @@ class Rows:
         """Every group with its part of the multipliers (m,)."""
         return [(group, multipliers[span]) for group, span in zip(self.groups, self.spans, strict=True)]
 
+    def pressing(self, multipliers: Array) -> set[str]:
+        """Names of the contacts and stops that have a row whose multiplier is positive."""
+        return {group.contact for group, lam in self.shares(multipliers) if np.any(lam > 0.0)}
+
     def forces(self, multipliers: Array, n_joints: int, n_unknowns: int) -> tuple[Array, Array, Array]:
         """∂(λ·c) over x and y of all joints (n_joints,), and what is over unknown angles at once (n_unknowns,)."""
         fx, fy, moments = np.zeros(n_joints), np.zeros(n_joints), np.zeros(n_unknowns)

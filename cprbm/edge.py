@@ -340,7 +340,7 @@ class Edge:
         seen = self._seen(face, A, frame)
         D = seen.distance - self.offset
         near = np.zeros(len(s), dtype=bool)
-        near[::2] = D[::2] < JOINT_REACH * self.a.h**2 * (face.sharpest + 1.0)
+        near[::2] = D[::2] < _beside(self.a, face)
         near &= mine & ~self._ruled(s)
         # an end that the edge's own body holds cannot move against it: its gap is no unknown
         near[[0, -1]] &= ~np.array(self.held)
@@ -490,6 +490,16 @@ class Edge:
             rho = np.sum(self._away(corner, A, frame) * self._from(corner, A, frame), axis=1)
             least.append((rho - (self._half(A.s) - self.offset)).min(initial=np.inf))
         return float(min(least)) - self.offset
+
+
+def reach(chain: Chain, face: Face) -> float:
+    """Gap of a beam and a piece of an edge beyond which there are no rows, units of length."""
+    return max(REACH, _beside(chain, face))
+
+
+def _beside(chain: Chain, face: Face) -> float:
+    """Gap beyond which joints have none."""
+    return JOINT_REACH * chain.h**2 * (face.sharpest + 1.0)
 
 
 def edge_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Edge:

@@ -38,8 +38,33 @@ class Seen:
     within: Flags
 
 
+@dataclass(frozen=True, slots=True)
+class Roof:
+    """What a piece does not stand out of, however it bends between its ends.
+
+    Attributes:
+        base, along, out: where coordinates v and w begin, and their directions, w towards the free side; (2,) each.
+        low, high: v at the ends.
+        top: the largest w.
+        rise, fall: the steepest that w goes up and down as v grows.
+    """
+
+    base: tuple[float, float]
+    along: tuple[float, float]
+    out: tuple[float, float]
+    low: float
+    high: float
+    top: float
+    rise: float
+    fall: float
+
+
 class Face(Protocol):
     """One piece of an edge."""
+
+    @property
+    def roof(self) -> Roof:
+        """What it lies under."""
 
     @property
     def ends(self) -> tuple[Array | None, Array | None]:
@@ -70,6 +95,12 @@ class Straight:
         (tx, ty), (nx, ny) = self.tau, self.normal
         begin, end = np.array(self.begin), np.array(self.begin) + self.length * np.array(self.tau)
         return (begin, end) if tx * ny - ty * nx > 0.0 else (end, begin)
+
+    @property
+    def roof(self) -> Roof:
+        """What it lies under."""
+        low = -np.inf if self.length == np.inf else 0.0
+        return Roof(self.begin, self.tau, self.normal, low, self.length, 0.0, 0.0, 0.0)
 
     @property
     def sharpest(self) -> float:
@@ -103,6 +134,24 @@ class Graph:
         """Where it begins and ends."""
         low, high = (self._placed(np.array([v]))[0] for v in (self.low, self.high))
         return (low, high) if (self.side > 0.0) != self.swapped else (high, low)
+
+    @property
+    def roof(self) -> Roof:
+        """What it lies under."""
+        f, f1 = (self.side * np.asarray(polynomial.polyder(self.coefficients, m), dtype=float) for m in range(2))
+        steepest, flattest = self._largest(f1), self._largest(-f1)
+        base, along, out = (-self.origin[0], -self.origin[1]), (1.0, 0.0), (0.0, self.side)
+        # w is measured from the base, f from the axis
+        if self.swapped:
+            base, along, out = base[::-1], along[::-1], out[::-1]
+        top = self._largest(f)
+        return Roof(base, along, out, self.low, self.high, top, max(steepest, 0.0), max(flattest, 0.0))
+
+    def _largest(self, coefficients: Array) -> float:
+        """The largest value of a polynomial between the ends."""
+        flat = polynomial.polyroots(polynomial.polytrim(polynomial.polyder(coefficients)))
+        inner = flat.real[(flat.real > self.low) & (flat.real < self.high)]
+        return float(np.max(polynomial.polyval(np.append(inner, (self.low, self.high)), coefficients)))
 
     @property
     def sharpest(self) -> float:

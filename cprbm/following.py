@@ -197,4 +197,4 @@ class Follower:
 
 def pressing(point: Point) -> frozenset[str]:
     """Names of the contacts and stops that press."""
-    return frozenset(name for lam, name in zip(point.lam, point.rows.contact, strict=True) if lam > 0.0)
+    return frozenset(point.rows.pressing(point.lam))

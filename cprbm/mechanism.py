@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import cache
+from itertools import pairwise
 
 import numpy as np
 
 from cprbm.boundary import FittedBoundary, fitted_boundary
 from cprbm.circle import Circle, circle_of
+from cprbm.clearance import Clearances, clearances_of
 from cprbm.closure import closure_of
 from cprbm.contact import Formulation, Group, Rows
 from cprbm.edge import Edge, edge_of
@@ -17,6 +20,7 @@ from cprbm.hinging import hinges_of
 from cprbm.holding import holds_of
 from cprbm.itself import Itself, itself_of
 from cprbm.kinematics import Positions, State, most_turned, positions
+from cprbm.made import Made
 from cprbm.model import EVEN, Fit, Model, build
 from cprbm.nearest import Pair, pair_of
 from cprbm.point import Point, Problem
@@ -27,6 +31,7 @@ from cprbm.stops import AngleStop, stop_of
 from cprbm.strands import NO_FACES
 from scene import BeamContact, CircleContact, Mistake, Scene, SceneError, SelfContact
 
+NARROWED = 4  # contacts that may have been passed, from which on their clearances between two states are asked for
 BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle or another
 SHALLOW = 0.05  # of the radius: an overlap between rows of a coarse mesh
 WAY = 0.02  # of the longest beam, by which a way of one radian may differ from the unknowns' even one
@@ -38,6 +43,7 @@ Boundary = FittedBoundary | RigidCircle | RigidEdge
 
 Groups = Callable[[State, Positions], tuple[Group, ...]]
 AnyPair = Pair | Circle | Edge | Itself
+Way = Callable[[], list[tuple[State, Positions]]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,20 +56,29 @@ class Mechanism:
         boundaries: of the formulation ``paper``; empty for ``auto``.
         stops: limits of pins' angles.
         fit: what the mesh was made for.
+        clearances: which contacts are so far open that they need not be looked at.
+        alone: those of beams that may touch themselves.
     """
 
     problem: Problem
-    pairs: dict[str, AnyPair]
-    boundaries: dict[str, Boundary]
+    pairs: Mapping[str, AnyPair]
+    boundaries: Mapping[str, Boundary]
     stops: dict[str, AngleStop]
     fit: Fit
+    clearances: Clearances
+    alone: Mapping[str, Itself]
 
     def without(self, *names: str) -> Problem:
         """The problem in which some contacts and stops hold nothing."""
-        pairs = {name: pair for name, pair in self.pairs.items() if name not in names}
         stops = {name: stop for name, stop in self.stops.items() if name not in names}
-        formulation, steady = _formulations(pairs, self.boundaries, stops, _alone(self.pairs))
+        formulation, steady = _formulations(
+            self.pairs, self.boundaries, stops, self.clearances, self.alone, frozenset(names)
+        )
         return replace(self.problem, formulation=formulation, steady=steady)
+
+    def near(self, state: State, at: Positions) -> list[str]:
+        """Names of the contacts that are not so far open that they need not be looked at."""
+        return self.clearances.near(state, at)
 
     def seen(self, contact: str, rows: Rows) -> AnyPair:
         """The geometry of a contact, with what ``rows`` know of the sides by which a beam faces itself."""
@@ -77,42 +92,51 @@ class Mechanism:
 
     def passed(self, before: Point, after: Point) -> str:
         """Name of a contact whose beam went across the circle or the other beam between two states; empty if none."""
-        for name in self.pairs:
+        start, end = (before.state, before.at), (after.state, after.at)
+        names = self.clearances.may_pass(start, end)
+
+        @cache
+        def way() -> list[tuple[State, Positions]]:
+            between = _between(before.state, after.state)
+            return [(state, positions(self.problem.model, state)) for state in between]
+
+        if len(names) > NARROWED:
+            parts = pairwise([start, *way(), end])
+            possible = {name for part in parts for name in self.clearances.may_pass(*part)}
+            names = [name for name in names if name in possible]
+        for name in names:
             pair = self.seen(name, before.rows)
             if isinstance(pair, Circle):
-                across = pair.passed(before.at, after.at) or self._overlapped_between(pair, before.state, after.state)
+                across = pair.passed(before.at, after.at) or self._overlapped_between(pair, before, after, way)
             elif isinstance(pair, Edge):
-                across = self._crossed_between(pair, before, after, EDGE_WAY)
+                across = self._crossed_between(pair, before, after, way, EDGE_WAY)
             elif isinstance(pair, Itself):
-                way = ((state, positions(self.problem.model, state)) for state in _between(before.state, after.state))
-                across = pair.passed(way, (after.state, after.at), WAY * most_turned(before.state, after.state) ** 2)
+                allowed = WAY * most_turned(before.state, after.state) ** 2
+                across = pair.passed(way(), end, allowed)
             else:
                 # without having been there a beam comes to lie beyond another by its end or through it
-                across = pair.gone_round(after.state, after.at) and self._crossed_between(pair, before, after, WAY)
+                gone = pair.gone_round(after.state, after.at)
+                across = gone and self._crossed_between(pair, before, after, way, WAY)
             if across:
                 return pair.name
         return ""
 
-    def _overlapped_between(self, circle: Circle, before: State, after: State) -> bool:
-        """Whether the beam lay deep in the circle on the way from one state to another, the unknowns going evenly."""
+    def _overlapped_between(self, circle: Circle, before: Point, after: Point, way: Way) -> bool:
+        """Whether the beam lay deep in the circle on the way from one state to another."""
         # the real way differs by the square of the step
-        allowed = 0.5 * circle.offset + SHALLOW * circle.radius + WAY * _turned(before, after) ** 2
-        for state in _between(before, after):
-            at = positions(self.problem.model, state)
+        allowed = 0.5 * circle.offset + SHALLOW * circle.radius + WAY * _turned(before.state, after.state) ** 2
+        for state, at in way():
             places = circle.line(state, at).sampled
             if np.max(circle.offset - circle.placed(at).distance(places)) > allowed:
                 return True
         return False
 
-    def _crossed_between(self, pair: Pair | Edge, before: Point, after: Point, way: float) -> bool:
+    def _crossed_between(self, pair: Pair | Edge, before: Point, after: Point, way: Way, uneven: float) -> bool:
         """Whether a beam lay across what it may touch between two states, by more than the way between is known."""
         slack = max(pair.offset, DIP) if isinstance(pair, Edge) else pair.offset
         slack += self._sag(pair, after.state)
-        allowed = slack + way * _turned(before.state, after.state) ** 2
-        return any(
-            pair.least_gap(state, positions(self.problem.model, state)) + pair.offset < -allowed
-            for state in _between(before.state, after.state)
-        )
+        allowed = slack + uneven * _turned(before.state, after.state) ** 2
+        return any(pair.least_gap(state, at) + pair.offset < -allowed for state, at in way())
 
     def _sag(self, pair: Pair | Edge, state: State) -> float:
         """By how much beams may sag between their joints, which are all that ``paper`` holds; units of length."""
@@ -139,37 +163,44 @@ def _groups(contact: str, pairs: Mapping[str, AnyPair], boundaries: Mapping[str,
     return boundaries[contact].groups if boundaries else pairs[contact].groups
 
 
-def _alone(pairs: Mapping[str, AnyPair]) -> dict[str, Itself]:
-    """Beams that may touch themselves, by contact."""
-    return {name: pair for name, pair in pairs.items() if isinstance(pair, Itself)}
-
-
 def _formulations(
     pairs: Mapping[str, AnyPair],
     boundaries: Mapping[str, Boundary],
     stops: Mapping[str, AngleStop],
+    clearances: Clearances,
     watched: Mapping[str, Itself],
+    idle: frozenset[str] = frozenset(),
 ) -> tuple[Formulation, Formulation]:
-    """The rows of some contacts and stops, and the steady ones; of beams ``watched`` it is known how they face."""
-    steady = {name: replace(pair, own_places=False) for name, pair in pairs.items()}
-    limits: dict[str, Groups] = {name: stop.groups for name, stop in stops.items()}
-    others, few = (
-        {name: _groups(name, these, boundaries) for name, pair in these.items() if not isinstance(pair, Itself)}
-        | limits
-        for these in (pairs, steady)
+    """The rows of all contacts but those ``idle`` and of some stops, and the steady ones.
+
+    Of beams ``watched`` it is known how they face themselves.
+    """
+    steady = Made(pairs, lambda name: replace(pairs[name], own_places=False))
+    looked = Made(watched, lambda name: replace(watched[name], own_places=False))
+    return (
+        _formulation(pairs, boundaries, stops, clearances, watched, idle),
+        _formulation(steady, boundaries, stops, clearances, looked, idle),
     )
-    return _formulation(others, _alone(pairs), watched), _formulation(few, _alone(steady), watched)
 
 
-def _formulation(parts: dict[str, Groups], alone: Mapping[str, Itself], watched: Mapping[str, Itself]) -> Formulation:
+def _formulation(
+    pairs: Mapping[str, AnyPair],
+    boundaries: Mapping[str, Boundary],
+    stops: Mapping[str, AngleStop],
+    clearances: Clearances,
+    watched: Mapping[str, Itself],
+    idle: frozenset[str],
+) -> Formulation:
     def rows(state: State, at: Positions, before: Rows) -> Rows:
-        groups = [group for part in parts.values() for group in part(state, at)]
+        near = [name for name in clearances.near(state, at) if name not in idle and name not in watched]
+        groups = [group for name in near for group in _groups(name, pairs, boundaries)(state, at)]
+        groups += [group for stop in stops.values() for group in stop.groups(state, at)]
         faces = {}
         for name, pair in watched.items():
-            facing = alone.get(name, pair).seen(before.faces.get(name, NO_FACES)).facing(state, at)
+            facing = pair.seen(before.faces.get(name, NO_FACES)).facing(state, at)
             faces[name] = facing.faces
-            if name in alone:
-                groups += alone[name].rows(facing, at)
+            if name not in idle:
+                groups += pair.rows(facing, at)
         return Rows(tuple(groups), faces)
 
     return rows
@@ -215,12 +246,15 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism
         SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
     """
     model = build(scene, settings, fit)
-    pairs = {name: _pair(scene, model, name, fit) for name in scene.contacts}
+    pairs = Made(scene.contacts, lambda name: _pair(scene, model, name, fit))
     boundaries: dict[str, Boundary] = {}
     if settings.formulation == "paper":
         boundaries = {name: _boundary(scene, model, pair, settings) for name, pair in pairs.items()}
     stops = {name: stop_of(scene, model, name) for name in scene.stops}
+    clearances = clearances_of(scene, model)
+    selves = [name for name, contact in scene.contacts.items() if isinstance(contact, SelfContact)]
+    alone = Made(selves, lambda name: itself_of(scene, model, name, fit))
     closure = closure_of(model, hinges_of(scene, model), holds_of(scene, model))
     loads = dead_loads(scene, model) | end_moments(scene, model)
-    problem = Problem(model, closure, loads, *_formulations(pairs, boundaries, stops, _alone(pairs)))
-    return Mechanism(problem, pairs, boundaries, stops, fit)
+    problem = Problem(model, closure, loads, *_formulations(pairs, boundaries, stops, clearances, alone))
+    return Mechanism(problem, pairs, boundaries, stops, fit, clearances, alone)

@@ -344,9 +344,7 @@ class Pair:
         weights = np.ones((len(places.s), 1))
         return gathered(self.name, (self.a, self.b), at, touches, weights, places.keys, places.s)
 
-    def _mean_rows(
-        self, at: Positions, joints: Places, touches: Touches, weights: Array
-    ) -> list[tuple[Group, Array]]:
+    def _mean_rows(self, at: Positions, joints: Places, touches: Touches, weights: Array) -> list[tuple[Group, Array]]:
         """Rows of the mean gap around joints of A, ``weights`` (m, q); those next to a clamp of both beams in one."""
         (m, q), chains = weights.shape, (self.a, self.b)
         number, alone, found = np.arange(m * q).reshape(m, q), np.ones(m, dtype=bool), []
@@ -615,7 +613,7 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     A, G = lines[0].sampled, lines[1].sampled
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
     rough, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(
-        np.stack((A.x, A.y), axis=1), distance_upper_bound=pair.offset + REACH + pair.a.h + pair.b.h
+        np.stack((A.x, A.y), axis=1), distance_upper_bound=pair.offset + reach(pair.a, pair.b)
     )
     close = np.flatnonzero(np.isfinite(rough))
     D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
@@ -697,6 +695,11 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     held = found.held(pair.side * across - pair.wider(s, sigma) - pair.offset)
     settled = held & (convex > LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
     return s[settled], sigma[settled]
+
+
+def reach(one: Chain, other: Chain) -> float:
+    """Gap of two beams beyond which there are no rows, units of length."""
+    return REACH + one.h + other.h
 
 
 def pair_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Pair:

@@ -134,13 +134,10 @@ def touching(mechanism: Mechanism, point: Point) -> dict[str, Array]:
     """Places (k, 2), metres, where closed contacts touch: between the neutral lines, by thickness."""
     model = mechanism.problem.model
     found = {}
-    for name, pair in mechanism.pairs.items():
-        pressing = [
-            arc
-            for arc, lam, contact in zip(point.rows.arc, point.lam, point.rows.contact, strict=True)
-            if contact == name and lam > 0.0
-        ]
-        if not pressing:
-            continue
-        found[name] = frozen_array(pair.touching(point.state, point.at, np.array(pressing)) * model.unit_length)
+    closed = point.rows.pressing(point.lam)
+    for name in [name for name in mechanism.pairs if name in closed]:
+        parts = [(group.arc, lam) for group, lam in point.rows.shares(point.lam) if group.contact == name]
+        pressing = np.concatenate([arc[lam > 0.0] for arc, lam in parts])
+        places = mechanism.pairs[name].touching(point.state, point.at, pressing)
+        found[name] = frozen_array(places * model.unit_length)
     return found

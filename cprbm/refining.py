@@ -72,7 +72,8 @@ def all_zones(mechanism: Mechanism, point: Point) -> dict[str, tuple[Zone, ...]]
     """The zones of every contact that is closed, places of their own among them."""
     if mechanism.boundaries:
         return {}
-    found = {name: zones_of(pair, point) for name, pair in mechanism.pairs.items()}
+    closed = point.rows.pressing(point.lam)
+    found = {name: zones_of(mechanism.pairs[name], point) for name in mechanism.pairs if name in closed}
     return {name: zones for name, zones in found.items() if zones}
 
 

@@ -33,10 +33,13 @@ class Remarks:
 
     def look(self, mechanism: Mechanism, point: Point, where: str) -> None:
         """Look at a station, which is known as ``where``."""
+        closed = pressing(point) if mechanism.boundaries else frozenset()
         for name, boundary in mechanism.boundaries.items():
+            if name not in closed:
+                continue
             if isinstance(boundary, RigidEdge) and boundary.presses_beside_own_pin(point):
                 self.beside_pins.setdefault(name, where)
-            if isinstance(boundary, FittedBoundary) and boundary.approximates and name in pressing(point):
+            if isinstance(boundary, FittedBoundary) and boundary.approximates:
                 now = (boundary.misfit(point.state, point.at), where)
                 self.misfits[name] = max(now, self.misfits.get(name, now), key=lambda seen: seen[0])
 
