@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-from scene import Mistake, Scene, SceneError
+if TYPE_CHECKING:
+    from scene import Scene
 
 Kinematics = Literal["bending", "stretch", "shear"]
 KINEMATICS: tuple[Kinematics, ...] = ("bending", "stretch", "shear")
@@ -64,6 +65,8 @@ def check(choices: Choices, scene: Scene) -> None:
     Raises:
         SceneError: a count that names beams leaves one out or names one that is not there.
     """
+    from scene import Mistake, SceneError  # loaded when a scene is there, not with the options' names
+
     mistakes: list[Mistake] = []
     for key, count in (("links", choices.links), ("elements", choices.elements)):
         if isinstance(count, int):

@@ -17,7 +17,6 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import equilibrium
@@ -78,7 +77,7 @@ class Closings:
         low, high = bracket
         if low == high:
             return low
-        closing = float(brentq(gap.overlap, low, high, xtol=EXACTLY * abs(target - value), rtol=8.9e-16))
+        closing = gap.root(low, high, target - value)
         return self._fitted(gap, closing, target - value)
 
     def _gap(self, mechanism: Mechanism, contact: str, value: float, point: Point) -> Gap:
@@ -121,12 +120,18 @@ class Gap:
         """The values of all loads and drives at v."""
         return {**self.values, self.load: value}
 
+    def root(self, low: float, high: float, way: float) -> float:
+        """v_c between two values at which the gap has two signs, to a very small part of a ``way``."""
+        from scipy.optimize import brentq  # loaded when a closing load is asked
+
+        return float(brentq(self.overlap, low, high, xtol=EXACTLY * abs(way), rtol=8.9e-16))
+
     def root_near(self, value: float, way: float) -> float | None:
         """v_c within a small part of a ``way`` from a value; None if the gap does not change its sign there."""
         for part in NEARBY:
             low, high = sorted((value - part * way, value + part * way))
             if self.overlap(low) * self.overlap(high) < 0.0:
-                return float(brentq(self.overlap, low, high, xtol=EXACTLY * abs(way), rtol=8.9e-16))
+                return self.root(low, high, way)
         return None
 
     def nearest(self, value: float) -> Point:

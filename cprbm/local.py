@@ -18,10 +18,9 @@ changing all wrong ones at once; the factorisation is repeated for each change.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.sparse import coo_array, csc_array
-from scipy.sparse.linalg import SuperLU, splu
 
 from cprbm.closure import Closure, closure_forces, closure_second
 from cprbm.contact import Rows
@@ -29,6 +28,9 @@ from cprbm.energy import LoadWork, strain_hessian
 from cprbm.kinematics import Positions, State, arm, pulled_back
 from cprbm.model import Model
 from scene.answer import Array, Flags, Ints
+
+if TYPE_CHECKING:
+    from scipy.sparse.linalg import SuperLU
 
 CHANGES = 12  # of the set that presses, in one Newton step; the next step goes on from the best set
 
@@ -86,6 +88,9 @@ class LocalSystem:
         Raises:
             RuntimeError: the system is exactly singular.
         """
+        from scipy.sparse import coo_array, csc_array  # loaded where contacts are many
+        from scipy.sparse.linalg import splu
+
         number = np.cumsum(active) - 1
         r, c, v = self.slopes
         mine = active[r]

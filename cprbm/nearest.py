@@ -46,7 +46,6 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from cprbm import leaning, smooth, wells
 from cprbm.contact import Group
@@ -466,7 +465,7 @@ def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Fl
     if len(s) <= FEW:
         nearest = ((A.x[:, None] - G.x) ** 2 + (A.y[:, None] - G.y) ** 2).argmin(axis=1)
     else:
-        _, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(np.stack((A.x, A.y), axis=1))
+        _, nearest = _nearest_samples(G, A, np.inf)
     return feet_near(pair, lines, A, G.s[nearest])
 
 
@@ -609,12 +608,20 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     return D, sigma
 
 
+def _nearest_samples(G: smooth.Points, A: smooth.Points, within: float) -> tuple[Array, Ints]:
+    """Distance from each place of A to the nearest of G, infinite beyond ``within``, and its number."""
+    from scipy.spatial import cKDTree  # loaded where beams may touch each other
+
+    distance, number = cKDTree(np.stack((G.x, G.y), axis=1)).query(
+        np.stack((A.x, A.y), axis=1), distance_upper_bound=within
+    )
+    return np.asarray(distance), np.asarray(number)
+
+
 def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     A, G = lines[0].sampled, lines[1].sampled
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
-    rough, nearest = cKDTree(np.stack((G.x, G.y), axis=1)).query(
-        np.stack((A.x, A.y), axis=1), distance_upper_bound=pair.offset + reach(pair.a, pair.b)
-    )
+    rough, nearest = _nearest_samples(G, A, pair.offset + reach(pair.a, pair.b))
     close = np.flatnonzero(np.isfinite(rough))
     D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
     if close.size:

@@ -14,7 +14,6 @@ from __future__ import annotations
 from typing import Literal
 
 import numpy as np
-from scipy.optimize import elementwise
 
 from cprbm.curves import NeutralLine
 from scene.answer import Array
@@ -36,6 +35,8 @@ def spaced(line: NeutralLine, n: int, axis: Literal["x", "y"]) -> tuple[Array, A
     share = np.arange(1, 2 * n) / (2 * n)
     wanted = ends[0] + share * (ends[1] - ends[0])
     begin, end = np.zeros(2 * n - 1), np.full(2 * n - 1, line.length)
+    from scipy.optimize import elementwise  # loaded when a beam is cut along an axis
+
     inner = elementwise.find_root(lambda s, target: along(s) - target, (begin, end), args=(wanted,)).x
     places = np.concatenate(([0.0], inner, [line.length]))
     return places[::2], places[1::2]

@@ -6,9 +6,10 @@ import tomllib
 from collections.abc import Callable
 from importlib.resources import as_file, files
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from scene import Mistake, Question, Scene, SceneError, read, read_question
+if TYPE_CHECKING:
+    from scene import Question, Scene
 
 T = TypeVar("T")
 
@@ -39,6 +40,8 @@ def opened(case: str) -> Scene:
     Raises:
         SceneError: there is no such case, or the file is no valid scene.
     """
+    from scene import read  # loaded when a scene is asked, not to list the cases
+
     return _found(case, read)
 
 
@@ -52,6 +55,8 @@ def asked(case: str) -> Question:
     Raises:
         SceneError: there is no such case, or the file is no valid question.
     """
+    from scene import read_question
+
     return _found(case, read_question)
 
 
@@ -61,6 +66,8 @@ def _found(case: str, reader: Callable[[str | Path], T]) -> T:
             return reader(path)
     if case.endswith(".toml") or "/" in case or "\\" in case:
         return reader(case)
+    from scene import Mistake, SceneError
+
     allowed = f"a built-in case ({', '.join(names())}) or the path of a file that ends in .toml"
     raise SceneError([Mistake("case", repr(case), allowed)])
 

@@ -9,14 +9,11 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
-from concurrent.futures.process import BrokenProcessPool
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING
 
 import click
 
 from comparisons.cli.commands import Commands
-from scene import SceneError
 
 if TYPE_CHECKING:
     from comparisons.pairing import Solvers
@@ -59,6 +56,8 @@ class _SubCommands(Commands):
 def _version(ctx: click.Context, param: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's form
     """Say which version is installed; a folder of sources that is not installed has none."""
     if value:
+        from importlib.metadata import PackageNotFoundError, version
+
         try:
             click.echo(f"cprbm {version('cprbm')}")
         except PackageNotFoundError:
@@ -89,8 +88,6 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
         with commands.make_context("cprbm", list(arguments), obj=solvers) as context:
             code = commands.invoke(context)
         sys.stdout.flush()
-    except SceneError as error:
-        return _said("The question is wrong. " + "; ".join(str(mistake) for mistake in error.mistakes))
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message(), err=True)
         return WRONG_QUESTION
@@ -99,17 +96,18 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
     except click.exceptions.Exit as stop:
         return stop.exit_code
     except KeyboardInterrupt:
-        _said("Interrupted; what was finished before stands.")
-        return INTERRUPTED
+        return _said("Interrupted; what was finished before stands.", INTERRUPTED)
     except BrokenPipeError:
         # What is still buffered must not be written again when the interpreter closes the stream.
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         return _said("Standard output was closed before everything was written.")
-    except BrokenProcessPool:
-        _said("A process that was solving ended by force, perhaps for want of memory; what was finished stands.")
-        return 1
-    except OSError as error:
-        return _said(f"Cannot write {error.filename or 'the output'}: {error.strerror or error}.")
+    except Exception as error:
+        from comparisons.cli.troubles import told
+
+        trouble = told(error)
+        if trouble is None:
+            raise
+        return _said(*trouble)
     return code if isinstance(code, int) else 0
 
 
@@ -118,6 +116,6 @@ def main() -> None:
     sys.exit(run(sys.argv[1:]))
 
 
-def _said(sentence: str) -> int:
+def _said(sentence: str, code: int = WRONG_QUESTION) -> int:
     click.echo(f"cprbm: {sentence}", err=True)
-    return WRONG_QUESTION
+    return code

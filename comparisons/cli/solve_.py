@@ -38,11 +38,10 @@ def command(
     quiet: bool,  # noqa: FBT001 - click hands it over by name
 ) -> int:
     """Answer one scene with one solver."""
-    from comparisons import cases, documents, sheets
+    from comparisons import cases
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
     from comparisons.pairing import exact_answer, solvers_of
-    from comparisons.tolerances import tolerated
 
     one_of_both(tol)
     solvers = solvers_of(planted)
@@ -52,6 +51,8 @@ def command(
     showing.room_for(json_file)
     found: tuple[Tolerance, ...] = ()
     if tol is not None and solver != "exact":
+        from comparisons.tolerances import tolerated
+
         with showing.current(shown=not quiet) as say:
             answer, reached = tolerated.solved(scene, solver, choices, tol, solvers, say)
         found = (reached,)
@@ -59,8 +60,12 @@ def command(
         asked = {"cprbm": solvers.cprbm, "fea": solvers.fea, "exact": solvers.exact or exact_answer}[solver]
         answer = asked(scene, choices)
     if json_file is not None:
+        from comparisons import documents
+
         showing.json(json_file, {"cases": [documents.solution(scene, answer, found)]})
     if not quiet and str(json_file) != "-":
+        from comparisons import sheets
+
         showing.tables(sheets.of_answer(scene, answer, found))
     if not answer.completed:
         click.echo(f"cprbm: {scene.name}: {answer.ending.value}. {answer.sentence}".rstrip(), err=True)

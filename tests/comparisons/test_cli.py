@@ -403,7 +403,7 @@ def test_the_version_is_a_line_whether_or_not_the_package_is_installed(capsys, m
             return "3.2.1"
         raise PackageNotFoundError(name)
 
-    monkeypatch.setattr("comparisons.cli.main.version", version)
+    monkeypatch.setattr("importlib.metadata.version", version)
     assert run(["--version"]) == 0
     captured = capsys.readouterr()
     assert captured.out == ("cprbm 3.2.1\n" if installed else "cprbm, run from its sources: no version is installed\n")
