@@ -139,9 +139,8 @@ def load_work(
     model: Model, loads: Mapping[str, AnyLoad], values: dict[str, float], state: State, at: Positions
 ) -> LoadWork:
     """Work of all loads at their present ``values`` (SI)."""
-    total, standing = 0.0, state.posture
-    B = len(model.free_bodies)
-    linear = np.zeros(5 * B)  # the work of loads on bodies over their posture
+    total, B = 0.0, len(model.free_bodies)
+    on_bodies = dict[int, float]()  # the work of loads on bodies over their posture
     gradient = np.zeros(model.n_unknowns)
     diagonal, off = np.zeros(model.n_links), np.zeros(model.n_links - 1)
     on_x, on_y = np.zeros(model.n_joints), np.zeros(model.n_joints)
@@ -150,11 +149,9 @@ def load_work(
         value = values.get(name, 0.0)
         if isinstance(load, DeadLoad):
             b, (fx, fy), (px, py) = load.body, load.force, load.point
-            linear[3 * b] += value * fx
-            linear[3 * b + 1] += value * fy
-            linear[3 * b + 2] += value * load.moment
-            linear[3 * B + b] += value * (fx * px + fy * py)
-            linear[4 * B + b] += value * (fy * px - fx * py)
+            shares = (fx, fy, load.moment, fx * px + fy * py, fy * px - fx * py)
+            for place, share in zip((3 * b, 3 * b + 1, 3 * b + 2, 3 * B + b, 4 * B + b), shares, strict=True):
+                on_bodies[place] = on_bodies.get(place, 0.0) + value * share
         elif isinstance(load, BeamLoad):
             if value == 0.0:
                 continue
@@ -175,9 +172,13 @@ def load_work(
                 total += load.shared_work(value, other, its_value)
             gradient[list(load.links)] += value * load.moment * load.weights
             moments.append((load, value))
-    total += float(linear @ standing.w)
-    over_posture = linear @ standing.derivatives
-    gradient[model.n_links :], second = over_posture[: 3 * B], over_posture[3 * B :]
+    second = np.zeros(B)
+    if on_bodies:
+        linear = np.zeros(5 * B)
+        linear[list(on_bodies)] = list(on_bodies.values())
+        total += float(linear @ state.posture.w)
+        over_posture = linear @ state.posture.derivatives
+        gradient[model.n_links :], second = over_posture[: 3 * B], over_posture[3 * B :]
     if on_beams:
         over_theta, bodies, twice, twice_bodies = pulled_back(model, state, at, on_x, on_y)
         gradient += np.concatenate((over_theta, bodies))
