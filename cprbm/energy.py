@@ -55,12 +55,10 @@ def dead_loads(scene: Scene, model: Model) -> dict[str, DeadLoad | BeamLoad | Mo
         elif isinstance(load, Force):
             owner = scene.body_of(load.point)
             body = model.free_bodies.index(owner)
-            size = np.hypot(*load.direction) * model.unit_force
+            size = float(np.hypot(*load.direction)) * model.unit_force
             x, y = scene.bodies[owner].points[load.point]
-            r = (
-                x / model.unit_length - model.references[body, 0],
-                y / model.unit_length - model.references[body, 1],
-            )
+            ox, oy = model.references[body].tolist()
+            r = (x / model.unit_length - ox, y / model.unit_length - oy)
             loads[name] = DeadLoad(body, 0.0, (load.direction[0] / size, load.direction[1] / size), r)
     return loads
 
@@ -140,7 +138,7 @@ def load_work(
 ) -> LoadWork:
     """Work of all loads at their present ``values`` (SI)."""
     total, B = 0.0, len(model.free_bodies)
-    on_bodies = dict[int, float]()  # the work of loads on bodies over their posture
+    linear: Array | None = None  # the work of loads on bodies over their posture
     gradient = np.zeros(model.n_unknowns)
     diagonal, off = np.zeros(model.n_links), np.zeros(model.n_links - 1)
     on_x, on_y = np.zeros(model.n_joints), np.zeros(model.n_joints)
@@ -149,9 +147,12 @@ def load_work(
         value = values.get(name, 0.0)
         if isinstance(load, DeadLoad):
             b, (fx, fy), (px, py) = load.body, load.force, load.point
-            shares = (fx, fy, load.moment, fx * px + fy * py, fy * px - fx * py)
-            for place, share in zip((3 * b, 3 * b + 1, 3 * b + 2, 3 * B + b, 4 * B + b), shares, strict=True):
-                on_bodies[place] = on_bodies.get(place, 0.0) + value * share
+            linear = np.zeros(5 * B) if linear is None else linear
+            linear[3 * b] += value * fx
+            linear[3 * b + 1] += value * fy
+            linear[3 * b + 2] += value * load.moment
+            linear[3 * B + b] += value * (fx * px + fy * py)
+            linear[4 * B + b] += value * (fy * px - fx * py)
         elif isinstance(load, BeamLoad):
             if value == 0.0:
                 continue
@@ -173,9 +174,7 @@ def load_work(
             gradient[list(load.links)] += value * load.moment * load.weights
             moments.append((load, value))
     second = np.zeros(B)
-    if on_bodies:
-        linear = np.zeros(5 * B)
-        linear[list(on_bodies)] = list(on_bodies.values())
+    if linear is not None:
         total += float(linear @ state.posture.w)
         over_posture = linear @ state.posture.derivatives
         gradient[model.n_links :], second = over_posture[: 3 * B], over_posture[3 * B :]
