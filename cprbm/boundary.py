@@ -101,10 +101,14 @@ class FittedBoundary:
         return tuple(self.joints.tolist())
 
     @cached_property
+    def _identity(self) -> Array:
+        return np.eye(self.degree + 1)
+
+    @cached_property
     def _derivative(self) -> Array:
         """Coefficients of the polynomials' derivatives, column by column (degree+1, degree+1)."""
         found = np.zeros((self.degree + 1, self.degree + 1))
-        found[:-1] = chebyshev.chebder(np.eye(self.degree + 1))
+        found[:-1] = chebyshev.chebder(self._identity)
         return found
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
@@ -127,7 +131,7 @@ class FittedBoundary:
         # the basis at points and joints, a row for each polynomial
         basis = _basis((np.concatenate((A, a)) - centre) / width, self.degree)
         V, at_joints = basis[:, :n], basis[:, n:]
-        *_, inverse, failed = lapack.dgesv(V @ V.T, np.eye(size))
+        *_, inverse, failed = lapack.dgesv(V @ V.T, self._identity)
         if failed:
             raise np.linalg.LinAlgError("the points of a fitted boundary are too few or in one place")
         q_B = inverse @ V

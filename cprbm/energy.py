@@ -55,12 +55,10 @@ def dead_loads(scene: Scene, model: Model) -> dict[str, DeadLoad | BeamLoad | Mo
         elif isinstance(load, Force):
             owner = scene.body_of(load.point)
             body = model.free_bodies.index(owner)
-            size = np.hypot(*load.direction) * model.unit_force
+            size = float(np.hypot(*load.direction)) * model.unit_force
             x, y = scene.bodies[owner].points[load.point]
-            r = (
-                x / model.unit_length - model.references[body, 0],
-                y / model.unit_length - model.references[body, 1],
-            )
+            ox, oy = model.references[body].tolist()
+            r = (x / model.unit_length - ox, y / model.unit_length - oy)
             loads[name] = DeadLoad(body, 0.0, (load.direction[0] / size, load.direction[1] / size), r)
     return loads
 
@@ -147,9 +145,8 @@ def load_work(
     model: Model, loads: Mapping[str, AnyLoad], values: dict[str, float], state: State, at: Positions
 ) -> LoadWork:
     """Work of all loads at their present ``values`` (SI)."""
-    total, standing = 0.0, state.posture
-    B = len(model.free_bodies)
-    linear = np.zeros(5 * B)  # the work of loads on bodies over their posture
+    total, B = 0.0, len(model.free_bodies)
+    linear: Array | None = None  # the work of loads on bodies over their posture
     gradient = np.zeros(model.n_unknowns)
     diagonal, off = np.zeros(model.n_links), np.zeros(model.n_links - 1)
     on_x, on_y = np.zeros(model.n_joints), np.zeros(model.n_joints)
@@ -158,6 +155,7 @@ def load_work(
         value = values.get(name, 0.0)
         if isinstance(load, DeadLoad):
             b, (fx, fy), (px, py) = load.body, load.force, load.point
+            linear = np.zeros(5 * B) if linear is None else linear
             linear[3 * b] += value * fx
             linear[3 * b + 1] += value * fy
             linear[3 * b + 2] += value * load.moment
@@ -183,9 +181,11 @@ def load_work(
                 total += load.shared_work(value, other, its_value)
             gradient[list(load.links)] += value * load.moment * load.weights
             moments.append((load, value))
-    total += float(linear @ standing.w)
-    over_posture = linear @ standing.derivatives
-    gradient[model.n_links :], second = over_posture[: 3 * B], over_posture[3 * B :]
+    second = np.zeros(B)
+    if linear is not None:
+        total += float(linear @ state.posture.w)
+        over_posture = linear @ state.posture.derivatives
+        gradient[model.n_links :], second = over_posture[: 3 * B], over_posture[3 * B :]
     if on_beams:
         over_theta, bodies, twice, twice_bodies = pulled_back(model, state, at, on_x, on_y)
         gradient += np.concatenate((over_theta, bodies))
