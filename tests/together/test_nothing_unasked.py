@@ -1,0 +1,50 @@
+"""What no probe asks for is not computed: counted at the functions that would."""
+
+from importlib import import_module
+
+import pytest
+
+import cprbm
+import fea_reference
+from comparisons import cases
+
+STRESSES_AND_CLOSINGS = {
+    cprbm: ("cprbm.probing.bending_stress", "cprbm.probing.normal_force", "cprbm.march.Closings"),
+    fea_reference: ("fea_reference.probes.bending_moment", "fea_reference.probes.normal_force"),
+}
+
+
+def short(quantities):
+    """The hinge up to its last station, with the probes of some quantities."""
+    scene = cases.opened("hinge")
+    stages = tuple(stage.model_copy(update={"stations": stage.stations[-1:]}) for stage in scene.stages)
+    probes = tuple(probe for probe in scene.probes if probe.quantity in quantities)
+    return scene.model_copy(update={"stages": stages, "probes": probes, "claims": ()})
+
+
+def counted(solver, scene, monkeypatch):
+    """How often a solver calls each of the functions for what may be asked."""
+    calls = dict.fromkeys(STRESSES_AND_CLOSINGS[solver], 0)
+    for name in calls:
+        module, _, function = name.rpartition(".")
+        original = getattr(import_module(module), function)
+
+        def counting(*arguments, name=name, original=original):
+            calls[name] += 1
+            return original(*arguments)
+
+        monkeypatch.setattr(name, counting)
+    assert solver.answer(scene).completed
+    return calls
+
+
+@pytest.mark.parametrize("solver", [cprbm, fea_reference], ids=["cprbm", "fea"])
+def test_stress_and_closing_loads_are_found_for_who_asks(solver, monkeypatch):
+    assert not any(counted(solver, short({"displacement", "rotation", "force"}), monkeypatch).values())
+
+
+@pytest.mark.parametrize("solver", [cprbm, fea_reference], ids=["cprbm", "fea"])
+def test_and_the_count_would_show_them(solver, monkeypatch):
+    found = counted(solver, short({"bending_stress", "closing_load"}), monkeypatch)
+    assert found[next(name for name in found if ".bending_" in name)] == 2
+    assert found.get("cprbm.march.Closings", 1) == 1
