@@ -24,11 +24,7 @@ t           −∂L/∂A_i n_A − ∂L/∂B_i n_B, of n = (n_A, n_B) from p_i t
 
 With dτ = ½(dθ_{i−1} + dθ_i) the second derivative of L is
 
-    Σ w_j P_q''(a_j) da_j² + Σ (U''ρ + 2 U'P_q' + U P_q'') dA_i² − 2 U' dA_i dB_i + t dτ_i² + C Kᵀ + K Cᵀ,
-
-squares and products of two factors; a product is a difference of two squares,
-
-    2 f g = ½ (αf + g/α)² − ½ (αf − g/α)²,    α² = |g|/|f|.
+    Σ w_j P_q''(a_j) da_j² + Σ (U''ρ + 2 U'P_q' + U P_q'') dA_i² − 2 U' dA_i dB_i + C K + Kᵀ Cᵀ + Σ t dτ_i².
 """
 
 from __future__ import annotations
@@ -40,7 +36,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.linalg import lapack
 
-from cprbm.contact import Factored, Group, Local
+from cprbm.contact import REAL, Factored, Group, Local
 from cprbm.kinematics import Positions, State
 from cprbm.model import Model
 from cprbm.offset_points import offset_vectors
@@ -49,7 +45,6 @@ from scene import BeamContact, Mistake, Scene, SceneError
 from scene.answer import Array, Ints
 
 FEWEST_POINTS = 3
-TINY = float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,35 +166,32 @@ class FittedBoundary:
             mu = -inverse @ (phi @ w)
             q2, mu1 = D @ q1, D @ mu
             U, U1, U2, P2 = mu @ V, mu1 @ V, (D @ mu1) @ V, q2 @ V
-            bend = w * (q2 @ phi)
-            # the two factors of every product, over (a, A, B): of a point's own ones, and of those through q
-            both = np.zeros((2, n + size, k + 2 * n))
-            f, g = both
-            i = np.arange(n)
-            f[i, k + i], g[i, k + i], g[i, k + n + i] = 1.0, 0.5 * (U2 * rest + 2.0 * U1 * P1 + U * P2), -U1
-            f[n:, :k], f[n:, k : k + n] = w * (D.T @ phi), U1 * V + U * V1
-            g[n:, k : k + n], g[n:, k + n :] = q_A, q_B
-            sizes = np.maximum(np.einsum("spk,spk->sp", both, both), TINY)
-            alpha = (0.25 * sizes[1] / sizes[0]) ** 0.25
-            f *= alpha[:, None]
-            g *= 0.5 / alpha[:, None]
-            products = np.concatenate((f + g, f - g))
-            # the offset points turn with τ: d²(A, B)/dτ² = −(nA, nB)
-            turning = -(multipliers @ over_A) * nA - (multipliers @ over_B) * nB
-            # a column for each a_j and each τ_i, and two for each product
-            first, last = k + len(products), k + len(products) + n
-            columns = np.zeros((last, 2 * (k + n) + n + 1))
-            columns[k:first], along, _ = over_locals(k, products[:, k : k + n], products[:, k + n :])
-            columns[k:first, along : along + k] = products[:, :k]
-            columns[np.arange(k), along + np.arange(k)] = np.sqrt(np.abs(bend))
-            halves = columns[first:, 2 * (k + n) :]
-            halves[i, i] = halves[i, i + 1] = 0.5 * np.sqrt(np.abs(turning))
-            sigma = np.ones(last)
-            sigma[first - n - size : first] = -1.0
-            np.copysign(1.0, bend, out=sigma[:k])
-            np.copysign(1.0, turning, out=sigma[first:])
+            # over (a, A, B)
+            second, C, K = np.zeros((k + 2 * n, k + 2 * n)), np.zeros((k + 2 * n, size)), np.zeros((size, k + 2 * n))
+            i, j = np.arange(k), np.arange(k, k + n)
+            second[i, i] = w * (q2 @ phi)
+            second[j, j] = U2 * rest + 2.0 * U1 * P1 + U * P2
+            second[j, j + n] = second[j + n, j] = -U1
+            C[:k], C[k : k + n] = (w * (D.T @ phi)).T, (U1 * V + U * V1).T
+            K[:, k : k + n], K[:, k + n :] = q_A, q_B
+            product = C @ K
+            second += product
+            second += product.T
+            sigma, vectors, failed = lapack.dsyevd(second)
+            if failed:
+                raise np.linalg.LinAlgError("no eigenvalues of a boundary's second derivative")
+            size_of = np.abs(sigma)
+            real = (size_of > REAL * size_of.max()).nonzero()[0]
+            over = vectors.T[real]
+            columns, along, _ = over_locals(k, over[:, k : k + n], over[:, k + n :])
+            columns[:, along : along + k] = over[:, :k]
             joints = np.concatenate((self.joints[pressing], self.points))
-            return Factored(Local(joints[None], self.links[None], columns, alike=True), sigma)
+            return Factored(
+                Local(joints[None], self.links[None], columns, alike=True),
+                sigma[real],
+                # the offset points turn with τ: d²(A, B)/dτ² = −(nA, nB)
+                turning=-(multipliers @ over_A) * nA - (multipliers @ over_B) * nB,
+            )
 
         each, angles = self._local
         return (

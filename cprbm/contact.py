@@ -71,19 +71,28 @@ def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Loc
 
 @dataclass(frozen=True, slots=True)
 class Factored:
-    """A second derivative Σ σ v vᵀ: the ``columns`` v as rows over local numbers, and σ ``sigma`` (r,), none nought.
+    """A second derivative Σ σ v vᵀ + Σ t dτ², τ half the sum of two angles that follow each other.
 
-    A column may be nought.
+    Attributes:
+        columns: v, as rows over local numbers (r).
+        sigma: σ, none of them nought (r,).
+        turning: t (a − 1,) where the columns are alike, for each two of their angles, links of one beam; else None.
     """
 
     columns: Local
     sigma: Array
+    turning: Array | None = None
 
     def blocks(self) -> Blocks:
         """The same as matrices: one, or of each column where these have local numbers of their own."""
         joints, angles, v = self.columns.joints, self.columns.angles, self.columns.slopes
         if self.columns.alike:
-            return Blocks(joints, angles, ((v.T * self.sigma) @ v)[None])
+            matrix = (v.T * self.sigma) @ v
+            if self.turning is not None:
+                i = 2 * joints.shape[1] + np.arange(len(self.turning))
+                for one, other in ((i, i), (i, i + 1), (i + 1, i), (i + 1, i + 1)):
+                    matrix[one, other] += 0.25 * self.turning
+            return Blocks(joints, angles, matrix[None])
         return Blocks(joints, angles, self.sigma[:, None, None] * v[:, :, None] * v[:, None, :])
 
 

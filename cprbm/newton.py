@@ -25,7 +25,7 @@ import numpy as np
 from cprbm.bordered import Bordered, Kept, Symmetric, anchored, bordered, factorised, without
 from cprbm.closure import closure_forces, closure_second
 from cprbm.complementarity import pressing
-from cprbm.contact import Rows, over_unknowns
+from cprbm.contact import Factored, Rows, over_unknowns
 from cprbm.kinematics import pulled_back
 from cprbm.local import LocalSystem, local_step, local_system
 from cprbm.point import Point, Problem
@@ -34,6 +34,7 @@ from scene.answer import Array, Flags, Ints
 CONTACT_STIFFNESS = (1e4, 1e6)  # of pressing contacts while the energy alone is not convex, S/ℓ²; the first that helps
 MANY = 40  # contact rows beyond which the system is solved with the joints' positions as unknowns
 LOCAL = 8  # joints in a row that is local
+NO_NUMBERS = np.zeros(0)
 
 
 @dataclass(frozen=True)
@@ -137,7 +138,16 @@ def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System
         diagonal += shift * model.lengths
     over_phi = second_bodies + closure_second(model, closure, point.state, point.mu) - point.work.second
 
-    low_rank, sigma, added = _curvatures(point)
+    curved = _curvatures(point)
+    low_rank = over_unknowns(model, point.state, point.at, [each.columns for each in curved])
+    sigma = np.concatenate([NO_NUMBERS, *(each.sigma for each in curved)])
+    added = np.zeros(len(sigma))
+    for each in curved:
+        if each.turning is not None:
+            links, quarter = each.columns.angles[0], 0.25 * each.turning
+            diagonal[links[:-1]] += quarter
+            diagonal[links[1:]] += quarter
+            off[links[:-1]] += quarter
     if stiff.any():
         low_rank = np.concatenate((low_rank, A_I[stiff > 0.0]))
         sigma = np.concatenate((sigma, stiff[stiff > 0.0]))
@@ -177,13 +187,9 @@ def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System
     )
 
 
-def _curvatures(point: Point) -> tuple[Array, Array, Array]:
-    """Rows (JᵀV)ᵀ over q (r, n_links + 3B), σ (r,) and their right-hand sides, of the contacts that press."""
-    pressing = [(group, lam) for group, lam in point.rows.shares(point.lam) if lam.any()]
-    factors = [group.factored(lam) for group, lam in pressing]
-    found = np.concatenate([np.zeros(0), *(each.sigma for each in factors)])
-    rows = over_unknowns(point.model, point.state, point.at, [each.columns for each in factors])
-    return rows, found, np.zeros(len(found))
+def _curvatures(point: Point) -> list[Factored]:
+    """Second derivatives of λ·c over local numbers, of the groups that press."""
+    return [group.factored(lam) for group, lam in point.rows.shares(point.lam) if lam.any()]
 
 
 def own_system(problem: Problem, point: Point) -> System:
