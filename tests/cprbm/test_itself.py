@@ -236,7 +236,9 @@ def test_a_neck_that_closes(thick):
         assert abs(errors[80][name]) < 0.002, name
     assert abs(errors[80]["place"]) < 2e-4
     values = station.values
-    assert values["neck.ends"][0] == values["neck.ends"][1] == values["neck.centre"][0]
+    assert values["neck.ends"][0] == values["neck.ends"][1]
+    # forces are summed there
+    assert values["neck.centre"][0] == pytest.approx(values["neck.ends"][0], rel=1e-14)
     unit = necks.rigidity(0.01) / necks.LENGTH
     assert abs(values["R.reaction_moment"][0]) == pytest.approx(column.moment * unit, rel=5e-4)
     # the middle between two places that are each other's mirror images
