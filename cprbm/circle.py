@@ -341,17 +341,25 @@ def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:
     circle = Circle(
         name, chain, body, mark, contact.center[0] / unit, contact.center[1] / unit, contact.radius / unit, offset, unit
     )
-    state = rest_state(model)
-    ends = circle.line(state, positions(model, state)).at(chain.s[[0, -1]])
-    towards = np.hypot(ends.x - circle.x, ends.y - circle.y) * circle.slope(ends)
-    on_it = (np.abs(circle.distance(ends) - offset) <= ON_IT) & (np.abs(towards) <= ON_IT)
-    start, end = (held is not None and held.body == body and held.welded for held in (chain.start, chain.end))
     return replace(
         circle,
-        clamped=(start and bool(on_it[0]), end and bool(on_it[1])),
+        clamped=_clamped(model, circle),
         ends=_places_of_rows(chain, chain.s[-1] * fit.ends.get(name, np.zeros(0)), corners=contact.thick),
         kinks=fit.kinks.get(name, (NO_KINKS,))[0],
     )
+
+
+def _clamped(model: Model, circle: Circle) -> tuple[bool, bool]:
+    """Which ends of the beam are clamped on the circle's own body, in touch with it and tangent to it."""
+    chain = circle.a
+    start, end = (held is not None and held.body == circle.body and held.welded for held in (chain.start, chain.end))
+    if not (start or end):
+        return False, False
+    state = rest_state(model)
+    ends = circle.line(state, positions(model, state)).at(chain.s[[0, -1]])
+    towards = np.hypot(ends.x - circle.x, ends.y - circle.y) * circle.slope(ends)
+    on_it = (np.abs(circle.distance(ends) - circle.offset) <= ON_IT) & (np.abs(towards) <= ON_IT)
+    return start and bool(on_it[0]), end and bool(on_it[1])
 
 
 def _places_of_rows(chain: Chain, ends: Array, *, corners: bool) -> tuple[float, ...]:

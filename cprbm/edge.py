@@ -561,7 +561,8 @@ def _corners(faces: tuple[Face, ...], pinned: Array, offset: float) -> tuple[Cor
 
 def _clamped(model: Model, edge: Edge, welded: tuple[bool, bool]) -> tuple[bool, bool]:
     """Which ends ``welded`` to the edge's own body are so in touch with the edge and along it."""
+    if not any(welded):
+        return welded
     state = rest_state(model)
-    at = positions(model, state)
-    touch = edge.in_touch(state, at)
+    touch = edge.in_touch(state, positions(model, state))
     return welded[0] and touch[0], welded[1] and touch[1]

@@ -15,6 +15,7 @@ piece that is seen.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
 from typing import Protocol
 
@@ -26,6 +27,7 @@ from scene.answer import Array, Flags
 
 NEWTON_STEPS = 30
 SAMPLES = 65  # of a graph, from which the nearest place is sought
+GRAPHS = 1024  # of which it is known how high and how sharp they are
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,32 +140,20 @@ class Graph:
     @property
     def roof(self) -> Roof:
         """What it lies under."""
-        f, f1 = (self.side * np.asarray(polynomial.polyder(self.coefficients, m), dtype=float) for m in range(2))
-        steepest, flattest = self._largest(f1), self._largest(-f1)
-        base, along, out = (-self.origin[0], -self.origin[1]), (1.0, 0.0), (0.0, self.side)
-        # w is measured from the base, f from the axis
-        if self.swapped:
-            base, along, out = base[::-1], along[::-1], out[::-1]
-        top = self._largest(f)
-        return Roof(base, along, out, self.low, self.high, top, max(steepest, 0.0), max(flattest, 0.0))
-
-    def _largest(self, coefficients: Array) -> float:
-        """The largest value of a polynomial between the ends."""
-        flat = polynomial.polyroots(polynomial.polytrim(polynomial.polyder(coefficients)))
-        inner = flat.real[(flat.real > self.low) & (flat.real < self.high)]
-        return float(np.max(polynomial.polyval(np.append(inner, (self.low, self.high)), coefficients)))
+        return _roof(self)
 
     @property
     def sharpest(self) -> float:
         """The largest |κ| at some samples."""
-        return float(np.max(np.abs(self._curvature(np.linspace(self.low, self.high, SAMPLES)))))
+        return _sharpest(self)
 
     def _placed(self, v: Array) -> Array:
         w = polynomial.polyval(v, self.coefficients)
         places = np.stack((v - self.origin[0], w - self.origin[1]), axis=1)
         return np.asarray(places[:, ::-1] if self.swapped else places)
 
-    def _curvature(self, v: Array) -> Array:
+    def curvature(self, v: Array) -> Array:
+        """κ at some v (k,)."""
         f1, f2 = (polynomial.polyval(v, polynomial.polyder(self.coefficients, m)) for m in (1, 2))
         return np.asarray(-self.side * f2 / (1.0 + f1 * f1) ** 1.5)
 
@@ -190,9 +180,32 @@ class Graph:
         rv, rw = v - at, w - polynomial.polyval(at, f)
         along, distance = rv * tau[:, 0] + rw * tau[:, 1], rv * n[:, 0] + rw * n[:, 1]
         within = ~(((at <= self.low) & (along < 0.0)) | ((at >= self.high) & (along > 0.0)))
-        kappa = self._curvature(at)
+        kappa = self.curvature(at)
         bend = np.where(within, kappa / (1.0 + kappa * distance), 0.0)
         return Seen(distance, n[:, ::-1] if self.swapped else n, bend, within)
+
+
+@lru_cache(maxsize=GRAPHS)
+def _roof(graph: Graph) -> Roof:
+    f, f1 = (graph.side * np.asarray(polynomial.polyder(graph.coefficients, m), dtype=float) for m in range(2))
+    # w is measured from the base, f from the axis
+    base, along, out = (-graph.origin[0], -graph.origin[1]), (1.0, 0.0), (0.0, graph.side)
+    if graph.swapped:
+        base, along, out = base[::-1], along[::-1], out[::-1]
+    rise, fall = (max(_largest(graph, slope), 0.0) for slope in (f1, -f1))
+    return Roof(base, along, out, graph.low, graph.high, _largest(graph, f), rise, fall)
+
+
+def _largest(graph: Graph, coefficients: Array) -> float:
+    """The largest value of a polynomial between the ends of a graph."""
+    flat = polynomial.polyroots(polynomial.polytrim(polynomial.polyder(coefficients)))
+    inner = flat.real[(flat.real > graph.low) & (flat.real < graph.high)]
+    return float(np.max(polynomial.polyval(np.append(inner, (graph.low, graph.high)), coefficients)))
+
+
+@lru_cache(maxsize=GRAPHS)
+def _sharpest(graph: Graph) -> float:
+    return float(np.max(np.abs(graph.curvature(np.linspace(graph.low, graph.high, SAMPLES)))))
 
 
 def faces_of(contact: EdgeContact, unit_length: float, origin: tuple[float, float]) -> tuple[Face, ...]:

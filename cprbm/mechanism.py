@@ -24,12 +24,22 @@ from cprbm.made import Made
 from cprbm.model import EVEN, Fit, Model, build
 from cprbm.nearest import Pair, pair_of
 from cprbm.point import Point, Problem
+from cprbm.related import related_joints
 from cprbm.rigid import RigidCircle, rigid_circle
 from cprbm.rigid_edge import RigidEdge, rigid_edge
 from cprbm.settings import Settings
 from cprbm.stops import AngleStop, stop_of
 from cprbm.strands import NO_FACES
-from scene import BeamContact, CircleContact, Mistake, Scene, SceneError, SelfContact
+from scene import (
+    BeamContact,
+    CircleContact,
+    FunctionContact,
+    HalfPlaneContact,
+    Mistake,
+    Scene,
+    SceneError,
+    SelfContact,
+)
 
 NARROWED = 4  # contacts that may have been passed, from which on their clearances between two states are asked for
 BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle or another
@@ -239,6 +249,15 @@ def _boundary(scene: Scene, model: Model, pair: AnyPair, settings: Settings) -> 
     raise SceneError([Mistake(f"contacts.{pair.name}.kind", repr(kind), allowed, scene.file)])
 
 
+def _refused(scene: Scene, model: Model, boundaries: Mapping[str, Boundary], name: str) -> None:
+    """Raise what making a contact's boundary would, and make it now where nothing less tells."""
+    match scene.contacts[name]:
+        case CircleContact(beam=beam) | HalfPlaneContact(beam=beam) | FunctionContact(beam=beam):
+            related_joints(scene, model, name, model.chain(beam), fewest=1)
+        case _:
+            boundaries[name]
+
+
 def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism:
     """Make a scene ready on even elements or those of a ``fit``.
 
@@ -247,9 +266,10 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism
     """
     model = build(scene, settings, fit)
     pairs = Made(scene.contacts, lambda name: _pair(scene, model, name, fit))
-    boundaries: dict[str, Boundary] = {}
-    if settings.formulation == "paper":
-        boundaries = {name: _boundary(scene, model, pair, settings) for name, pair in pairs.items()}
+    told = list(scene.contacts) if settings.formulation == "paper" else []
+    boundaries = Made(told, lambda name: _boundary(scene, model, pairs[name], settings))
+    for name in told:
+        _refused(scene, model, boundaries, name)
     stops = {name: stop_of(scene, model, name) for name in scene.stops}
     clearances = clearances_of(scene, model)
     selves = [name for name, contact in scene.contacts.items() if isinstance(contact, SelfContact)]

@@ -6,10 +6,11 @@ from dataclasses import replace
 
 from fea_reference import circle, contact, face
 from fea_reference.crossing import cross, crosses_itself
+from fea_reference.far import FAR, kept_apart, least_apart
 from fea_reference.model import Model
 from fea_reference.state import State
 from fea_reference.touch import Circle, Contact, Face, Pair, Penalty, Touch
-from fea_reference.zones import Zones
+from fea_reference.zones import Zones, none
 from scene.statement import Scene
 
 
@@ -31,6 +32,9 @@ def zones_of(model: Model, what: Contact, z: State) -> Zones:
 
 
 def _zones_of(model: Model, what: Contact, z: State) -> Zones:
+    apart = least_apart(model, what, z)
+    if apart > FAR:
+        return none(apart)
     match what:
         case Pair():
             return contact.zones_of(model, what, z)
@@ -79,6 +83,10 @@ def looked_at(model: Model, what: Contact, z: State) -> Contact:
 
 def passed_through(model: Model, what: Contact, before: State, after: State) -> bool:
     """Whether what may touch has passed through each other on the way from one state to another."""
+    if isinstance(what, Circle | Face):
+        gaps = zones_of(model, what, before).least, zones_of(model, what, after).least
+        if kept_apart(model, what, gaps, before, after):
+            return False
     if isinstance(what, Circle):
         return circle.passed(model, what, before, after)
     if isinstance(what, Face):

@@ -26,7 +26,7 @@ from fea_reference.leaning import Chain, Span, chain, tangent_angles
 from fea_reference.own_pins import own_pins
 from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
 from fea_reference.settings import Settings
-from fea_reference.state import State
+from fea_reference.state import Complex, State
 from fea_reference.stops import StopPart, stops_of
 from fea_reference.touch import Contact, Penalty, Touch
 from fea_reference.zones import Zones
@@ -249,8 +249,9 @@ class Model:
 
     ``guides`` are rows like a drive's whose value stays zero; ``apart`` are the ends to be assembled; ``stiffest`` is
     the largest of the elements' 12 EI/h²; ``moving`` are the motions among the unknowns: of all nodes and bodies.
-    ``lines``, ``overlaps`` and ``touches`` remember what has been found in a state: neutral lines by the name of the
-    beam, the zones of contacts, and what a contact is with a penalty, a quadrature and the depth at which it is held.
+    ``lines``, ``discs``, ``distances``, ``overlaps`` and ``touches`` remember what has been found in a state: neutral
+    lines by the name of the beam, discs about these and their distances from edges (:mod:`fea_reference.far`), the
+    zones of contacts, and what a contact is with a penalty, a quadrature and the depth at which it is held.
     """
 
     units: Units
@@ -272,6 +273,8 @@ class Model:
     stiffest: float
     moving: Index
     lines: Known[str, NeutralLine] = field(default_factory=Known, repr=False)
+    discs: Known[str, tuple[Complex, Array]] = field(default_factory=Known, repr=False)
+    distances: Known[Contact, tuple[Complex, Array]] = field(default_factory=Known, repr=False)
     overlaps: Known[Contact, Zones] = field(default_factory=Known, repr=False)
     touches: Known[tuple[Contact, Penalty, int, float | None], Touch] = field(default_factory=Known, repr=False)
 

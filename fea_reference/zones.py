@@ -123,8 +123,8 @@ class Survey:
 class Zones:
     """Intervals (k, 2) of ζ with a negative gap, none of which holds a node of either beam in its inside.
 
-    ``zeta_m`` (k, 2) are the closest points of their ends; ``least`` is the least gap anywhere, an upper
-    bound of it where the beams are far apart.
+    ``zeta_m`` (k, 2) are the closest points of their ends; ``least`` is the least gap anywhere, a bound of it where
+    what may touch is far apart.
     """
 
     intervals: Array

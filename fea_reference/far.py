@@ -1,0 +1,89 @@
+"""How far apart what may touch is at least, told from a few nodes; what is far need not be looked at.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+c, r    centre and radius of a disc about a run of nodes and the elements up to the next one
+d       signed distance from an edge, which changes by no more than a place moves against its body
+g       least gap: g ≥ |c − o| − R − T − r, d(c) − T − r or |c − c_m| − T − r − r_m
+======  =====================================================================================
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea_reference.hermite import NeutralLine
+from fea_reference.model import BodyPart, Model
+from fea_reference.state import Complex, State
+from fea_reference.touch import Circle, Contact, Face, Pair, Rigid
+from scene.answer import Array
+
+FAR = 0.1  # of the longest beam: a gap at which nothing is near
+_RUNS = 8  # of a beam's nodes
+
+
+def least_apart(model: Model, what: Contact, z: State) -> float:
+    """A lower bound of the gap in state ``z``; of a beam and itself none is known."""
+    c, r = _discs(model, what.first, z)
+    match what:
+        case Pair(roles=None):
+            c_m, r_m = _discs(model, what.second, z)
+            return float((np.abs(c[:, None] - c_m) - r[:, None] - r_m).min()) - what.distance
+        case Pair():
+            return -np.inf
+        case Circle():
+            x, y = model.carried(model.bodies[what.body], np.array(what.arm), z)
+            return float((np.abs(c - complex(x, y)) - r).min()) - what.radius - what.edge.farthest
+        case Face():
+            r = r + what.edge.farthest
+            y = _in_frame(model, model.bodies[what.body], c, z)
+            y_0, d_0 = model.distances.found(model.start, what, lambda: _distances(model, what, model.start))
+            apart = float((d_0 - np.abs(y - y_0) - r).min())
+            return apart if apart > FAR else float((_distance(what, y) - r).min())
+
+
+def kept_apart(model: Model, what: Rigid, gaps: tuple[float, float], before: State, after: State) -> bool:
+    """Whether a beam with these ``gaps`` in two states cannot have touched on the straight way between them."""
+    beam, body = model.beams[what.first], model.bodies[what.body]
+    dofs = model.node_dofs[:2, beam.nodes]
+    moved = float(np.hypot(*(after.values[dofs] - before.values[dofs])).max())
+    line = model.line(beam, before)
+    X, Y, phi = model.body_state(body, after) - model.body_state(body, before)
+    if body.dofs is not None:
+        x, y = model.carried(body, np.zeros(2), before)
+        moved += float(np.hypot(X, Y)) + abs(float(phi)) * (float(np.abs(line.nodes - complex(x, y)).max()) + moved)
+    return sum(gaps) > moved + 2.0 * float(line.lengths.max())
+
+
+def _distances(model: Model, face: Face, z: State) -> tuple[Complex, Array]:
+    """Where the discs' centres are as the edge's body sees them, and d there, (k,) each."""
+    y = _in_frame(model, model.bodies[face.body], _discs(model, face.first, z)[0], z)
+    return y, _distance(face, y)
+
+
+def _distance(face: Face, y: Complex) -> Array:
+    """d of places x + i y (k,) as the edge's body sees them."""
+    return face.outline.near(np.stack([y.real, y.imag])).distance
+
+
+def _discs(model: Model, beam: int, z: State) -> tuple[Complex, Array]:
+    """c (k,) as x + i y and r (k,) of a beam, known by its number."""
+    part = model.beams[beam]
+    return model.discs.found(z, part.name, lambda: _discs_of(model.line(part, z)))
+
+
+def _discs_of(line: NeutralLine) -> tuple[Complex, Array]:
+    n = line.nodes.size
+    starts = np.unique(np.arange(_RUNS) * n // _RUNS)
+    lengths = np.diff(starts, append=n)
+    c = line.nodes[starts + lengths // 2]
+    away = np.abs(line.nodes - np.repeat(c, lengths))
+    return c, np.maximum.reduceat(away, starts) + float(line.speeds.max())
+
+
+def _in_frame(model: Model, body: BodyPart, places: Complex, z: State) -> Complex:
+    """Places x + i y (k,) as a body sees them."""
+    X, Y, phi = model.body_state(body, z)
+    y = places - complex(body.centre[0] + X, body.centre[1] + Y)
+    return y if body.dofs is None else y * complex(np.cos(phi), -np.sin(phi))
