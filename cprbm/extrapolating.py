@@ -16,10 +16,12 @@ import numpy as np
 
 from cprbm.equilibrium import Point, Problem, point_at
 from cprbm.kinematics import State
-from cprbm.model import Fit
+from cprbm.model import Fit, Kinks
+from scene.answer import Array
 
 FEWEST = 3  # states: of two the way goes on straight, and so does Newton's first step
 MOST = 5
+FITTED = 4  # meshes that lead to the next
 KEPT = 15  # states, some of which may be too close to each other
 FARTHEST = 1.5  # times as far from the nearest value as that is from the one after it
 SPACED = 0.2  # of the way to the nearest value: of values closer to each other the last is taken
@@ -53,8 +55,7 @@ def continued(
     one, other = sorted((value for value, _ in used), key=lambda value: abs(v - value))[:2]
     if abs(v - one) > FARTHEST * abs(one - other):
         return None
-    at = np.array([value for value, _ in used])
-    weights = np.array([np.prod((v - np.delete(at, k)) / (at[k] - np.delete(at, k))) for k in range(len(at))])
+    weights = lagrange(np.array([value for value, _ in used]), v)
     theta, bodies, mu = (
         np.tensordot(weights, np.stack(parts), 1)
         for parts in zip(*((p.state.theta, p.state.bodies, p.mu) for _, p in used), strict=True)
@@ -64,6 +65,39 @@ def continued(
     lam = np.zeros(len(last.lam))
     lam[last.lam > 0.0] = np.maximum(weights @ np.stack([point.lam[point.lam > 0.0] for _, point in used]), 0.0)
     return point_at(problem, values, State(theta, bodies), mu, lam, last.rows)
+
+
+def led(known: Sequence[tuple[float, Fit]], v: float) -> Fit | None:
+    """The mesh's fit to which those at the last values lead at v; None where they are not alike, or too far away."""
+    last = known[-1][1]
+    used = [(value, fit) for value, fit in known[-FITTED:] if value != v and alike(fit, last)]
+    if len(used) < FEWEST or abs(v - used[-1][0]) > FARTHEST * abs(used[-1][0] - used[-2][0]):
+        return None
+    weights = lagrange(np.array([value for value, _ in used]), v)
+
+    def gone_on(parts: Sequence[Array]) -> Array:
+        return np.asarray(np.tensordot(weights, np.stack(parts), 1))
+
+    fits = [fit for _, fit in used]
+    borders = {beam: gone_on([fit.borders[beam] for fit in fits]) for beam in last.borders}
+    if any(np.any(np.diff(places) <= 0.0) for places in borders.values()):
+        return None
+    kinks = {
+        name: tuple(
+            Kinks(
+                *(gone_on([getattr(fit.kinks[name][i], of) for fit in fits]) for of in ("places", "before", "behind"))
+            )
+            for i in range(len(mine))
+        )
+        for name, mine in last.kinks.items()
+    }
+    ends = {name: gone_on([fit.ends[name] for fit in fits]) for name in last.ends}
+    return Fit(borders, ends, kinks, last.fixed)
+
+
+def lagrange(at: Array, v: float) -> Array:
+    """Π_{j≠k} (v − v_j)/(v_k − v_j) for values ``at`` (k,)."""
+    return np.array([np.prod((v - np.delete(at, k)) / (at[k] - np.delete(at, k))) for k in range(len(at))])
 
 
 def alike(one: Fit, other: Fit) -> bool:

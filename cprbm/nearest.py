@@ -344,9 +344,7 @@ class Pair:
         weights = np.ones((len(places.s), 1))
         return gathered(self.name, (self.a, self.b), at, touches, weights, places.keys, places.s)
 
-    def _mean_rows(
-        self, at: Positions, joints: Places, touches: Touches, weights: Array
-    ) -> list[tuple[Group, Array]]:
+    def _mean_rows(self, at: Positions, joints: Places, touches: Touches, weights: Array) -> list[tuple[Group, Array]]:
         """Rows of the mean gap around joints of A, ``weights`` (m, q); those next to a clamp of both beams in one."""
         (m, q), chains = weights.shape, (self.a, self.b)
         number, alone, found = np.arange(m * q).reshape(m, q), np.ones(m, dtype=bool), []
