@@ -16,12 +16,13 @@ import numpy as np
 
 from cprbm.equilibrium import Point, Problem, point_at
 from cprbm.kinematics import State
+from cprbm.mechanism import Mechanism
 from cprbm.model import Fit, Kinks
 from scene.answer import Array
 
 FEWEST = 3  # states: of two the way goes on straight, and so does Newton's first step
 MOST = 5
-FITTED = 4  # meshes that lead to the next
+FITTED = 3  # meshes that lead to the next
 KEPT = 15  # states, some of which may be too close to each other
 FARTHEST = 1.5  # times as far from the nearest value as that is from the one after it
 SPACED = 0.2  # of the way to the nearest value: of values closer to each other the last is taken
@@ -67,10 +68,10 @@ def continued(
     return point_at(problem, values, State(theta, bodies), mu, lam, last.rows)
 
 
-def led(known: Sequence[tuple[float, Fit]], v: float) -> Fit | None:
+def led(known: Sequence[tuple[float, Mechanism]], v: float) -> Fit | None:
     """The mesh's fit to which those at the last values lead at v; None where they are not alike, or too far away."""
-    last = known[-1][1]
-    used = [(value, fit) for value, fit in known[-FITTED:] if value != v and alike(fit, last)]
+    last = known[-1][1].fit
+    used = [(value, of) for value, of in known[-FITTED:] if value != v and _marked(of.fit) == _marked(last)]
     if len(used) < FEWEST or abs(v - used[-1][0]) > FARTHEST * abs(used[-1][0] - used[-2][0]):
         return None
     weights = lagrange(np.array([value for value, _ in used]), v)
@@ -78,8 +79,9 @@ def led(known: Sequence[tuple[float, Fit]], v: float) -> Fit | None:
     def gone_on(parts: Sequence[Array]) -> Array:
         return np.asarray(np.tensordot(weights, np.stack(parts), 1))
 
-    fits = [fit for _, fit in used]
-    borders = {beam: gone_on([fit.borders[beam] for fit in fits]) for beam in last.borders}
+    fits = [mechanism.fit for _, mechanism in used]
+    chains = {beam: [mechanism.problem.model.chain(beam) for _, mechanism in used] for beam in last.borders}
+    borders = {beam: gone_on([chain.borders / chain.s[-1] for chain in mine]) for beam, mine in chains.items()}
     if any(np.any(np.diff(places) <= 0.0) for places in borders.values()):
         return None
     kinks = {
@@ -105,11 +107,18 @@ def alike(one: Fit, other: Fit) -> bool:
     return _built(one) == _built(other)
 
 
-def _built(fit: Fit) -> tuple[object, ...]:
+def _marked(fit: Fit) -> tuple[object, ...]:
+    """How many places and ends of each contact a mesh knows."""
     return (
         fit.fixed,
         {name: len(kinks[0].places) for name, kinks in fit.kinks.items()},
         {name: len(ends) for name, ends in fit.ends.items()},
+    )
+
+
+def _built(fit: Fit) -> tuple[object, ...]:
+    return (
+        _marked(fit),
         # numbers of the borders that are ends of zones
         {
             beam: sorted({int(np.argmin(np.abs(borders - end))) for ends in fit.ends.values() for end in ends})

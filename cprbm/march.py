@@ -18,7 +18,7 @@ from cprbm.closing import Closings, Stood
 from cprbm.contact import NO_ROWS
 from cprbm.critical import BranchEnd, Minimum, branch_end, told
 from cprbm.equilibrium import Equilibrium, Point, equilibrium, point_at, potential_energy
-from cprbm.extrapolating import KEPT, alike, continued, led
+from cprbm.extrapolating import FITTED, KEPT, alike, continued, led
 from cprbm.following import Follower, Reached, Way, pressing, to
 from cprbm.kinematics import State, most_turned, rest_state
 from cprbm.leap import Landed, leap
@@ -42,7 +42,7 @@ ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all br
 FURTHER = 30.0  # times as far before it, the fitted mesh is on the branch still
 SOON = 6  # iterations to a state that is nearly known
 NEARLY = 3  # from one that is near already
-NEAR, NEARER = 1e-4, 1e-2  # residual of a state on a mesh that is not the last one, and of what it overlaps by
+NEAR, NEARER = 1e-3, 1e-2  # residual of a state on a mesh that is not the last one, and of what it overlaps by
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
 
 
@@ -254,19 +254,18 @@ class March:
     def _gone_on(self, stage: Stage, value: float) -> tuple[Mechanism, Point, Certificate] | None:
         """The station where the last ones lead on the meshes that were fitted, without the march going there.
 
-        None where the march has to go: where another stage begins from there, ends of branches or closings of contacts
-        are asked for, too little is known, other contacts press, or the links did not go as their rates say.
+        None where the march has to go: where another stage begins from there, ends of branches are asked for, too little is known, other contacts press, or the links did not go as their rates say.
         """
         asked, stood = self.family[-1], self.stood
-        if not stood or stage is not self.scene.stages[-1] or stage.beyond is not None or self.opened:
+        if not stood or stage is not self.scene.stages[-1] or stage.beyond is not None:
             return None
         way = to(stage.steps, {**self.on.values, stage.steps: stood[-1][0]}, value)
         values, (_, last, before) = way.at(1.0), stood[-1]
         target, start = last, None
-        fit = led([(at, mechanism.fit) for at, mechanism, _ in stood], value)
+        fit = led([(at, mechanism) for at, mechanism, _ in stood], value)
         if fit is not None:
             target = mechanism_of(self.scene, asked, fit)
-            start = continued(target.problem, values, [(at, point) for at, _, point in stood], value)
+            start = continued(target.problem, values, [(at, point) for at, _, point in stood[-FITTED:]], value)
         if start is None:
             target, start = last, before
         solved = self._nearly(target, values, start)
@@ -370,7 +369,7 @@ class March:
         return None
 
     def _solved(self, mechanism: Mechanism, values: dict[str, float], start: Point, most: int) -> Equilibrium:
-        """An equilibrium on a mesh that was asked, in ``most`` iterations, which the next station's certificate counts."""
+        """An equilibrium on a mesh that was asked; the next station's certificate counts its iterations."""
         found = equilibrium(mechanism.problem, values, start, self.family[-1].tolerance, most)
         self.spent += found.iterations
         return found
