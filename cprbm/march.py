@@ -254,7 +254,8 @@ class March:
     def _gone_on(self, stage: Stage, value: float) -> tuple[Mechanism, Point, Certificate] | None:
         """The station where the last ones lead on the meshes that were fitted, without the march going there.
 
-        None where the march has to go: where another stage begins from there, ends of branches are asked for, too little is known, other contacts press, or the links did not go as their rates say.
+        None where the march has to go: where another stage begins from there, ends of branches are asked for, other
+        contacts press, no state is found soon, or the links did not go as their rates say.
         """
         asked, stood = self.family[-1], self.stood
         if not stood or stage is not self.scene.stages[-1] or stage.beyond is not None:
@@ -360,7 +361,7 @@ class March:
         return None
 
     def _nearly(self, mechanism: Mechanism, values: dict[str, float], start: Point) -> Equilibrium | None:
-        """A state near an equilibrium on a mesh that is not the last one; None where iterations do not soon lead there."""
+        """A state near an equilibrium on a mesh that is not the last one; None where none is found soon."""
         for _ in range(SOON):
             found = self._solved(mechanism, values, start, 1)
             if found.converged or _near(found):
