@@ -260,6 +260,10 @@ class March:
         asked, stood = self.family[-1], self.stood
         if not stood or stage is not self.scene.stages[-1] or stage.beyond is not None:
             return None
+        # without kinks a mesh fits within a part of an element, and which part would hang on the way there
+        made = stood[-1][1].fit
+        if made.ends or not pressing(stood[-1][2]) <= made.kinks.keys():
+            return None
         way = to(stage.steps, {**self.on.values, stage.steps: stood[-1][0]}, value)
         values, (_, last, before) = way.at(1.0), stood[-1]
         target, start = last, None
