@@ -15,11 +15,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from cprbm.kinematics import State
-from cprbm.model import Fit
+from cprbm.mechanism import Mechanism
+from cprbm.model import Fit, Kinks
 from cprbm.point import Point, Problem, point_at
+from scene.answer import Array
 
 FEWEST = 3  # states: of two the way goes on straight, and so does Newton's first step
 MOST = 5
+FITTED = 3  # meshes that lead to the next
 KEPT = 15  # states, some of which may be too close to each other
 FARTHEST = 1.5  # times as far from the nearest value as that is from the one after it
 SPACED = 0.2  # of the way to the nearest value: of values closer to each other the last is taken
@@ -53,8 +56,7 @@ def continued(
     one, other = sorted((value for value, _ in used), key=lambda value: abs(v - value))[:2]
     if abs(v - one) > FARTHEST * abs(one - other):
         return None
-    at = np.array([value for value, _ in used])
-    weights = np.array([np.prod((v - np.delete(at, k)) / (at[k] - np.delete(at, k))) for k in range(len(at))])
+    weights = lagrange(np.array([value for value, _ in used]), v)
     theta, bodies, mu = (
         np.tensordot(weights, np.stack(parts), 1)
         for parts in zip(*((p.state.theta, p.state.bodies, p.mu) for _, p in used), strict=True)
@@ -66,16 +68,57 @@ def continued(
     return point_at(problem, values, State(theta, bodies), mu, lam, last.rows)
 
 
+def led(known: Sequence[tuple[float, Mechanism]], v: float) -> Fit | None:
+    """The mesh's fit to which those at the last values lead at v; None where they are not alike, or too far away."""
+    last = known[-1][1].fit
+    used = [(value, of) for value, of in known[-FITTED:] if value != v and _marked(of.fit) == _marked(last)]
+    if len(used) < FEWEST or abs(v - used[-1][0]) > FARTHEST * abs(used[-1][0] - used[-2][0]):
+        return None
+    weights = lagrange(np.array([value for value, _ in used]), v)
+
+    def gone_on(parts: Sequence[Array]) -> Array:
+        return np.asarray(np.tensordot(weights, np.stack(parts), 1))
+
+    fits = [mechanism.fit for _, mechanism in used]
+    chains = {beam: [mechanism.problem.model.chain(beam) for _, mechanism in used] for beam in last.borders}
+    borders = {beam: gone_on([chain.borders / chain.s[-1] for chain in mine]) for beam, mine in chains.items()}
+    if any(np.any(np.diff(places) <= 0.0) for places in borders.values()):
+        return None
+    kinks = {
+        name: tuple(
+            Kinks(
+                *(gone_on([getattr(fit.kinks[name][i], of) for fit in fits]) for of in ("places", "before", "behind"))
+            )
+            for i in range(len(mine))
+        )
+        for name, mine in last.kinks.items()
+    }
+    ends = {name: gone_on([fit.ends[name] for fit in fits]) for name in last.ends}
+    return Fit(borders, ends, kinks, last.fixed)
+
+
+def lagrange(at: Array, v: float) -> Array:
+    """Π_{j≠k} (v − v_j)/(v_k − v_j) for values ``at`` (k,)."""
+    return np.array([np.prod((v - np.delete(at, k)) / (at[k] - np.delete(at, k))) for k in range(len(at))])
+
+
 def alike(one: Fit, other: Fit) -> bool:
     """Whether meshes have the same elements, somewhat longer or shorter: then what is known on both goes on evenly."""
     return _built(one) == _built(other)
 
 
-def _built(fit: Fit) -> tuple[object, ...]:
+def _marked(fit: Fit) -> tuple[object, ...]:
+    """How many places and ends of each contact a mesh knows."""
     return (
         fit.fixed,
         {name: len(kinks[0].places) for name, kinks in fit.kinks.items()},
         {name: len(ends) for name, ends in fit.ends.items()},
+    )
+
+
+def _built(fit: Fit) -> tuple[object, ...]:
+    return (
+        _marked(fit),
         # numbers of the borders that are ends of zones
         {
             beam: sorted({int(np.argmin(np.abs(borders - end))) for ends in fit.ends.values() for end in ends})

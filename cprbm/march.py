@@ -6,6 +6,7 @@ from there on the mesh that was asked, fitted to where contact is (:mod:`cprbm.r
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -17,7 +18,7 @@ from cprbm.closing import Closings, Stood
 from cprbm.contact import NO_ROWS
 from cprbm.critical import BranchEnd, Minimum, branch_end, told
 from cprbm.equilibrium import Equilibrium, equilibrium
-from cprbm.extrapolating import KEPT, alike, continued
+from cprbm.extrapolating import FITTED, KEPT, alike, continued, led
 from cprbm.following import Follower, Reached, Way, pressing, to
 from cprbm.kinematics import State, most_turned, rest_state
 from cprbm.leap import Landed, leap
@@ -26,19 +27,23 @@ from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.model import Fit
 from cprbm.point import Point, point_at, potential_energy
 from cprbm.probing import probed, shapes, touching
+from cprbm.rate import rate, strayed
 from cprbm.refining import all_zones, carried_over, carried_state, fits, fitted, long_ones
 from cprbm.remarks import Remarks
 from cprbm.settings import Settings
 from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAnswer
 
 AGAIN = 12  # iterations on a mesh that fits a little better
-FITS = 5  # of the mesh to where contact is, at most
-STRAIGHT = 2  # of them before two that take turns are eased
+LAST = 4  # meshes less one, on one of which there is an equilibrium
+PASSES = 8  # of fitting the mesh to where contact is, at most
+STRAIGHT = 6  # of them before two that take turns are eased
 BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is no doubt that it has ended
 ENDS = 10  # of branches between two stations
 ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all branches are near
 FURTHER = 30.0  # times as far before it, the fitted mesh is on the branch still
 SOON = 6  # iterations to a state that is nearly known
+NEARLY = 3  # from one that is near already
+NEAR, NEARER = 1e-3, 1e-2  # residual of a state on a mesh that is not the last one, and of what it overlaps by
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
 
 
@@ -67,6 +72,10 @@ class March:
         self.remarks = Remarks()
         # what was solved at the last stations, by how often the mesh had been fitted, and to what
         self.before: dict[int, tuple[Fit, list[Stood]]] = {}
+        # Newton iterations since the last station, those that led nowhere among them
+        self.spent = 0
+        # the last stations of this stage on meshes that were fitted
+        self.stood: list[tuple[float, Mechanism, Point]] = []
 
     def run(self) -> tuple[Ending, str]:
         """Assemble, and march through every stage; the Ending and its sentence."""
@@ -77,8 +86,12 @@ class March:
         for stage in self.scene.stages:
             here = self.on.values.get(stage.steps, 0.0), self.on.point
             self.opened = {name: [here] for name in self.asked_events if name not in self.closed_at}
-            self.on.trail, self.on.careful, self.before = [], stage.beyond is not None, {}
+            self.on.trail, self.on.careful, self.before, self.stood = [], stage.beyond is not None, {}, []
             for target in stage.stations:
+                found = self._gone_on(stage, target)
+                if found is not None:
+                    self.reached.append(self._answer(stage, target, found))
+                    continue
                 reached = self._reach(stage, target)
                 if reached.certificate is None:
                     last = f"the last good value of {stage.steps} is {self.on.values.get(stage.steps, 0.0):.6g}"
@@ -217,7 +230,15 @@ class March:
             if len(self.family) > 1:
                 return None
             found = self.on.mechanism, self.on.point, certificate
+        self.spent += certificate.iterations
+        return self._answer(stage, value, found)
+
+    def _answer(self, stage: Stage, value: float, found: tuple[Mechanism, Point, Certificate]) -> StationAnswer:
+        """The answer at a station from the state there."""
         mechanism, point, certificate = found
+        spent, self.spent = self.spent, 0
+        if mechanism is not self.on.mechanism:
+            self.stood = [*self.stood[1 - KEPT :], (value, mechanism, point)]
         # what is open on the march's mesh may be closed on this one
         self._note_closings(stage.name, stage.steps, point, value)
         self.remarks.look(mechanism, point, f"{stage.name} {value:.6g}")
@@ -227,9 +248,46 @@ class March:
             values=probed(self.scene, mechanism, point, self.closed_at),
             shapes=shapes(mechanism, point),
             touching=touching(mechanism, point),
-            certificate=certificate,
+            certificate=replace(certificate, iterations=spent),
             branch=len(self.critical),
         )
+
+    def _gone_on(self, stage: Stage, value: float) -> tuple[Mechanism, Point, Certificate] | None:
+        """The station where the last ones lead on the meshes that were fitted, without the march going there.
+
+        None where the march has to go: where another stage begins from there, ends of branches are asked for, other
+        contacts press, no state is found soon, or the links did not go as their rates say.
+        """
+        asked, stood = self.family[-1], self.stood
+        if not stood or stage is not self.scene.stages[-1] or stage.beyond is not None:
+            return None
+        # without kinks a mesh fits within a part of an element, and which part would hang on the way there
+        made = stood[-1][1].fit
+        if made.ends or not pressing(stood[-1][2]) <= made.kinks.keys():
+            return None
+        way = to(stage.steps, {**self.on.values, stage.steps: stood[-1][0]}, value)
+        values, (_, last, before) = way.at(1.0), stood[-1]
+        target, start = last, None
+        fit = led([(at, mechanism) for at, mechanism, _ in stood], value)
+        if fit is not None:
+            target = mechanism_of(self.scene, asked, fit)
+            start = continued(target.problem, values, [(at, point) for at, _, point in stood[-FITTED:]], value)
+        if start is None:
+            target, start = last, before
+        solved = self._nearly(target, values, start)
+        if solved is None or pressing(solved.point) != pressing(before):
+            return None
+        found = self._settled(target, asked, solved.point, values, [asked] * PASSES, None, solved)
+        if found is None or pressing(found[1]) != pressing(before):
+            return None
+        mechanism, point, refit = found
+        change = point.state.theta - carried_state(last.problem.model, before.state, mechanism.problem.model).theta
+        rates = rate(last.problem, before, way.change), rate(mechanism.problem, point, way.change)
+        if strayed(mechanism.problem.model.lengths, change, *rates) or mechanism.passed(before, point):
+            return None
+        assert refit is not None
+        certificate, ending = certify(mechanism, asked, refit)
+        return (mechanism, point, certificate) if ending is Ending.COMPLETED else None
 
     def _fitted(
         self, point: Point, values: dict[str, float], certificate: Certificate, station: float | None = None
@@ -238,38 +296,89 @@ class March:
 
         At a ``station`` it is sought first where the states on such meshes at the last stations lead.
         """
-        mechanism, iterations = self.on.mechanism, certificate.iterations
-        asked, now = self.family[-1], self.on.settings
-        for turn, settings in enumerate((*self.family[1:-1], *[asked] * FITS)):
+        on, asked = self.on, self.family[-1]
+        found = self._settled(
+            on.mechanism, on.settings, point, values, [*self.family[1:-1], *[asked] * PASSES], station
+        )
+        if found is None:
+            return None
+        mechanism, point, solved = found
+        if solved is None:
+            return mechanism, point, certificate
+        certificate, ending = certify(mechanism, asked, solved)
+        return (mechanism, point, certificate) if ending is Ending.COMPLETED else None
+
+    def _settled(
+        self,
+        mechanism: Mechanism,
+        now: Settings,
+        point: Point,
+        values: dict[str, float],
+        meshes: Sequence[Settings],
+        station: float | None,
+        found: Equilibrium | None = None,
+    ) -> tuple[Mechanism, Point, Equilibrium | None] | None:
+        """From a state on a mesh, with the settings ``now``, through ``meshes`` to one that fits its contacts.
+
+        The equilibrium is ``found`` where the first mesh fits.
+        """
+        asked, seen = self.family[-1], [(mechanism, found)] if found is not None else []
+        for turn, settings in enumerate(meshes):
             zones = all_zones(mechanism, point)
             if settings is not asked and not long_ones(zones):
                 continue  # a few places need no mesh between the coarsest and the finest
-            fit = fitted(mechanism, point, zones, settings, eased=turn > len(self.family) + STRAIGHT)
+            fit = fitted(mechanism, point, zones, settings, eased=turn > len(meshes) - PASSES + STRAIGHT)
             if settings is now and fits(mechanism, fit):
-                break
+                if found is None or found.converged:
+                    break
+                found = self._solved(mechanism, values, point, NEARLY)
+                if not found.converged:
+                    break
+                point = found.point
+                continue
             target = mechanism_of(self.scene, settings, fit)
             carried = carried_state(mechanism.problem.model, point.state, target.problem.model)
             solved = self._resumed(turn, target, carried, values, station)
+            if solved is None and now is asked and mechanism is not self.on.mechanism:
+                solved = self._nearly(target, values, carried_over(mechanism, point, target, values))
             if solved is None:
                 # the first mesh, or one for other zones, may settle which places there are; the next ones know them
                 first = mechanism is self.on.mechanism or mechanism.fit.ends.keys() != fit.ends.keys()
                 target, solved = self._refitted(mechanism, point, target, values, settings, now, settle=first)
-            iterations += solved.iterations
             turned = most_turned(carried, solved.point.state)
-            if not solved.converged or turned > FOLLOWED:
+            if not (solved.converged or _near(solved)) or turned > FOLLOWED:
                 if now is asked:  # on a mesh that fits a little less it stands already
                     break
                 return None
             mechanism, point, now, found = target, solved.point, settings, solved
+            seen.append((mechanism, solved))
             if station is not None:
                 fit, known = self.before.get(turn, (target.fit, []))
                 kept = known[1 - KEPT :] if alike(fit, target.fit) else []
                 self.before[turn] = target.fit, [*kept, (station, point)]
-        if mechanism is not self.on.mechanism:
-            certificate, ending = certify(mechanism, asked, found)
-            if ending is not Ending.COMPLETED:
-                return None
-        return mechanism, point, replace(certificate, iterations=iterations)
+        if found is None or found.converged:
+            return mechanism, point, found
+        # of meshes on which the state is only near, the last that has one; on one that fits a little less it may stand
+        for mechanism, near in seen[:-LAST:-1]:
+            found = near if near.converged else self._solved(mechanism, values, near.point, NEARLY)
+            if found.converged:
+                return mechanism, found.point, found
+        return None
+
+    def _nearly(self, mechanism: Mechanism, values: dict[str, float], start: Point) -> Equilibrium | None:
+        """A state near an equilibrium on a mesh that is not the last one; None where none is found soon."""
+        for _ in range(SOON):
+            found = self._solved(mechanism, values, start, 1)
+            if found.converged or _near(found):
+                return found
+            start = found.point
+        return None
+
+    def _solved(self, mechanism: Mechanism, values: dict[str, float], start: Point, most: int) -> Equilibrium:
+        """An equilibrium on a mesh that was asked; the next station's certificate counts its iterations."""
+        found = equilibrium(mechanism.problem, values, start, self.family[-1].tolerance, most)
+        self.spent += found.iterations
+        return found
 
     def _resumed(
         self, turn: int, target: Mechanism, carried: State, values: dict[str, float], station: float | None
@@ -284,7 +393,7 @@ class March:
         start = continued(target.problem, values, known, station)
         if start is None:
             return None
-        found = equilibrium(target.problem, values, start, self.family[-1].tolerance, SOON)
+        found = self._solved(target, values, start, SOON)
         return found if found.converged and most_turned(carried, found.point.state) <= FOLLOWED else None
 
     def _refitted(
@@ -302,19 +411,20 @@ class March:
 
         That is another than the ``target`` where places were to be levelled.
         """
-        iterations, most = 0, settings.iterations if settle else min(settings.iterations, AGAIN)
+        most = settings.iterations if settle else min(settings.iterations, AGAIN)
         start = carried_over(before, point, target, values)
         coarse = now is not self.family[-1]
         for steady in (False, True) if settle and not coarse else (coarse,):
             solved = equilibrium(target.problem, values, start, settings.tolerance, most, settle=steady)
-            iterations += solved.iterations
+            self.spent += solved.iterations
             if solved.converged:
                 break
             level = levelled(self.scene, settings, before, point, target.fit, values) if target.fit.kinks else None
             if level is not None:
                 target, solved = level
+                self.spent += solved.iterations
                 break
-        return target, replace(solved, iterations=iterations)
+        return target, solved
 
     def notes(self) -> list[str]:
         """What a reader should know besides the numbers."""
@@ -339,6 +449,12 @@ class March:
     def asked(self) -> Mechanism:
         """The scene on even elements of the mesh that was asked."""
         return self.whole if len(self.family) == 1 else mechanism_of(self.scene, self.family[-1])
+
+
+def _near(found: Equilibrium) -> bool:
+    """Whether a state is so near an equilibrium that its contacts say where the elements of the next mesh end."""
+    of = found.measure
+    return of.residual <= NEAR and max(of.violation, of.overlap) <= NEAR * NEARER
 
 
 def _unseen(point: Point, values: dict[str, float]) -> None:

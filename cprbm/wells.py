@@ -35,7 +35,7 @@ def lowest(D: Array, reach: float) -> Ints:
 
 
 def lowest_of_parabola(s: Array, D: Array, samples: Ints) -> Array:
-    """How far from ``samples`` (k,) at ``s`` the parabolas through D there and beside are lowest; else nought."""
+    """How far from ``samples`` (k,) parabolas through D there and beside, at ``s``, are lowest; nought without one."""
     before, behind = samples - 1, samples + 1
     one, other = s[before] - s[samples], s[behind] - s[samples]
     with np.errstate(invalid="ignore"):
