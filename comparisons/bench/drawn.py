@@ -75,8 +75,8 @@ def _series(axes: Axes, measured: Benchmark, name: Name, measure: Measure, *, so
     points = [(one.solve if solve else one.total, one.errors[measure]) for one in shown]
     axes.plot(*zip(*points, strict=True), f"-{marker}", color=colour, markersize=5, linewidth=1.1,
               label=shown[0].contender.label)  # fmt: skip
-    for place in sorted({0, len(shown) - 1}):
-        axes.annotate(sized(shown[place].count), points[place], (5.0, 3.0), textcoords="offset points", color=colour,
+    for place, below in {0: 3.0, len(shown) - 1: -10.0}.items():
+        axes.annotate(sized(shown[place].count), points[place], (5.0, below), textcoords="offset points", color=colour,
                       fontsize=8.0)  # fmt: skip
 
 

@@ -24,7 +24,8 @@ from __future__ import annotations
 import gc
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
 from frozendict import frozendict
@@ -43,6 +44,11 @@ NO_WORSE = 1.01
 """A peer's error may be so many times that of the CPRBM on the same problem: less is within the digits of a table."""
 
 
+Clock = Literal["wall", "cpu"]
+CLOCKS: Mapping[Clock, Callable[[], float]] = frozendict({"wall": time.perf_counter, "cpu": time.process_time})
+"""Seconds that pass, and those of the processor, which other work on the machine hardly changes."""
+
+
 @dataclass(frozen=True, slots=True)
 class Plan:
     """What is to be timed.
@@ -53,6 +59,7 @@ class Plan:
         repeat: how often each size is solved.
         at_most: seconds, as above.
         whole: whether it is the whole scene, and not its last loads alone.
+        clock: by which seconds.
     """
 
     sizes: Mapping[Name, tuple[Count, ...]]
@@ -60,6 +67,7 @@ class Plan:
     repeat: int = 5
     at_most: float = 30.0
     whole: bool = False
+    clock: Clock = "wall"
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,7 +185,7 @@ class Session:
     plan: Plan
     contenders: tuple[Contender, ...]
     machine: Mapping[str, str | int]
-    clock: Callable[[], float] = time.perf_counter
+    clock: Callable[[], float]
     seconds: dict[tuple[Name, Count], list[tuple[float, float]]] = field(default_factory=dict)
     outcomes: dict[tuple[Name, Count], Outcome] = field(default_factory=dict)
     refused: dict[tuple[Name, Count], SceneError] = field(default_factory=dict)
@@ -301,15 +309,5 @@ def compared(timings: tuple[Timing, ...]) -> tuple[Timing, ...]:
         worse = timing.contender.name in PEERS and any(
             error > NO_WORSE * mine[measure] for measure, error in timing.errors.items() if measure in mine
         )
-        found.append(
-            Timing(
-                timing.contender,
-                timing.count,
-                timing.setups,
-                timing.solves,
-                timing.outcome,
-                timing.errors,
-                worse,
-            )
-        )
+        found.append(replace(timing, worse=worse))
     return tuple(found)

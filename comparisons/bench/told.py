@@ -5,7 +5,7 @@ from __future__ import annotations
 from comparisons.bench.contenders import NAMES, Name
 from comparisons.bench.errors import uncertainties
 from comparisons.bench.question import MEASURES
-from comparisons.bench.running import FIT_FROM, NO_WORSE, Benchmark, LeftOut, Timing, trend
+from comparisons.bench.running import FIT_FROM, NO_WORSE, Benchmark, Clock, LeftOut, Timing, trend
 from comparisons.bench.standings import Clocked, Ratios, Standing, ratios, standings
 from comparisons.choices import Count
 from comparisons.documents import Plain, plain
@@ -13,6 +13,7 @@ from comparisons.formats import number, percent
 from comparisons.peers.judged import TOLERANCE
 from comparisons.sheet import Sheet
 
+_OF_CLOCK: dict[Clock, str] = {"wall": "", "cpu": " of the processor"}
 _CLOCKED: dict[Clocked, str] = {"both": "set-up and solve", "solve": "solve alone"}
 
 
@@ -55,10 +56,11 @@ def _timings(measured: Benchmark) -> Sheet:
         f"{measured.scene.title or measured.scene.name}: time against error",
         ("method", "N", "set-up", "solve", "spread", "repeats", *MEASURES, "iterations", "per station", "ended"),
         body,
-        f"Seconds for {what}: medians of the set-up and of the solve, and the distance of the solve's quartiles. N: "
-        "links or elements per beam. Errors: the largest of the displacements and rotations (places), of contacts' and "
-        f"drives' forces (forces), against {measured.reference.by}{known}. A peer has completed with a residual "
-        f"of at most {TOLERANCE:g}; WORSE if its error is more than {NO_WORSE:g} times that of CPRBM paper at the same N.",
+        f"Seconds{_OF_CLOCK[measured.plan.clock]} for {what}: medians of the set-up and of the solve, and the distance "
+        "of the solve's quartiles. N: links or elements per beam. Errors: the largest of the displacements and rotations "
+        f"(places), of contacts' and drives' forces (forces), against {measured.reference.by}{known}. A peer has "
+        f"completed with a residual of at most {TOLERANCE:g}; WORSE: its error is more than {NO_WORSE:g} times that of "
+        "CPRBM paper at this N.",
     )
 
 
@@ -164,6 +166,7 @@ def document(measured: Benchmark) -> Plain:
         "machine": plain(measured.machine),
         "repeat": measured.plan.repeat,
         "kinematics": measured.plan.kinematics,
+        "clock": measured.plan.clock,
         "stations": "all" if measured.plan.whole else "last",
         "tolerance": TOLERANCE,
         "reference": {

@@ -13,7 +13,7 @@ from comparisons.cli.options import count, counts, folder, output, timed
 if TYPE_CHECKING:
     from comparisons.bench.contenders import Name
     from comparisons.bench.errors import Reference
-    from comparisons.bench.running import Session
+    from comparisons.bench.running import Clock, Session
 
 NOT_COMPLETED = 1
 OURS = ("auto", "paper", "fea")
@@ -66,6 +66,13 @@ def _named(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -
     "30",
 )
 @click.option(
+    "--clock",
+    type=click.Choice(["wall", "cpu"]),
+    default="wall",
+    show_default=True,
+    help="Seconds that pass, or those of the processor, for a machine that has other work.",
+)
+@click.option(
     "--kinematics",
     type=click.Choice(KINEMATICS),
     default="bending",
@@ -84,6 +91,7 @@ def command(
     stations: Literal["last", "all"],
     repeat: int,
     at_most: float,
+    clock: Clock,
     kinematics: Kinematics,
     json_file: Path | None,
     quiet: bool,  # noqa: FBT001 - click hands it over by name
@@ -114,13 +122,18 @@ def command(
     left_out = {name: _why_not(name, whole=whole) for name in asked}
     taking_part = tuple(name for name in contenders.NAMES if name in asked and not left_out[name])
     plan = running.Plan(
-        frozendict({name: running.sizes_of(name, named) for name in taking_part}), kinematics, repeat, at_most, whole
+        frozendict({name: running.sizes_of(name, named) for name in taking_part}),
+        kinematics,
+        repeat,
+        at_most,
+        whole,
+        clock,
     )
     absent = frozendict({name: why for name, why in left_out.items() if why})
     if not taking_part:
         raise click.UsageError("Nobody is left: " + "; ".join(f"{name}: {why}" for name, why in absent.items()) + ".")
     taking = contenders.contenders(taking_part, solvers, Choices(kinematics=kinematics))
-    session = running.Session(scene, plan, taking, machine.described(), absent=absent)
+    session = running.Session(scene, plan, taking, machine.described(), running.CLOCKS[clock], absent=absent)
     showing.room_for(json_file, out)
     with showing.current(shown=not quiet) as say:
         say("the reference of the errors")

@@ -23,7 +23,7 @@ from scipy.optimize import lsq_linear
 from comparisons.peers.formulas import Formulas
 from scene.answer import Array
 
-NEAR = 1e-5  # ℓ
+NEAR = 1e-6  # ℓ
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 # The Lagrangian's gradient, the barrier, and the trust region: with SciPy's 1e-8 the gradient, which it measures with
 # multipliers of its own, passes before the common residual does, and the region's size may end it first.
 OPTIONS: dict[str, Any] = {"gtol": 1e-10, "barrier_tol": 1e-10, "xtol": 1e-12, "maxiter": 3000}
-# A barrier of SciPy's 0.1, in S, is a tenth of all the energy; with 1e-3 the hinge takes 24 iterations for 28 at N = 40.
+# A barrier of SciPy's 0.1, in S, is much beside the energy; with 1e-3 the hinge at N = 40 takes 24 iterations for 28.
 OPTIONS |= {"initial_barrier_parameter": 1e-3, "initial_barrier_tolerance": 1e-3}
 # Of the two dense factorisations: 0.17 s for 0.28 s there.
 OPTIONS |= {"factorization_method": "SVDFactorization"}
