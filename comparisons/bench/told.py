@@ -57,7 +57,7 @@ def _timings(measured: Benchmark) -> Sheet:
         ("method", "N", "set-up", "solve", "spread", "repeats", *MEASURES, "iterations", "per station", "ended"),
         body,
         f"Seconds{_OF_CLOCK[measured.plan.clock]} for {what}: medians of the set-up and of the solve, and the distance "
-        "of the solve's quartiles. N: links or elements per beam. Errors: the largest of the displacements and rotations "
+        "of the solve's quartiles. N: links or elements per beam. Errors: the largest of displacements and rotations "
         f"(places), of contacts' and drives' forces (forces), against {measured.reference.by}{known}. A peer has "
         f"completed with a residual of at most {TOLERANCE:g}; WORSE: its error is more than {NO_WORSE:g} times that of "
         "CPRBM paper at this N.",
@@ -183,6 +183,7 @@ def document(measured: Benchmark) -> Plain:
                 "n": [plain(n) for n in found.sizes],
                 "exponent": found.exponent,
                 "iterations_ratio": found.iterations,
+                "left_out": [plain(one.count) for one in measured.left_out if one.name == contender.name],
             }
             for contender, found in ((one, trend(measured.of(one.name))) for one in measured.contenders)
         ],
