@@ -13,7 +13,8 @@ from comparisons.peers.solving import LATE, Clock, Solve, Solved, TimeIsUpError
 if TYPE_CHECKING:
     from comparisons.pairing import Discretised
 
-# the change of the energy, in S, at which it stops; from 1e-10 on the residual is what differences leave
+# The change of the energy, in S, at which it stops: at 1e-10 the common residual of the hinge at N = 40 is 1.4e-6, at
+# 1e-12 it is 6e-7, and differences leave no less.
 STOPS_AT = 1e-12
 MOST = 2000  # iterations: SciPy's 100 are too few for a hundred unknowns
 
