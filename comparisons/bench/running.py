@@ -16,7 +16,7 @@ A run is on the clock twice: set-up, from the scene (of a peer: from the discret
 and the solve, to the certified answer (of a peer: to where it stops; how that is judged is not on the clock).
 
 A size is not repeated once its runs have taken longer than the plan's ``at_most`` together, and no larger size of a
-method is begun after a run that took as long alone; a peer's solve is ended then.
+method is begun after a run that took as long alone; a peer's solve is ended after so many seconds of the processor.
 """
 
 from __future__ import annotations

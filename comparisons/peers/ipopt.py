@@ -52,7 +52,7 @@ def prepared(problem: Discretised, seconds: float) -> Solve:
 
     formulas = Formulas(problem)
     z, energy, rows = expressions(formulas)
-    options = {**OPTIONS, "ipopt.max_wall_time": seconds}
+    options = {**OPTIONS, "ipopt.max_cpu_time": seconds}
     optimiser = ca.nlpsol("ipopt", "ipopt", {"x": z, "f": energy, "g": rows}, options)
     least = np.where(np.arange(rows.shape[0]) < formulas.equalities, 0.0, -np.inf)
 
@@ -61,7 +61,7 @@ def prepared(problem: Discretised, seconds: float) -> Solve:
         stats = optimiser.stats()
         status = str(stats["return_status"])
         why = "" if stats["success"] else status.replace("_", " ").lower()
-        why = LATE if status == "Maximum_WallTime_Exceeded" else why
+        why = LATE if status == "Maximum_CpuTime_Exceeded" else why
         return Solved(np.array(found["x"]).ravel(), int(stats["iter_count"]), why)
 
     return solve

@@ -24,7 +24,7 @@ class Solved:
 
 Solve = Callable[[], Solved]
 Optimiser = Callable[["Discretised", float], Solve]
-"""From a problem, and the seconds a solve may take, to its solve from the state without stress; set-up ends there."""
+"""From a problem, and the processor's seconds a solve may take, to its solve from the state without stress."""
 
 LATE = "its time was up"
 
@@ -38,13 +38,16 @@ class TimeIsUpError(Exception):
 
 
 class Clock:
-    """Counts iterations, and ends a solve that takes longer than ``seconds``."""
+    """Counts iterations, and ends a solve that takes longer than ``seconds`` of the processor.
+
+    Those that pass would end it by what else the machine does.
+    """
 
     def __init__(self, seconds: float) -> None:
-        self.until, self.iterations = time.perf_counter() + seconds, 0
+        self.until, self.iterations = time.process_time() + seconds, 0
 
     def __call__(self, z: Array, *_: object) -> None:
         """Called by an optimiser after each iteration."""
         self.iterations += 1
-        if time.perf_counter() > self.until:
+        if time.process_time() > self.until:
             raise TimeIsUpError(z.copy(), self.iterations)
