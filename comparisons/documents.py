@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from comparisons.benchmark import Benchmark, trend
 from comparisons.claims import claim_met, claim_of, claim_of_critical, claimed_difference, critical_difference
 from comparisons.criticals import CriticalRow, released
 from comparisons.measures import Row, arc_lengths, unit_of
@@ -165,44 +164,6 @@ def worst(certificates: tuple[Certificate, ...]) -> Plain | None:
         "smallest_curvature": plain(min(certificate.smallest_curvature for certificate in certificates)),
         "iterations": sum(certificate.iterations for certificate in certificates),
         "failures": [failure for certificate in certificates for failure in certificate.failures],
-    }
-
-
-def benchmark(measured: Benchmark) -> Plain:
-    """``bench``: a row per method and size, and a trend per method; times in seconds."""
-    formulations = {"cprbm": measured.plan.choices.formulation, "fea": None}
-    return {
-        "case": measured.scene.name,
-        "machine": measured.machine,
-        "repeat": measured.plan.repeat,
-        "kinematics": measured.plan.choices.kinematics,
-        "rows": [
-            {
-                "method": timing.method,
-                "formulation": formulations[timing.method],
-                "n": timing.n,
-                "setup_seconds": None,
-                "seconds": timing.median,
-                "spread": timing.spread,
-                "error": None,
-                "ended": timing.ending.name,
-                "repeats": len(timing.seconds),
-                "iterations": timing.total_iterations,
-                "iterations_by_station": list(timing.iterations),
-            }
-            for timing in measured.timings
-        ],
-        "trends": [
-            {
-                "method": method,
-                "formulation": formulations[method],
-                "n": list(found.sizes),
-                "exponent": found.exponent,
-                "iterations_ratio": found.iterations,
-                "left_out": list(measured.left_out[method]),
-            }
-            for method, found in ((method, trend(measured, method)) for method in measured.plan.sizes)
-        ],
     }
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 import platform
 from importlib.metadata import version
+from importlib.util import find_spec
 from pathlib import Path
 
 _PROCESSORS = Path("/proc/cpuinfo")
 _LIBRARIES = ("numpy", "scipy", "scikit-fem")
+_OPTIONAL = ("casadi",)
 
 
 def described() -> dict[str, str | int]:
@@ -19,6 +21,7 @@ def described() -> dict[str, str | int]:
         "system": f"{platform.system()} {platform.machine()}",
         "python": platform.python_version(),
         **{name: version(name) for name in _LIBRARIES},
+        **{name: version(name) for name in _OPTIONAL if find_spec(name) is not None},
     }
 
 

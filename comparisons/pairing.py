@@ -28,18 +28,25 @@ from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from multiprocessing import get_context
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from frozendict import frozendict
 from pydantic import ValidationError
 
-from comparisons.choices import KINEMATICS, Choices, Kinematics, check
+from comparisons.choices import KINEMATICS, Choices, Count, Kinematics, check
 from comparisons.nearby import nearby
 from scene import Answer, Mistake, RigidContact, Scene, SceneError, Spacing
 from scene.answer import Array
 from scene.statement import Curve
 
+if TYPE_CHECKING:  # for the peers, which know the record of the problem and nothing of the solver
+    from cprbm.discretisation import Discretised as Discretised
+    from cprbm.discretisation import FittedContact as FittedContact
+    from cprbm.discretisation import RoundContact as RoundContact
+    from cprbm.discretisation import Spot as Spot
+
 Solver = Callable[[Scene, Choices], Answer]
+Prepared = Callable[[], Answer]
 Job = tuple[Solver, Scene, Choices]
 
 COLLECTED = (50_000, 20, 100)
@@ -55,11 +62,20 @@ def cprbm_answer(scene: Scene, choices: Choices) -> Answer:
     Raises:
         SceneError: the scene or the choices are no question that this solver can be asked.
     """
+    return cprbm_prepared(scene, choices)()
+
+
+def cprbm_prepared(scene: Scene, choices: Choices) -> Prepared:
+    """The same with the mechanism made ready and nothing solved; called once, the result solves.
+
+    Raises:
+        SceneError: as :func:`cprbm_answer`.
+    """
     import cprbm
 
     with _named("links"):
         settings = cprbm.Settings(links=_plain(choices.links), formulation=choices.formulation)
-    return cprbm.answer(scene, settings)
+    return cprbm.prepared(scene, settings).answer
 
 
 def fea_answer(scene: Scene, choices: Choices) -> Answer:
@@ -67,6 +83,15 @@ def fea_answer(scene: Scene, choices: Choices) -> Answer:
 
     Raises:
         SceneError: the scene or the choices are no question that this solver can be asked.
+    """
+    return fea_prepared(scene, choices)()
+
+
+def fea_prepared(scene: Scene, choices: Choices) -> Prepared:
+    """The same with the elements made ready and nothing solved; called once, the result solves.
+
+    Raises:
+        SceneError: as :func:`fea_answer`.
     """
     import fea_reference
 
@@ -76,7 +101,33 @@ def fea_answer(scene: Scene, choices: Choices) -> Answer:
             kinematics=choices.kinematics,
             penetration=choices.penetration,
         )
-    return fea_reference.answer(scene, settings)
+    return fea_reference.prepared(scene, settings).answer
+
+
+def prepared(solver: Solver, scene: Scene, choices: Choices) -> Prepared:
+    """A solver made ready for a question: ours as far as they go without solving, others not at all.
+
+    Raises:
+        SceneError: the solver refuses the question.
+    """
+    if solver is cprbm_answer:
+        return cprbm_prepared(scene, choices)
+    if solver is fea_answer:
+        return fea_prepared(scene, choices)
+    return lambda: solver(scene, choices)
+
+
+def discretised(scene: Scene, links: Count) -> Discretised:
+    """The scene's last state as the problem of the CPRBM's formulation ``paper``, for other optimisers.
+
+    Raises:
+        SceneError: the formulation does not offer it, or it is more than one minimum over links and bodies.
+    """
+    import cprbm
+
+    with _named("links"):
+        settings = cprbm.Settings(links=_plain(links), formulation="paper")
+    return cprbm.discretised(scene, settings)
 
 
 def exact_answer(scene: Scene, choices: Choices) -> Answer:

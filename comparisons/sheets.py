@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from comparisons.benchmark import FIT_FROM, Benchmark, trend
 from comparisons.branch_sheets import of_branches, of_criticals, of_ends
 from comparisons.branches import Place
 from comparisons.calibration import FAR, JUDGED, Held, every, held, tally
@@ -71,60 +70,6 @@ def of_tolerances(tolerances: tuple[Tolerance, ...]) -> Sheet:
         body,
         "N: links or elements per beam; of an extrapolated answer the finest. "
         + " ".join(told(found.extrapolated, found.probes) for found in tolerances if found.extrapolated),
-    )
-
-
-def of_benchmark(measured: Benchmark) -> tuple[Sheet, ...]:
-    """The timings of a benchmark, and how they go with N."""
-    return _timings(measured), _trends(measured)
-
-
-def _timings(measured: Benchmark) -> Sheet:
-    body = tuple(
-        (
-            measured.label(timing.method),
-            str(timing.n),
-            number(timing.median),
-            number(timing.spread, 2),
-            str(len(timing.seconds)),
-            str(timing.total_iterations),
-            number(timing.iterations_per_station),
-            timing.ending.name,
-        )
-        for timing in measured.timings
-    )
-    return Sheet(
-        f"{measured.scene.title or measured.scene.name}: time against N",
-        ("method", "N", "seconds", "spread", "repeats", "iterations", "per station", "ended"),
-        body,
-        "Seconds of a whole answer, set-up included: median, and distance of the quartiles. N is the number of links "
-        "or elements per beam.",
-    )
-
-
-def _trends(measured: Benchmark) -> Sheet:
-    body = []
-    for method in measured.plan.sizes:
-        found = trend(measured, method)
-        left_out = measured.left_out[method]
-        body.append(
-            (
-                measured.label(method),
-                f"{found.sizes[0]} to {found.sizes[-1]}" if found.sizes else "–",
-                number(found.exponent),
-                number(found.iterations),
-                ", ".join(str(n) for n in left_out) or "none",
-            )
-        )
-    machine = measured.machine
-    return Sheet(
-        "How it grows",
-        ("method", "N", "exponent of time", "iterations, last to first", "sizes not begun"),
-        tuple(body),
-        f"The exponent e of seconds = a·N^e by least squares of the logarithms, over the runs with N of {FIT_FROM} or "
-        "more that completed. Sizes are not begun once a solve took more than "
-        f"{measured.plan.at_most:g} s. {machine['cpu']}, {machine['cores']} cores, BLAS on one thread; Python "
-        f"{machine['python']}, NumPy {machine['numpy']}, SciPy {machine['scipy']}, scikit-fem {machine['scikit-fem']}.",
     )
 
 

@@ -4,6 +4,6 @@ It reads a :class:`scene.Scene` and hands back a :class:`scene.Answer`; it knows
 """
 
 from fea_reference.settings import Settings
-from fea_reference.solve import answer
+from fea_reference.solve import answer, prepared
 
-__all__ = ["Settings", "answer"]
+__all__ = ["Settings", "answer", "prepared"]

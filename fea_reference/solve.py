@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -21,6 +22,77 @@ from scene.statement import Scene, Stage
 _DEFAULT = Settings()
 
 
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """A scene made ready: the ``march`` stands at the undeformed state, and goes its way once.
+
+    ``seconds`` is how long that took.
+    """
+
+    scene: Scene
+    settings: Settings
+    march: March
+    seconds: float
+
+    def answer(self) -> Answer:
+        """March, and hand back what :func:`answer` does.
+
+        Raises:
+            SceneError: a stop forbids the assembly.
+        """
+        began = time.perf_counter()
+        scene, march, model = self.scene, self.march, self.march.model
+        stations: list[StationAnswer] = []
+        events: list[Event] = []
+        ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
+        # small blocks: more than one thread of BLAS costs more than it brings
+        with threadpool_limits(limits=1, user_api="blas"):
+            try:
+                known: set[str] = set()
+                assemble_ends(scene, march)
+                for stage in scene.stages:
+                    course = _course(march, stage)
+                    for station in stage.stations:
+                        reach(march, course, station / model.stepped[course.load].unit)
+                        events += [
+                            Event(stage.name, name, "closes", closing)
+                            for name, closing in march.closing.items()
+                            if name not in known
+                        ]
+                        known = set(march.closing)
+                        stations.append(_certified(scene, march, stage, station))
+            except StoppedError as stopped:
+                ending, sentence = stopped.ending, stopped.sentence
+        closed = {name: f"closed at {value:.6g}" for name, value in march.closing.items()}
+        tested = [f"{name}: {closed.get(name, 'stayed open')}" for name in scene.contacts]
+        return Answer(
+            solver="fea",
+            scene=scene.name,
+            settings=self.settings.plain(),
+            ending=ending,
+            sentence=sentence,
+            stations=tuple(stations),
+            events=tuple(events),
+            critical=tuple(march.critical),
+            seconds=self.seconds + time.perf_counter() - began,
+            notes=tuple(tested),
+        )
+
+
+def prepared(scene: Scene, settings: Settings = _DEFAULT) -> Prepared:
+    """Make a scene ready without solving anything: the set-up of an answer, for those who time it by itself.
+
+    The arguments are those of :func:`answer`.
+
+    Raises:
+        SceneError: the settings do not fit the scene.
+    """
+    began = time.perf_counter()
+    model = build(scene, settings)
+    march = begin(model, settings, contacts(scene, model, settings.penetration))
+    return Prepared(scene, settings, march, time.perf_counter() - began)
+
+
 def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     """Solve a scene by finite elements.
 
@@ -31,44 +103,7 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     Raises:
         SceneError: the settings do not fit the scene, or a stop forbids the assembly.
     """
-    began = time.perf_counter()
-    model = build(scene, settings)
-    march = begin(model, settings, contacts(scene, model, settings.penetration))
-    stations: list[StationAnswer] = []
-    events: list[Event] = []
-    ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
-    # small blocks: more than one thread of BLAS costs more than it brings
-    with threadpool_limits(limits=1, user_api="blas"):
-        try:
-            known: set[str] = set()
-            assemble_ends(scene, march)
-            for stage in scene.stages:
-                course = _course(march, stage)
-                for station in stage.stations:
-                    reach(march, course, station / model.stepped[course.load].unit)
-                    events += [
-                        Event(stage.name, name, "closes", closing)
-                        for name, closing in march.closing.items()
-                        if name not in known
-                    ]
-                    known = set(march.closing)
-                    stations.append(_certified(scene, march, stage, station))
-        except StoppedError as stopped:
-            ending, sentence = stopped.ending, stopped.sentence
-    closed = {name: f"closed at {value:.6g}" for name, value in march.closing.items()}
-    tested = [f"{name}: {closed.get(name, 'stayed open')}" for name in scene.contacts]
-    return Answer(
-        solver="fea",
-        scene=scene.name,
-        settings=settings.plain(),
-        ending=ending,
-        sentence=sentence,
-        stations=tuple(stations),
-        events=tuple(events),
-        critical=tuple(march.critical),
-        seconds=time.perf_counter() - began,
-        notes=tuple(tested),
-    )
+    return prepared(scene, settings).answer()
 
 
 def _certified(scene: Scene, march: March, stage: Stage, station: float) -> StationAnswer:

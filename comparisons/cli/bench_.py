@@ -1,4 +1,4 @@
-"""``cprbm bench``: time and iterations against N, for both solvers on one scene."""
+"""``cprbm bench``: run time against error, both solvers beside the optimisers that a user would take instead."""
 
 from __future__ import annotations
 
@@ -8,12 +8,24 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from comparisons.choices import KINEMATICS, Kinematics
-from comparisons.cli.options import counts, folder, output, timed
+from comparisons.cli.options import count, counts, folder, output, timed
 
 if TYPE_CHECKING:
-    from comparisons.benchmark import Method
+    from comparisons.bench.contenders import Name
+    from comparisons.bench.errors import Reference
+    from comparisons.bench.running import Clock, Session
 
 NOT_COMPLETED = 1
+OURS = ("auto", "paper", "fea")
+
+
+def _named(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -> tuple[int | dict[str, int], ...]:
+    """Every ``-n`` as one size.
+
+    Raises:
+        click.BadParameter: one is no number of links.
+    """
+    return tuple(count(ctx, param, one) for one in value)
 
 
 @click.command("bench")
@@ -22,73 +34,153 @@ NOT_COMPLETED = 1
     "--sizes",
     callback=counts,
     metavar="N,N,...",
-    help="Links and elements per beam; unless given 40, 80, 160 and so on doubled up to 5120 links, "
-    "and up to 1280 elements.",
+    help="Links and elements per beam; unless given 10, 20, 40 and so on doubled, up to 5120 links in auto, 640 in "
+    "paper, 1280 elements, 160 links for ipopt and trust-constr and 80 for slsqp.",
 )
-@timed("How often each size is solved.", "is not repeated, and no larger size of its solver is begun.")
-@click.option("--solver", type=click.Choice(["cprbm", "fea", "both"]), default="both", show_default=True)
 @click.option(
-    "--formulation",
-    type=click.Choice(["auto", "paper"]),
-    default="auto",
+    "-n",
+    "links",
+    multiple=True,
+    callback=_named,
+    metavar="COUNT",
+    help="One size, as 40 or as beam1=30,beam2=40; may be repeated, in the place of --sizes.",
+)
+@click.option(
+    "--method",
+    "methods",
+    multiple=True,
+    type=click.Choice(["auto", "paper", "fea", "slsqp", "trust-constr", "ipopt"]),
+    help="Who takes part; may be repeated. Unless given all that the scene offers. auto and paper are the CPRBM's.",
+)
+@click.option(
+    "--stations",
+    type=click.Choice(["last", "all"]),
+    default="last",
     show_default=True,
-    help="Contact formulation of the CPRBM.",
+    help="'last': each stage's last station alone, gone to at once, and no probes but those that errors are told by. "
+    "'all': the scene as it stands, without the peers, which know one station.",
+)
+@timed(
+    "How often each size is solved.",
+    "is the last of its method, and a peer's is ended then; sizes that together take longer are not repeated.",
+    "30",
+)
+@click.option(
+    "--clock",
+    type=click.Choice(["wall", "cpu"]),
+    default="wall",
+    show_default=True,
+    help="Seconds that pass, or those of the processor, for a machine that has other work.",
 )
 @click.option(
     "--kinematics",
     type=click.Choice(KINEMATICS),
     default="bending",
     show_default=True,
-    help="Beam theory of the finite elements; 'bending' is the CPRBM's own.",
+    help="Beam theory of the finite elements; 'bending' is the CPRBM's own, and that of the errors.",
 )
 @output
-@folder("Folder for the numbers and the figure.")
+@folder("Folder for the numbers and the figures.")
 @click.pass_obj
 def command(
     planted: object,
     case: str,
     sizes: tuple[int, ...] | None,
+    links: tuple[int | dict[str, int], ...],
+    methods: tuple[Name, ...],
+    stations: Literal["last", "all"],
     repeat: int,
     at_most: float,
-    solver: Literal["cprbm", "fea", "both"],
-    formulation: Literal["auto", "paper"],
+    clock: Clock,
     kinematics: Kinematics,
     json_file: Path | None,
     quiet: bool,  # noqa: FBT001 - click hands it over by name
     out: Path | None,
 ) -> int:
-    """Time the solvers on one scene at growing numbers of links and elements."""
-    from comparisons import benchmark, benchmark_drawn, cases, documents, machine, sheets
-    from comparisons.choices import Choices
+    """Time the solvers, and optimisers on the same problem, on one scene at growing numbers of links and elements.
+
+    Exit code 1 says that a run of the project's own solvers did not complete; what a peer does is told in the tables.
+    """
+    from frozendict import frozendict
+
+    from comparisons import cases, machine
+    from comparisons.bench import contenders, errors, question, running
+    from comparisons.choices import Choices, check
     from comparisons.cli import showing
     from comparisons.pairing import solvers_of
-    from comparisons.writing import write
-    from scene import Ending
 
-    scene = cases.opened(case)
-    methods: tuple[Method, ...] = benchmark.METHODS if solver == "both" else (solver,)
-    choices = Choices(formulation=formulation, kinematics=kinematics)
-    plan = benchmark.Plan({name: benchmark.sizes_of(name, sizes) for name in methods}, choices, repeat, at_most)
+    if sizes is not None and links:
+        raise click.UsageError("found --sizes and -n; allowed: one of them.")
+    whole = stations == "all"
+    opened = cases.opened(case)
+    named = tuple(one if isinstance(one, int) else frozendict(one) for one in links) or (sizes or ())
+    for one in named:
+        check(Choices(links=one), opened)
+    scene = opened if whole else question.asked(opened)
+    solvers = solvers_of(planted)
+    asked = methods or contenders.NAMES
+    left_out = {name: _why_not(name, whole=whole) for name in asked}
+    taking_part = tuple(name for name in contenders.NAMES if name in asked and not left_out[name])
+    plan = running.Plan(
+        frozendict({name: running.sizes_of(name, named) for name in taking_part}),
+        kinematics,
+        repeat,
+        at_most,
+        whole,
+        clock,
+    )
+    absent = frozendict({name: why for name, why in left_out.items() if why})
+    if not taking_part:
+        raise click.UsageError("Nobody is left: " + "; ".join(f"{name}: {why}" for name, why in absent.items()) + ".")
+    taking = contenders.contenders(taking_part, solvers, Choices(kinematics=kinematics))
+    session = running.Session(scene, plan, taking, machine.described(), running.CLOCKS[clock], absent=absent)
     showing.room_for(json_file, out)
     with showing.current(shown=not quiet) as say:
-        done = benchmark.measured(
-            scene,
-            plan,
-            solvers_of(planted),
-            machine.described(),
-            watch=lambda repetition, method, n: say(f"{method} N = {n}, {repetition + 1} of {repeat}"),
-        )
-    data = documents.benchmark(done)
+        say("the reference of the errors")
+        known = errors.reference(question.asked(opened), solvers)
+    try:
+        for job in showing.progress(session.jobs(), shown=not quiet):
+            session.do(job)
+    except KeyboardInterrupt:
+        if session.seconds:
+            _shown(session, known, json_file, out, quiet=quiet)
+        raise
+    return _shown(session, known, json_file, out, quiet=quiet)
+
+
+def _shown(session: Session, known: Reference, json_file: Path | None, out: Path | None, *, quiet: bool) -> int:
+    """Write and print what is done; the exit code.
+
+    Raises:
+        SceneError: every method has refused the question.
+        OSError: something cannot be written.
+    """
+    from comparisons import documents
+    from comparisons.bench import drawn, told
+    from comparisons.cli import showing
+    from comparisons.writing import write
+
+    done = session.done(known)
+    data = told.document(done)
     if json_file is not None:
         showing.json(json_file, data)
     if out is not None:
-        picture = benchmark_drawn.of_benchmark(done)
-        write(out / scene.name / "bench.json", documents.text(data))
-        write(out / scene.name / f"{picture.name}.svg", picture.svg)
-        write(out / scene.name / f"{picture.name}.png", picture.png)
+        write(out / done.scene.name / "bench.json", documents.text(data))
+        for picture in drawn.pictures(done):
+            write(out / done.scene.name / f"{picture.name}.svg", picture.svg)
+            write(out / done.scene.name / f"{picture.name}.png", picture.png)
     if str(json_file) != "-" and not quiet:
-        showing.tables(sheets.of_benchmark(done))
-    failed = [timing for timing in done.timings if timing.ending is not Ending.COMPLETED]
-    for timing in failed:
-        click.echo(f"cprbm: {scene.name}: {timing.method} at N = {timing.n}: {timing.ending.value}.", err=True)
+        showing.tables(told.sheets(done))
+    failed = [one for one in done.timings if one.contender.name in OURS and not one.outcome.completed]
+    for one in failed:
+        who = f"{one.contender.label} at N = {told.sized(one.count)}"
+        click.echo(f"cprbm: {done.scene.name}: {who}: {one.outcome.why}", err=True)
     return NOT_COMPLETED if failed else 0
+
+
+def _why_not(name: Name, *, whole: bool) -> str:
+    from comparisons.bench.contenders import PEERS, missing
+
+    if whole and name in PEERS:
+        return "an optimiser of one minimum knows the last station alone"
+    return missing(name)

@@ -169,11 +169,14 @@ def folder(text: str) -> Callable[[Decorated], Decorated]:
     return click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", help=text)
 
 
-def timed(repeated: str, longer: str) -> Callable[[Decorated], Decorated]:
-    """``--repeat`` and ``--at-most``: how often a solve is ``repeated``, and what happens if it takes ``longer``."""
+def timed(repeated: str, longer: str, most: str = "60") -> Callable[[Decorated], Decorated]:
+    """``--repeat`` and ``--at-most``: how often a solve is ``repeated``, and what happens if it takes ``longer``.
+
+    ``most`` are the seconds unless others are given.
+    """
 
     def both(command: Decorated) -> Decorated:
-        command = click.option("--at-most", callback=positive, metavar="SECONDS", default="60", show_default=True,
+        command = click.option("--at-most", callback=positive, metavar="SECONDS", default=most, show_default=True,
                                help=f"A solve that takes longer {longer}")(command)  # fmt: skip
         return click.option("--repeat", callback=whole, default="5", show_default=True, help=repeated)(command)
 

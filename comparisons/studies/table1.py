@@ -16,7 +16,7 @@ from frozendict import frozendict
 from threadpoolctl import threadpool_limits
 
 from comparisons import cases
-from comparisons.benchmark import Method, middle, quartiles_apart, timed
+from comparisons.bench.timing import Method, middle, quartiles_apart, timed
 from comparisons.choices import Choices, Count
 from comparisons.pairing import Solver, Solvers
 from comparisons.studies.last_loads import at_last_loads

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from frozendict import frozendict
 
-from comparisons.benchmark import LARGEST, Method
+from comparisons.bench.timing import LARGEST, Method
 from comparisons.choices import KINEMATICS, Choices, Kinematics
 from comparisons.memory import Remembering
 from comparisons.nearby import nearby

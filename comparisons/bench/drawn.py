@@ -1,0 +1,131 @@
+"""The figures of a benchmark: error against time (work and precision), and time and iterations against N."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from frozendict import frozendict
+
+from comparisons.bench.contenders import Name
+from comparisons.bench.question import MEASURES, Measure
+from comparisons.bench.running import Benchmark, trend
+from comparisons.bench.told import sized
+from comparisons.figures import BLUE, RED, Picture, canvas, picture
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+
+_LOOKS: Mapping[Name, tuple[str, str]] = frozendict(
+    {
+        "auto": (BLUE, "o"),
+        "paper": ("#5aa0e0", "s"),
+        "fea": (RED, "^"),
+        "slsqp": ("#7a5195", "v"),
+        "trust-constr": ("#b08a00", "D"),
+        "ipopt": ("#2f8f4e", "P"),
+    }
+)
+_MEASURED = {"places": "error of displacements and rotations", "forces": "error of forces"}
+
+
+def pictures(measured: Benchmark) -> tuple[Picture, ...]:
+    """All figures that have something to show."""
+    found = []
+    if any(timing.counts and timing.errors for timing in measured.timings):
+        found.append(_precision(measured))
+    if any(timing.counts for timing in measured.timings):
+        found.append(_growth(measured))
+    return tuple(found)
+
+
+def _precision(measured: Benchmark) -> Picture:
+    """Error against seconds: a row for each measure, the solve alone beside set-up and solve."""
+    measures = [measure for measure in MEASURES if any(measure in timing.errors for timing in measured.timings)]
+    with canvas(9.6, 1.2 + 3.9 * len(measures)) as figure:
+        rows = figure.subplots(len(measures), 2, squeeze=False, sharex="col", sharey="row")
+        for measure, (alone, both) in zip(measures, rows, strict=True):
+            for axes, solve in ((alone, True), (both, False)):
+                for contender in measured.contenders:
+                    _series(axes, measured, contender.name, measure, solve=solve)
+                axes.set_xscale("log")
+                axes.set_yscale("log")
+                _grid(axes)
+            alone.set_ylabel(_MEASURED[measure])
+        rows[-1][0].set_xlabel("seconds of the solve alone")
+        rows[-1][1].set_xlabel("seconds of set-up and solve")
+        for axes in rows.ravel():
+            _whole_decades(axes)
+        labels: dict[str, Artist] = {}
+        for axes in rows.ravel():
+            for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+                labels.setdefault(label, handle)
+        figure.legend(list(labels.values()), list(labels), loc="outside upper center", ncols=len(labels))
+        return picture(figure, "bench-precision", "Error against time, each point a number of links or elements.")
+
+
+def _series(axes: Axes, measured: Benchmark, name: Name, measure: Measure, *, solve: bool) -> None:
+    """A method's points, with N at the first and the last."""
+    shown = [one for one in measured.of(name) if one.counts and one.errors.get(measure, 0.0) > 0.0]
+    if not shown:
+        return
+    colour, marker = _LOOKS[name]
+    points = [(one.solve if solve else one.total, one.errors[measure]) for one in shown]
+    axes.plot(*zip(*points, strict=True), f"-{marker}", color=colour, markersize=5, linewidth=1.1,
+              label=shown[0].contender.label)  # fmt: skip
+    for place, below in {0: 3.0, len(shown) - 1: -10.0}.items():
+        axes.annotate(sized(shown[place].count), points[place], (5.0, below), textcoords="offset points", color=colour,
+                      fontsize=8.0)  # fmt: skip
+
+
+def _growth(measured: Benchmark) -> Picture:
+    """Seconds and iterations against N."""
+    with canvas(6.4, 7.2) as figure:
+        seconds, iterations = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+        for contender in measured.contenders:
+            colour, marker = _LOOKS[contender.name]
+            done = [timing for timing in measured.of(contender.name) if timing.counts]
+            if not done:
+                continue
+            found = trend(measured.of(contender.name))
+            label = contender.label
+            if found.exponent is not None and found.factor is not None:
+                span = np.array([found.sizes[0], found.sizes[-1]])
+                seconds.plot(span, found.factor * span**found.exponent, "--", color=colour, linewidth=1.0)
+                label += f": exponent {found.exponent:.2f}"
+            n = [timing.n for timing in done]
+            median = np.array([timing.total for timing in done])
+            quartiles = np.array([np.percentile(timing.both, (25.0, 75.0)) for timing in done]).T
+            bars = np.abs(quartiles - median)
+            seconds.errorbar(n, median, bars, fmt=marker, color=colour, markersize=5, capsize=3, label=label)
+            iterations.plot(n, [max(timing.total_iterations, 1) for timing in done], marker, color=colour, markersize=5)
+        sizes = sorted({timing.n for timing in measured.timings if timing.counts})
+        for axes in (seconds, iterations):
+            axes.set_xscale("log")
+            axes.set_yscale("log")
+            axes.set_xticks(sizes, [f"{n:g}" for n in sizes])
+            _grid(axes)
+            low, high = axes.get_ylim()
+            axes.set_ylim(10.0 ** np.floor(np.log10(low)), 10.0 ** np.ceil(np.log10(high)))
+            axes.tick_params(axis="x", which="minor", bottom=False)
+        seconds.set_ylabel("seconds of set-up and solve")
+        figure.legend(*seconds.get_legend_handles_labels(), loc="outside upper center", ncols=2)
+        iterations.set_ylabel("iterations, all stations")
+        iterations.set_xlabel("links or elements per beam, N")
+        return picture(
+            figure, "bench", "Median time with the quartiles, and iterations, against the number of links or elements."
+        )
+
+
+def _grid(axes: Axes) -> None:
+    axes.minorticks_off()
+    axes.grid(visible=True, which="major", color="#e4e4e4", linewidth=0.6)
+
+
+def _whole_decades(axes: Axes) -> None:
+    """Whole decades, so that a logarithmic axis always has two ticks or more."""
+    for get, put in ((axes.get_xlim, axes.set_xlim), (axes.get_ylim, axes.set_ylim)):
+        low, high = get()
+        put(10.0 ** np.floor(np.log10(low)), 10.0 ** np.ceil(np.log10(high)))

@@ -1,0 +1,129 @@
+"""Who is fastest at an error, and by how much: from the rows of a benchmark that count.
+
+A method reaches an error from the first of its sizes on from which no larger one has a larger error than that.  Its
+time there is read off the straight line, in the logarithms of error and time, between that size and the one before;
+where there is none before, it is that of the size itself.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+from frozendict import frozendict
+
+from comparisons.bench.contenders import Name
+from comparisons.bench.question import MEASURES, Measure
+from comparisons.bench.running import Benchmark, Timing
+from comparisons.choices import Count
+
+TARGETS = (1e-2, 1e-3, 1e-4)
+Clocked = Literal["solve", "both"]
+CLOCKED: tuple[Clocked, ...] = ("both", "solve")
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """Seconds by method at one error, of those that reach it; ``clocked`` is set-up and solve, or the solve alone."""
+
+    measure: Measure
+    target: float
+    clocked: Clocked
+    seconds: Mapping[Name, float]
+
+    @property
+    def fastest(self) -> Name | None:
+        """Who is; None where nobody reaches it."""
+        return min(self.seconds, key=lambda name: self.seconds[name], default=None)
+
+    @property
+    def ahead(self) -> float | None:
+        """The next one's seconds over the fastest one's; None where there is no next."""
+        ordered = sorted(self.seconds.values())
+        return ordered[1] / ordered[0] if len(ordered) > 1 and ordered[0] > 0.0 else None
+
+
+@dataclass(frozen=True, slots=True)
+class Ratios:
+    """At one size, how many times longer others take than the CPRBM in ``paper``; None where a row does not count.
+
+    Attributes:
+        ipopt_solve: IPOPT's solve over our solve.
+        ipopt_both: its set-up and solve over ours.
+        trust_both, slsqp_both: the same of SciPy's.
+        auto_both: the same of the CPRBM in ``auto``.
+        iterations: of ours, per station.
+    """
+
+    count: Count
+    ipopt_solve: float | None
+    ipopt_both: float | None
+    trust_both: float | None
+    slsqp_both: float | None
+    auto_both: float | None
+    iterations: float | None
+
+
+def standings(measured: Benchmark) -> tuple[Standing, ...]:
+    """For each measure that has errors: every target, by both clocks."""
+    return tuple(
+        Standing(measure, target, clocked, _by_name(measured, measure, target, clocked))
+        for measure in MEASURES
+        if any(measure in timing.errors for timing in measured.timings)
+        for clocked in CLOCKED
+        for target in TARGETS
+    )
+
+
+def ratios(measured: Benchmark) -> tuple[Ratios, ...]:
+    """At every size at which the CPRBM's ``paper`` counts and another method of the same links has a row."""
+    found = []
+    for ours in measured.of("paper"):
+        others = {one.contender.name: one for one in measured.timings if one.count == ours.count and one.counts}
+        if not ours.counts or not others.keys() - {"paper", "fea"}:
+            continue
+
+        def over(name: Name, others: Mapping[Name, Timing] = others, ours: Timing = ours) -> float | None:
+            return others[name].total / ours.total if name in others and ours.total > 0.0 else None
+
+        ipopt = others.get("ipopt")
+        found.append(
+            Ratios(
+                count=ours.count,
+                ipopt_solve=None if ipopt is None or ours.solve == 0.0 else ipopt.solve / ours.solve,
+                ipopt_both=over("ipopt"),
+                trust_both=over("trust-constr"),
+                slsqp_both=over("slsqp"),
+                auto_both=over("auto"),
+                iterations=ours.iterations_per_station,
+            )
+        )
+    return tuple(found)
+
+
+def reached(points: Sequence[tuple[float, float]], target: float) -> float | None:
+    """Seconds from which the error is at most the ``target``, of (error, seconds) by ascending size; or None."""
+    first = len(points)
+    while first > 0 and points[first - 1][0] <= target:
+        first -= 1
+    if first == len(points):
+        return None
+    error, seconds = points[first]
+    if first == 0 or error <= 0.0 or seconds <= 0.0 or points[first - 1][1] <= 0.0:
+        return seconds
+    before, quick = points[first - 1]
+    share = math.log(before / target) / math.log(before / error)
+    return math.exp(math.log(quick) + share * math.log(seconds / quick))
+
+
+def _by_name(measured: Benchmark, measure: Measure, target: float, clocked: Clocked) -> Mapping[Name, float]:
+    found: dict[Name, float] = {}
+    for contender in measured.contenders:
+        counted = [one for one in measured.of(contender.name) if one.counts and measure in one.errors]
+        points = [(one.errors[measure], one.solve if clocked == "solve" else one.total) for one in counted]
+        seconds = reached(points, target)
+        if seconds is not None:
+            found[contender.name] = seconds
+    return frozendict(found)

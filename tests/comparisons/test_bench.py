@@ -1,0 +1,430 @@
+"""The benchmark on a clock of its own: what it runs, in which order, what it fits, and who it says is fastest."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from frozendict import frozendict
+
+from comparisons import cases, documents, machine
+from comparisons.bench import drawn, errors, question, told
+from comparisons.bench.contenders import Contender, Outcome, Run
+from comparisons.bench.running import Plan, Session, sizes_of, trend
+from comparisons.bench.standings import TARGETS, ratios, reached, standings
+from comparisons.choices import Choices
+from comparisons.cli.main import run
+from comparisons.pairing import Solvers
+from scene import Ending, Mistake, SceneError
+from tests.comparisons.made_up import MadeUp
+
+MACHINE = {"cpu": "made up", "cores": 3, "system": "none", "python": "0", "numpy": "1", "scipy": "2", "scikit-fem": "3"}
+FORMULATIONS = {"auto": "auto", "fea": None}
+FEW = frozendict({"beam1": 30, "beam2": 40})
+
+
+class Clock:
+    """Time that passes only while a planted method works: its law gives set-up, solve, iterations and ending at N."""
+
+    def __init__(self, scene, **laws):
+        self.now, self.calls, self.scene = 0.0, [], scene
+        self.taking_part = tuple(self._contender(name.replace("_", "-"), law) for name, law in laws.items())
+
+    def __call__(self):
+        return self.now
+
+    def _contender(self, name, law):
+        def begin(scene, count, at_most):
+            found = law(count if isinstance(count, int) else max(count.values()))
+            if isinstance(found, SceneError):
+                raise found
+            setup, solve, iterations, ended, error = found
+
+            def set_up():
+                self.calls.append((name, count))
+                self.now += setup
+                return finish
+
+            def finish():
+                self.now += solve
+                values = {
+                    "B.displacement": np.array([1.0 + error, 0.0]),
+                    "contact.force": np.array([2.0 + 20.0 * error]),
+                }
+                return Outcome(ended, "" if ended == "COMPLETED" else "why not", (iterations,) * 2, frozendict(values))
+
+            return Run(set_up, lambda outcome: outcome)
+
+        method = "cprbm" if name in ("auto", "paper") else name
+        formulation = None if name == "fea" else name if method == "cprbm" else "paper"
+        return Contender(name, method, formulation, name.upper(), begin)
+
+    def session(self, sizes=(40, 80, 160), **plan):
+        every = frozendict({one.name: tuple(sizes) for one in self.taking_part})
+        return Session(self.scene, Plan(every, **plan), self.taking_part, MACHINE, self)
+
+    def benchmark(self, sizes=(40, 80, 160), **plan):
+        session = self.session(sizes, **plan)
+        for job in session.jobs():
+            session.do(job)
+        return session.done(KNOWN)
+
+
+KNOWN = errors.Reference(
+    "made up",
+    frozendict({"B.displacement": np.array([1.0, 0.0]), "contact.force": np.array([2.0])}),
+    frozendict({"B.displacement": np.array([0.0, 0.0]), "contact.force": np.array([1e-7])}),
+)
+
+
+def power(exponent, setup=0.0, iterations=lambda n: 5, error=lambda n: 1.6 / n**2):
+    return lambda n: (setup, 2e-3 * n**exponent - setup, iterations(n), "COMPLETED", error(n))
+
+
+@pytest.fixture
+def bent(hinge):
+    return question.asked(hinge)
+
+
+def test_the_exponent_is_that_of_the_law_set_up_included(bent):
+    found = Clock(bent, auto=power(1.2, setup=1e-3), fea=power(0.9)).benchmark(repeat=3)
+    for name, exponent in (("auto", 1.2), ("fea", 0.9)):
+        fit = trend(found.of(name))
+        assert fit.exponent == pytest.approx(exponent, rel=1e-9)
+        assert fit.factor == pytest.approx(2e-3, rel=1e-9)
+        assert fit.sizes == (40, 80, 160)
+    assert found.of("auto")[0].setup == pytest.approx(1e-3)
+    assert found.of("auto")[0].solve == pytest.approx(2e-3 * 40**1.2 - 1e-3)
+
+
+def test_the_fit_is_by_least_squares_of_the_logarithms(bent):
+    """log₂ of 1, 2 and 8 s at three doublings: slope (3 − 0)/2."""
+    times = {40: 1.0, 80: 2.0, 160: 8.0}
+    found = Clock(bent, fea=lambda n: (0.0, times[n], 5, "COMPLETED", 0.0)).benchmark(repeat=1)
+    assert trend(found.of("fea")).exponent == pytest.approx(1.5, rel=1e-12)
+
+
+def test_smaller_sizes_take_no_part_in_the_fit(bent):
+    law = lambda n: (0.0, 1.0 if n < 40 else 2e-3 * n, 5, "COMPLETED", 0.0)  # noqa: E731
+    fit = trend(Clock(bent, auto=law).benchmark(sizes=(10, 40, 80), repeat=1).of("auto"))
+    assert fit.exponent == pytest.approx(1.0, rel=1e-9)
+    assert fit.sizes == (40, 80)
+
+
+def test_one_size_has_no_exponent(bent):
+    fit = trend(Clock(bent, auto=power(1.0)).benchmark(sizes=(40,), repeat=2).of("auto"))
+    assert fit.exponent is fit.iterations is None
+
+
+def test_runs_are_interleaved_after_one_that_does_not_count(bent):
+    clock = Clock(bent, auto=power(1.0), fea=power(1.0))
+    clock.benchmark(sizes=(40, 80), repeat=2)
+    again = [("auto", 80), ("fea", 80)]
+    once = [("auto", 40), ("fea", 40), *again]
+    assert clock.calls == [("auto", 40), ("auto", 40), ("fea", 40), ("fea", 40), *again, *once]
+
+
+def test_median_and_quartiles(bent):
+    """1, 2, 3, 4 and 10 s: the median is 3, the quartiles 2 and 4."""
+    times = iter([99.0, 3.0, 10.0, 1.0, 4.0, 2.0])  # the first does not count
+    found = Clock(bent, auto=lambda n: (0.5, next(times), 5, "COMPLETED", 0.0)).benchmark(sizes=(40,), repeat=5)
+    assert (found.timings[0].setup, found.timings[0].solve, found.timings[0].spread) == (0.5, 3.0, 2.0)
+
+
+def test_iterations_are_counted_in_all_per_station_and_against_the_smallest(bent):
+    found = Clock(bent, auto=power(1.0, iterations=lambda n: n // 40)).benchmark(repeat=1)
+    assert [timing.total_iterations for timing in found.of("auto")] == [2, 4, 8]
+    assert [timing.iterations_per_station for timing in found.of("auto")] == [1.0, 2.0, 4.0]
+    assert trend(found.of("auto")).iterations == 4.0
+
+
+def test_what_does_not_complete_is_shown_with_its_reason_and_counts_for_nothing(bent):
+    ends = lambda n: (0.0, 1e-6, 5, "GAVE_UP", 0.0) if n == 80 else power(1.0)(n)  # noqa: E731
+    found = Clock(bent, paper=power(1.0), ipopt=ends).benchmark(repeat=2)
+    assert trend(found.of("ipopt")).sizes == (40, 160)
+    row = next(row for row in told.document(found)["rows"] if (row["method"], row["n"]) == ("ipopt", 80))
+    assert (row["ended"], row["why"], row["counts"]) == ("GAVE_UP", "why not", False)
+    assert any("GAVE_UP" in line for line in told.sheets(found)[0].rows)
+    assert [one.ipopt_solve is None for one in ratios(found)] == [False, True, False] or len(ratios(found)) == 2
+
+
+def test_a_peer_with_a_worse_error_on_the_same_problem_does_not_count(bent):
+    wrong = lambda n: (0.0, 1e-6, 5, "COMPLETED", 3.2 / n**2 if n == 80 else 1.6 / n**2)  # noqa: E731
+    found = Clock(bent, paper=power(1.0), ipopt=wrong, fea=power(1.0, error=lambda n: 1.0)).benchmark(repeat=1)
+    assert [timing.counts for timing in found.of("ipopt")] == [True, False, True]
+    assert [timing.counts for timing in found.of("fea")] == [True, True, True]
+    assert [told.ended(timing) for timing in found.of("ipopt")] == ["COMPLETED", "WORSE", "COMPLETED"]
+
+
+def test_what_takes_too_long_is_not_repeated_and_not_exceeded(bent):
+    clock = Clock(bent, auto=lambda n: (0.0, n / 40.0, 5, "COMPLETED", 0.0), fea=power(0.1))
+    found = clock.benchmark(repeat=4, at_most=1.5)
+    assert [(timing.n, len(timing.solves)) for timing in found.of("auto")] == [(40, 2), (80, 1)]
+    assert [(one.name, one.count, one.why) for one in found.left_out] == [("auto", 160, "more than 1.5 s")]
+
+
+def test_a_size_that_is_refused_is_left_out_and_the_rest_goes_on(bent):
+    refused = SceneError([Mistake("contacts.contact.paper", "2 joints", "3")])
+    found = Clock(bent, paper=lambda n: refused if n == 40 else power(1.0)(n)).benchmark(repeat=2)
+    assert [timing.n for timing in found.timings] == [80, 160]
+    assert [(one.count, one.why) for one in found.left_out] == [(40, "contacts.contact.paper: found 2 joints")]
+    assert ("paper", "40", "contacts.contact.paper: found 2 joints") in told.sheets(found)[-1].rows
+
+
+def test_what_everybody_refuses_is_refused(bent):
+    refused = SceneError([Mistake("beams", "none", "some")])
+    with pytest.raises(SceneError, match="beams"):
+        Clock(bent, auto=lambda n: refused, fea=lambda n: refused).benchmark(repeat=1)
+
+
+def test_an_interrupted_session_has_what_was_done(bent):
+    session = Clock(bent, auto=power(1.0), fea=power(1.0)).session(repeat=2)
+    for job in session.jobs()[:3]:
+        session.do(job)
+    found = session.done(KNOWN)
+    assert [(timing.contender.name, timing.n) for timing in found.timings] == [("auto", 40), ("auto", 80), ("fea", 40)]
+    assert {one.why for one in found.left_out} == {"interrupted"}
+
+
+def test_numbers_by_beam_are_a_size_like_another(bent):
+    found = Clock(bent, auto=power(1.0), paper=power(1.0)).benchmark(sizes=(20, FEW), repeat=1)
+    assert [timing.n for timing in found.of("auto")] == [20.0, 35.0]
+    assert told.sized(FEW) == "30, 40"
+    assert told.document(found)["rows"][1]["n"] == {"beam1": 30, "beam2": 40}
+
+
+def test_the_usual_sizes_end_where_a_method_does():
+    assert sizes_of("auto", ())[-1] == 5120
+    assert sizes_of("slsqp", ()) == (10, 20, 40, 80)
+    assert sizes_of("slsqp", (5120, 40, 40)) == (40, 5120)
+
+
+@pytest.mark.parametrize(
+    ("points", "target", "seconds"),
+    [
+        ([(1e-1, 1.0), (1e-3, 4.0)], 1e-2, 2.0),  # half-way in both logarithms
+        ([(1e-1, 1.0), (1e-3, 4.0)], 1e-1, 1.0),
+        ([(1e-3, 7.0), (1e-5, 9.0)], 1e-2, 7.0),  # none is before
+        ([(1e-1, 1.0), (5e-2, 4.0)], 1e-2, None),
+        ([(1e-1, 1.0), (1e-3, 2.0), (1e-1, 3.0), (1e-3, 4.0)], 1e-2, 12.0**0.5),  # the first was an accident
+        ([(1e-3, 1.0), (1e-1, 2.0)], 1e-2, None),
+        ([], 1e-2, None),
+    ],
+)
+def test_when_an_error_is_reached(points, target, seconds):
+    assert reached(points, target) == (None if seconds is None else pytest.approx(seconds, rel=1e-12))
+
+
+def test_who_is_fastest_and_by_how_much(bent):
+    """Errors 1.6/N²: 1e-3 at N = 40 and a quarter of that with each doubling."""
+    slow, fast = (
+        (lambda n: (0.03, 1e-3 * n, 5, "COMPLETED", 1.6 / n**2)),
+        (lambda n: (0.0, 2e-3 * n, 5, "COMPLETED", 1.6 / n**2)),
+    )
+    found = Clock(bent, auto=slow, fea=fast).benchmark(sizes=(20, 40, 80, 160), repeat=1)
+    by_key = {(one.measure, one.target, one.clocked): one for one in standings(found)}
+    assert len(by_key) == 2 * 2 * len(TARGETS)
+    solve, both = (by_key["places", 1e-3, clocked] for clocked in ("solve", "both"))
+    assert solve.fastest == "auto"
+    assert solve.ahead == pytest.approx(2.0)
+    assert both.seconds == pytest.approx({"auto": 0.07, "fea": 0.08})
+    # at 1e-4, N = 126.5: 0.253 s, and for the other between 0.11 s and 0.19 s
+    fine = by_key["places", 1e-4, "both"]
+    assert fine.seconds["fea"] == pytest.approx(2e-3 * 16000**0.5, rel=1e-12)
+    # forces: 10 times the error
+    assert by_key["forces", 1e-4, "both"].seconds == {}
+    assert by_key["forces", 1e-4, "both"].fastest is None
+
+
+def test_ratios_are_of_solves_and_of_both(bent):
+    found = Clock(
+        bent,
+        auto=lambda n: (1.0, 2.0, 6, "COMPLETED", 0.1),
+        paper=lambda n: (1.0, 1.0, 5, "COMPLETED", 0.1),
+        slsqp=lambda n: (0.0, 800.0, 5, "COMPLETED", 0.1),
+        ipopt=lambda n: (17.0, 3.0, 5, "COMPLETED", 0.1),
+    ).benchmark(sizes=(40,), repeat=1, at_most=1e6)
+    (one,) = ratios(found)
+    assert (one.ipopt_solve, one.ipopt_both, one.slsqp_both, one.auto_both) == (3.0, 10.0, 400.0, 1.5)
+    assert (one.trust_both, one.iterations) == (None, 5.0)
+    assert told.document(found)["ratios"][0]["ipopt_both"] == 10.0
+
+
+def test_an_error_is_the_worst_of_its_measure_over_the_probe_or_a_thousandth_of_its_kind(bent):
+    off = {"B.displacement": np.array([1.0, 2e-3]), "D.displacement": np.array([1e-5, 0.0])}
+    known = replace(
+        KNOWN, values=frozendict({"B.displacement": np.array([1.0, 0.0]), "D.displacement": np.array([0.0, 0.0])})
+    )
+    assert errors.errors(bent, known, off) == {"places": pytest.approx(1e-2)}
+    assert errors.errors(bent, known, {}) == {}
+    assert errors.uncertainties(bent, KNOWN) == {"places": 0.0, "forces": pytest.approx(5e-8)}
+
+
+def test_the_reference_is_exact_or_extrapolated(bent):
+    """The made-up error is C/N²: the limit is the law without it."""
+    right = MadeUp("cprbm", 2e-3)
+    limited = errors.reference(bent, Solvers(cprbm=right, fea=right))
+    truth = MadeUp("exact", 0.0)(bent, Choices(kinematics="bending")).stations[-1].values
+    assert "limit" in limited.by
+    np.testing.assert_allclose(limited.values["BD.rotation"], truth["BD.rotation"], rtol=1e-9)
+    exact = errors.reference(bent, Solvers(cprbm=right, fea=right, exact=MadeUp("exact", 0.0)))
+    assert exact.by == "the exact answer"
+    np.testing.assert_array_equal(exact.values["B.displacement"], truth["B.displacement"])
+    ended = errors.reference(
+        bent,
+        Solvers(cprbm=lambda scene, choices: replace(right(scene, choices), ending=Ending.NOT_CERTIFIED), fea=right),
+    )
+    assert ended.values == {}
+
+
+def test_a_question_keeps_the_last_loads_and_what_errors_are_told_by():
+    asked = question.asked(cases.opened("gripper-driven"))
+    assert [len(stage.stations) for stage in asked.stages] == [1]
+    assert {probe.name for probe in asked.probes} >= {"A.reaction", "circle.force", "contact.force"}
+    assert not {"C.reaction", "contact.closing_load", "beam1.bending_stress"} & {probe.name for probe in asked.probes}
+    assert asked.claims == ()
+
+
+def test_the_document_has_the_documented_keys(bent):
+    data = json.loads(documents.text(told.document(Clock(bent, auto=power(1.2), fea=power(0.9)).benchmark(repeat=2))))
+    assert {"case", "machine", "rows", "trends", "fastest", "ratios", "left_out", "reference", "tolerance"} <= set(data)
+    assert data["machine"]["cpu"] == "made up"
+    assert len(data["rows"]) == 6
+    for row in data["rows"]:
+        assert {"method", "formulation", "n", "setup_seconds", "seconds", "spread", "error", "ended"} <= set(row)
+        assert row["formulation"] == ("auto" if row["method"] == "cprbm" else None)
+    assert data["rows"][0]["error"] == pytest.approx(1e-3)
+    assert data["rows"][0]["force_error"] == pytest.approx(1e-2)
+    assert [found["exponent"] for found in data["trends"]] == pytest.approx([1.2, 0.9])
+
+
+def test_the_figures_are_the_same_bytes_every_time(bent):
+    ends = lambda n: (0.0, 0.1, 5, "GAVE_UP", 0.0) if n == 80 else power(1.0)(n)  # noqa: E731
+    again = [drawn.pictures(Clock(bent, paper=power(1.1), ipopt=ends).benchmark(repeat=2)) for _ in range(2)]
+    assert again[0] == again[1]
+    assert [picture.name for picture in again[0]] == ["bench-precision", "bench"]
+    assert b"<dc:date>" not in again[0][0].svg
+
+
+def test_nothing_that_counts_has_no_figure(bent):
+    assert drawn.pictures(Clock(bent, auto=lambda n: (0.0, 0.1, 5, "GAVE_UP", 0.0)).benchmark(repeat=1)) == ()
+
+
+def test_the_machine_is_described():
+    found = machine.described()
+    assert set(MACHINE) <= set(found)
+    assert found["cores"] >= 1
+    assert all(found.values())
+
+
+def test_bench_prints_writes_and_ends_with_0(right, capsys, tmp_path):
+    arguments = ["bench", "hinge", "--sizes", "40,80", "--repeat", "2", "--out", str(tmp_path / "out")]
+    arguments += ["--method", "auto", "--method", "fea", "--json", str(tmp_path / "bench.json")]
+    assert run(arguments, right) == 0
+    captured = capsys.readouterr()
+    assert "exponent of time" in captured.out
+    assert captured.err == ""
+    data = json.loads((tmp_path / "bench.json").read_text("utf-8"))
+    assert [(row["method"], row["n"], row["repeats"]) for row in data["rows"]] == [
+        ("cprbm", 40, 2),
+        ("cprbm", 80, 2),
+        ("fea", 40, 2),
+        ("fea", 80, 2),
+    ]
+    assert json.loads((tmp_path / "out" / "hinge" / "bench.json").read_text("utf-8")) == data
+    for name in ("bench", "bench-precision"):
+        assert (tmp_path / "out" / "hinge" / f"{name}.svg").is_file()
+        assert (tmp_path / "out" / "hinge" / f"{name}.png").is_file()
+
+
+def test_bench_keeps_standard_output_for_json_and_asks_one_method_if_told(right, capsys):
+    arguments = ["bench", "hinge", "--sizes", "40", "--repeat", "1", "--method", "fea", "--json", "-"]
+    assert run(arguments, right) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert {row["method"] for row in data["rows"]} == {"fea"}
+
+
+def test_bench_runs_the_real_ones_beside_the_peers(capsys):
+    arguments = ["bench", "hinge", "--sizes", "20", "--repeat", "1", "--method", "paper", "--method", "trust-constr"]
+    assert run([*arguments, "--json", "-"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert [row["ended"] for row in data["rows"]] == ["COMPLETED", "COMPLETED"]
+    ours, theirs = (row["error"] for row in data["rows"])
+    assert theirs == pytest.approx(ours, rel=1e-3)
+    assert data["rows"][0]["setup_seconds"] > 0.0
+    assert data["reference"]["by"] == "the exact answer"
+    assert data["ratios"][0]["trust_constr_both"] > 0.0
+
+
+def test_all_stations_are_asked_without_the_peers(right, capsys):
+    arguments = ["bench", "hinge", "--sizes", "40", "--repeat", "1", "--stations", "all", "--json", "-"]
+    assert run([*arguments, "--method", "auto", "--method", "ipopt"], right) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert len(data["rows"][0]["iterations_by_station"]) == 10
+    assert data["stations"] == "all"
+    assert [(one["method"], one["n"]) for one in data["left_out"]] == [("ipopt", None)]
+
+
+def test_without_casadi_ipopt_is_left_out_with_a_line(right, capsys, monkeypatch):
+    monkeypatch.setattr("comparisons.peers.ipopt.there", lambda: False)
+    arguments = ["bench", "hinge", "--sizes", "40", "--repeat", "1", "--method", "auto", "--method", "ipopt"]
+    assert run(arguments, right) == 0
+    assert "CasADi is not installed (the extra 'peers')" in capsys.readouterr().out
+    assert run(["bench", "hinge", "--method", "ipopt"], right) == 2
+    assert "CasADi is not installed" in capsys.readouterr().err
+
+
+def test_a_scene_that_paper_does_not_offer_leaves_the_peers_out_with_a_line(right, capsys):
+    arguments = ["bench", "prestressed", "--sizes", "40", "--repeat", "1", "--method", "auto", "--method", "slsqp"]
+    assert run([*arguments, "--json", "-"], right) == 0
+    (left_out,) = json.loads(capsys.readouterr().out)["left_out"]
+    assert left_out["method"] == "slsqp"
+    assert "assembly" in left_out["why"]
+
+
+def test_bench_ends_with_1_if_a_run_does_not_complete(right, capsys, tmp_path):
+    def ended(scene, choices):
+        return replace(right.cprbm(scene, choices), ending=Ending.STEP_TOO_SMALL, sentence="it ended early")
+
+    arguments = ["bench", "hinge", "--sizes", "40", "--repeat", "1", "--method", "auto", "--out", str(tmp_path)]
+    assert run(arguments, Solvers(ended, right.fea)) == 1
+    assert (tmp_path / "hinge" / "bench.json").is_file()
+    assert "CPRBM auto at N = 40: it ended early" in capsys.readouterr().err
+
+
+def test_an_interrupted_bench_keeps_what_was_finished(right, capsys, tmp_path):
+    calls = []
+
+    def interrupted(scene, choices):
+        calls.append(choices.elements)
+        if len(calls) == 3:
+            raise KeyboardInterrupt
+        return right.fea(scene, choices)
+
+    arguments = ["bench", "hinge", "--sizes", "40,80", "--repeat", "2", "--method", "fea", "--out", str(tmp_path)]
+    assert run(arguments, Solvers(right.cprbm, interrupted)) == 130
+    data = json.loads((tmp_path / "hinge" / "bench.json").read_text("utf-8"))
+    assert [(row["n"], row["repeats"]) for row in data["rows"]] == [(40, 1)]
+    assert [one["n"] for one in data["left_out"]] == [80]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--sizes", "40,many"], "'many'"),
+        (["--sizes", ""], "''"),
+        (["--repeat", "0"], "'0'"),
+        (["--at-most", "-1"], "'-1'"),
+        (["--at-most", "nan"], "'nan'"),
+        (["--method", "other"], "'other'"),
+        (["--stations", "first"], "'first'"),
+        (["-n", "beam1=many"], "'many'"),
+        (["-n", "beam1=30"], "beam1=30"),
+        (["-n", "40", "--sizes", "40"], "--sizes and -n"),
+    ],
+)
+def test_a_wrong_option_is_named(right, capsys, arguments, said):
+    assert run(["bench", "hinge", *arguments], right) == 2
+    assert said in capsys.readouterr().err
