@@ -29,17 +29,17 @@ layer, and what is left, at the end of the zone, is of second order.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from fea_reference.edge import edge_of
-from fea_reference.hermite import NeutralLine, along, shapes, twice_along
+from fea_reference.hermite import Around, NeutralLine, along, plane, shapes, twice_along
 from fea_reference.model import Model, turned
-from fea_reference.state import State, squared, summed
+from fea_reference.state import Complex, State, squared, summed
 from fea_reference.touch import Circle, Penalty, Touch, gauss, together
-from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative
-from scene.answer import Array
+from fea_reference.zones import Gap, Zones, negative, stepped
+from scene.answer import Array, Ints
 from scene.statement import CircleContact, Scene
 
 _BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states
@@ -88,7 +88,17 @@ def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...
 
 def zones_of(model: Model, circle: Circle, z: State) -> Zones:
     """Where the beam overlaps the circle in state ``z``."""
-    return _find(model.line(model.beams[circle.first], z), centre(model, circle, z), circle, 0.0)
+    return _find(_seen(model, circle, z), circle, 0.0)
+
+
+def room(model: Model, circle: Circle, z: State) -> float:
+    """How far the beam can move against the circle before it may touch it: a lower bound."""
+    seen = _seen(model, circle, z)
+    return float(np.abs(seen.away).min()) - circle.radius - circle.edge.farthest - seen.line.longest
+
+
+def _seen(model: Model, circle: Circle, z: State) -> _Seen:
+    return _Seen.of(model.line(model.beams[circle.first], z), centre(model, circle, z), circle)
 
 
 def centre(model: Model, circle: Circle, z: State) -> Array:
@@ -117,21 +127,23 @@ def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
 def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: State) -> Touch:
     """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[circle.first], model.bodies[circle.body]
-    line, c = model.line(beam, z), centre(model, circle, z)
-    ahead = _find(line, c, circle, penalty.lead)
+    seen, c = _seen(model, circle, z), centre(model, circle, z)
+    line = seen.line
+    ahead = _find(seen, circle, penalty.lead)
     zones = replace(ahead, least=ahead.least + penalty.lead)
 
     points, weights = gauss(quadrature)
     width = zones.intervals[:, 1] - zones.intervals[:, 0]
     zeta = (zones.intervals[:, :1] + width[:, None] * 0.5 * (points + 1.0)).ravel()
-    e, xi = line.locate(zeta)
+    there = line.around(zeta)
+    e = there.element
     ds = (0.5 * width[:, None] * weights).ravel() * line.lengths[e]
 
-    x = line.at(zeta)[0]
-    r, n, g = _clearance(line, c, circle, zeta)
+    r, toward, g = _clearance(seen, circle, there, zeta)
+    x, n = plane(line.nodes[e] + there.way), plane(toward)
     tau = np.stack([n[1], -n[0]])
 
-    H = shapes(xi)
+    H = shapes(zeta - e)
     g_q, p = along(n, H, line, e), along(tau, H, line, e)
     own = twice_along(n, H, line, e)
     if body.dofs is not None:
@@ -195,39 +207,68 @@ def resting_pressure(model: Model, touch: Touch, circle: Circle, z: State) -> fl
     return max(0.0, kappa_there * (constant - kappa_there**2 * stiffness - second))
 
 
-def _clearance(line: NeutralLine, c: Array, circle: Circle, zeta: Array) -> tuple[Array, Array, Array]:
-    """r (k,), n (2, k) and g (k,) at places ``zeta`` (k,): g by (r² − (R + T)²)/(r + R + T) of the least T.
+@dataclass(frozen=True)
+class _Seen:
+    """A neutral ``line`` from the centre of a circle: its nodes by ``away`` x − c (n+1,), and ``over`` (n+1,) there.
+
+    That is r² − (R + T)² of the least T, with all digits.
+    """
+
+    line: NeutralLine
+    away: Complex
+    over: Array
+
+    @classmethod
+    def of(cls, line: NeutralLine, c: Array, circle: Circle) -> _Seen:
+        """Of a circle about ``c`` (2,)."""
+        away, error = summed(line.nodes, np.full(line.nodes.shape, -complex(*c), dtype=np.complex128))
+        rest = error + line.rests
+        (x, lost_x), (y, lost_y) = squared(away.real), squared(away.imag)
+        total, lost_in_sum = summed(x, y)
+        own, lost_of_own = squared(np.array([circle.radius + circle.edge.nearest]))
+        over, lost_in_difference = summed(total, -own)
+        lost = lost_x + lost_y + 2.0 * (away.conj() * rest).real
+        return cls(line, away, over + (lost_in_difference + lost_in_sum - lost_of_own + lost))
+
+    def near(self, circle: Circle, lead: float) -> Ints:
+        """Elements (k,) in which the gap may be less than a ``lead``, and those about the node that is nearest."""
+        r = np.abs(self.away)
+        least = np.minimum(r[:-1], r[1:])
+        reach = circle.radius + circle.edge.farthest + max(lead, 0.0) + self.line.longest
+        nearest = int(r.argmin())
+        within = least < reach
+        within[max(nearest - 1, 0) : nearest + 1] = True
+        return np.flatnonzero(within)
+
+
+def _clearance(seen: _Seen, circle: Circle, there: Around, zeta: Array) -> tuple[Array, Complex, Array]:
+    """r (k,), n (k,) and g (k,) at places ``zeta`` (k,): g by (r² − (R + T)²)/(r + R + T) of the least T.
 
     At an element's first node the numerator has all its digits; from there on it changes by no more than the
     element is long, and so does its round-off.
     """
-    e, _ = line.locate(zeta)
-    reach = circle.radius + circle.edge.nearest
-    q, error = summed(line.points, -c[:, None] * np.ones_like(line.points))
-    q_rest = error + line.rest
-    square, lost = squared(q)
-    total, lost_in_sum = summed(square[0], square[1])
-    own, lost_of_own = squared(np.full_like(total, reach))
-    over, lost_in_difference = summed(total, -own)
-    at_node = over + (lost_in_difference + lost_in_sum - lost_of_own + (lost + 2.0 * q * q_rest).sum(axis=0))
-    d = line.from_node(zeta)
-    away = q[:, e] + d
-    r = np.hypot(away[0], away[1])
-    g = (at_node[e] + ((2.0 * q[:, e] + d) * d).sum(axis=0)) / (r + reach)
-    return r, away / r, g - (circle.edge.at(zeta) - circle.edge.nearest)
+    q, d = seen.away[there.element], there.way
+    away = q + d
+    r = np.abs(away)
+    more = ((2.0 * q + d) * d.conj()).real
+    g = (seen.over[there.element] + more) / (r + (circle.radius + circle.edge.nearest))
+    if circle.edge.varies:
+        g -= circle.edge.at(zeta) - circle.edge.nearest
+    return r, away / r, g
 
 
-def _find(line: NeutralLine, c: Array, circle: Circle, lead: float) -> Zones:
+def _find(seen: _Seen, circle: Circle, lead: float) -> Zones:
     """All intervals on which the gap is less than ``lead``; those of a thick beam end at its knots too."""
+    line = seen.line
 
     def at(zeta: Array, none: Array) -> Gap:
-        _, x1, x2 = line.at(zeta)
-        r, n, g = _clearance(line, c, circle, zeta)
-        along_circle = n[1] * x1[0] - n[0] * x1[1]
-        slope, curvature = (n * x1).sum(axis=0) - circle.edge.slope(zeta), (n * x2).sum(axis=0) + along_circle**2 / r
+        there = line.around(zeta)
+        r, n, g = _clearance(seen, circle, there, zeta)
+        ahead = n.conj() * there.ahead
+        slope = ahead.real - circle.edge.slope(zeta) if circle.edge.varies else ahead.real
+        curvature = (n.conj() * there.bent).real + ahead.imag**2 / r
         return Gap(g - lead, slope, curvature, none, np.ones(zeta.shape, dtype=bool))
 
-    even = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
-    zeta = np.union1d(even, circle.edge.knots)
-    there = at(zeta, np.zeros_like(zeta))
-    return negative(at, zeta, there, np.ones(zeta.size - 1, dtype=bool), circle.edge.knots)
+    zeta, neighbours = stepped(seen.near(circle, lead), circle.edge.knots)
+    floor = float(np.finfo(float).eps) * line.longest
+    return negative(at, zeta, at(zeta, np.zeros_like(zeta)), neighbours, circle.edge.knots, floor=floor)

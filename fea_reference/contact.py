@@ -52,7 +52,7 @@ from fea_reference.itself import seen_itself, unseen
 from fea_reference.model import BeamPart, Model
 from fea_reference.state import State
 from fea_reference.touch import Pair, Penalty, Touch, gauss, together
-from fea_reference.zones import Survey, Zones, ends_over, overlap, seen, side_of
+from fea_reference.zones import Survey, Zones, ends_over, nodes_apart, out_of_reach, overlap, seen, side_of
 from scene.statement import BeamContact, FreeEnd, Scene, SelfContact
 
 _AT_END = 1e-6  # elements
@@ -135,6 +135,12 @@ def zones_of(model: Model, pair: Pair, z: State) -> Zones:
     return overlap(first, second, pair.distance, _seen(pair, first, second, pair.distance), 0.0, _rays(pair, second))
 
 
+def room(model: Model, pair: Pair, z: State) -> float:
+    """How far two beams can move against each other before a place of one is seen from the other: a lower bound."""
+    first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
+    return nodes_apart(first, second) - out_of_reach(first, second, pair.distance)
+
+
 def _seen(pair: Pair, first: NeutralLine, second: NeutralLine, T: float) -> Survey:
     if pair.roles is None:
         return seen(first, second, pair.side, T, pair.tapers)
@@ -158,7 +164,7 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     distance = pair.distance + penalty.lead
     gaps = _seen(pair, line, line_m, distance)
     level = 0.0 if held is None else gaps.least + held
-    if level < line_m.lengths.max():
+    if level < line_m.longest:
         zones = overlap(line, line_m, distance, gaps, level, _rays(pair, line_m))
     else:
         wider = _seen(pair, line, line_m, distance + level)

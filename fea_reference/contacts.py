@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from fea_reference import circle, contact, face
 from fea_reference.crossing import cross, crosses_itself
 from fea_reference.far import FAR, kept_apart, least_apart
@@ -79,6 +81,40 @@ def looked_at(model: Model, what: Contact, z: State) -> Contact:
     if isinstance(what, Pair) and what.roles is not None:
         return replace(what, roles=what.roles.renewed(model.line(model.beams[what.first], z)))
     return what
+
+
+def room(model: Model, what: Contact, z: State) -> float:
+    """How far what may touch can move, each against the other, before anything of it is seen to: a lower bound.
+
+    Of a beam and itself, and of an edge, nothing is known.
+    """
+    match what:
+        case Pair(roles=None):
+            return contact.room(model, what, z)
+        case Circle():
+            return circle.room(model, what, z)
+        case _:
+            return -np.inf
+
+
+def against(model: Model, what: Contact, before: State, after: State) -> float:
+    """The most by which places of what may touch move against each other on the straight way between two states."""
+
+    def way(number: int) -> float:
+        dofs = model.node_dofs[:2, model.beams[number].nodes]
+        dx, dy = after.values[dofs] - before.values[dofs]
+        return float(np.hypot(dx, dy).max())
+
+    match what:
+        case Pair():
+            return way(what.first) + way(what.second)
+        case Circle():
+            x, y, phi = model.body_state(model.bodies[what.body], after) - model.body_state(
+                model.bodies[what.body], before
+            )
+            return way(what.first) + float(np.hypot(x, y) + abs(phi) * np.hypot(*what.arm))
+        case Face():
+            return np.inf
 
 
 def passed_through(model: Model, what: Contact, before: State, after: State) -> bool:

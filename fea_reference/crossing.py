@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import KDTree
 
-from fea_reference.hermite import NeutralLine
+from fea_reference.hermite import Index, NeutralLine
 from fea_reference.zones import Zones
 from scene.answer import Array, Flags
 
 _BESIDE = 1.5  # elements beside a zone in which it may cross
+_ROUNDED = 1e-9  # of chords, what they may be apart without being so
 _PARTS = 32  # of an element that are looked at as chords: what they leave of its bow is a thousandth
 
 
 def cross(first: NeutralLine, second: NeutralLine) -> bool:
     """Whether any two chords of the lines' elements intersect in their insides."""
-    chords = [(line.points[:, :-1], line.points[:, 1:]) for line in (first, second)]
-    (a, b), (c, d) = chords
-    return bool(_intersect(a[:, :, None], b[:, :, None], c[:, None], d[:, None]).any())
+    i, j = _near(first, second)
+    return bool(
+        _intersect(first.points[:, i], first.points[:, i + 1], second.points[:, j], second.points[:, j + 1]).any()
+    )
 
 
 def crosses_itself(line: NeutralLine, held: Zones) -> bool:
@@ -26,8 +29,10 @@ def crosses_itself(line: NeutralLine, held: Zones) -> bool:
     their parts, and of the parts of the elements beside them, decide.  What sinks into a penalty may cross by that,
     and is held, and measured.
     """
-    a, b = line.points[:, :-1], line.points[:, 1:]
-    found = np.argwhere(np.triu(_intersect(a[:, :, None], b[:, :, None], a[:, None], b[:, None])))
+    i, j = _near(line, line)
+    i, j = i[i < j], j[i < j]
+    crossing = _intersect(line.points[:, i], line.points[:, i + 1], line.points[:, j], line.points[:, j + 1])
+    found = np.stack([i[crossing], j[crossing]], axis=1)
     if held.intervals.size and found.size:
         places = np.sort(np.stack([held.intervals, held.zeta_m]), axis=0)  # of both the earlier, then the later
         low, high = (
@@ -43,6 +48,18 @@ def crosses_itself(line: NeutralLine, held: Zones) -> bool:
     i, j = (_PARTS * one[:, None] + np.arange(_PARTS) for one in pairs.T)
     ends = (fine[:, i, None], fine[:, i + 1, None], fine[:, j][:, :, None], fine[:, j + 1][:, :, None])
     return bool(_intersect(*ends).any())
+
+
+def _near(first: NeutralLine, second: NeutralLine) -> tuple[Index, Index]:
+    """Numbers (k,) of one line's elements and another's, among which are all pairs whose chords may intersect.
+
+    Their middles are no farther from each other than the halves of both chords are long.
+    """
+    lines = (first, second)
+    trees = [KDTree(0.5 * (line.points[:, :-1] + line.points[:, 1:]).T) for line in lines]
+    halves = sum(0.5 * float(np.abs(np.diff(line.nodes)).max()) for line in lines)
+    pairs = trees[0].sparse_distance_matrix(trees[1], halves * (1.0 + _ROUNDED), output_type="ndarray")
+    return pairs["i"], pairs["j"]
 
 
 def _intersect(a: Array, b: Array, c: Array, d: Array) -> Flags:

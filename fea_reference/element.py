@@ -154,7 +154,8 @@ def forces(elements: Elements, dofs: Index, state: State) -> ElementForces:
     gradient = N * r + np.einsum("in,ian->an", moment, turn)
     gradient[6] += elongation - elements.compliance * elements.length * N
     rz = r[:, None] * z[None, :]
-    H = np.einsum("ian,ijn,jbn->abn", turn, elements.bending + N * elements.shortening, turn)
+    turned = np.einsum("ijn,jbn->ibn", elements.bending + N * elements.shortening, turn)
+    H = np.einsum("ian,ibn->abn", turn, turned)
     H += N / l * (z[:, None] * z[None, :]) + total / l**2 * (rz + rz.transpose(1, 0, 2))
     coupling = r + np.einsum("in,ian->an", strain_by_rotation, turn)
     H[6] += coupling

@@ -273,7 +273,8 @@ class _Seen:
             zeta = zeta[keep]
             there = Gap(there.g[keep], there.slope[keep], there.curvature[keep], there.zeta_m[keep], keep[keep])
         splits = (*face.edge.knots, *borders.tolist())
-        return negative(self._at, zeta, there, neighbours, splits, face.own), kinks
+        floor = float(np.finfo(float).eps) * line.longest
+        return negative(self._at, zeta, there, neighbours, splits, face.own, floor), kinks
 
     def _at(self, zeta: Array, none_m: Array) -> Gap:
         face = self.face
@@ -297,7 +298,7 @@ class _Seen:
             return np.empty(0), {}
         y = self._place(self.line.around(even))
         apart = np.abs(y - (corners.points[0] + 1j * corners.points[1])[:, None])
-        reach = 2.0 * max(self.face.edge.half) + _REACH * float(self.line.lengths.max())
+        reach = 2.0 * max(self.face.edge.half) + _REACH * self.line.longest
         near = np.flatnonzero(apart.min(axis=1) < reach)
         if near.size == 0:
             return np.empty(0), {}

@@ -81,6 +81,16 @@ class Borders:
     points: Complex
     w: Complex
 
+    def among(self, nodes: Ints) -> Borders:
+        """Those at ``nodes`` (k,) of the beam and beside them."""
+        if nodes.size == int(self.zeta.max()) + 1:
+            return self
+        wanted = np.zeros(int(self.zeta.max()) + 2, dtype=bool)
+        wanted[nodes] = True
+        at = self.zeta.astype(np.int64)
+        here = wanted[at] | wanted[at + 1]
+        return Borders(self.zeta[here], self.points[here], self.w[here])
+
 
 def facing(
     second: NeutralLine, edge: Edge | None, points: Complex, guess: Array, sides: Callable[[Array, Array], Array]

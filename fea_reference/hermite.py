@@ -37,6 +37,7 @@ class NeutralLine:
     undeformed ``lengths`` (n,), their ``speeds`` m, what these ``give`` by N and, ``arching``, change by θ₂ (n,);
     ``tangents`` and ``normals`` (2, n+1); and the coefficients ``cubic`` (3, n) of ξ, ξ², ξ³ of every element,
     from its first node, as complex numbers x + i y, as ``nodes`` and ``rests`` (n+1,) are the points and their rests.
+    ``longest`` is the largest of the lengths.
     """
 
     points: Array
@@ -51,6 +52,7 @@ class NeutralLine:
     cubic: Complex
     nodes: Complex
     rests: Complex
+    longest: float
 
     @classmethod
     def through(
@@ -68,7 +70,10 @@ class NeutralLine:
         cubic = np.stack([t1, 3.0 * step - 2.0 * t1 - t2, t1 + t2 - 2.0 * step])
         arching = lengths * turned / _ARC
         tangents, normals = np.stack([cos, sin]), np.stack([-sin, cos])
-        return cls(points, rest, angles, lengths, speeds, give, arching, tangents, normals, cubic, nodes, rests)
+        longest = float(lengths.max())
+        return cls(
+            points, rest, angles, lengths, speeds, give, arching, tangents, normals, cubic, nodes, rests, longest
+        )
 
     @property
     def n(self) -> int:

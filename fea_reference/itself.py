@@ -35,7 +35,7 @@ from scipy.spatial import KDTree
 
 from fea_reference.facing import Tapers, borders
 from fea_reference.hermite import NeutralLine, plane
-from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Survey, gap, one_side, survey
+from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Survey, gap, one_side, rounded, survey
 from scene.answer import Array, Ints
 
 _ALIKE = 0.5  # of the way between two places along the beam, by which they may differ from those whose side is known
@@ -84,7 +84,7 @@ def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None
     def at(where: Array, guess: Array) -> Gap:
         return gap(line, line, roles.sides, T, tapers, where, guess)
 
-    reach = 2.0 * abs(T) + 3.0 * float(line.lengths.max())
+    reach = 2.0 * abs(T) + 3.0 * line.longest
     knots = () if tapers is None else tapers.first.knots
     zeta = np.union1d(_samples(line, tapers, reach), np.array(knots))
     x = line.at(zeta)[0]
@@ -99,7 +99,7 @@ def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None
     if not places.size:
         return Survey(at, places, there, np.empty(0, dtype=bool), (), reach - T)
     order, follows = _sequences(i, there.zeta_m)
-    return survey(at, places[order], there.chosen(order), follows, knots)
+    return survey(at, places[order], there.chosen(order), follows, knots, floor=rounded(line, line, T))
 
 
 def _partners(line: NeutralLine, zeta: Array, i: Ints, j: Ints, *, later: bool) -> tuple[Array, Array, Ints]:
@@ -117,7 +117,7 @@ def _partners(line: NeutralLine, zeta: Array, i: Ints, j: Ints, *, later: bool) 
 
     here, there = f(j), f(j + 1)
     # straight across from an end f is zero but for round-off
-    nothing = _NOTHING * float(line.lengths.max()) ** 2
+    nothing = _NOTHING * line.longest**2
     here = np.where((j == 0) & (np.abs(here) <= nothing), 0.0, here)
     there = np.where((j == line.n - 1) & (np.abs(there) <= nothing), 0.0, there)
     least = (here >= 0.0) & (there <= 0.0) & (here > there)

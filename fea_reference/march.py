@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from fea_reference.acting import Acting
 from fea_reference.advance import advance, bend
-from fea_reference.contacts import looked_at, passed_through, resting_pressure, zones_of
+from fea_reference.contacts import against, looked_at, passed_through, resting_pressure, room, zones_of
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
@@ -293,8 +293,21 @@ class March:
             return False
         deepest = least - _DEEPER * self._finest if least < 0.0 else 0.0
         parts = max(2, int(np.ceil(moved / self._finest)))
-        between = (State.of(before.values + part * way) for part in np.arange(1, parts) / parts)
-        return any(zones_of(self.model, pair, state).least < deepest for state in between)
+        pace = against(self.model, pair, before, after) / parts
+
+        def overlaps(first: int, last: int) -> bool:
+            """Between two of the parts' ends; from where there is room for the whole way to either, nothing does."""
+            if last - first < 2:
+                return False
+            middle = (first + last) // 2
+            state = State.of(before.values + middle / parts * way)
+            if room(self.model, pair, state) > pace * (last - middle):
+                return False
+            if zones_of(self.model, pair, state).least < deepest:
+                return True
+            return overlaps(first, middle) or overlaps(middle, last)
+
+        return overlaps(0, parts)
 
     @property
     def _finest(self) -> float:

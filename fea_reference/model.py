@@ -19,7 +19,7 @@ from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLi
 
 from fea_reference.acting import Acting
 from fea_reference.curves import length, sample
-from fea_reference.element import Elements, reference
+from fea_reference.element import ElementForces, Elements, forces, reference
 from fea_reference.hermite import Index, NeutralLine
 from fea_reference.known import Known
 from fea_reference.leaning import Chain, Span, chain, tangent_angles
@@ -272,6 +272,7 @@ class Model:
     start: State
     stiffest: float
     moving: Index
+    bends: Known[None, ElementForces] = field(default_factory=Known, repr=False)
     lines: Known[str, NeutralLine] = field(default_factory=Known, repr=False)
     discs: Known[str, tuple[Complex, Array]] = field(default_factory=Known, repr=False)
     distances: Known[Contact, tuple[Complex, Array]] = field(default_factory=Known, repr=False)
@@ -295,6 +296,10 @@ class Model:
     def beam(self, name: str) -> BeamPart:
         """The beam of that name."""
         return next(beam for beam in self.beams if beam.name == name)
+
+    def bend(self, z: State) -> ElementForces:
+        """What the elements do in state ``z``."""
+        return self.bends.found(z, None, lambda: forces(self.elements, self.element_dofs, z))
 
     def line(self, beam: BeamPart, z: State) -> NeutralLine:
         """A beam's neutral line in state ``z``."""

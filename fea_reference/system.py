@@ -18,7 +18,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from fea_reference.acting import Acting
 from fea_reference.beam_loads import BeamLoad, beam_load, load_forces
 from fea_reference.contacts import touch
-from fea_reference.element import ElementForces, forces
+from fea_reference.element import ElementForces
 from fea_reference.hermite import Index
 from fea_reference.model import MOMENTS, WAY, DrivePart, Model, OnBeam, SharePart, turned
 from fea_reference.state import State
@@ -111,7 +111,7 @@ def assemble(
             push with, see :mod:`fea_reference.newton`.
         drag: what resists motions besides.
     """
-    elements = forces(model.elements, model.element_dofs, z)
+    elements = model.bend(z)
     touches = tuple(touch(model, pair, penalty, quadrature, z, held.get(pair)) for pair, penalty in penalties.items())
     residual, rigid = _rigid(model, values, z, acting)
     parts = [(model.element_dofs, elements.gradient)]

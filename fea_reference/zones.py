@@ -29,12 +29,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from fea_reference.facing import Borders, Tapers, borders, facing
 from fea_reference.hermite import NeutralLine, apart
+from fea_reference.neighbours import near_each_other, nearest
 from fea_reference.projection import project
-from fea_reference.state import Complex
 from scene.answer import Array
 
 SAMPLES_PER_ELEMENT = 4
@@ -43,7 +42,6 @@ _END_ITERATIONS = 15
 _INSIDE = 1e-6  # elements
 _ON_RAY = 1e-6  # elements
 _ARRIVED = 1e-8  # elements
-_TABLE = 40_000  # distances: so many are found faster one and all than by a tree
 _EVEN = 3.0  # times its mean: a derivative below that at both ends keeps a cubic rising
 
 
@@ -172,21 +170,22 @@ def one_side(side: float) -> Callable[[Array, Array, Array], Array]:
 
 def side_of(first: NeutralLine, second: NeutralLine) -> float:
     """On which side of the second beam the first lies: +1 to the left of its direction, −1 to the right."""
-    zeta = _samples(first, borders(second, None, 1.0), np.arange(first.n), _reach(first, second, 0.0))
+    rays, reach = borders(second, None, 1.0), _reach(first, second, 0.0)
+    zeta = _samples(first, rays, np.arange(first.n), np.arange(first.n + 1), reach)
     x = first.around(zeta)
-    near = _nearest(first.nodes[x.element] + x.way, second.nodes)[1].astype(float)
+    near = nearest(first.nodes[x.element] + x.way, second.nodes)[1].astype(float)
     there = gap(first, second, one_side(1.0), 0.0, None, zeta, near)
     d = there.g[there.found]
     if d.size == 0:
         return 1.0
-    nearest = d[np.argmin(np.abs(d))]
+    least = d[np.argmin(np.abs(d))]
     # Lines that touch at the start show their side elsewhere.
-    return float(np.sign(nearest if abs(nearest) > 1e-9 else d.sum())) or 1.0
+    return float(np.sign(least if abs(least) > 1e-9 else d.sum())) or 1.0
 
 
 def ends_over(first: NeutralLine, second: NeutralLine) -> bool:
     """Whether an end of the first beam has its closest point in the inside of the second."""
-    near = _nearest(first.nodes[[0, -1]], second.nodes)[1].astype(float)
+    near = nearest(first.nodes[[0, -1]], second.nodes)[1].astype(float)
     zeta, found = project(second, first.points[:, [0, -1]], near)
     return bool((found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)).any())
 
@@ -198,25 +197,31 @@ def seen(first: NeutralLine, second: NeutralLine, side: float, T: float, tapers:
         return gap(first, second, one_side(side), T, tapers, where, guess)
 
     reach, none_there = _reach(first, second, T), np.empty(0)
-    apart_by, _ = _nearest(first.nodes, second.nodes)
-    beside = np.flatnonzero(np.minimum(apart_by[:-1], apart_by[1:]) < reach + first.lengths.max())
+    within = out_of_reach(first, second, T)
+    one, other = near_each_other(first.nodes, second.nodes, within + first.longest + second.longest)
+    apart_by, _ = nearest(first.nodes[one], second.nodes[other])
+    close = np.zeros(first.n + 1, dtype=bool)
+    close[one[apart_by < within]] = True
+    beside = np.flatnonzero(close[:-1] | close[1:])
     if not beside.size:
         nothing = Gap(none_there, none_there, none_there, none_there, none_there.astype(bool))
         return Survey(at, none_there, nothing, none_there.astype(bool), (), float(apart_by.min()) - T)
-    zeta = _samples(first, borders(second, None if tapers is None else tapers.second, side), beside, reach)
+    rays = borders(second, None if tapers is None else tapers.second, side).among(other)
+    zeta = _samples(first, rays, beside, one, reach)
     knots = () if tapers is None else tapers.first.knots
     if knots:
         zeta = np.union1d(zeta, [knot for knot in knots if min(int(knot), first.n - 1) in beside])
     x = first.around(zeta)
-    distance, nearest = _nearest(first.nodes[x.element] + x.way, second.nodes)
+    distance, nearest_node = nearest(first.nodes[x.element] + x.way, second.nodes[other])
     near = np.flatnonzero(distance < reach)
-    there = at(zeta[near], nearest[near].astype(float))
+    there = at(zeta[near], other[nearest_node[near]].astype(float))
     # A point that sees the far side of a strongly bent second beam is no overlap.
     usable = there.found & (there.g > -T - reach)
     if not usable.any():
         return Survey(at, zeta[:0], there.chosen(near[:0]), np.empty(0, dtype=bool), (), float(distance.min()) - T)
-    near, there = near[usable], there.chosen(usable)
-    return survey(at, zeta[near], there, np.diff(near) == 1, knots)
+    if not usable.all():
+        near, there = near[usable], there.chosen(usable)
+    return survey(at, zeta[near], there, np.diff(near) == 1, knots, floor=rounded(first, second, T))
 
 
 def overlap(
@@ -227,12 +232,16 @@ def overlap(
     Below by more than the gap is rounded to: beams that are held side by side lie on each other without pressing.
     Intervals end where the first beam passes one of the second's ``rays``.
     """
-    lengths = abs(T) + first.lengths.max() + second.lengths.max()
-    inside = where.below(level - float(np.finfo(float).eps * lengths))
+    inside = where.below(level - rounded(first, second, T))
     split = inside.intervals, inside.zeta_m
     for one in rays:
         split = _split_at(first, one, *split)
     return Zones(*split, inside.least)
+
+
+def rounded(first: NeutralLine, second: NeutralLine, T: float) -> float:
+    """What the gap of two beams is rounded to."""
+    return float(np.finfo(float).eps * (abs(T) + first.longest + second.longest))
 
 
 def negative(
@@ -242,9 +251,10 @@ def negative(
     neighbours: NDArray[np.bool_],
     kinks: tuple[float, ...] = (),
     joined: tuple[float, ...] = (),
+    floor: float = 0.0,
 ) -> Zones:
     """The intervals on which a gap is negative, see :func:`survey`."""
-    return survey(at, zeta, there, neighbours, kinks, joined).below(0.0)
+    return survey(at, zeta, there, neighbours, kinks, joined, floor).below(0.0)
 
 
 def survey(
@@ -254,6 +264,7 @@ def survey(
     neighbours: NDArray[np.bool_],
     kinks: tuple[float, ...] = (),
     joined: tuple[float, ...] = (),
+    floor: float = 0.0,
 ) -> Survey:
     """Where a gap is least, and whether anything may be beside.
 
@@ -263,6 +274,7 @@ def survey(
         neighbours: whether the gap is known between a place and the next (k−1,).
         kinks: those of the places, but for nodes, at which the gap has a kink.
         joined: those at which a joint makes it zero, which is no least gap.
+        floor: what the gap is rounded to.
     """
     zeta, there, neighbours = _with_bends(at, zeta, there, neighbours)
     slope, zeta_m = there.slope, there.zeta_m
@@ -274,7 +286,7 @@ def survey(
     turning = np.flatnonzero(neighbours & (slope[:-1] * slope[1:] < 0.0))
     if turning.size:
         share = _turning(zeta, slope, there.curvature, turning)
-        where, guess = _roots(slope_at, zeta, slope, zeta_m, turning, share)
+        where, guess = _roots(slope_at, zeta, slope, zeta_m, turning, share, floor)
         zeta, there, neighbours = _with(zeta, there, neighbours, turning, where, at(where, guess))
     least = float((there.g[~np.isin(zeta, joined)] if joined else there.g).min())
     return Survey(at, zeta, there, neighbours, kinks, least)
@@ -314,38 +326,41 @@ def _with_bends(
     return _with(zeta, there, neighbours, bends, where, more)
 
 
+def out_of_reach(first: NeutralLine, second: NeutralLine, T: float) -> float:
+    """Where no node of either beam is nearer to one of the other than this, nothing is seen of the gap."""
+    return _reach(first, second, T) + first.longest
+
+
+def nodes_apart(first: NeutralLine, second: NeutralLine) -> float:
+    """Of the nodes of two beams that are nearest to each other."""
+    one, other = near_each_other(first.nodes, second.nodes, 0.0)
+    return float(nearest(first.nodes[one], second.nodes[other])[0].min())
+
+
 def _reach(first: NeutralLine, second: NeutralLine, T: float) -> float:
     """Where no node of the second beam is nearer than this, neither a place nor its neighbours can touch."""
-    return float(2.0 * abs(T) + 2.0 * second.lengths.max() + first.lengths.max())
+    return float(2.0 * abs(T) + 2.0 * second.longest + first.longest)
 
 
-def _nearest(points: Complex, nodes: Complex) -> tuple[Array, NDArray[np.int64]]:
-    """How far points x + i y (k,) are from the nearest of the ``nodes`` (m,), and which that is."""
-    if points.size * nodes.size > _TABLE:
-        distance, which = KDTree(nodes.view(float).reshape(-1, 2)).query(points.view(float).reshape(-1, 2))
-        return distance, which
-    every = np.abs(points[:, None] - nodes)
-    which = every.argmin(axis=1)
-    return every[np.arange(points.size), which], which
-
-
-def _samples(first: NeutralLine, rays: Borders, elements: NDArray[np.int64], reach: float) -> Array:
+def _samples(
+    first: NeutralLine, rays: Borders, elements: NDArray[np.int64], nodes: NDArray[np.int64], reach: float
+) -> Array:
     """Equal steps within those ``elements``, and the places straight across from the second beam's nodes in reach.
 
     Beyond an end there is no gap, and a zone that reaches up to one may be narrower than a step; at the others the
-    gap's curvature jumps.
+    gap's curvature jumps.  ``nodes`` are those of the first beam of which some may be in reach.
     """
-    even = (elements[:, None] + np.arange(SAMPLES_PER_ELEMENT + 1) / SAMPLES_PER_ELEMENT).ravel()
-    distance, nearest = _nearest(rays.points, first.nodes)
+    even, _ = stepped(elements, ())
+    distance, nearest_node = nearest(rays.points, first.nodes[nodes])
     near = distance < reach
     if not near.any():
-        return np.unique(even)
-    nodes, back = rays.points[near], rays.w[near].conj()
-    zeta = nearest[near].astype(float)
+        return even
+    zeta = nodes[nearest_node[near]].astype(float)
+    facing_to, back = rays.points[near], rays.w[near].conj()
     for _ in range(_END_ITERATIONS):
         there = first.around(zeta)
         ahead = (there.ahead * back).real
-        off = ((first.nodes[there.element] - nodes + there.way) * back).real
+        off = ((first.nodes[there.element] - facing_to + there.way) * back).real
         step = np.minimum(np.maximum(off / np.where(ahead == 0.0, 1.0, ahead), -1.0), 1.0)
         moved = np.minimum(np.maximum(zeta - step, 0.0), first.n)
         done = np.abs(moved - zeta).max() < 1e-8
@@ -353,6 +368,22 @@ def _samples(first: NeutralLine, rays: Borders, elements: NDArray[np.int64], rea
         if done:
             break
     return np.unique(np.concatenate([even, zeta]))
+
+
+def stepped(elements: NDArray[np.int64], knots: tuple[float, ...]) -> tuple[Array, NDArray[np.bool_]]:
+    """Equal steps within ``elements`` (k,) that are in order, and ``knots`` in them; whether each is followed at once.
+
+    Returns:
+        Places (m,), and whether nothing is left out between each and the next (m−1,).
+    """
+    steps = np.arange(SAMPLES_PER_ELEMENT) / SAMPLES_PER_ELEMENT
+    zeta = (elements[:, None] + steps).ravel()
+    ends = elements[np.append(np.diff(elements) > 1, True)] + 1.0
+    inner = [knot for knot in knots if knot != int(knot) and int(knot) in elements]
+    if ends.size == 1 and not inner:
+        return np.append(zeta, ends), np.ones(zeta.size, dtype=bool)
+    zeta = np.union1d(zeta, np.concatenate([ends, inner]))
+    return zeta, ~np.isin(zeta[:-1], ends) | np.isin(zeta[:-1], elements)
 
 
 def none(least: float) -> Zones:
@@ -367,31 +398,41 @@ def _roots(
     zeta_m: Array,
     left: NDArray[np.int64],
     share: Array,
+    floor: float = 0.0,
 ) -> tuple[Array, Array]:
     """Roots between the places ``left`` and the next, where ``values`` change their sign; with their ζ_m.
 
-    ``share`` of the way from one to the next is where to begin.
+    ``share`` of the way from one to the next is where to begin.  Where a value times what is left of the way is no
+    more than the ``floor``, what it is the slope of does not change any more, and any place will do: beams that lie on
+    something have slopes that are nothing but round-off, and no root to be found.
     """
-    low, high = zeta[left].copy(), zeta[left + 1].copy()
+    low, high = zeta[left], zeta[left + 1]
     x = low + share * (high - low)
     guess = zeta_m[left] + share * (zeta_m[left + 1] - zeta_m[left])
     rising = np.sign(values[left + 1])
     pace = (zeta_m[left + 1] - zeta_m[left]) / np.where(high > low, high - low, 1.0)
+    places, closest_there = x.copy(), guess.copy()
+    sought = np.arange(x.size)
     for _ in range(_ITERATIONS):
         f, df, guess = function(x, guess)
         below = f * rising < 0.0
         low, high = np.where(below, x, low), np.where(below, high, x)
-        safe = np.where(df == 0.0, 1.0, df)
-        newton = x - f / safe
+        flat = df == 0.0
+        newton = x - f / np.where(flat, 1.0, df)
         # A step that rounding takes out of the bracket has arrived; halving would begin again from afar.
-        good = (newton > low - _ARRIVED) & (newton < high + _ARRIVED) & (df != 0.0)
-        moved = np.where(f == 0.0, x, np.where(good, np.clip(newton, low, high), 0.5 * (low + high)))
-        step, x = moved - x, moved
-        done = np.abs(step).max() < _ARRIVED  # as in a projection, the last step's error is of second order
-        guess = guess + pace * step
-        if done:
+        good = (newton > low - _ARRIVED) & (newton < high + _ARRIVED) & ~flat
+        moved = np.where(good, np.minimum(np.maximum(newton, low), high), 0.5 * (low + high))
+        nothing = np.abs(f) * (high - low) <= floor
+        step = np.where(nothing, 0.0, moved - x)
+        x, guess = x + step, guess + pace * step
+        going = np.abs(step) >= _ARRIVED  # as in a projection, the last step's error is of second order
+        places[sought], closest_there[sought] = x, guess
+        if not going.any():
             break
-    return x, guess
+        if not going.all():
+            sought = sought[going]
+            low, high, x, guess, rising, pace = (one[going] for one in (low, high, x, guess, rising, pace))
+    return places, closest_there
 
 
 def _turning(zeta: Array, slope: Array, curvature: Array, left: NDArray[np.int64]) -> Array:
