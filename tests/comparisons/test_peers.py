@@ -23,9 +23,9 @@ from comparisons.peers.solving import LATE, Solved
 from cprbm.closure import closure_rows, closure_values
 from cprbm.contact import NO_ROWS
 from cprbm.energy import load_work, strain_energy, strain_gradient
-from cprbm.equilibrium import contact_gradient, point_at
 from cprbm.kinematics import State, positions
 from cprbm.mechanism import mechanism_of
+from cprbm.point import contact_gradient, point_at
 from scene import SceneError
 
 OFFERED = ("hinge", "gripper", "gripper-driven", "wrapped", "platform", "tapered")
