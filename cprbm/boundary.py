@@ -132,8 +132,9 @@ class FittedBoundary:
         q_B = inverse @ V
         q = q_B @ B
         q1 = D @ q
-        g, g1 = q @ at_joints, q1 @ at_joints
-        rest, P1 = q @ V - B, q1 @ V
+        curve = np.array((q, q1, D @ q1)) @ basis
+        (P, P1, P2), (g, g1, g2) = curve[:, :n], curve[:, n:]
+        rest = P - B
 
         # dq over A and B, and with it the slopes of c over (a, o, A, B)
         V1 = D.T @ V
@@ -164,12 +165,12 @@ class FittedBoundary:
             k = len(pressing)
             w, phi = self.sense * multipliers[pressing], at_joints[:, pressing]
             mu = -inverse @ (phi @ w)
-            q2, mu1 = D @ q1, D @ mu
-            U, U1, U2, P2 = mu @ V, mu1 @ V, (D @ mu1) @ V, q2 @ V
+            mu1 = D @ mu
+            U, U1, U2 = np.array((mu, mu1, D @ mu1)) @ V
             # over (a, A, B)
             second, C, K = np.zeros((k + 2 * n, k + 2 * n)), np.zeros((k + 2 * n, size)), np.zeros((size, k + 2 * n))
             i, j = np.arange(k), np.arange(k, k + n)
-            second[i, i] = w * (q2 @ phi)
+            second[i, i] = w * g2[pressing]
             second[j, j] = U2 * rest + 2.0 * U1 * P1 + U * P2
             second[j, j + n] = second[j + n, j] = -U1
             C[:k], C[k : k + n] = (w * (D.T @ phi)).T, (U1 * V + U * V1).T

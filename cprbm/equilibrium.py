@@ -48,11 +48,11 @@ class Equilibrium:
 def measure(problem: Problem, point: Point) -> Measure:
     """Residuals of the optimality conditions over the largest terms in them; over S where there is no load."""
     model = problem.model
-    terms = np.abs(point.gradient) + np.abs(point.held) + np.abs(point.pressed)
-    moments = np.abs(spring_moments(model, point.state))
+    parts = np.array((point.gradient, point.held, point.pressed))
+    terms, moments = np.abs(parts).sum(axis=0), np.abs(spring_moments(model, point.state))
     scale = max(float(terms.max(initial=0.0)), float(moments.max(initial=0.0)))
     scale = scale if scale > NOTHING else 1.0
-    residual = problem.moves * (point.gradient + point.held + point.pressed)
+    residual = problem.moves * parts.sum(axis=0)
     # an angle is known to eps·|θ|, a spring's moment to the stiffness times that
     turned = max(1.0, float(np.abs(point.state.theta).max()))
     floor = 4.0 * EPS * float(model.couplings.max()) * turned + 4.0 * EPS * sqrt(model.n_links) * scale

@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 from fea_reference.assembly import assemble_ends
 from fea_reference.certificates import certify
@@ -18,6 +18,8 @@ from fea_reference.settings import Settings
 from fea_reference.travel import Course, reach
 from scene.answer import Answer, Ending, Event, StationAnswer
 from scene.statement import Scene, Stage
+
+_LIBRARIES = ThreadpoolController()  # looks for those that are loaded, once: that takes a millisecond
 
 _DEFAULT = Settings()
 
@@ -46,7 +48,7 @@ class Prepared:
         events: list[Event] = []
         ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
         # small blocks: more than one thread of BLAS costs more than it brings
-        with threadpool_limits(limits=1, user_api="blas"):
+        with _LIBRARIES.limit(limits=1, user_api="blas"):
             try:
                 known: set[str] = set()
                 assemble_ends(scene, march)
