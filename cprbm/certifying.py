@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from cprbm.boundary import FittedBoundary
+from cprbm.energy import turns
 from cprbm.equilibrium import Equilibrium
 from cprbm.forces import balances
 from cprbm.mechanism import Mechanism
 from cprbm.model import Model
+from cprbm.overlap import overlap
 from cprbm.point import Point
 from cprbm.settings import Settings
 from cprbm.stability import smallest_curvature
@@ -29,75 +31,45 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
     """The certificate of a state, and COMPLETED or the Ending that its first failure means."""
     problem, point, measure = mechanism.problem, found.point, found.measure
     failures: list[tuple[Ending, str]] = []
-
-    def ask(holds: bool, ending: Ending, sentence: str) -> None:  # noqa: FBT001 - it reads as a sentence
-        if not holds:
-            failures.append((ending, sentence))
-
     asked = max(settings.tolerance, measure.floor)
-    ask(
-        found.converged and measure.residual <= asked,
-        Ending.NOT_CERTIFIED,
-        f"the residual is {measure.residual:.1e}, asked {asked:.1e}",
-    )
+    if not (found.converged and measure.residual <= asked):
+        failures.append((Ending.NOT_CERTIFIED, f"the residual is {measure.residual:.1e}, asked {asked:.1e}"))
     violation_asked = max(settings.tolerance, 1e-13)
-    ask(
-        measure.violation <= violation_asked,
-        Ending.NOT_CERTIFIED,
-        f"the closures are open by {measure.violation:.1e} of the longest beam, asked {violation_asked:.1e}",
-    )
-    ask(
-        measure.complementarity <= COMPLEMENTARITY,
-        Ending.NOT_CERTIFIED,
-        f"a contact presses across a gap: gap times force is {measure.complementarity:.1e}",
-    )
-    bend = float(np.max(np.abs(np.diff(point.state.theta) - problem.model.rest_turns) * (problem.model.couplings > 0)))
-    ask(
-        bend <= LARGEST_BEND,
-        Ending.TURNED_TOO_FAR,
-        f"one element turns by {bend:.2f} rad, more than {LARGEST_BEND:.1f}: use more links",
-    )
+    if not measure.violation <= violation_asked:
+        said = f"the closures are open by {measure.violation:.1e} of the longest beam, asked {violation_asked:.1e}"
+        failures.append((Ending.NOT_CERTIFIED, said))
+    if not measure.complementarity <= COMPLEMENTARITY:
+        said = f"a contact presses across a gap: gap times force is {measure.complementarity:.1e}"
+        failures.append((Ending.NOT_CERTIFIED, said))
+    bend = float(np.abs(turns(problem.model, point.state) * (problem.model.couplings > 0.0)).max())
+    if not bend <= LARGEST_BEND:
+        said = f"one element turns by {bend:.2f} rad, more than {LARGEST_BEND:.1f}: use more links"
+        failures.append((Ending.TURNED_TOO_FAR, said))
+    near = mechanism.near(point.state, point.at)
     penetration = penetration_of(mechanism, found)
     limit = OVERLAP_PAPER if mechanism.boundaries else OVERLAP_AUTO
-    ask(
-        penetration <= limit,
-        Ending.BEAMS_CROSSED,
-        f"the beams of a contact overlap by {penetration:.1e} of the mean thickness, allowed {limit:.0e}",
-    )
+    if not penetration <= limit:
+        said = f"the beams of a contact overlap by {penetration:.1e} of the mean thickness, allowed {limit:.0e}"
+        failures.append((Ending.BEAMS_CROSSED, said))
     for name, pair in mechanism.alone.items():
-        ask(
-            not pair.crosses(point.state, point.at),
-            Ending.BEAMS_CROSSED,
-            f"in contact '{name}' the beam passes through itself",
-        )
-    for name in mechanism.near(point.state, point.at) if mechanism.boundaries else []:
+        if pair.crosses(point.state, point.at):
+            failures.append((Ending.BEAMS_CROSSED, f"in contact '{name}' the beam passes through itself"))
+    for name in near if mechanism.boundaries else []:
         boundary = mechanism.boundaries[name]
-        if not isinstance(boundary, FittedBoundary):
-            continue  # what is rigid ends where it does
-        beyond = _pressed_beyond(boundary, point)
-        ask(
-            beyond.max() <= BEYOND * max(chain.h for chain in problem.model.chains),
-            Ending.LEFT_BOUNDARY,
-            _left(problem.model, boundary, point, beyond),
-        )
+        if isinstance(boundary, FittedBoundary):  # what is rigid ends where it does
+            beyond = _pressed_beyond(boundary, point)
+            if not beyond.max() <= BEYOND * max(chain.h for chain in problem.model.chains):
+                failures.append((Ending.LEFT_BOUNDARY, _left(problem.model, boundary, point, beyond)))
     force_balance, moment_balance = balances(problem, point)
     balance_asked = max(BALANCE, 100.0 * measure.floor)
-    ask(
-        force_balance <= balance_asked,
-        Ending.NOT_CERTIFIED,
-        f"ΣF is {force_balance:.1e} of the largest force",
-    )
-    ask(
-        moment_balance <= balance_asked,
-        Ending.NOT_CERTIFIED,
-        f"ΣM is {moment_balance:.1e} of the largest moment",
-    )
+    if not force_balance <= balance_asked:
+        failures.append((Ending.NOT_CERTIFIED, f"ΣF is {force_balance:.1e} of the largest force"))
+    if not moment_balance <= balance_asked:
+        failures.append((Ending.NOT_CERTIFIED, f"ΣM is {moment_balance:.1e} of the largest moment"))
     curvature = smallest_curvature(problem, point) if found.converged else float("nan")
-    ask(
-        not found.converged or curvature > 0.0,
-        Ending.NOT_A_MINIMUM,
-        f"the energy's smallest curvature on the feasible directions is {curvature:.3g} EI/ℓ²",
-    )
+    if found.converged and not curvature > 0.0:
+        said = f"the energy's smallest curvature on the feasible directions is {curvature:.3g} EI/ℓ²"
+        failures.append((Ending.NOT_A_MINIMUM, said))
     certificate = Certificate(
         residual=measure.residual,
         residual_floor=measure.floor,
@@ -115,7 +87,12 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
 
 def _pressed_beyond(boundary: FittedBoundary, point: Point) -> Array:
     """How far each joint of a boundary that presses is beyond the range of the fit, (m,); −inf where it does not."""
-    pressing = np.array([lam > 0.0 for lam, c in zip(point.lam, point.rows.contact, strict=True) if c == boundary.name])
+    pressing = np.zeros(len(boundary.joints), dtype=bool)
+    for group, lam in point.rows.shares(point.lam):
+        if group.contact == boundary.name:
+            pressing = lam > 0.0
+    if not pressing.any():
+        return np.full(len(pressing), -np.inf)
     return np.where(pressing, boundary.range_left(point.state, point.at), -np.inf)
 
 
@@ -141,5 +118,5 @@ def penetration_of(mechanism: Mechanism, found: Equilibrium) -> float:
     state, at = found.point.state, found.point.at
     for name in mechanism.near(state, at):
         pair = mechanism.seen(name, found.point.rows)
-        deepest = max(deepest, -pair.least_gap(state, at) / pair.thickness)
+        deepest = max(deepest, overlap(pair, state, at) / pair.thickness)
     return deepest

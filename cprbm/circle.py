@@ -147,7 +147,7 @@ class Circle:
         q_z = np.einsum("mi,mik->mk", across, C_z)
         second += q_z[:, :, None] * q_z[:, None, :] / rho[:, None, None]
         D_sz = np.einsum("mi,mik->mk", n, C_sz) + (q_s / rho)[:, None] * q_z
-        D_ss = self._convexity(A) + self._leading(A) * beyond.bend
+        D_ss = self.convexity(A) + self._leading(A) * beyond.bend
         moving = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
         second -= moving[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
 
@@ -212,7 +212,7 @@ class Circle:
         _, n = self._away(A)
         return np.asarray(A.speed * (n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi)) - self.widening(A.s))
 
-    def _convexity(self, A: smooth.Points) -> Array:
+    def convexity(self, A: smooth.Points) -> Array:
         """D_ss."""
         rho, n = self._away(A)
         cos, sin = np.cos(A.psi), np.sin(A.psi)
@@ -239,7 +239,7 @@ class Circle:
         # the two joints beside a clamp on the circle press together, a place of its own among them would part them
         first, last = (4 if clamped else -1 for clamped in self.clamped)
         lowest = lowest[self.own_places & (lowest > first) & (lowest < 2 * (self.a.n + 1) - last)]
-        found = wells.wells(self.a, D, self._convexity(A)[::2], lowest, LEAST_CURVATURE, self.kinks.places)
+        found = wells.wells(self.a, D, self.convexity(A)[::2], lowest, LEAST_CURVATURE, self.kinks.places)
         places, distance, settled = self._refined(line, D, found.samples)
         places = places[settled & found.held(distance - self.offset)]
         for place in places:
@@ -258,7 +258,7 @@ class Circle:
         for _ in range(CLOSEST_ITERATIONS):
             A, beyond = line.at(s), missed(self.a, self.kinks, s)
             leading = self._leading(A)
-            D_ss = self._convexity(A) + leading * beyond.bend
+            D_ss = self.convexity(A) + leading * beyond.bend
             step = -(self.slope(A) + leading * beyond.angle) / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
             s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
             if np.max(np.abs(step)) < CLOSE:

@@ -80,20 +80,20 @@ def end_moments(scene: Scene, model: Model) -> dict[str, EndMoment]:
 
 def spring_moments(model: Model, state: State) -> Array:
     """m_i of every spring in the shared numbering (n_links−1,), zero between beams."""
-    return model.couplings * _turns(model, state)
+    return model.couplings * turns(model, state)
 
 
-def _turns(model: Model, state: State) -> Array:
+def turns(model: Model, state: State) -> Array:
     """δ_i (n_links−1,)."""
-    turns = state.theta[1:] - state.theta[:-1]
-    turns -= model.rest_turns
-    return turns
+    delta = state.theta[1:] - state.theta[:-1]
+    delta -= model.rest_turns
+    return delta
 
 
 def strain_energy(model: Model, state: State) -> float:
     """Σ ½ k_i δ_i²."""
-    turns = _turns(model, state)
-    return float(0.5 * (model.couplings @ (turns * turns)))
+    delta = turns(model, state)
+    return float(0.5 * (model.couplings @ (delta * delta)))
 
 
 def strain_gradient(model: Model, state: State) -> Array:

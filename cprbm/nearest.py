@@ -259,8 +259,8 @@ class Pair:
             known[what] = D, self.wider(s, sigma) + np.zeros_like(D), E, self.wider(feet, ends) + np.zeros_like(E)
         D, wider, E, wider_at_ends = known[what]
         return (
-            _not_gone_round(self, lines, D, wider, gone),
-            _not_gone_round(self.exchanged(), lines[::-1], E, wider_at_ends, gone),
+            not_gone_round(self, lines, D, wider, gone),
+            not_gone_round(self.exchanged(), lines[::-1], E, wider_at_ends, gone),
         )
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
@@ -465,12 +465,14 @@ def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Fl
     if len(s) <= FEW:
         nearest = ((A.x[:, None] - G.x) ** 2 + (A.y[:, None] - G.y) ** 2).argmin(axis=1)
     else:
-        _, nearest = _nearest_samples(G, A, np.inf)
+        _, nearest = nearest_samples(np.stack((G.x, G.y), axis=1), A, np.inf)
     return feet_near(pair, lines, A, G.s[nearest])
 
 
-def feet_near(pair: Pair, lines: Lines, A: smooth.Points, sigma: Array) -> tuple[Array, Array, Flags]:
-    """D, σ and whether there is a foot, by Newton's method on (i) from the guess ``sigma``."""
+def feet_near(
+    pair: Pair, lines: Lines, A: smooth.Points, sigma: Array, close: float = CLOSE
+) -> tuple[Array, Array, Flags]:
+    """D, σ and whether there is a foot, by Newton's method on (i) from the guess ``sigma`` to steps as ``close``."""
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
     for _ in range(FOOT_ITERATIONS if not ridges.size else CORNER_ITERATIONS):
         B = pair.foot(lines, A, sigma)
@@ -482,7 +484,7 @@ def feet_near(pair: Pair, lines: Lines, A: smooth.Points, sigma: Array) -> tuple
         sigma = np.minimum(np.maximum(before + np.minimum(np.maximum(step, -pair.b.h), pair.b.h), 0.0), pair.b.s[-1])
         if ridges.size:
             sigma = _up_to(ridges, before, sigma)
-        if np.abs(sigma - before).max() < CLOSE:
+        if np.abs(sigma - before).max() < close:
             break
     foot = np.abs(along) <= PARALLEL * np.maximum(np.abs(across), pair.b.h)
     return pair.side * across - pair.wider(A.s, sigma), sigma, foot
@@ -569,7 +571,7 @@ def _facing_ends(pair: Pair, lines: Lines) -> Places:
     if not near.size:
         return Places(np.zeros(0), np.zeros(0), near)
     E, foot, facing = distance_along(pair.exchanged(), lines[::-1], ends[near])
-    E = _not_gone_round(pair.exchanged(), lines[::-1], E, pair.wider(foot, ends[near]))
+    E = not_gone_round(pair.exchanged(), lines[::-1], E, pair.wider(foot, ends[near]))
     facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
     for i, end in enumerate(near):
         facing[i] &= not held_together(b, a, int(-end), float(foot[i]))
@@ -608,11 +610,11 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     return D, sigma
 
 
-def _nearest_samples(G: smooth.Points, A: smooth.Points, within: float) -> tuple[Array, Ints]:
-    """Distance from each place of A to the nearest of G, infinite beyond ``within``, and its number."""
+def nearest_samples(G: Array, A: smooth.Points, within: float) -> tuple[Array, Ints]:
+    """Distance from each place of A to the nearest of ``G`` (m, 2), infinite beyond ``within``, and its number."""
     from scipy.spatial import cKDTree  # loaded where beams may touch each other
 
-    distance, number = cKDTree(np.stack((G.x, G.y), axis=1)).query(
+    distance, number = cKDTree(G).query(
         np.stack((A.x, A.y), axis=1), distance_upper_bound=within
     )
     return np.asarray(distance), np.asarray(number)
@@ -621,16 +623,16 @@ def _nearest_samples(G: smooth.Points, A: smooth.Points, within: float) -> tuple
 def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     A, G = lines[0].sampled, lines[1].sampled
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
-    rough, nearest = _nearest_samples(G, A, pair.offset + reach(pair.a, pair.b))
+    rough, nearest = nearest_samples(np.stack((G.x, G.y), axis=1), A, pair.offset + reach(pair.a, pair.b))
     close = np.flatnonzero(np.isfinite(rough))
     D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
     if close.size:
         distance, sigma[close], foot = feet_near(pair, lines, pair.samples_on_a(lines, close), G.s[nearest[close]])
         D[close] = np.where(foot, distance, np.inf)
-    return _not_gone_round(pair, lines, D, pair.wider(A.s, sigma)), sigma
+    return not_gone_round(pair, lines, D, pair.wider(A.s, sigma)), sigma
 
 
-def _not_gone_round(pair: Pair, lines: Lines, D: Array, wider: Array | float, gone: float = np.inf) -> Array:
+def not_gone_round(pair: Pair, lines: Lines, D: Array, wider: Array | float, gone: float = np.inf) -> Array:
     """D, but ``gone`` where A lies beyond B and has not come there through it, but round an end."""
     beyond = D + 2.0 * wider + pair.offset + STRAIGHT * (pair.a.h + pair.b.h) < 0.0
     if not np.any(beyond):

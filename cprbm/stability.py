@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 from scipy.linalg import eigh_tridiagonal, lapack
@@ -21,9 +22,9 @@ from scene.answer import Array
 
 DENSE = 120  # unknowns up to which all curvatures are computed at once
 LANCZOS = 40  # steps
-BLOCK = 3  # vectors at once where the ones that are wanted are the highest
-BLOCKS = 10
-KNOWN = 1e-5  # of the eigenvalue: what is left of the equation that its vector solves
+BLOCK = 5  # vectors at once where the ones that are wanted are the highest
+BLOCKS = 8
+KNOWN = 1e-4  # of the eigenvalue: what is left of the equation that its vector solves; its own error goes with the square
 SMALL = 1e-9  # of the largest compliance: negative ones below it are round-off
 
 
@@ -67,18 +68,24 @@ def released(point: Point, rows: frozenset[tuple[str, int]]) -> Point:
 
 
 def _bordered_inverse(problem: Problem, point: Point, root: Array) -> Callable[[Array], Array]:
-    """√M K⁻¹ √M on columns over θ."""
+    """√M K⁻¹ √M on columns over θ.
+
+    With P the anchors' places in the border, V = P − Q⁻¹B and I₀ the identity but for the anchors,
+    K⁻¹ = I₀ Q⁻¹ I₀ + V S⁻¹ Vᵀ: nothing stands in the anchors' rows of Q⁻¹B.
+    """
     found = own_system(problem, point)
     kept = found.kept
-    place = slice(found.n_bodies, found.n_bodies + len(found.anchors))
+    V = -kept.solved
+    V[found.anchors, found.n_bodies + np.arange(len(found.anchors))] = 1.0
+    V *= root[:, None]
+    free = root[:, None].copy()
+    free[found.anchors] = 0.0
 
     def inverse(x: Array) -> Array:
-        columns = root[:, None] * x
-        right = np.zeros((kept.corner.shape[0], columns.shape[1]))
-        right[place] = columns[found.anchors]
-        a, b = kept.once(columns, right)
-        a[found.anchors] = b[place]
-        return np.asarray(root[:, None] * a)
+        through = kept.tridiagonal.solve(free * x)
+        through *= free
+        through += V @ kept.schur.solve(V.T @ x)
+        return through
 
     return inverse
 
@@ -117,30 +124,40 @@ def _extreme(inverse: Callable[[Array], Array], n: int, *, lowest: bool | None) 
 def _highest(inverse: Callable[[Array], Array], n: int) -> tuple[float, Array]:
     """The highest eigenvalue of a symmetric positive semidefinite operator on R^n, and its vector.
 
-    By Krylov spaces of a few vectors with no symmetry; the compliances of a beam fall with the square of their number
-    at least, so that a few steps settle the first.
+    By Krylov spaces of a few vectors, smooth and with no symmetry; the compliances of a beam fall with the square of
+    their number at least, so that a few steps settle the first.
     """
     columns = min(BLOCK, n)
-    vectors = np.cos(np.outer(np.arange(n), 0.7 + 0.31 * np.arange(columns))) + 1.5 / (1.0 + np.arange(columns))
-    basis, images = np.zeros((n, BLOCK * BLOCKS)), np.zeros((n, BLOCK * BLOCKS))
-    for step in range(BLOCKS):
-        so_far = columns * (step + 1)
-        if so_far > n:
-            break
-        new = basis[:, so_far - columns : so_far]
-        new[:] = _orthonormal(vectors)
-        image = inverse(new)
-        images[:, so_far - columns : so_far] = image
-        space = basis[:, :so_far]
-        values, parts = np.linalg.eigh(space.T @ images[:, :so_far])
-        found, value = space @ parts[:, -1], float(values[-1])
-        left = images[:, :so_far] @ parts[:, -1] - value * found
-        if float(left @ left) <= (KNOWN * value) ** 2:
-            return value, found
+    most = columns * min(BLOCKS, n // columns)
+    basis, images, projected = np.empty((n, most)), np.empty((n, most)), np.empty((most, most))
+    vectors = _smooth(n, columns)
+    for so_far in range(columns, most + 1, columns):
+        new, space = slice(so_far - columns, so_far), basis[:, :so_far]
+        basis[:, new] = _orthonormal(vectors)
+        image = inverse(basis[:, new])
+        images[:, new] = image
+        parts = space.T @ image
+        projected[:so_far, new] = parts
+        if so_far > columns:
+            # the upper triangle is all that is read
+            values, vectors, _ = lapack.dsyevd(projected[:so_far, :so_far])
+            value, part = float(values[-1]), vectors[:, -1]
+            found = space @ part
+            left = images[:, :so_far] @ part - value * found
+            if float(left @ left) <= (KNOWN * value) ** 2:
+                return value, found
         # twice, lest what is left of a vector that lay in the space is round-off in that space
-        vectors = image - space @ (space.T @ image)
+        vectors = image - space @ parts
         vectors -= space @ (space.T @ vectors)
     return _extreme(inverse, n, lowest=False)
+
+
+@cache
+def _smooth(n: int, columns: int) -> Array:
+    """Vectors (n, columns) with which Krylov spaces begin."""
+    found = np.cos(np.outer(np.arange(n) / n, 1.7 + 2.3 * np.arange(columns))) + 1.5 / (1.0 + np.arange(columns))
+    found.flags.writeable = False
+    return found
 
 
 def _orthonormal(vectors: Array) -> Array:
