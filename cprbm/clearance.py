@@ -32,7 +32,8 @@ import numpy as np
 from cprbm import circle, edge, nearest
 from cprbm.faces import Face, faces_of
 from cprbm.kinematics import Positions, State
-from cprbm.model import Chain, Model, anchor
+from cprbm.model import Chain, Model
+from cprbm.prepared import anchor
 from scene import BeamContact, CircleContact, Scene, SelfContact
 from scene.answer import Array, Flags, Ints
 

@@ -247,7 +247,7 @@ class March:
             fit = fitted(mechanism, point, zones, settings, eased=turn > len(self.family) + STRAIGHT)
             if settings is now and fits(mechanism, fit):
                 break
-            target = mechanism_of(self.scene, settings, fit)
+            target = mechanism_of(self.scene, settings, fit, mechanism)
             carried = carried_state(mechanism.problem.model, point.state, target.problem.model)
             solved = self._resumed(turn, target, carried, values, station)
             if solved is None:
@@ -338,7 +338,7 @@ class March:
     @cached_property
     def asked(self) -> Mechanism:
         """The scene on even elements of the mesh that was asked."""
-        return self.whole if len(self.family) == 1 else mechanism_of(self.scene, self.family[-1])
+        return self.whole if len(self.family) == 1 else mechanism_of(self.scene, self.family[-1], before=self.whole)
 
 
 def _unseen(point: Point, values: dict[str, float]) -> None:

@@ -239,13 +239,13 @@ def _boundary(scene: Scene, model: Model, pair: AnyPair, settings: Settings) -> 
     raise SceneError([Mistake(f"contacts.{pair.name}.kind", repr(kind), allowed, scene.file)])
 
 
-def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism:
-    """Make a scene ready on even elements or those of a ``fit``.
+def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN, before: Mechanism | None = None) -> Mechanism:
+    """Make a scene ready on even elements or those of a ``fit``, with what is known from a mesh ``before`` of it.
 
     Raises:
         SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
     """
-    model = build(scene, settings, fit)
+    model = build(scene, settings, fit, None if before is None else before.problem.model.prepared)
     pairs = Made(scene.contacts, lambda name: _pair(scene, model, name, fit))
     boundaries: dict[str, Boundary] = {}
     if settings.formulation == "paper":
