@@ -178,27 +178,27 @@ class Model:
     lengths: Array
     rest: Array
 
-    @cached_property
+    @property
     def free_bodies(self) -> tuple[str, ...]:
         """Names of the bodies that move, in the order of their (x, y, φ) in the unknowns."""
         return self.prepared.free_bodies
 
-    @cached_property
+    @property
     def references(self) -> Array:
         """Initial position of each free body's reference place (its first point), (B, 2), units of length."""
         return self.prepared.references
 
-    @cached_property
+    @property
     def unit_length(self) -> float:
         """ℓ, m."""
         return self.prepared.unit_length
 
-    @cached_property
+    @property
     def unit_moment(self) -> float:
         """S, N·m."""
         return self.prepared.unit_moment
 
-    @cached_property
+    @property
     def marks(self) -> Mapping[str, Attachment]:
         """Centres of circles and first places of edges on bodies that move, by contact; numbered behind all joints."""
         return self.prepared.marks

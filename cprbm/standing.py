@@ -25,7 +25,7 @@ import numpy as np
 from cprbm.curves import NeutralLine
 from cprbm.polynomial import Places
 from cprbm.section import Section
-from scene.answer import Array
+from scene.answer import Array, Ints
 
 PLACES = 65  # of a beam, even in arc length
 ITERATIONS = 8
@@ -77,31 +77,33 @@ def standing(one: Side, other: Side, unit_length: float, *, thick: bool) -> Stan
     """How two beams stand that touch by their edges, if ``thick``, or by their neutral lines; ``unit_length`` in m."""
     shares = np.arange(PLACES) / (PLACES - 1)
     A, B = (each.line.at(each.line.length * shares) for each in (one, other))
-    # from where B starts
+    # A against where B starts
     x, y = A.x + (one.line.x0 - other.line.x0), A.y + (one.line.y0 - other.line.y0)
     squares = (x[:, None] - B.x) ** 2 + (y[:, None] - B.y) ** 2
+    back_x, back_y = B.x + (other.line.x0 - one.line.x0), B.y + (other.line.y0 - one.line.y0)
     close = CLOSE * unit_length
-    side = _side(x, y, other.line, other.line.length * shares[squares.argmin(axis=1)], close)
-    back = B.x + (other.line.x0 - one.line.x0), B.y + (other.line.y0 - one.line.y0)
-    across = _side(*back, one.line, one.line.length * shares[squares.argmin(axis=0)], close)
+    side = _side(x, y, other.line, B, squares.argmin(axis=1), close)
+    across = _side(back_x, back_y, one.line, A, squares.argmin(axis=0), close)
     mine, its = _ends(one, A, unit_length, thick=thick), _ends(other, B, unit_length, thick=thick)
     return Standing(side, across, (_clamped(mine, its, side), _clamped(its, mine, across)))
 
 
-def _side(x: Array, y: Array, line: NeutralLine, sigma: Array, close: float) -> float:
-    """+1 where places ``x``, ``y`` (k,) lie on the left of B where they are closest, else −1, from guesses of feet."""
+def _side(x: Array, y: Array, line: NeutralLine, sampled: Places, nearest: Ints, close: float) -> float:
+    """+1 where places ``x``, ``y`` (k,) lie on the left of B where they are closest to it, else −1.
+
+    Of B some places are ``sampled``, of which those ``nearest`` (k,) to the others are known.
+    """
     step = line.length / (PLACES - 1)
+    sigma, B = step * nearest, sampled.only(nearest)
     for _ in range(ITERATIONS):
-        B = line.at(sigma)
-        rx, ry = x - B.x, y - B.y
-        cos, sin = B.tangent.real, B.tangent.imag
+        rx, ry, cos, sin = x - B.x, y - B.y, B.tangent.real, B.tangent.imag
         along, across = cos * rx + sin * ry, cos * ry - sin * rx
         left = along / np.maximum(1.0 - B.curvature * across, LEAST)
         left /= 1.0 + (B.curvature * left) ** 2 / 3.0
-        before = sigma
-        sigma = np.minimum(np.maximum(before + np.minimum(np.maximum(left, -step), step), 0.0), line.length)
-        if np.abs(sigma - before).max() < close:
+        ahead = np.minimum(np.maximum(sigma + np.minimum(np.maximum(left, -step), step), 0.0), line.length)
+        if np.abs(ahead - sigma).max() < close:
             break
+        sigma, B = ahead, line.at(ahead)
     size = np.abs(across)
     foot = np.abs(along) <= PARALLEL * np.maximum(size, step)
     if foot.any():
