@@ -30,7 +30,7 @@ With dτ = ½(dθ_{i−1} + dθ_i) the second derivative of L is
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -95,17 +95,6 @@ class FittedBoundary:
     def _keys(self) -> tuple[int, ...]:
         return tuple(self.joints.tolist())
 
-    @cached_property
-    def _identity(self) -> Array:
-        return np.eye(self.degree + 1)
-
-    @cached_property
-    def _derivative(self) -> Array:
-        """Coefficients of the polynomials' derivatives, column by column (degree+1, degree+1)."""
-        found = np.zeros((self.degree + 1, self.degree + 1))
-        found[:-1] = chebyshev.chebder(self._identity)
-        return found
-
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives.
 
@@ -122,11 +111,11 @@ class FittedBoundary:
             A, B, a, o = by, bx, at.y[joints], at.x[joints]
         low, high = float(np.minimum.reduce(A)), float(np.maximum.reduce(A))
         centre, width = 0.5 * (high + low), 0.5 * (high - low)
-        D = self._derivative / width
+        D = _derivative(self.degree) / width
         # the basis at points and joints, a row for each polynomial
         basis = _basis((np.concatenate((A, a)) - centre) / width, self.degree)
         V, at_joints = basis[:, :n], basis[:, n:]
-        *_, inverse, failed = lapack.dgesv(V @ V.T, self._identity)
+        *_, inverse, failed = lapack.dgesv(V @ V.T, _identity(self.degree))
         if failed:
             raise np.linalg.LinAlgError("the points of a fitted boundary are too few or in one place")
         q_B = inverse @ V
@@ -233,6 +222,19 @@ class FittedBoundary:
         return (bx, by) if self.along_x else (by, bx)
 
 
+@cache
+def _identity(degree: int) -> Array:
+    return np.eye(degree + 1)
+
+
+@cache
+def _derivative(degree: int) -> Array:
+    """Coefficients of the polynomials' derivatives, column by column (degree+1, degree+1)."""
+    found = np.zeros((degree + 1, degree + 1))
+    found[:-1] = chebyshev.chebder(_identity(degree))
+    return found
+
+
 def _basis(at: Array, degree: int) -> Array:
     """Chebyshev polynomials up to ``degree`` ≥ 1 at some places (k,), (degree+1, k)."""
     values = np.empty((degree + 1, len(at)))
@@ -273,15 +275,12 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
     boundary, constrained = model.chain(hints.boundary), model.chain(other)
     points = related_joints(scene, model, name, boundary, FEWEST_POINTS)
     joints = related_joints(scene, model, name, constrained, FEWEST_POINTS)
-    line = boundary.line
-    x_p, y_p = line.position(boundary.s[points] * model.unit_length)
-    x_j, y_j = constrained.line.position(constrained.s[joints] * model.unit_length)
-    angle = line.angle(boundary.s[points] * model.unit_length)
-    nearest = np.unravel_index(
-        np.argmin((x_j[:, None] - x_p) ** 2 + (y_j[:, None] - y_p) ** 2), (len(joints), len(points))
-    )
-    gap = (x_j[nearest[0]] - x_p[nearest[1]], y_j[nearest[0]] - y_p[nearest[1]])
-    tangent = (np.cos(angle[nearest[1]]), np.sin(angle[nearest[1]]))
+    here = boundary.line.at(boundary.s[points] * model.unit_length)
+    there = constrained.line.at(constrained.s[joints] * model.unit_length)
+    dx = there.x[:, None] - here.x + (constrained.line.x0 - boundary.line.x0)
+    dy = there.y[:, None] - here.y + (constrained.line.y0 - boundary.line.y0)
+    nearest = divmod(int((dx * dx + dy * dy).argmin()), len(points))
+    gap, tangent = (float(dx[nearest]), float(dy[nearest])), complex(here.tangent[nearest[1]])
     along_x = hints.axis == "y"
     half = 0.5 * (boundary.thickness + constrained.thickness) if contact.thick else 0.0
     first = model.chain(contact.between[0])
@@ -290,7 +289,7 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
         degree=min(degree, len(points) - 1),
         along_x=along_x,
         sense=1.0 if gap[1 if along_x else 0] > 0.0 else -1.0,
-        side=1.0 if tangent[0] * gap[1] - tangent[1] * gap[0] > 0.0 else -1.0,
+        side=1.0 if tangent.real * gap[1] - tangent.imag * gap[0] > 0.0 else -1.0,
         offset=half,
         joints=constrained.first_joint + joints,
         points=boundary.first_joint + points,

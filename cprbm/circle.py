@@ -35,7 +35,7 @@ import numpy as np
 
 from cprbm import smooth, wells
 from cprbm.contact import Blocks, Group
-from cprbm.kinematics import Positions, State, positions, rest_state
+from cprbm.kinematics import Positions, State
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
 from cprbm.pairs import Pressed
@@ -107,9 +107,9 @@ class Circle:
 
     def distance(self, points: smooth.Points) -> Array:
         """D at some points of the beam."""
-        return np.hypot(points.x - self.x, points.y - self.y) - self.radius - (self._half(points.s) - self.offset)
+        return np.hypot(points.x - self.x, points.y - self.y) - self.radius - (self.half(points.s) - self.offset)
 
-    def _half(self, s: Array) -> Array:
+    def half(self, s: Array) -> Array:
         """T at arc lengths ``s``."""
         return 0.5 * self.a.section.thickness_at(s) if self.offset > 0.0 else np.zeros_like(s)
 
@@ -288,7 +288,7 @@ class Circle:
         outward = (A.y - here.y) * np.cos(A.psi) - (A.x - here.x) * np.sin(A.psi)
         # where its edge lies along the circle, the beam leans against it by the angle whose sine is T_s
         level = np.sqrt(1.0 - self.widening(s) ** 2)
-        return np.asarray(np.sign(outward) * A.bend + level / (self.radius + self._half(s)))
+        return np.asarray(np.sign(outward) * A.bend + level / (self.radius + self.half(s)))
 
     @property
     def thickness(self) -> float:
@@ -339,27 +339,35 @@ def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:
     body = model.marks[name].body if name in model.marks else -1
     mark = model.mark_of(name)
     circle = Circle(
-        name, chain, body, mark, contact.center[0] / unit, contact.center[1] / unit, contact.radius / unit, offset, unit
-    )
-    return replace(
-        circle,
-        clamped=_clamped(model, circle),
+        name=name,
+        a=chain,
+        body=body,
+        mark=mark,
+        x=contact.center[0] / unit,
+        y=contact.center[1] / unit,
+        radius=contact.radius / unit,
+        offset=offset,
+        unit_length=unit,
         ends=_places_of_rows(chain, chain.s[-1] * fit.ends.get(name, np.zeros(0)), corners=contact.thick),
         kinks=fit.kinks.get(name, (NO_KINKS,))[0],
     )
-
-
-def _clamped(model: Model, circle: Circle) -> tuple[bool, bool]:
-    """Which ends of the beam are clamped on the circle's own body, in touch with it and tangent to it."""
-    chain = circle.a
-    start, end = (held is not None and held.body == circle.body and held.welded for held in (chain.start, chain.end))
+    start, end = (held is not None and held.body == body and held.welded for held in (chain.start, chain.end))
     if not (start or end):
-        return False, False
-    state = rest_state(model)
-    ends = circle.line(state, positions(model, state)).at(chain.s[[0, -1]])
-    towards = np.hypot(ends.x - circle.x, ends.y - circle.y) * circle.slope(ends)
-    on_it = (np.abs(circle.distance(ends) - circle.offset) <= ON_IT) & (np.abs(towards) <= ON_IT)
-    return start and bool(on_it[0]), end and bool(on_it[1])
+        return circle
+    touch = _in_touch(circle)
+    return replace(circle, clamped=(start and touch[0], end and touch[1]))
+
+
+def _in_touch(circle: Circle) -> tuple[bool, bool]:
+    """Whether the beam's start and end touch the circle at rest and lie along it."""
+    s, line = circle.a.s[[0, -1]], circle.a.line
+    here = line.at(s * circle.unit_length)
+    x, y = (line.x0 + here.x) / circle.unit_length - circle.x, (line.y0 + here.y) / circle.unit_length - circle.y
+    away = np.hypot(x, y)
+    towards = x * here.tangent.real + y * here.tangent.imag - away * circle.widening(s)
+    gap = away - circle.radius - circle.half(s)
+    start, end = (np.abs(gap) <= ON_IT) & (np.abs(towards) <= ON_IT)
+    return bool(start), bool(end)
 
 
 def _places_of_rows(chain: Chain, ends: Array, *, corners: bool) -> tuple[float, ...]:

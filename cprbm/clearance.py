@@ -32,11 +32,13 @@ import numpy as np
 from cprbm import circle, edge, nearest
 from cprbm.faces import Face, faces_of
 from cprbm.kinematics import Positions, State
-from cprbm.model import Chain, Model, anchor
+from cprbm.model import Chain, Model
+from cprbm.prepared import anchor
 from scene import BeamContact, CircleContact, Scene, SelfContact
 from scene.answer import Array, Flags, Ints
 
 DISCS = 8  # of a beam
+SHARES = np.arange(DISCS + 1) / DISCS  # of its length, at which their stretches end
 KNOWN = -1  # where positions keep clearances; no beam's first link has that number
 
 
@@ -268,7 +270,7 @@ def clearances_of(scene: Scene, model: Model) -> Clearances:
 
 def _discs(chain: Chain) -> tuple[Ints, Array]:
     """Joints (DISCS,) in the middle of as many stretches of a beam, and how wide their discs are."""
-    ends = np.linspace(0.0, chain.s[-1], DISCS + 1)
+    ends = chain.s[-1] * SHARES
     middle = np.abs(chain.s - 0.5 * (ends[1:] + ends[:-1])[:, None]).argmin(axis=1)
     s = chain.s[middle]
     # the smooth line is a little longer than its chords, and elsewhere by less than an element

@@ -94,7 +94,7 @@ class Closings:
             fit = fitted(mechanism, point, all_zones(mechanism, point), self.settings)
             if fits(mechanism, fit):
                 break
-            target = mechanism_of(self.scene, self.settings, fit)
+            target = mechanism_of(self.scene, self.settings, fit, mechanism)
             start = carried_over(mechanism, point, target, gap.at(closing))
             gap = self._gap(target, gap.contact, closing, start)
             again = gap.root_near(closing, way)

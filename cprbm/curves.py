@@ -18,7 +18,7 @@ from typing import assert_never
 
 import numpy as np
 
-from cprbm.polynomial import PolynomialLine, polynomial_line
+from cprbm.polynomial import Places, PolynomialLine, polynomial_line
 from cprbm.spline import SplineLine, spline_line
 from scene import Arc, Line, Polynomial, Spline
 from scene.answer import Array
@@ -47,16 +47,27 @@ class EvenLine:
         return self.theta0 + self.curvature * s
 
     def position(self, s: Array) -> tuple[Array, Array]:
-        """Position x(s), y(s), m: s·sinc of half the turning, along the chord's direction."""
+        """Position x(s), y(s), m."""
+        here = self.at(s)
+        return self.x0 + here.x, self.y0 + here.y
+
+    def at(self, s: Array) -> Places:
+        """Places at arc lengths ``s`` (k,), m: chords from the start, of half the turning's direction."""
         half = 0.5 * self.curvature * s
-        chord = s * np.sinc(half / np.pi)
-        return self.x0 + chord * np.cos(self.theta0 + half), self.y0 + chord * np.sin(self.theta0 + half)
+        middle = np.exp(1j * (self.theta0 + half))
+        chord = self._chord(s, half)
+        tangent = np.exp(1j * (self.theta0 + 2.0 * half))
+        return Places(chord * middle.real, chord * middle.imag, tangent, np.full(s.shape, self.curvature))
 
     def chords(self, s: Array) -> tuple[Array, Array]:
         """Lengths, m, and directions, rad, of the chords between places ``s`` (n,): two arrays (n−1,)."""
-        x, y = self.position(s)
         # a chord of constant curvature has its middle's direction
-        return np.hypot(np.diff(x), np.diff(y)), self.angle(0.5 * (s[1:] + s[:-1]))
+        sizes = s[1:] - s[:-1]
+        return self._chord(sizes, 0.5 * self.curvature * sizes), self.angle(0.5 * (s[1:] + s[:-1]))
+
+    def _chord(self, s: Array, half: Array) -> Array:
+        """Length of the chord of an arc ``s`` (k,), m, that turns by twice the ``half``: s·sin(half)/half."""
+        return s if self.curvature == 0.0 else np.asarray((2.0 / self.curvature) * np.sin(half))
 
 
 NeutralLine = EvenLine | PolynomialLine | SplineLine

@@ -24,9 +24,10 @@ from frozendict import frozendict
 from cprbm.boundary import FittedBoundary
 from cprbm.energy import DeadLoad
 from cprbm.mechanism import Mechanism, mechanism_of
-from cprbm.model import Attachment, Chain, Model, attached
+from cprbm.model import Chain, Model, attached
 from cprbm.rigid import RigidCircle
 from cprbm.settings import Settings
+from cprbm.standing import Attachment
 from scene import Mistake, Scene, SceneError
 from scene.answer import Array, Ints
 

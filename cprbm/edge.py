@@ -42,10 +42,11 @@ from cprbm.corner import Corner, corners_of
 from cprbm.faces import Face, Seen, faces_of
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed
-from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model, anchor
+from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
 from cprbm.own_pins import ON_IT as PIN_ON_IT
 from cprbm.own_pins import own_pins
 from cprbm.pairs import Pressed
+from cprbm.prepared import anchor
 from cprbm.stops import AngleStop
 from scene import EdgeContact, Scene
 from scene.answer import Array, Flags
@@ -534,7 +535,12 @@ def edge_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Edge:
         ends=tuple((chain.s[-1] * fit.ends.get(name, np.zeros(0))).tolist()),
         kinks=fit.kinks.get(name, (NO_KINKS,))[0],
     )
-    return replace(edge, clamped=_clamped(model, edge, (held[0] and welded[0], held[1] and welded[1])))
+    start, end = held[0] and welded[0], held[1] and welded[1]
+    if not (start or end):
+        return edge
+    state = rest_state(model)
+    touch = edge.in_touch(state, positions(model, state))
+    return replace(edge, clamped=(start and touch[0], end and touch[1]))
 
 
 def _pinned_at(
@@ -557,12 +563,3 @@ def _corners(faces: tuple[Face, ...], pinned: Array, offset: float) -> tuple[Cor
         for corner in corners_of(faces)
         if not np.any(np.hypot(*(pinned - np.array(corner.place)).T) <= offset + PIN_ON_IT)
     )
-
-
-def _clamped(model: Model, edge: Edge, welded: tuple[bool, bool]) -> tuple[bool, bool]:
-    """Which ends ``welded`` to the edge's own body are so in touch with the edge and along it."""
-    if not any(welded):
-        return welded
-    state = rest_state(model)
-    touch = edge.in_touch(state, positions(model, state))
-    return welded[0] and touch[0], welded[1] and touch[1]

@@ -21,8 +21,9 @@ import numpy as np
 
 from cprbm.holding import Held
 from cprbm.kinematics import State, arm, place
-from cprbm.model import Attachment, Model, attached
+from cprbm.model import Model, attached
 from cprbm.posture import Linear, point_of
+from cprbm.standing import Attachment
 from scene import Scene
 from scene.answer import Array
 

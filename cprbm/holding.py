@@ -18,8 +18,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.kinematics import State, arm
-from cprbm.model import Attachment, Model, attached
+from cprbm.model import Model, attached
 from cprbm.posture import Linear, point_of, turn_of
+from cprbm.standing import Attachment
 from scene import Scene
 from scene.answer import Array
 from scene.statement import DisplacementDrive, SlidingBody, TurningBody

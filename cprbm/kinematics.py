@@ -15,8 +15,9 @@ from functools import cached_property
 
 import numpy as np
 
-from cprbm.model import Attachment, Model
+from cprbm.model import Model
 from cprbm.posture import Posture, posture
+from cprbm.standing import Attachment
 from scene.answer import Array
 
 

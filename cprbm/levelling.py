@@ -56,7 +56,7 @@ def levelled(
     known: dict[str, tuple[Array, Array]] = {}
     for _ in range(MOVES):
         for _ in range(PASSES):
-            target = mechanism_of(scene, settings, replace(fit, fixed=frozenset(between)))
+            target = mechanism_of(scene, settings, replace(fit, fixed=frozenset(between)), before)
             start = carried_over(before, point, target, values)
             solved = equilibrium(target.problem, values, start, settings.tolerance, settings.iterations)
             if not solved.converged:

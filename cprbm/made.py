@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import cache
 from typing import Generic, TypeVar
 
 T = TypeVar("T")
@@ -13,12 +12,14 @@ class Made(Mapping[str, T], Generic[T]):
     """By names what is made when it is asked for first, then kept."""
 
     def __init__(self, names: Iterable[str], make: Callable[[str], T]) -> None:
-        self._names, self._make = dict.fromkeys(names), cache(make)
+        self._names, self._make, self._made = dict.fromkeys(names), make, dict[str, T]()
 
     def __getitem__(self, name: str) -> T:
-        if name not in self._names:
-            raise KeyError(name)
-        return self._make(name)
+        if name not in self._made:
+            if name not in self._names:
+                raise KeyError(name)
+            self._made[name] = self._make(name)
+        return self._made[name]
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)

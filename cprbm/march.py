@@ -336,7 +336,7 @@ class March:
                     break
                 point = found.point
                 continue
-            target = mechanism_of(self.scene, settings, fit)
+            target = mechanism_of(self.scene, settings, fit, mechanism)
             carried = carried_state(mechanism.problem.model, point.state, target.problem.model)
             solved = self._resumed(turn, target, carried, values, station)
             if solved is None and now is asked and mechanism is not self.on.mechanism:
@@ -448,7 +448,7 @@ class March:
     @cached_property
     def asked(self) -> Mechanism:
         """The scene on even elements of the mesh that was asked."""
-        return self.whole if len(self.family) == 1 else mechanism_of(self.scene, self.family[-1])
+        return self.whole if len(self.family) == 1 else mechanism_of(self.scene, self.family[-1], before=self.whole)
 
 
 def _near(found: Equilibrium) -> bool:

@@ -258,13 +258,13 @@ def _refused(scene: Scene, model: Model, boundaries: Mapping[str, Boundary], nam
             boundaries[name]
 
 
-def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Mechanism:
-    """Make a scene ready on even elements or those of a ``fit``.
+def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN, before: Mechanism | None = None) -> Mechanism:
+    """Make a scene ready on even elements or those of a ``fit``, with what is known from a mesh ``before`` of it.
 
     Raises:
         SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
     """
-    model = build(scene, settings, fit)
+    model = build(scene, settings, fit, None if before is None else before.problem.model.prepared)
     pairs = Made(scene.contacts, lambda name: _pair(scene, model, name, fit))
     told = list(scene.contacts) if settings.formulation == "paper" else []
     boundaries = Made(told, lambda name: _boundary(scene, model, pairs[name], settings))

@@ -25,39 +25,17 @@ from functools import cached_property
 import numpy as np
 from frozendict import frozendict
 
-from cprbm.curves import NeutralLine, neutral_line
+from cprbm.curves import NeutralLine
 from cprbm.pieces import Piece, Pieces, pieces
 from cprbm.polynomial import ComplexArray
 from cprbm.posture import Linear, point_of, stacked
-from cprbm.section import Section, largest_rigidity, section_of
+from cprbm.prepared import Prepared, prepared
+from cprbm.section import Section
 from cprbm.settings import Settings
 from cprbm.spacing import spaced
-from scene import (
-    BeamEnd,
-    CircleContact,
-    FreeEnd,
-    FunctionContact,
-    HalfPlaneContact,
-    LineContact,
-    RigidContact,
-    Scene,
-    WeldedEnd,
-)
+from cprbm.standing import Attachment
+from scene import Scene
 from scene.answer import Array, Ints
-from scene.statement import BeamMoment
-
-
-@dataclass(frozen=True, slots=True)
-class Attachment:
-    """What a beam's end is joined to: ``body`` (−1 for the ground), the point there, and whether it is welded.
-
-    ``point`` is the point's position on the body: from the body's reference place for a free body,
-    absolute for the ground; units of length.
-    """
-
-    body: int
-    point: tuple[float, float]
-    welded: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,30 +162,46 @@ class Model:
     """The mechanism without units.
 
     Attributes:
+        prepared: what does not hang on the mesh.
         chains: one per beam, in the scene's order.
-        free_bodies: names of the bodies that move, in the order of their (x, y, φ) in the unknowns.
-        references: initial position of each free body's reference place (its first point), (B, 2), units of length.
-        unit_length: ℓ, m.
-        unit_moment: S, N·m.
         couplings: springs' stiffness between link i and i+1 in the shared numbering, zero between
             beams, (n_links−1,), units of S.
         rest_turns: θ⁰_{i+1} − θ⁰_i in the same places.
         lengths: of all links, units of length.
         rest: stress-free angles of all links.
-        marks: centres of circles and first places of edges on bodies that move, by contact; they are numbered behind
-            all joints.
     """
 
+    prepared: Prepared
     chains: tuple[Chain, ...]
-    free_bodies: tuple[str, ...]
-    references: Array
-    unit_length: float
-    unit_moment: float
     couplings: Array
     rest_turns: Array
     lengths: Array
     rest: Array
-    marks: Mapping[str, Attachment]
+
+    @property
+    def free_bodies(self) -> tuple[str, ...]:
+        """Names of the bodies that move, in the order of their (x, y, φ) in the unknowns."""
+        return self.prepared.free_bodies
+
+    @property
+    def references(self) -> Array:
+        """Initial position of each free body's reference place (its first point), (B, 2), units of length."""
+        return self.prepared.references
+
+    @property
+    def unit_length(self) -> float:
+        """ℓ, m."""
+        return self.prepared.unit_length
+
+    @property
+    def unit_moment(self) -> float:
+        """S, N·m."""
+        return self.prepared.unit_moment
+
+    @property
+    def marks(self) -> Mapping[str, Attachment]:
+        """Centres of circles and first places of edges on bodies that move, by contact; numbered behind all joints."""
+        return self.prepared.marks
 
     @cached_property
     def n_links(self) -> int:
@@ -322,50 +316,35 @@ class Fit:
 EVEN = Fit(frozendict(), frozendict())
 
 
-def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
+def build(scene: Scene, settings: Settings, fit: Fit = EVEN, known: Prepared | None = None) -> Model:
     """Cut every beam into elements, eqs. (2)-(3), and leave the units behind.
 
     Args:
         scene: the question.
         settings: how many elements.
         fit: where the elements end.
+        known: what of the scene no mesh changes, if that is worked out already.
 
     Raises:
         SceneError: the numbers of links do not fit the scene's beams.
     """
     settings.check(scene)
-    lines = {name: neutral_line(beam.curve) for name, beam in scene.beams.items()}
-    unit_length = max(line.length for line in lines.values())
-    moduli = {name: scene.materials[beam.material].youngs_modulus for name, beam in scene.beams.items()}
-    unit_moment = max(largest_rigidity(beam, moduli[name]) for name, beam in scene.beams.items()) / unit_length
-    places = {name: next(iter(body.points.values())) for name, body in scene.bodies.items() if body.motion != "fixed"}
-    # a chain begins somewhere: a start that nothing holds is welded to a body that nothing else holds
-    places |= {_loose(name): beam.curve.start for name, beam in scene.beams.items() if isinstance(beam.start, FreeEnd)}
-    free_bodies = tuple(places)
-    references = np.array(list(places.values()), dtype=float).reshape(-1, 2)
-
-    def attachment(end: BeamEnd) -> Attachment | None:
-        if isinstance(end, FreeEnd):
-            return None
-        owner = scene.body_of(end.point)
-        x, y = scene.bodies[owner].points[end.point]
-        body = free_bodies.index(owner) if owner in free_bodies else -1
-        if body >= 0:
-            x, y = x - references[body, 0], y - references[body, 1]
-        return Attachment(body, (x / unit_length, y / unit_length), isinstance(end, WeldedEnd))
-
+    own = prepared(scene) if known is None else known
+    unit_length = own.unit_length
     chains: list[Chain] = []
     first_link = first_joint = 0
-    for name, beam in scene.beams.items():
-        line, n = lines[name], settings.links_of(name)
-        if settings.formulation == "paper" and beam.paper is not None:
-            edges, springs = spaced(line, n, beam.paper.uniform)
+    for name, line in own.lines.items():
+        n, axis = settings.links_of(name), scene.beams[name].paper
+        if settings.formulation == "paper" and axis is not None:
+            edges, springs = spaced(line, n, axis.uniform)
         else:
-            edges = line.length * fit.borders.get(name, _borders(scene, name, n))
+            edges = line.length * (fit.borders[name] if name in fit.borders else _borders(own.bent.get(name, ()), n))
             springs = 0.5 * (edges[1:] + edges[:-1])
-        s = np.concatenate(([0.0], springs, [line.length]))
+        s = np.empty(n + 2)
+        s[0], s[1:-1], s[-1] = 0.0, springs, line.length
         chords, directions = line.chords(s)
         tangents = line.angle(edges)
+        leaning = tangents - directions
         carried = pieces(line, s, directions)
         chains.append(
             Chain(
@@ -375,19 +354,19 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
                 first_link=first_link,
                 first_joint=first_joint,
                 h=line.length / n / unit_length,
-                sizes=np.diff(edges) / unit_length,
+                sizes=(edges[1:] - edges[:-1]) / unit_length,
                 borders=edges / unit_length,
                 s=s / unit_length,
                 lengths=chords / unit_length,
                 rest=directions,
-                turns=np.diff(tangents),
-                lean=np.stack((np.cos(tangents - directions), np.sin(tangents - directions))),
+                turns=tangents[1:] - tangents[:-1],
+                lean=np.array((np.cos(leaning), np.sin(leaning))),
                 pieces=carried,
                 at_borders=_at_borders(carried, edges, s[:-1], unit_length),
-                section=section_of(beam, moduli[name], line.length, unit_length, unit_moment),
-                youngs_modulus=moduli[name],
-                start=attachment(beam.start) or Attachment(free_bodies.index(_loose(name)), (0.0, 0.0), welded=True),
-                end=attachment(beam.end),
+                section=own.sections[name],
+                youngs_modulus=own.moduli[name],
+                start=own.starts[name],
+                end=own.ends[name],
             )
         )
         first_link += n + 1
@@ -397,36 +376,32 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN) -> Model:
         couplings[chain.first_link : chain.first_link + chain.n] = 1.0 / chain.section.flexibility(chain.borders)
     rest = np.concatenate([chain.rest for chain in chains])
     return Model(
+        prepared=own,
         chains=tuple(chains),
-        free_bodies=free_bodies,
-        references=references / unit_length,
-        unit_length=unit_length,
-        unit_moment=unit_moment,
         couplings=couplings,
-        rest_turns=np.diff(rest),
+        rest_turns=rest[1:] - rest[:-1],
         lengths=np.concatenate([chain.lengths for chain in chains]),
         rest=rest,
-        marks=_marks(scene, free_bodies, references, unit_length),
     )
 
 
-def _borders(scene: Scene, beam: str, n: int) -> Array:
-    """Where even elements of a beam end, (n+1,) from 0 to 1; at moments on it, where its curvature jumps."""
-    loads = [load for load in scene.loads.values() if isinstance(load, BeamMoment) and load.beam == beam]
-    marks = np.array(sorted({load.at for load in loads if 0.0 < load.at < 1.0}))
-    numbers = np.concatenate(([0.0], np.round(n * marks), [float(n)]))
-    if np.any(np.diff(numbers) < 1.0):
-        return np.arange(n + 1) / n
-    return np.interp(np.arange(n + 1), numbers, np.concatenate(([0.0], marks, [1.0])))
+def _borders(marks: tuple[float, ...], n: int) -> Array:
+    """Where even elements of a beam end, (n+1,) from 0 to 1; and at ``marks``, where its curvature jumps."""
+    even = np.arange(n + 1)
+    if marks:
+        numbers = np.array((0.0, *(round(n * mark) for mark in marks), n), dtype=float)
+        if np.all(numbers[1:] - numbers[:-1] >= 1.0):
+            return np.interp(even, numbers, (0.0, *marks, 1.0))
+    return even / n
 
 
 def _at_borders(carried: Pieces | None, borders: Array, begins: Array, unit_length: float) -> Array:
     """``at_borders`` of a chain whose links begin at arc lengths ``begins``, m as the ``borders``."""
     t = (borders - begins) / unit_length
     if carried is None:
-        return np.stack((t, np.zeros_like(t)))
+        return np.array((t, np.zeros(t.shape)))
     piece = carried.seen(np.arange(len(t)), borders / unit_length, t, unit_length)
-    return np.stack((piece.at.real, piece.at.imag))
+    return np.array((piece.at.real, piece.at.imag))
 
 
 def attached(scene: Scene, model: Model, point: str) -> Attachment:
@@ -441,31 +416,3 @@ def attached(scene: Scene, model: Model, point: str) -> Attachment:
     if body >= 0:
         x, y = (x, y) - model.references[body]
     return Attachment(body, (float(x), float(y)), welded=False)
-
-
-def _marks(scene: Scene, free_bodies: tuple[str, ...], references: Array, unit_length: float) -> dict[str, Attachment]:
-    marks = {}
-    for name, contact in scene.contacts.items():
-        if isinstance(contact, RigidContact) and contact.body in free_bodies:
-            body = free_bodies.index(contact.body)
-            x, y = (np.array(anchor(contact)) - references[body]) / unit_length
-            marks[name] = Attachment(body, (float(x), float(y)), welded=False)
-    return marks
-
-
-def anchor(contact: RigidContact) -> tuple[float, float]:
-    """A place of what a beam may touch, m: the centre of a circle, the first place of an edge."""
-    match contact:
-        case CircleContact():
-            return contact.center
-        case LineContact():
-            return contact.points[0]
-        case HalfPlaneContact():
-            return contact.point
-    assert isinstance(contact, FunctionContact)
-    return contact.curve.start
-
-
-def _loose(beam: str) -> str:
-    """Name of the body of a beam's free start; no name in a scene holds a dot."""
-    return f"{beam}.start"

@@ -51,7 +51,7 @@ from cprbm import leaning, smooth, wells
 from cprbm.contact import Group
 from cprbm.crossing import cross
 from cprbm.gathering import Touches, gathered
-from cprbm.kinematics import Positions, State, positions, rest_state
+from cprbm.kinematics import Positions, State
 from cprbm.kinks import kinked, missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
 from cprbm.pairs import Pressed
@@ -76,7 +76,6 @@ BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces 
 DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even
 
 STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
-ON_IT = 1e-9  # gap and slope of two clamped ends, and how far they lie apart along the beams, where they touch
 FEW = 8  # places whose nearest samples are found by looking at all
 STRAIGHT = 0.1  # of an element: by less a line is off the chords between its samples
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)  # of the mean on either side of a border of B
@@ -614,9 +613,7 @@ def nearest_samples(G: Array, A: smooth.Points, within: float) -> tuple[Array, I
     """Distance from each place of A to the nearest of ``G`` (m, 2), infinite beyond ``within``, and its number."""
     from scipy.spatial import cKDTree  # loaded where beams may touch each other
 
-    distance, number = cKDTree(G).query(
-        np.stack((A.x, A.y), axis=1), distance_upper_bound=within
-    )
+    distance, number = cKDTree(G).query(np.stack((A.x, A.y), axis=1), distance_upper_bound=within)
     return np.asarray(distance), np.asarray(number)
 
 
@@ -712,41 +709,22 @@ def reach(one: Chain, other: Chain) -> float:
 
 
 def pair_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Pair:
-    """One of the scene's contacts, its sides read from the stress-free state."""
+    """One of the scene's contacts, its sides those of the stress-free state."""
     contact = scene.contacts[name]
     assert isinstance(contact, BeamContact)
     a, b = (model.chain(beam) for beam in contact.between)
-    state = rest_state(model)
-    at = positions(model, state)
     thinnest = float(a.section.thickness.min()), float(b.section.thickness.min())
-    half = 0.5 * sum(thinnest) if contact.thick else 0.0
-    pair = Pair(name, a, b, 1.0, 1.0, half, model.unit_length)
-    lines = pair.lines(state, at)
-    tapered = contact.thick and (a.thickness, b.thickness) != thinnest
-    pair = replace(pair, side=_side(pair, lines), across=_side(pair.exchanged(), lines[::-1]), tapered=tapered)
-    clamps = _clamped(pair, lines), _clamped(pair.exchanged(), lines[::-1])
-    return replace(pair, clamps=clamps, kinks=fit.kinks.get(name, pair.kinks), fixed=name in fit.fixed)
-
-
-def _clamped(pair: Pair, lines: Lines) -> tuple[bool, bool]:
-    """For the start and the end of A, whether it is clamped beside an end of B, touching and parallel."""
-    ends = pair.a.s[[0, -1]]
-    D, sigma, foot = distance_along(pair, lines, ends)
-    A = pair.on_a(lines, ends)
-    B = pair.foot(lines, A, sigma)
-    turn = np.sin(pair.beside(A, B).psi - B.psi)
-    at_end = np.minimum(sigma, pair.b.s[-1] - sigma)
-    touching = foot & (np.abs(D - pair.offset) <= ON_IT) & (np.abs(turn) <= ON_IT) & (at_end <= ON_IT)
-    start, end = (
-        bool(touching[i]) and held_together(pair.a, pair.b, e, float(sigma[i])) for i, e in enumerate((0, -1))
+    standing = model.prepared.standing[name]
+    return Pair(
+        name=name,
+        a=a,
+        b=b,
+        side=standing.side,
+        across=standing.across,
+        offset=0.5 * sum(thinnest) if contact.thick else 0.0,
+        unit_length=model.unit_length,
+        tapered=contact.thick and (a.thickness, b.thickness) != thinnest,
+        clamps=standing.clamps,
+        kinks=fit.kinks.get(name, (NO_KINKS, NO_KINKS)),
+        fixed=name in fit.fixed,
     )
-    return start, end
-
-
-def _side(pair: Pair, lines: Lines) -> float:
-    """+1 where A lies on the left of B at their closest places, else −1."""
-    D, _, foot = distance_along(pair, lines, pair.a.halves)
-    size = np.where(foot, np.abs(D), np.inf)
-    if not np.isfinite(size.min()):
-        size = np.abs(D)
-    return 1.0 if D[int(np.argmin(size))] >= 0.0 else -1.0

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from cprbm.panels import Panels, panelled
 from scene import Polynomial
-from scene.answer import Array
+from scene.answer import Array, Ints
 
 ComplexArray = NDArray[np.complex128]
 
@@ -40,6 +40,10 @@ class Places:
     y: Array
     tangent: ComplexArray
     curvature: Array
+
+    def only(self, these: Ints) -> Places:
+        """Some of the places."""
+        return Places(self.x[these], self.y[these], self.tangent[these], self.curvature[these])
 
 
 @dataclass(frozen=True, slots=True)

@@ -88,9 +88,9 @@ def point_of(body: int, point: tuple[float, float], references: Array) -> Linear
     if body < 0:
         return Linear(np.array(point), over)
     px, py = point
-    over[:, 3 * body : 3 * body + 2] = np.eye(2)
-    over[:, 3 * count + body] = px, py
-    over[:, 4 * count + body] = -py, px
+    over[0, 3 * body] = over[1, 3 * body + 1] = 1.0
+    over[0, 3 * count + body], over[1, 3 * count + body] = px, py
+    over[0, 4 * count + body], over[1, 4 * count + body] = -py, px
     return Linear(references[body] + point, over)
 
 

@@ -20,11 +20,11 @@ def related_joints(scene: Scene, model: Model, contact: str, chain: Chain, fewes
     related = None if hints is None else hints.related.get(chain.name)
     inner = np.arange(1, chain.n + 1)
     if related is not None:
-        x, y = chain.line.position(chain.s[inner] * model.unit_length)
+        x, y = chain.line.position(chain.s[1:-1] * model.unit_length)
         low, high = related.x or related.y or (-np.inf, np.inf)
         along = x if related.x is not None else y
         inner = inner[(along >= low) & (along <= high)]
-        if inner.size and np.any(np.diff(inner) > 1):
+        if inner.size and inner[-1] - inner[0] >= inner.size:
             found = "a range that holds two separate parts of the beam"
             raise SceneError([Mistake(key, found, "a range that holds one", scene.file)])
     if len(inner) < fewest:

@@ -16,6 +16,7 @@ below (3 + √8)^(−2·12), less than round-off.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -26,7 +27,7 @@ SAME = 1e-9  # of the thickness over the length: slopes that differ by less are 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Section:
     """Of one beam, lengths in units of length ℓ.
 
@@ -73,8 +74,15 @@ class Section:
         width = np.interp(s, self.places, self.width)
         return np.asarray(self.modulus * width * self.thickness_at(s) ** 3 / 12.0)
 
+    @cached_property
+    def even(self) -> bool:
+        """Whether the beam is as thick and as wide everywhere."""
+        return all(float(size.min()) == float(size.max()) for size in (self.thickness, self.width))
+
     def flexibility(self, borders: Array) -> Array:
         """f_i of the elements between ``borders`` (N+1,), ascending: (N,)."""
+        if self.even:
+            return (borders[1:] - borders[:-1]) / self.rigidity_at(borders[:1])
         ends = np.unique(np.concatenate((borders, self.places)))
         ends = ends[(ends >= borders[0]) & (ends <= borders[-1])]
         half = 0.5 * np.diff(ends)
@@ -86,14 +94,14 @@ class Section:
 def section_of(beam: Beam, youngs_modulus: float, length: float, unit_length: float, unit_moment: float) -> Section:
     """The section of a ``beam`` of a ``length`` in metres; its modulus in Pa."""
     u = beam.knots
-    places = [u[:1]]
-    for size in (beam.thickness_at, beam.width_at):
-        ends = size(u)
-        for first, last, begin, stop in zip(u[:-1], u[1:], ends[:-1], ends[1:], strict=True):
-            doublings = int(np.ceil(abs(np.log2(stop / begin))))
-            between = np.geomspace(begin, stop, doublings + 1)[1:-1] if doublings > 1 else np.zeros(0)
-            places += [first + (last - first) * (between - begin) / (stop - begin), np.array([last])]
-    fractions = np.unique(np.concatenate(places))
+    between = [u]
+    for ends in (beam.thickness_at(u), beam.width_at(u)):
+        doublings = np.ceil(np.abs(np.log2(ends[1:] / ends[:-1])))
+        for k in np.flatnonzero(doublings > 1.0):
+            begin, stop = ends[k : k + 2]
+            sizes = np.geomspace(begin, stop, int(doublings[k]) + 1)[1:-1]
+            between.append(u[k] + (u[k + 1] - u[k]) * (sizes - begin) / (stop - begin))
+    fractions = np.unique(np.concatenate(between)) if len(between) > 1 else u
     return Section(
         places=fractions * length / unit_length,
         thickness=beam.thickness_at(fractions) / unit_length,

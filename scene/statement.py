@@ -198,7 +198,7 @@ class Beam(Record):
     def knots(self) -> NDArray[np.float64]:
         """Fractions (k,) between which thickness and width go straight, from 0 to 1."""
         inner = [size.at for size in (self.thickness, self.width) if isinstance(size, Profile)]
-        return np.unique(np.concatenate(([0.0, 1.0], *inner)))
+        return np.array(sorted({0.0, 1.0}.union(*inner)))
 
     @property
     def thinnest(self) -> float:
