@@ -270,7 +270,7 @@ class March:
         target, start = last, None
         fit = led([(at, mechanism) for at, mechanism, _ in stood], value)
         if fit is not None:
-            target = mechanism_of(self.scene, asked, fit)
+            target = mechanism_of(self.scene, asked, fit, last)
             start = continued(target.problem, values, [(at, point) for at, _, point in stood[-FITTED:]], value)
         if start is None:
             target, start = last, before
