@@ -37,7 +37,7 @@ from numpy.polynomial import chebyshev
 from scipy.linalg import lapack
 
 from cprbm.contact import REAL, Factored, Group, Local
-from cprbm.kinematics import Positions, State
+from cprbm.kinematics import Positions, State, behind
 from cprbm.model import Model
 from cprbm.offset_points import offset_vectors
 from cprbm.related import related_joints
@@ -45,6 +45,7 @@ from scene import BeamContact, Mistake, Scene, SceneError
 from scene.answer import Array, Ints
 
 FEWEST_POINTS = 3
+FEW = 100  # related joints, whose derivatives are products with a small matrix
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +63,8 @@ class FittedBoundary:
         points: the boundary's related joints (n,); links: the links around them (n+1,).
         arc: arc lengths on the contact's first beam: of the constrained joints (m,), or of the boundary's (n,).
         on_first: whether the constrained joints are the first beam's.
+        behind: which links all these joints are behind, the constrained ones first, :func:`cprbm.kinematics.behind`;
+            None where they are many.
     """
 
     name: str
@@ -75,6 +78,7 @@ class FittedBoundary:
     links: Ints
     arc: Array
     on_first: bool
+    behind: Array | None
 
     @cached_property
     def _local(self) -> tuple[Ints, Ints]:
@@ -176,8 +180,9 @@ class FittedBoundary:
             columns, along, _ = over_locals(k, over[:, k : k + n], over[:, k + n :])
             columns[:, along : along + k] = over[:, :k]
             joints = np.concatenate((self.joints[pressing], self.points))
+            links_behind = None if self.behind is None else np.concatenate((self.behind[pressing], self.behind[m:]))
             return Factored(
-                Local(joints[None], self.links[None], columns, alike=True),
+                Local(joints[None], self.links[None], columns, alike=True, behind=links_behind),
                 sigma[real],
                 # the offset points turn with τ: d²(A, B)/dτ² = −(nA, nB)
                 turning=-(multipliers @ over_A) * nA - (multipliers @ over_B) * nB,
@@ -195,6 +200,7 @@ class FittedBoundary:
                 keys=self._keys,
                 arc=self.arc if self.on_first else at_joints.T @ (q_B @ self.arc),
                 shared=True,
+                behind=self.behind,
                 factors=factors,
             ),
         )
@@ -284,6 +290,7 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
     along_x = hints.axis == "y"
     half = 0.5 * (boundary.thickness + constrained.thickness) if contact.thick else 0.0
     first = model.chain(contact.between[0])
+    numbers = np.concatenate((constrained.first_joint + joints, boundary.first_joint + points))
     return FittedBoundary(
         name=name,
         degree=min(degree, len(points) - 1),
@@ -296,4 +303,5 @@ def fitted_boundary(scene: Scene, model: Model, name: str, degree: int) -> Fitte
         links=boundary.first_link + np.arange(points[0] - 1, points[-1] + 1),
         arc=constrained.s[joints] if first is constrained else boundary.s[points],
         on_first=first is constrained,
+        behind=behind(model, numbers) if len(numbers) <= FEW else None,
     )

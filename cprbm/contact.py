@@ -32,40 +32,46 @@ class Local:
         joints, angles: what enters each row, (r, p) and (r, a), or all of them, (1, p) and (1, a).
         slopes: derivatives over x of the joints, y of the joints, angles (r, 2p + a).
         alike: whether the same enters all rows, and nothing twice.
+        behind: where the rows are alike and the joints few, what :func:`cprbm.kinematics.behind` says of these.
     """
 
     joints: Ints
     angles: Ints
     slopes: Array
     alike: bool = False
+    behind: Array | None = None
 
 
 def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Local]) -> Array:
     """Derivatives of rows over all unknowns, part behind part (Σr, n_links + 3B)."""
-    J, n = model.n_joints, model.n_unknowns
-    forces = np.zeros((2, sum(len(part.slopes) for part in parts), J))
-    along, across = forces.reshape(2, -1)
-    first = 0
-    for part in parts:
-        r, p = len(part.slopes), part.joints.shape[1]
+    if len(parts) == 1:
+        return _over_unknowns(model, state, at, parts[0])
+    none = np.zeros((0, model.n_unknowns))
+    return np.concatenate([none, *(_over_unknowns(model, state, at, part) for part in parts)])
+
+
+def _over_unknowns(model: Model, state: State, at: Positions, part: Local) -> Array:
+    (r, _), p, a = part.slopes.shape, part.joints.shape[1], part.angles.shape[1]
+    if part.behind is not None:
+        # twice as many rows, x and y in turns
+        sums = part.slopes[:, : 2 * p].reshape(2 * r, p) @ part.behind
+        rows = kinematics.over_unknowns_by(model, state, at, sums[::2], sums[1::2])
+    else:
+        forces = np.zeros((2, r, model.n_joints))
         if part.alike:
-            forces[0][first : first + r, part.joints[0]] = part.slopes[:, :p]
-            forces[1][first : first + r, part.joints[0]] = part.slopes[:, p : 2 * p]
+            forces[0][:, part.joints[0]] = part.slopes[:, :p]
+            forces[1][:, part.joints[0]] = part.slopes[:, p : 2 * p]
         elif p:
-            places = (np.arange(first, first + r)[:, None] * J + part.joints).ravel()
+            along, across = forces.reshape(2, -1)
+            places = (np.arange(r)[:, None] * model.n_joints + part.joints).ravel()
             np.add.at(along, places, part.slopes[:, :p].ravel())
             np.add.at(across, places, part.slopes[:, p : 2 * p].ravel())
-        first += r
-    rows = kinematics.over_unknowns(model, state, at, forces[0], forces[1])
-    first = 0
-    for part in parts:
-        r, p = len(part.slopes), part.joints.shape[1]
-        if part.alike:
-            rows[first : first + r, part.angles[0]] += part.slopes[:, 2 * p :]
-        elif part.angles.size:
-            places = (np.arange(first, first + r)[:, None] * n + part.angles).ravel()
-            np.add.at(rows.reshape(-1), places, part.slopes[:, 2 * p :].ravel())
-        first += r
+        rows = kinematics.over_unknowns(model, state, at, forces[0], forces[1])
+    if part.alike and a:
+        rows[:, part.angles[0]] += part.slopes[:, 2 * p :]
+    elif a:
+        places = (np.arange(r)[:, None] * model.n_unknowns + part.angles).ravel()
+        np.add.at(rows.reshape(-1), places, part.slopes[:, 2 * p :].ravel())
     return rows
 
 
@@ -135,6 +141,7 @@ class Group:
         reach: length of the first beam, before and behind ``arc``, whose joints have these rows and no others.
         itself: whether a beam touches itself, at two places of which the first has the first joint.
         shared: whether the joints and angles of all rows are the same, no joint among them twice.
+        behind: of shared joints, as :class:`Local` has it.
         factors: λ (m,) ↦ the same second derivative by its factors, where these are known.
     """
 
@@ -149,13 +156,14 @@ class Group:
     reach: float = 0.0
     itself: bool = False
     shared: bool = False
+    behind: Array | None = None
     factors: Callable[[Array], Factored] | None = None
 
     @property
     def local(self) -> Local:
         """∂c."""
         joints, angles = (self.joints[:1], self.angles[:1]) if self.shared else (self.joints, self.angles)
-        return Local(joints, angles, self.slopes, self.shared)
+        return Local(joints, angles, self.slopes, self.shared, self.behind)
 
     def factored(self, multipliers: Array) -> Factored:
         """∂²(λ·c)."""

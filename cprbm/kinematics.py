@@ -18,7 +18,7 @@ import numpy as np
 from cprbm.model import Model
 from cprbm.posture import Posture, posture
 from cprbm.standing import Attachment
-from scene.answer import Array
+from scene.answer import Array, Ints
 
 
 @dataclass(frozen=True)
@@ -127,6 +127,30 @@ def over_unknowns(model: Model, state: State, at: Positions, fx: Array, fy: Arra
         np.multiply(at.dx[links], sums[1][:, behind], out=rows[:, links])
         rows[:, links] -= at.dy[links] * sums[0][:, behind]
     rows[:, model.n_links :], _ = _held(model, state, sums)
+    return rows
+
+
+def behind(model: Model, joints: Ints) -> Array:
+    """Which links, and which starts and marks on bodies, each of some ``joints`` (p,) hangs on: (p, n_links + k).
+
+    Ones and noughts, the product of forces on the joints with which is what :func:`beyond` sums.
+    """
+    alone = np.zeros((len(joints), model.n_joints))
+    alone[np.arange(len(joints)), joints] = 1.0
+    sums = beyond(model, alone, alone)[0]
+    return np.concatenate((sums[:, model.layout.next_joints], sums[:, model.layout.moving]), axis=1)
+
+
+def over_unknowns_by(model: Model, state: State, at: Positions, fx: Array, fy: Array) -> Array:
+    """What :func:`over_unknowns` says of forces by their sums (r, n_links + k), products with :func:`behind`."""
+    n = model.n_links
+    rows = np.empty((len(fx), model.n_unknowns))
+    np.multiply(at.dx, fy[:, :n], out=rows[:, :n])
+    rows[:, :n] -= at.dy * fx[:, :n]
+    if not model.layout.moving.size:
+        rows[:, n:] = 0.0
+        return rows
+    rows[:, n:], _ = model.layout.moved.gradient(state.posture, np.concatenate((fx[:, n:], fy[:, n:]), axis=1))
     return rows
 
 
