@@ -611,7 +611,7 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
 
 
 def nearest_samples(G: Array, A: Array, within: float) -> tuple[Array, Ints]:
-    """Distance from each place of ``A`` (k, 2) to the nearest of ``G`` (m, 2), infinite beyond ``within``; its number."""
+    """Distance from places of ``A`` (k, 2) to the nearest of ``G`` (m, 2), infinite beyond ``within``; its number."""
     from scipy.spatial import cKDTree  # loaded where beams may touch each other
 
     distance, number = cKDTree(G).query(A, distance_upper_bound=within)

@@ -79,22 +79,17 @@ def _of_beams(pair: Pair, state: State, at: Positions) -> float:
     lines = pair.lines(state, at)
     A, B = lines[0].sampled, lines[1].sampled
     within = pair.offset + float(pair.a.sizes.max()) + float(pair.b.sizes.max())
-    distance, nearest, d, sigma = _from_springs(pair, lines)
-    close = (distance < within).nonzero()[0]
-    least = np.inf
-    if close.size:
-        nearest, d, sigma = nearest[close], d[close], sigma[close]
-        outside = (sigma < -PARALLEL * within) | (sigma > pair.b.s[-1] + PARALLEL * within)
-        D = np.full(len(A.s), np.inf)
-        D[close] = np.where(outside, np.inf, d)
-        D = not_gone_round(pair, lines, D, 0.0)
-        least = float(D.min())
-        reach = pair.offset + LOWER * pair.a.h
+    distance, springs, d, sigma = _from_springs(pair, lines)
+    least, end = np.inf, pair.b.s[-1]
+    seen = (distance < within) & (np.abs(sigma - 0.5 * end) <= 0.5 * end + PARALLEL * within)
+    if seen.any():
+        D = not_gone_round(pair, lines, np.where(seen, d, np.inf), 0.0)
+        least, reach = float(D.min()), pair.offset + LOWER * pair.a.h
         if -0.5 * within <= least < reach:
-            least = _least_below(pair, lines, D, reach, close, nearest)
+            least = _least_below(pair, lines, D, reach, springs)
     ends = np.array((0, len(B.s) - 1))
     E, _ = _on_circles(pair.across, B.x[ends], B.y[ends], A, _nearest_springs(B.x[ends], B.y[ends], A)[1])
-    ends = ends[np.abs(E) < pair.offset + NEARLY * pair.a.h]
+    ends = ends[(-within < E) & (pair.offset + NEARLY * pair.a.h > E)]
     if ends.size:
         E, _, foot = distance_along(pair.exchanged(), lines[::-1], B.s[ends])
         E = not_gone_round(pair.exchanged(), lines[::-1], np.where(foot, E, np.inf), 0.0)
@@ -116,15 +111,15 @@ def may_be_beyond(pair: Pair, state: State, at: Positions) -> bool:
     return bool(((d < least) & (np.abs(s - 0.5 * pair.a.s[-1]) < 0.5 * pair.a.s[-1] + pair.a.h)).any())
 
 
-def _from_springs(pair: Pair, lines: Lines) -> tuple[Array, Ints, Array, Array]:
-    """Of A's samples (k,) the distance to the nearest spring or end of B, its number among B's samples, ±d and σ."""
+def _from_springs(pair: Pair, lines: Lines) -> tuple[Array, Array, Array, Array]:
+    """Of A's samples (k,) the distance to the nearest spring or end of B, where that is on B, ±d and σ."""
     known, what = lines[0].known, (pair.name, "springs")
     if what not in known:
         A, B = lines[0].sampled, lines[1].sampled
         distance, nearest = _nearest_springs(A.x, A.y, B)
-        known[what] = distance, nearest, *_on_circles(pair.side, A.x, A.y, B, nearest)
-    distance, nearest, d, sigma = known[what]
-    return distance, nearest, d, sigma
+        known[what] = distance, B.s[nearest], *_on_circles(pair.side, A.x, A.y, B, nearest)
+    distance, places, d, sigma = known[what]
+    return distance, places, d, sigma
 
 
 def _nearest_springs(x: Array, y: Array, B: Points) -> tuple[Array, Ints]:
@@ -154,12 +149,12 @@ def _on_circles(side: float, x: Array, y: Array, B: Points, samples: Ints) -> tu
     return side * d, B.s[samples] + ahead * (1.0 - turn * turn / 3.0) / speed
 
 
-def _least_below(pair: Pair, lines: Lines, D: Array, reach: float, close: Ints, nearest: Ints) -> float:
-    """The least of D below ``reach``, from D at A's samples and the ``nearest`` of B to those ``close`` (k,)."""
+def _least_below(pair: Pair, lines: Lines, D: Array, reach: float, springs: Array) -> float:
+    """The least of D below ``reach``, from D at A's samples (k,) and the ``springs`` of B that are nearest (k,)."""
     # at an end no parabola goes through
     D, s = np.concatenate((OPEN, D, OPEN)), np.concatenate((OPEN, lines[0].sampled.s, OPEN))
-    lowest = wells.lowest(D, reach)
+    lowest, B = wells.lowest(D, reach), lines[1].sampled
     A = pair.on_a(lines, s[lowest] + wells.lowest_of_parabola(s, D, lowest))
-    _, sigma = _on_circles(pair.side, A.x, A.y, lines[1].sampled, nearest[close.searchsorted(lowest - 1)])
+    _, sigma = _on_circles(pair.side, A.x, A.y, B, B.s.searchsorted(springs[lowest - 1]))
     distance, _, foot = feet_near(pair, lines, A, sigma, CLOSE)
     return float(np.where(foot, distance, np.inf).min())

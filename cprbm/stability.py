@@ -24,7 +24,9 @@ DENSE = 120  # unknowns up to which all curvatures are computed at once
 LANCZOS = 40  # steps
 BLOCK = 5  # vectors at once where the ones that are wanted are the highest
 BLOCKS = 8
-KNOWN = 1e-4  # of the eigenvalue: what is left of the equation that its vector solves; its own error goes with the square
+KNOWN = (
+    1e-4  # of the eigenvalue: what is left of the equation that its vector solves; its own error goes with the square
+)
 SMALL = 1e-9  # of the largest compliance: negative ones below it are round-off
 
 
@@ -157,7 +159,7 @@ def _smooth(n: int, columns: int) -> Array:
     """Vectors (n, columns) with which Krylov spaces begin."""
     found = np.cos(np.outer(np.arange(n) / n, 1.7 + 2.3 * np.arange(columns))) + 1.5 / (1.0 + np.arange(columns))
     found.flags.writeable = False
-    return found
+    return np.asarray(found)
 
 
 def _orthonormal(vectors: Array) -> Array:
