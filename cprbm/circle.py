@@ -113,6 +113,20 @@ class Circle:
         """T at arc lengths ``s``."""
         return 0.5 * self.a.section.thickness_at(s) if self.offset > 0.0 else np.zeros_like(s)
 
+    def no_closer(self, state: State, at: Positions) -> float:
+        """What D is not less than anywhere along the beam, from its joints in a state in which the circle is here.
+
+        On a link of length L the line is no closer to the centre than its joints by L²/(4 ρ), ρ at these, and by what
+        it is off the link: less than a quarter of an element times what the chain turns by at a spring.
+        """
+        x, y = at.x[self.a.joints] - self.x, at.y[self.a.joints] - self.y
+        rho = float(np.sqrt((x * x + y * y).min()))
+        turns = np.diff(state.theta[self.a.links])
+        longest = float(self.a.sizes.max())
+        sag = 0.25 * longest * float(np.abs(turns).max())
+        thicker = float(self._half(self.a.s).max()) - self.offset
+        return rho - min(0.5 * longest, longest**2 / (4.0 * max(rho, CLOSE))) - sag - self.radius - thicker
+
     def widening(self, s: Array) -> Array:
         """T_s at arc lengths ``s``."""
         return 0.5 * self.a.section.thinning_at(s) if self.offset > 0.0 else np.zeros_like(s)

@@ -45,9 +45,10 @@ class ContactForces:
 
 def contact_forces(problem: Problem, point: Point, only: str | None = None) -> ContactForces:
     """Forces that all contacts (or ``only`` one) exert on the chains."""
-    model, rows = problem.model, point.rows
-    mine = np.array([only is None or name == only for name in rows.contact], dtype=bool)
-    fx, fy, moments = rows.forces(-np.where(mine, point.lam, 0.0), model.n_joints, model.n_unknowns)
+    model, rows, exerted = problem.model, point.rows, -point.lam
+    if only is not None:
+        exerted[[name != only for name in rows.contact]] = 0.0
+    fx, fy, moments = rows.forces(exerted, model.n_joints, model.n_unknowns)
     return ContactForces(fx, fy, moments)
 
 
@@ -84,17 +85,19 @@ def resultant(point: Point, contact: str, chain: Chain) -> float:
 
 def supports(problem: Problem, point: Point) -> tuple[Support, ...]:
     """What the ground does to every beam that is joined to it."""
+    return _supports(problem, point, contact_forces(problem, point))
+
+
+def _supports(problem: Problem, point: Point, contact: ContactForces) -> tuple[Support, ...]:
     model, closure = problem.model, problem.closure
     fx, fy = closure_forces(model, closure, point.mu)
-    contact = contact_forces(problem, point)
-    on_x, on_y = fx - contact.fx - point.work.fx, fy - contact.fy - point.work.fy
+    forces = np.array((fx - contact.fx - point.work.fx, fy - contact.fy - point.work.fy))
+    on_beams = np.add.reduceat(forces, model.layout.roots, axis=1).T
     # ∂L/∂θ of the whole, whose entry at a link that does not turn is the moment that holds it
     held = point.gradient + point.held + point.pressed
     found = []
-    for chain in model.chains:
+    for chain, force in zip(model.chains, on_beams, strict=False):
         if chain.start.body < 0:
-            j = chain.joints
-            force = np.array((on_x[j].sum(), on_y[j].sum()))
             place = np.array((point.at.x[chain.first_joint], point.at.y[chain.first_joint]))
             moment = float(held[chain.first_link]) if chain.start.welded else 0.0
             found.append(Support(chain.name, "start", place, force, moment))
@@ -155,11 +158,11 @@ def balances(problem: Problem, point: Point) -> tuple[float, float]:
     other way round; where there is no load, by S.  A beam's own ΣF vanishes by construction, for the force at its
     start is what balances it: ΣF says whether the free bodies are in equilibrium, ΣM whether the beams are too.
     """
-    model, x, y = problem.model, point.at.x, point.at.y
-    # of every part its force, and its moment about the origin
-    parts = [_about(each.place, each.force, each.moment) for each in supports(problem, point)]
-    parts += [_about(each.place, each.force, each.moment) for each in holding(problem, point)]
+    model, at = problem.model, point.at
     contact = contact_forces(problem, point)
+    # of every part its force, and its moment about the origin
+    parts = [_about(each.place, each.force, each.moment) for each in _supports(problem, point, contact)]
+    parts += [_about(each.place, each.force, each.moment) for each in holding(problem, point)]
     work, stops = (over[model.n_links :].reshape(-1, 3) for over in (point.work.gradient, contact.moments))
     for b in range(len(model.free_bodies)):
         place = model.references[b] + point.state.bodies[b, :2]
@@ -168,16 +171,17 @@ def balances(problem: Problem, point: Point) -> tuple[float, float]:
     parts.append((0.0, 0.0, float(point.work.gradient[: model.n_links].sum())))
     # ends that are apart from their points pass forces on across the gap
     parts += [(0.0, 0.0, moment) for moment in _across_gaps(problem, point)]
-    turning = x * contact.fy - y * contact.fx
-    for chain in model.chains:
-        j, start = chain.joints, chain.first_joint
-        if chain.start.body < 0 and point.work.on_beams:
-            force = (float(point.work.fx[j].sum()), float(point.work.fy[j].sum()))
-            parts.append((*force, float(x[start]) * force[1] - float(y[start]) * force[0]))
-        moment = float(turning[j].sum()) + float(contact.moments[chain.links].sum())
-        parts.append((float(contact.fx[j].sum()), float(contact.fy[j].sum()), moment))
-    for mark in range(model.first_mark, model.n_joints):
-        parts.append((float(contact.fx[mark]), float(contact.fy[mark]), float(turning[mark])))
+    for chain in model.chains if point.work.on_beams else ():
+        if chain.start.body < 0:
+            j, start = chain.joints, chain.first_joint
+            force = np.array((point.work.fx[j].sum(), point.work.fy[j].sum()))
+            parts.append(_about(np.array((at.x[start], at.y[start])), force, 0.0))
+    # what contacts do to beams, and to the marks on bodies behind them
+    forces = np.array((contact.fx, contact.fy, at.x * contact.fy - at.y * contact.fx))
+    exerted = np.add.reduceat(forces, model.layout.roots, axis=1)
+    first_links = [chain.first_link for chain in model.chains]
+    exerted[2, : len(first_links)] += np.add.reduceat(contact.moments[: model.n_links], first_links)
+    parts += [(fx, fy, moment) for fx, fy, moment in exerted.T.tolist()]
     fx, fy, moments = zip(*parts, strict=True)
     largest_force = max(map(abs, fx + fy))
     largest_moment = max(*map(abs, moments), largest_force)

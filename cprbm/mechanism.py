@@ -23,6 +23,7 @@ from cprbm.kinematics import Positions, State, most_turned, positions
 from cprbm.made import Made
 from cprbm.model import EVEN, Fit, Model, build
 from cprbm.nearest import Pair, pair_of
+from cprbm.overlap import may_be_beyond
 from cprbm.point import Point, Problem
 from cprbm.related import related_joints
 from cprbm.rigid import RigidCircle, rigid_circle
@@ -125,7 +126,7 @@ class Mechanism:
                 across = pair.passed(way(), end, allowed)
             else:
                 # without having been there a beam comes to lie beyond another by its end or through it
-                gone = pair.gone_round(after.state, after.at)
+                gone = may_be_beyond(pair, *end) and pair.gone_round(*end)
                 across = gone and self._crossed_between(pair, before, after, way, WAY)
             if across:
                 return pair.name
@@ -136,9 +137,11 @@ class Mechanism:
         # the real way differs by the square of the step
         allowed = 0.5 * circle.offset + SHALLOW * circle.radius + WAY * _turned(before.state, after.state) ** 2
         for state, at in way():
-            places = circle.line(state, at).sampled
-            if np.max(circle.offset - circle.placed(at).distance(places)) > allowed:
-                return True
+            here = circle.placed(at)
+            if here.no_closer(state, at) - circle.offset < -allowed:
+                places = circle.line(state, at).sampled
+                if np.max(circle.offset - here.distance(places)) > allowed:
+                    return True
         return False
 
     def _crossed_between(self, pair: Pair | Edge, before: Point, after: Point, way: Way, uneven: float) -> bool:

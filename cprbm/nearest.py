@@ -464,7 +464,7 @@ def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Fl
     if len(s) <= FEW:
         nearest = ((A.x[:, None] - G.x) ** 2 + (A.y[:, None] - G.y) ** 2).argmin(axis=1)
     else:
-        _, nearest = nearest_samples(np.stack((G.x, G.y), axis=1), A, np.inf)
+        _, nearest = nearest_samples(_places(G), _places(A), np.inf)
     return feet_near(pair, lines, A, G.s[nearest])
 
 
@@ -609,18 +609,22 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     return D, sigma
 
 
-def nearest_samples(G: Array, A: smooth.Points, within: float) -> tuple[Array, Ints]:
-    """Distance from each place of A to the nearest of ``G`` (m, 2), infinite beyond ``within``, and its number."""
+def nearest_samples(G: Array, A: Array, within: float) -> tuple[Array, Ints]:
+    """Distance from places of ``A`` (k, 2) to the nearest of ``G`` (m, 2), infinite beyond ``within``; its number."""
     from scipy.spatial import cKDTree  # loaded where beams may touch each other
 
-    distance, number = cKDTree(G).query(np.stack((A.x, A.y), axis=1), distance_upper_bound=within)
+    distance, number = cKDTree(G).query(A, distance_upper_bound=within)
     return np.asarray(distance), np.asarray(number)
+
+
+def _places(points: smooth.Points) -> Array:
+    return np.stack((points.x, points.y), axis=1)
 
 
 def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     A, G = lines[0].sampled, lines[1].sampled
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
-    rough, nearest = nearest_samples(np.stack((G.x, G.y), axis=1), A, pair.offset + reach(pair.a, pair.b))
+    rough, nearest = nearest_samples(_places(G), _places(A), pair.offset + reach(pair.a, pair.b))
     close = np.flatnonzero(np.isfinite(rough))
     D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
     if close.size:

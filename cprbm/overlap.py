@@ -26,7 +26,16 @@ import numpy as np
 from cprbm import wells
 from cprbm.circle import Circle
 from cprbm.kinematics import Positions, State
-from cprbm.nearest import PARALLEL, Lines, Pair, distance_along, feet_near, nearest_samples, not_gone_round
+from cprbm.nearest import (
+    PARALLEL,
+    STRAIGHT,
+    Lines,
+    Pair,
+    distance_along,
+    feet_near,
+    nearest_samples,
+    not_gone_round,
+)
 from cprbm.pairs import Touching
 from cprbm.smooth import Points
 from scene.answer import Array, Ints
@@ -34,6 +43,7 @@ from scene.answer import Array, Ints
 FEW = 50_000  # distances that are sooner worked out than sought
 CLOSE = 1e-6  # units of length: by less a foot is off, and D by a part of the square
 OPEN = np.array([np.inf])
+NEARLY = 0.05  # h: where an end of B is farther than this from touching, its distance is not worked out
 LOWER = 0.25  # h: between two samples D is lower than at these by no more
 
 
@@ -69,18 +79,17 @@ def _of_beams(pair: Pair, state: State, at: Positions) -> float:
     lines = pair.lines(state, at)
     A, B = lines[0].sampled, lines[1].sampled
     within = pair.offset + float(pair.a.sizes.max()) + float(pair.b.sizes.max())
-    close, nearest, ends = _close(A, B, within, pair.offset + LOWER * pair.a.h)
-    least = np.inf
-    if close.size:
-        d, sigma = _on_circles(pair, A.x[close], A.y[close], B, nearest)
-        outside = (sigma < -PARALLEL * within) | (sigma > pair.b.s[-1] + PARALLEL * within)
-        D = np.full(len(A.s), np.inf)
-        D[close] = np.where(outside, np.inf, d)
-        D = not_gone_round(pair, lines, D, 0.0)
-        least = float(D.min())
-        reach = pair.offset + LOWER * pair.a.h
+    distance, springs, d, sigma = _from_springs(pair, lines)
+    least, end = np.inf, pair.b.s[-1]
+    seen = (distance < within) & (np.abs(sigma - 0.5 * end) <= 0.5 * end + PARALLEL * within)
+    if seen.any():
+        D = not_gone_round(pair, lines, np.where(seen, d, np.inf), 0.0)
+        least, reach = float(D.min()), pair.offset + LOWER * pair.a.h
         if -0.5 * within <= least < reach:
-            least = _least_below(pair, lines, D, reach, close, nearest)
+            least = _least_below(pair, lines, D, reach, springs)
+    ends = np.array((0, len(B.s) - 1))
+    E, _ = _on_circles(pair.across, B.x[ends], B.y[ends], A, _nearest_springs(B.x[ends], B.y[ends], A)[1])
+    ends = ends[(-within < E) & (pair.offset + NEARLY * pair.a.h > E)]
     if ends.size:
         E, _, foot = distance_along(pair.exchanged(), lines[::-1], B.s[ends])
         E = not_gone_round(pair.exchanged(), lines[::-1], np.where(foot, E, np.inf), 0.0)
@@ -88,30 +97,46 @@ def _of_beams(pair: Pair, state: State, at: Positions) -> float:
     return pair.least_gap(state, at) if least < -0.5 * within else least - pair.offset
 
 
-def _close(A: Points, B: Points, within: float, at_ends: float) -> tuple[Ints, Ints, Ints]:
-    """Samples of A ``within`` a distance of B's springs (k,), the nearest of these among B's samples (k,), and B's ends.
+def may_be_beyond(pair: Pair, state: State, at: Positions) -> bool:
+    """Whether, as it seems from the springs, a part of a beam lies beyond the other; never False where one does."""
+    lines, ends = pair.lines(state, at), pair.b.s[[0, -1]]
+    A, B = lines[0].sampled, lines[1].sampled
+    # what is beyond is so by more than twice this: a place and its foot are known to less than an element
+    least = -pair.offset - 0.5 * STRAIGHT * (pair.a.h + pair.b.h)
+    _, _, d, sigma = _from_springs(pair, lines)
+    if (d < least).any() and ((d < least) & (np.abs(sigma - 0.5 * ends[1]) < 0.5 * ends[1] + pair.b.h)).any():
+        return True
+    x, y = B.x[[0, -1]], B.y[[0, -1]]
+    d, s = _on_circles(pair.across, x, y, A, _nearest_springs(x, y, A)[1])
+    return bool(((d < least) & (np.abs(s - 0.5 * pair.a.s[-1]) < 0.5 * pair.a.s[-1] + pair.a.h)).any())
 
-    Of the ends those are told that are less than ``at_ends`` from a sample of A.
-    """
+
+def _from_springs(pair: Pair, lines: Lines) -> tuple[Array, Array, Array, Array]:
+    """Of A's samples (k,) the distance to the nearest spring or end of B, where that is on B, ±d and σ."""
+    known, what = lines[0].known, (pair.name, "springs")
+    if what not in known:
+        A, B = lines[0].sampled, lines[1].sampled
+        distance, nearest = _nearest_springs(A.x, A.y, B)
+        known[what] = distance, B.s[nearest], *_on_circles(pair.side, A.x, A.y, B, nearest)
+    distance, places, d, sigma = known[what]
+    return distance, places, d, sigma
+
+
+def _nearest_springs(x: Array, y: Array, B: Points) -> tuple[Array, Ints]:
+    """Distance of places (k,) to the nearest spring or end of B, and its number among B's samples, (k,) each."""
     bx, by = B.x[::2], B.y[::2]
-    if len(A.s) * len(bx) > FEW:
-        distance, nearest = nearest_samples(np.stack((bx, by), axis=1), A, within)
-        close = np.flatnonzero(np.isfinite(distance))
-        nearest = nearest[close]
-        last = np.array((0, len(bx) - 1))
-        away = ((A.x[:, None] - bx[last]) ** 2 + (A.y[:, None] - by[last]) ** 2).min(axis=0)
-    else:
-        squares, y = A.x[:, None] - bx, A.y[:, None] - by
-        squares *= squares
-        y *= y
-        squares += y
-        close = (squares.min(axis=1) < within * within).nonzero()[0]
-        nearest = squares[close].argmin(axis=1)
-        away = squares[:, :: len(bx) - 1].min(axis=0)
-    return close, 2 * nearest, (away < at_ends * at_ends).nonzero()[0] * (len(B.s) - 1)
+    if len(x) * len(bx) > FEW:
+        distance, nearest = nearest_samples(np.stack((bx, by), axis=1), np.stack((x, y), axis=1), np.inf)
+        return distance, 2 * nearest
+    squares, across = x[:, None] - bx, y[:, None] - by
+    squares *= squares
+    across *= across
+    squares += across
+    nearest = squares.argmin(axis=1)
+    return np.sqrt(squares[np.arange(len(x)), nearest]), 2 * nearest
 
 
-def _on_circles(pair: Pair, x: Array, y: Array, B: Points, samples: Ints) -> tuple[Array, Array]:
+def _on_circles(side: float, x: Array, y: Array, B: Points, samples: Ints) -> tuple[Array, Array]:
     """±d of places of A (k,), and σ of their feet on the circles about ``samples`` of B (k,)."""
     x, y, psi, speed = x - B.x[samples], y - B.y[samples], B.tangent[samples], B.speed[samples]
     bend = B.bend[samples] / speed
@@ -121,15 +146,15 @@ def _on_circles(pair: Pair, x: Array, y: Array, B: Points, samples: Ints) -> tup
     d = (2.0 * n_r - bend * (x * x + y * y)) / (1.0 + np.hypot(bend * t_r, left))
     ahead = t_r / np.maximum(left, 0.2)
     turn = bend * ahead
-    return pair.side * d, B.s[samples] + ahead * (1.0 - turn * turn / 3.0) / speed
+    return side * d, B.s[samples] + ahead * (1.0 - turn * turn / 3.0) / speed
 
 
-def _least_below(pair: Pair, lines: Lines, D: Array, reach: float, close: Ints, nearest: Ints) -> float:
-    """The least of D below ``reach``, from D at A's samples and the ``nearest`` of B to those ``close`` (k,)."""
+def _least_below(pair: Pair, lines: Lines, D: Array, reach: float, springs: Array) -> float:
+    """The least of D below ``reach``, from D at A's samples (k,) and the ``springs`` of B that are nearest (k,)."""
     # at an end no parabola goes through
     D, s = np.concatenate((OPEN, D, OPEN)), np.concatenate((OPEN, lines[0].sampled.s, OPEN))
-    lowest = wells.lowest(D, reach)
+    lowest, B = wells.lowest(D, reach), lines[1].sampled
     A = pair.on_a(lines, s[lowest] + wells.lowest_of_parabola(s, D, lowest))
-    _, sigma = _on_circles(pair, A.x, A.y, lines[1].sampled, nearest[close.searchsorted(lowest - 1)])
+    _, sigma = _on_circles(pair.side, A.x, A.y, B, B.s.searchsorted(springs[lowest - 1]))
     distance, _, foot = feet_near(pair, lines, A, sigma, CLOSE)
     return float(np.where(foot, distance, np.inf).min())

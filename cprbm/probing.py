@@ -120,10 +120,9 @@ def shapes(mechanism: Mechanism, point: Point) -> dict[str, Shape]:
     model = mechanism.problem.model
     found = {}
     for chain in model.chains:
-        s = chain.halves
-        line = smooth.smooth_line(chain, model.unit_length, point.state, point.at).at(s)
+        line = smooth.smooth_line(chain, model.unit_length, point.state, point.at).sampled
         found[chain.name] = Shape(
-            frozen_array(s * model.unit_length),
+            frozen_array(line.s * model.unit_length),
             frozen_array(line.x * model.unit_length),
             frozen_array(line.y * model.unit_length),
         )

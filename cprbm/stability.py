@@ -159,7 +159,7 @@ def _smooth(n: int, columns: int) -> Array:
     """Vectors (n, columns) with which Krylov spaces begin."""
     found = np.cos(np.outer(np.arange(n) / n, 1.7 + 2.3 * np.arange(columns))) + 1.5 / (1.0 + np.arange(columns))
     found.flags.writeable = False
-    return found
+    return np.asarray(found)
 
 
 def _orthonormal(vectors: Array) -> Array:
