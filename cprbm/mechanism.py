@@ -264,7 +264,7 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN, before: Mech
     Raises:
         SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
     """
-    model = build(scene, settings, fit, None if before is None else before.problem.model.prepared)
+    model = build(scene, settings, fit, None if before is None else before.problem.model.outset)
     pairs = Made(scene.contacts, lambda name: _pair(scene, model, name, fit))
     told = list(scene.contacts) if settings.formulation == "paper" else []
     boundaries = Made(told, lambda name: _boundary(scene, model, pairs[name], settings))

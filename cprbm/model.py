@@ -26,10 +26,10 @@ import numpy as np
 from frozendict import frozendict
 
 from cprbm.curves import NeutralLine
+from cprbm.outset import Outset, outset_of
 from cprbm.pieces import Piece, Pieces, pieces
 from cprbm.polynomial import ComplexArray
 from cprbm.posture import Linear, point_of, stacked
-from cprbm.prepared import Prepared, prepared
 from cprbm.section import Section
 from cprbm.settings import Settings
 from cprbm.spacing import spaced
@@ -162,7 +162,7 @@ class Model:
     """The mechanism without units.
 
     Attributes:
-        prepared: what does not hang on the mesh.
+        outset: what does not hang on the mesh.
         chains: one per beam, in the scene's order.
         couplings: springs' stiffness between link i and i+1 in the shared numbering, zero between
             beams, (n_links−1,), units of S.
@@ -171,7 +171,7 @@ class Model:
         rest: stress-free angles of all links.
     """
 
-    prepared: Prepared
+    outset: Outset
     chains: tuple[Chain, ...]
     couplings: Array
     rest_turns: Array
@@ -181,27 +181,27 @@ class Model:
     @property
     def free_bodies(self) -> tuple[str, ...]:
         """Names of the bodies that move, in the order of their (x, y, φ) in the unknowns."""
-        return self.prepared.free_bodies
+        return self.outset.free_bodies
 
     @property
     def references(self) -> Array:
         """Initial position of each free body's reference place (its first point), (B, 2), units of length."""
-        return self.prepared.references
+        return self.outset.references
 
     @property
     def unit_length(self) -> float:
         """ℓ, m."""
-        return self.prepared.unit_length
+        return self.outset.unit_length
 
     @property
     def unit_moment(self) -> float:
         """S, N·m."""
-        return self.prepared.unit_moment
+        return self.outset.unit_moment
 
     @property
     def marks(self) -> Mapping[str, Attachment]:
         """Centres of circles and first places of edges on bodies that move, by contact; numbered behind all joints."""
-        return self.prepared.marks
+        return self.outset.marks
 
     @cached_property
     def n_links(self) -> int:
@@ -316,7 +316,7 @@ class Fit:
 EVEN = Fit(frozendict(), frozendict())
 
 
-def build(scene: Scene, settings: Settings, fit: Fit = EVEN, known: Prepared | None = None) -> Model:
+def build(scene: Scene, settings: Settings, fit: Fit = EVEN, known: Outset | None = None) -> Model:
     """Cut every beam into elements, eqs. (2)-(3), and leave the units behind.
 
     Args:
@@ -329,7 +329,7 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN, known: Prepared | N
         SceneError: the numbers of links do not fit the scene's beams.
     """
     settings.check(scene)
-    own = prepared(scene) if known is None else known
+    own = outset_of(scene) if known is None else known
     unit_length = own.unit_length
     chains: list[Chain] = []
     first_link = first_joint = 0
@@ -376,7 +376,7 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN, known: Prepared | N
         couplings[chain.first_link : chain.first_link + chain.n] = 1.0 / chain.section.flexibility(chain.borders)
     rest = np.concatenate([chain.rest for chain in chains])
     return Model(
-        prepared=own,
+        outset=own,
         chains=tuple(chains),
         couplings=couplings,
         rest_turns=rest[1:] - rest[:-1],
