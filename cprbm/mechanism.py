@@ -253,7 +253,7 @@ def _refused(scene: Scene, model: Model, boundaries: Mapping[str, Boundary], nam
     """Raise what making a contact's boundary would, and make it now where nothing less tells."""
     match scene.contacts[name]:
         case CircleContact(beam=beam) | HalfPlaneContact(beam=beam) | FunctionContact(beam=beam):
-            related_joints(scene, model, name, model.chain(beam), fewest=1)
+            related_joints(scene, name, model.chain(beam), fewest=1)
         case _:
             boundaries[name]
 

@@ -28,8 +28,8 @@ from frozendict import frozendict
 from cprbm.curves import NeutralLine
 from cprbm.outset import Outset, outset_of
 from cprbm.pieces import Piece, Pieces, pieces
-from cprbm.polynomial import ComplexArray
-from cprbm.posture import Linear, point_of, stacked
+from cprbm.polynomial import ComplexArray, Places
+from cprbm.posture import Linear, points_of
 from cprbm.section import Section
 from cprbm.settings import Settings
 from cprbm.spacing import spaced
@@ -98,6 +98,11 @@ class Chain:
             return None
         link = np.minimum(np.arange(2 * self.n + 3) // 2, self.n)
         return self.pieces.seen(link, self.halves, self.halves - self.s[link], self.line.length / float(self.s[-1]))
+
+    @cached_property
+    def springs(self) -> Places:
+        """Of the stress-free neutral line where springs stand, from its start, m."""
+        return self.line.at(self.s[1:-1] * (self.line.length / float(self.s[-1])))
 
     @cached_property
     def leans(self) -> ComplexArray:
@@ -226,17 +231,17 @@ class Model:
         roots = np.array([*firsts, *range(self.first_mark, self.n_joints)], dtype=np.intp)
         held = [*(chain.start for chain in self.chains), *self.marks.values()]
         on_bodies = np.array([at.body >= 0 for at in held], dtype=bool)
-        points = stacked([point_of(at.body, at.point, self.references) for at in held], len(self.free_bodies))
-        base, over = points.base.reshape(-1, 2).T, np.stack((points.over[::2], points.over[1::2]))
+        points = points_of([(at.body, at.point) for at in held], self.references)
+        base, over = points.base.reshape(-1, 2).T, points.over.reshape(len(held), 2, -1).transpose(1, 0, 2)
         return Layout(
             links=tuple(chain.links for chain in self.chains),
             behind=behind,
             joints_back=tuple(slice(each.stop - 1, each.start - 2 if each.start > 1 else None, -1) for each in behind),
             next_joints=np.concatenate([np.arange(each.start, each.stop) for each in behind]),
             roots=roots,
-            places=Linear(base.ravel(), np.concatenate(list(over))),
+            places=Linear(base.ravel(), over.reshape(2 * len(held), -1)),
             moving=roots[on_bodies],
-            moved=Linear(base[:, on_bodies].ravel(), np.concatenate(list(over[:, on_bodies]))),
+            moved=Linear(base[:, on_bodies].ravel(), over[:, on_bodies].reshape(-1, over.shape[-1])),
         )
 
     @cached_property
