@@ -33,7 +33,7 @@ from cprbm import circle, edge, nearest
 from cprbm.faces import Face, faces_of
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
-from cprbm.prepared import anchor
+from cprbm.outset import anchor
 from scene import BeamContact, CircleContact, Scene, SelfContact
 from scene.answer import Array, Flags, Ints
 

@@ -25,7 +25,7 @@ from cprbm.hinging import Hinge
 from cprbm.holding import Hold
 from cprbm.kinematics import Positions, State
 from cprbm.model import Model
-from cprbm.posture import Linear, point_of, stacked, turn_of
+from cprbm.posture import Linear, points_of, stacked, turn_of
 from scene.answer import Array, Ints
 
 
@@ -80,7 +80,8 @@ def closure_of(
 ) -> Closure:
     """The equalities of a mechanism; the ends of some beams are ``free`` as yet."""
     ends, welds, fixed = list[int](), list[tuple[int, int]](), list[int]()
-    starts, places, given = list[Linear](), list[Linear](), list[tuple[str, int, float]]()
+    starts, places = list[tuple[int, tuple[float, float]]](), list[tuple[int, tuple[float, float]]]()
+    given = list[tuple[str, int, float]]()
     count = len(model.free_bodies)
     for c, chain in enumerate(model.chains):
         start, end = chain.start, chain.end
@@ -93,8 +94,8 @@ def closure_of(
             names = enumerate(apart_by(chain.name), start=2 * len(ends))
             given += [(name, row, 1.0 / model.unit_length) for row, name in names]
             ends.append(c)
-            starts.append(point_of(start.body, start.point, model.references))
-            places.append(point_of(end.body, end.point, model.references))
+            starts.append((start.body, start.point))
+            places.append((end.body, end.point))
             if end.welded:
                 welds.append((chain.first_link + chain.n, end.body))
     first_hold = 2 * len(ends) + len(welds) + 2 * len(hinges)
@@ -102,12 +103,10 @@ def closure_of(
     rest = [Linear(np.array([-model.rest[link]]), -turn_of(body, count)) for link, body in welds]
     rest += [hinge.linear(model) for hinge in hinges]
     rest += [hold.linear(model) for hold in holds]
-    own = stacked([*(-place for place in places), *rest], count)
+    own = stacked([-points_of(places, model.references), *rest], count)
     weld_links = np.array([link for link, _ in welds], dtype=np.intp)
-    moved = np.zeros_like(own.over)
-    for r, point in enumerate(starts):
-        moved[2 * r : 2 * r + 2] = point.over
-    whole = Linear(own.base, own.over + moved)
+    moved = own.over.copy()
+    moved[: 2 * len(ends)] += points_of(starts, model.references).over
     welded = np.zeros((len(own.base), model.n_unknowns))
     welded[2 * len(ends) + np.arange(len(welds)), weld_links] = 1.0
     return Closure(
@@ -118,7 +117,7 @@ def closure_of(
         hinges=hinges,
         holds=holds,
         own=own,
-        whole=whole,
+        whole=Linear(own.base, moved),
         weld_links=weld_links,
         welded=welded,
         given=tuple(given),

@@ -256,7 +256,7 @@ def _refused(scene: Scene, model: Model, boundaries: Mapping[str, Boundary], nam
     """Raise what making a contact's boundary would, and make it now where nothing less tells."""
     match scene.contacts[name]:
         case CircleContact(beam=beam) | HalfPlaneContact(beam=beam) | FunctionContact(beam=beam):
-            related_joints(scene, model, name, model.chain(beam), fewest=1)
+            related_joints(scene, name, model.chain(beam), fewest=1)
         case _:
             boundaries[name]
 
@@ -267,7 +267,7 @@ def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN, before: Mech
     Raises:
         SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
     """
-    model = build(scene, settings, fit, None if before is None else before.problem.model.prepared)
+    model = build(scene, settings, fit, None if before is None else before.problem.model.outset)
     pairs = Made(scene.contacts, lambda name: _pair(scene, model, name, fit))
     told = list(scene.contacts) if settings.formulation == "paper" else []
     boundaries = Made(told, lambda name: _boundary(scene, model, pairs[name], settings))

@@ -26,10 +26,10 @@ import numpy as np
 from frozendict import frozendict
 
 from cprbm.curves import NeutralLine
+from cprbm.outset import Outset, outset_of
 from cprbm.pieces import Piece, Pieces, pieces
-from cprbm.polynomial import ComplexArray
-from cprbm.posture import Linear, point_of, stacked
-from cprbm.prepared import Prepared, prepared
+from cprbm.polynomial import ComplexArray, Places
+from cprbm.posture import Linear, points_of
 from cprbm.section import Section
 from cprbm.settings import Settings
 from cprbm.spacing import spaced
@@ -100,6 +100,11 @@ class Chain:
         return self.pieces.seen(link, self.halves, self.halves - self.s[link], self.line.length / float(self.s[-1]))
 
     @cached_property
+    def springs(self) -> Places:
+        """Of the stress-free neutral line where springs stand, from its start, m."""
+        return self.line.at(self.s[1:-1] * (self.line.length / float(self.s[-1])))
+
+    @cached_property
     def leans(self) -> ComplexArray:
         """:attr:`lean` as numbers cos + i·sin (N+1,)."""
         return np.asarray(self.lean[0] + 1j * self.lean[1])
@@ -162,7 +167,7 @@ class Model:
     """The mechanism without units.
 
     Attributes:
-        prepared: what does not hang on the mesh.
+        outset: what does not hang on the mesh.
         chains: one per beam, in the scene's order.
         couplings: springs' stiffness between link i and i+1 in the shared numbering, zero between
             beams, (n_links−1,), units of S.
@@ -171,7 +176,7 @@ class Model:
         rest: stress-free angles of all links.
     """
 
-    prepared: Prepared
+    outset: Outset
     chains: tuple[Chain, ...]
     couplings: Array
     rest_turns: Array
@@ -181,27 +186,27 @@ class Model:
     @property
     def free_bodies(self) -> tuple[str, ...]:
         """Names of the bodies that move, in the order of their (x, y, φ) in the unknowns."""
-        return self.prepared.free_bodies
+        return self.outset.free_bodies
 
     @property
     def references(self) -> Array:
         """Initial position of each free body's reference place (its first point), (B, 2), units of length."""
-        return self.prepared.references
+        return self.outset.references
 
     @property
     def unit_length(self) -> float:
         """ℓ, m."""
-        return self.prepared.unit_length
+        return self.outset.unit_length
 
     @property
     def unit_moment(self) -> float:
         """S, N·m."""
-        return self.prepared.unit_moment
+        return self.outset.unit_moment
 
     @property
     def marks(self) -> Mapping[str, Attachment]:
         """Centres of circles and first places of edges on bodies that move, by contact; numbered behind all joints."""
-        return self.prepared.marks
+        return self.outset.marks
 
     @cached_property
     def n_links(self) -> int:
@@ -226,17 +231,17 @@ class Model:
         roots = np.array([*firsts, *range(self.first_mark, self.n_joints)], dtype=np.intp)
         held = [*(chain.start for chain in self.chains), *self.marks.values()]
         on_bodies = np.array([at.body >= 0 for at in held], dtype=bool)
-        points = stacked([point_of(at.body, at.point, self.references) for at in held], len(self.free_bodies))
-        base, over = points.base.reshape(-1, 2).T, np.stack((points.over[::2], points.over[1::2]))
+        points = points_of([(at.body, at.point) for at in held], self.references)
+        base, over = points.base.reshape(-1, 2).T, points.over.reshape(len(held), 2, -1).transpose(1, 0, 2)
         return Layout(
             links=tuple(chain.links for chain in self.chains),
             behind=behind,
             joints_back=tuple(slice(each.stop - 1, each.start - 2 if each.start > 1 else None, -1) for each in behind),
             next_joints=np.concatenate([np.arange(each.start, each.stop) for each in behind]),
             roots=roots,
-            places=Linear(base.ravel(), np.concatenate(list(over))),
+            places=Linear(base.ravel(), over.reshape(2 * len(held), -1)),
             moving=roots[on_bodies],
-            moved=Linear(base[:, on_bodies].ravel(), np.concatenate(list(over[:, on_bodies]))),
+            moved=Linear(base[:, on_bodies].ravel(), over[:, on_bodies].reshape(-1, over.shape[-1])),
         )
 
     @cached_property
@@ -316,7 +321,7 @@ class Fit:
 EVEN = Fit(frozendict(), frozendict())
 
 
-def build(scene: Scene, settings: Settings, fit: Fit = EVEN, known: Prepared | None = None) -> Model:
+def build(scene: Scene, settings: Settings, fit: Fit = EVEN, known: Outset | None = None) -> Model:
     """Cut every beam into elements, eqs. (2)-(3), and leave the units behind.
 
     Args:
@@ -329,7 +334,7 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN, known: Prepared | N
         SceneError: the numbers of links do not fit the scene's beams.
     """
     settings.check(scene)
-    own = prepared(scene) if known is None else known
+    own = outset_of(scene) if known is None else known
     unit_length = own.unit_length
     chains: list[Chain] = []
     first_link = first_joint = 0
@@ -376,7 +381,7 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN, known: Prepared | N
         couplings[chain.first_link : chain.first_link + chain.n] = 1.0 / chain.section.flexibility(chain.borders)
     rest = np.concatenate([chain.rest for chain in chains])
     return Model(
-        prepared=own,
+        outset=own,
         chains=tuple(chains),
         couplings=couplings,
         rest_turns=rest[1:] - rest[:-1],

@@ -718,7 +718,7 @@ def pair_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Pair:
     assert isinstance(contact, BeamContact)
     a, b = (model.chain(beam) for beam in contact.between)
     thinnest = float(a.section.thickness.min()), float(b.section.thickness.min())
-    standing = model.prepared.standing[name]
+    standing = model.outset.standing[name]
     return Pair(
         name=name,
         a=a,

@@ -12,6 +12,7 @@ begins there.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -69,16 +70,26 @@ class Panels:
 
 def panelled(speed: Callable[[Array], Array], ends: Array) -> Panels:
     """Panels that begin with those between ``ends`` and are halved until they are enough."""
-    found = Panels(ends, _summed(speed, ends), 1.0 / speed(ends), speed, fine=False)
+    found, times = Panels(ends, _summed(speed, ends), 1.0 / speed(ends), speed, fine=False), 1
     while len(found.v) <= MOST_PANELS and not found.fine:
-        v = np.empty(2 * len(found.v) - 1)
-        v[::2], v[1::2] = found.v, 0.5 * (found.v[1:] + found.v[:-1])
-        s = _summed(speed, v)
-        off = found._cubic(np.arange(len(found.v) - 1), s[1::2]) - v[1::2]
-        summed = np.max(np.abs(s[::2] - found.s)) <= SETTLED * s[-1]
-        fine = bool(summed and np.max(np.abs(off)) <= SETTLED * (v[-1] - v[0]))
-        found = Panels(v, s, 1.0 / speed(v), speed, fine)
+        v = found.v
+        for _ in range(times):
+            v = _halved(v)
+        s, each = _summed(speed, v), 1 << times
+        middle = each // 2
+        off = np.max(np.abs(found._cubic(np.arange(len(found.v) - 1), s[middle::each]) - v[middle::each]))
+        least = SETTLED * (v[-1] - v[0])
+        summed = np.max(np.abs(s[::each] - found.s)) <= SETTLED * s[-1]
+        found = Panels(v, s, 1.0 / speed(v), speed, fine=bool(summed and off <= least))
+        # cubics err by the fourth power of a panel's size: so many halvings are wanted at least, of which some are done
+        times = max(1, int(0.25 * math.log2(max(off / least, 1.0))) - times)
     return found
+
+
+def _halved(v: Array) -> Array:
+    finer = np.empty(2 * len(v) - 1)
+    finer[::2], finer[1::2] = v, 0.5 * (v[1:] + v[:-1])
+    return finer
 
 
 def _summed(speed: Callable[[Array], Array], v: Array) -> Array:

@@ -97,10 +97,8 @@ class PolynomialLine:
             g1 = g1 * v + self.slope[k]
             g = g * v + self.slope[k] / (k + 1)
         g = g * v
-        speed = np.hypot(1.0, g1)
-        tangent = np.empty(v.shape, dtype=complex)
-        tangent.real = (self.along[0] + g1 * self.across[0]) / speed
-        tangent.imag = (self.along[1] + g1 * self.across[1]) / speed
+        speed = np.sqrt(1.0 + g1 * g1)
+        tangent = (complex(*self.along) + complex(*self.across) * g1) / speed
         return Places(
             x=v * self.along[0] + g * self.across[0],
             y=v * self.along[1] + g * self.across[1],
@@ -119,11 +117,13 @@ class PolynomialLine:
 
 def speed(slope: Array, v: Array) -> Array:
     """ds/dv = √(1 + g'²)."""
-    g1: Array = slope[-1] + 0.0 * v
+    g1 = np.full(v.shape, slope[-1])
     for coefficient in slope[-2::-1]:
         g1 *= v
         g1 += coefficient
-    return np.hypot(1.0, g1)
+    g1 *= g1
+    g1 += 1.0
+    return np.asarray(np.sqrt(g1, out=g1))
 
 
 def polynomial_line(curve: Polynomial) -> PolynomialLine:

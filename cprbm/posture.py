@@ -19,6 +19,7 @@ in which small rotations stay exact, and of a body's φ
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 
@@ -81,17 +82,24 @@ class Linear:
         return both[..., :bodies], both[..., bodies:]
 
 
+def points_of(points: Sequence[tuple[int, tuple[float, float]]], references: Array) -> Linear:
+    """x and y of one point after the other, r on one of the bodies with ``references`` o (B, 2) or the ground (−1)."""
+    count, places = len(references), references.tolist()
+    base, over = list[float](), np.zeros((2 * len(points), 5 * count))
+    for row, (body, (px, py)) in enumerate(points):
+        ox, oy = places[body] if body >= 0 else (0.0, 0.0)
+        base += ox + px, oy + py
+        if body >= 0:
+            x, y = over[2 * row], over[2 * row + 1]
+            x[3 * body] = y[3 * body + 1] = 1.0
+            x[3 * count + body], y[3 * count + body] = px, py
+            x[4 * count + body], y[4 * count + body] = -py, px
+    return Linear(np.array(base), over)
+
+
 def point_of(body: int, point: tuple[float, float], references: Array) -> Linear:
-    """Both coordinates of a ``point``, r on one of the bodies with ``references`` o (B, 2) or the ground (−1)."""
-    count = len(references)
-    over = np.zeros((2, 5 * count))
-    if body < 0:
-        return Linear(np.array(point), over)
-    px, py = point
-    over[0, 3 * body] = over[1, 3 * body + 1] = 1.0
-    over[0, 3 * count + body], over[1, 3 * count + body] = px, py
-    over[0, 4 * count + body], over[1, 4 * count + body] = -py, px
-    return Linear(references[body] + point, over)
+    """Both coordinates of one point, as in :func:`points_of`."""
+    return points_of([(body, point)], references)
 
 
 def turn_of(body: int, count: int) -> Array:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm.model import Chain, Model
+from cprbm.model import Chain
 from scene import Mistake, Scene, SceneError
 from scene.answer import Ints
 
 
-def related_joints(scene: Scene, model: Model, contact: str, chain: Chain, fewest: int) -> Ints:
+def related_joints(scene: Scene, contact: str, chain: Chain, fewest: int) -> Ints:
     """The spring joints (1..N) of a beam that lie in a contact's related range; the beam's ends are never among them.
 
     Raises:
@@ -20,9 +20,9 @@ def related_joints(scene: Scene, model: Model, contact: str, chain: Chain, fewes
     related = None if hints is None else hints.related.get(chain.name)
     inner = np.arange(1, chain.n + 1)
     if related is not None:
-        x, y = chain.line.position(chain.s[1:-1] * model.unit_length)
         low, high = related.x or related.y or (-np.inf, np.inf)
-        along = x if related.x is not None else y
+        springs, line = chain.springs, chain.line
+        along = line.x0 + springs.x if related.x is not None else line.y0 + springs.y
         inner = inner[(along >= low) & (along <= high)]
         if inner.size and inner[-1] - inner[0] >= inner.size:
             found = "a range that holds two separate parts of the beam"

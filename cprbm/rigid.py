@@ -106,7 +106,7 @@ def rigid_circle(scene: Scene, model: Model, name: str) -> RigidCircle:
     contact = scene.contacts[name]
     assert isinstance(contact, CircleContact)
     chain, unit = model.chain(contact.beam), model.unit_length
-    joints = related_joints(scene, model, name, chain, fewest=1)
+    joints = related_joints(scene, name, chain, fewest=1)
     x, y = contact.center
     half = 0.5 * chain.section.thickness_at(chain.s[joints]) if contact.thick else np.zeros(len(joints))
     return RigidCircle(

@@ -126,7 +126,7 @@ def rigid_edge(scene: Scene, model: Model, edge: Edge) -> RigidEdge:
     Raises:
         SceneError: it has no related joint.
     """
-    joints = related_joints(scene, model, edge.name, edge.a, fewest=1)
+    joints = related_joints(scene, edge.name, edge.a, fewest=1)
     joints = joints[~np.isin(joints, _fixed(edge.a, edge.body))]
     half = 0.5 * edge.a.section.thickness_at(edge.a.s[joints]) if edge.offset > 0.0 else np.zeros(len(joints))
     return RigidEdge(edge, joints, half)

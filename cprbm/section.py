@@ -93,24 +93,31 @@ class Section:
 
 def section_of(beam: Beam, youngs_modulus: float, length: float, unit_length: float, unit_moment: float) -> Section:
     """The section of a ``beam`` of a ``length`` in metres; its modulus in Pa."""
-    u = beam.knots
-    between = [u]
-    for ends in (beam.thickness_at(u), beam.width_at(u)):
-        doublings = np.ceil(np.abs(np.log2(ends[1:] / ends[:-1])))
-        for k in np.flatnonzero(doublings > 1.0):
-            begin, stop = ends[k : k + 2]
-            sizes = np.geomspace(begin, stop, int(doublings[k]) + 1)[1:-1]
-            between.append(u[k] + (u[k + 1] - u[k]) * (sizes - begin) / (stop - begin))
-    fractions = np.unique(np.concatenate(between)) if len(between) > 1 else u
+    fractions = u = beam.knots
+    sizes = beam.thickness_at(u), beam.width_at(u)
+    if any(ends.max() > 2.0 * ends.min() for ends in sizes):
+        fractions = np.unique(np.concatenate([u, *(_between(u, ends) for ends in sizes)]))
+        sizes = beam.thickness_at(fractions), beam.width_at(fractions)
     return Section(
-        places=fractions * length / unit_length,
-        thickness=beam.thickness_at(fractions) / unit_length,
-        width=beam.width_at(fractions) / unit_length,
+        places=fractions * (length / unit_length),
+        thickness=sizes[0] / unit_length,
+        width=sizes[1] / unit_length,
         modulus=youngs_modulus * unit_length**3 / unit_moment,
     )
+
+
+def _between(u: Array, sizes: Array) -> Array:
+    """Fractions between the knots ``u`` (k,), between which ``sizes`` (k,) there do not more than double."""
+    found = [np.zeros(0)]
+    for k, doublings in enumerate(np.ceil(np.abs(np.log2(sizes[1:] / sizes[:-1]))).astype(int).tolist()):
+        if doublings > 1:
+            begin, stop = sizes[k : k + 2]
+            between = np.geomspace(begin, stop, doublings + 1)[1:-1]
+            found.append(u[k] + (u[k + 1] - u[k]) * (between - begin) / (stop - begin))
+    return np.concatenate(found)
 
 
 def largest_rigidity(beam: Beam, youngs_modulus: float) -> float:
     """The largest E·I of a beam at its places, N·m²."""
     u = beam.knots
-    return float(np.max(youngs_modulus * beam.width_at(u) * beam.thickness_at(u) ** 3)) / 12.0
+    return youngs_modulus * float((beam.width_at(u) * beam.thickness_at(u) ** 3).max()) / 12.0

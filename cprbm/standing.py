@@ -81,34 +81,42 @@ def standing(one: Side, other: Side, unit_length: float, *, thick: bool) -> Stan
     x, y = A.x + (one.line.x0 - other.line.x0), A.y + (one.line.y0 - other.line.y0)
     squares = (x[:, None] - B.x) ** 2 + (y[:, None] - B.y) ** 2
     back_x, back_y = B.x + (other.line.x0 - one.line.x0), B.y + (other.line.y0 - one.line.y0)
-    close = CLOSE * unit_length
-    side = _side(x, y, other.line, B, squares.argmin(axis=1), close)
-    across = _side(back_x, back_y, one.line, A, squares.argmin(axis=0), close)
+    side = _side(x, y, other.line, B, squares.argmin(axis=1), unit_length)
+    across = _side(back_x, back_y, one.line, A, squares.argmin(axis=0), unit_length)
     mine, its = _ends(one, A, unit_length, thick=thick), _ends(other, B, unit_length, thick=thick)
     return Standing(side, across, (_clamped(mine, its, side), _clamped(its, mine, across)))
 
 
-def _side(x: Array, y: Array, line: NeutralLine, sampled: Places, nearest: Ints, close: float) -> float:
+def _side(x: Array, y: Array, line: NeutralLine, sampled: Places, nearest: Ints, unit_length: float) -> float:
     """+1 where places ``x``, ``y`` (k,) lie on the left of B where they are closest to it, else −1.
 
     Of B some places are ``sampled``, of which those ``nearest`` (k,) to the others are known.
     """
-    step = line.length / (PLACES - 1)
-    sigma, B = step * nearest, sampled.only(nearest)
+    step, close = line.length / (PLACES - 1), CLOSE * unit_length
+    B, sigma = sampled.only(nearest), step * nearest
+    along, across = _seen(x, y, B)
+    k = int((along * along + across * across).argmin())
+    if step < abs(across[k]) > abs(along[k]) and 0 < nearest[k] < PLACES - 1:
+        return math.copysign(1.0, across[k])  # so far off that a foot beside the nearest place sees it no otherwise
     for _ in range(ITERATIONS):
-        rx, ry, cos, sin = x - B.x, y - B.y, B.tangent.real, B.tangent.imag
-        along, across = cos * rx + sin * ry, cos * ry - sin * rx
         left = along / np.maximum(1.0 - B.curvature * across, LEAST)
         left /= 1.0 + (B.curvature * left) ** 2 / 3.0
         ahead = np.minimum(np.maximum(sigma + np.minimum(np.maximum(left, -step), step), 0.0), line.length)
         if np.abs(ahead - sigma).max() < close:
             break
         sigma, B = ahead, line.at(ahead)
+        along, across = _seen(x, y, B)
     size = np.abs(across)
     foot = np.abs(along) <= PARALLEL * np.maximum(size, step)
     if foot.any():
         size[~foot] = np.inf
     return 1.0 if across[size.argmin()] >= 0.0 else -1.0
+
+
+def _seen(x: Array, y: Array, B: Places) -> tuple[Array, Array]:
+    """t·r and n·r (k,) of places ``x``, ``y`` (k,) in the frames of places of B."""
+    r = ((x - B.x) + 1j * (y - B.y)) * B.tangent.conj()
+    return r.real, r.imag
 
 
 class _End(NamedTuple):

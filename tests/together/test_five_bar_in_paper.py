@@ -29,7 +29,7 @@ def test_the_ranges_name_the_papers_joints(scene):
     model = build(scene, cprbm.Settings(formulation="paper"))
     for contact, beams in JOINTS.items():
         for beam, (first, last) in beams.items():
-            found = related_joints(scene, model, contact, model.chain(beam), fewest=1)
+            found = related_joints(scene, contact, model.chain(beam), fewest=1)
             assert (found[0], found[-1], len(found)) == (first, last, last - first + 1)
 
 

@@ -31,7 +31,7 @@ from scene.statement import BeamMoment
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Prepared:
+class Outset:
     """A scene's beams, bodies and contacts for all meshes; by name what is not said to be otherwise.
 
     Attributes:
@@ -62,7 +62,7 @@ class Prepared:
     standing: Mapping[str, Standing]
 
 
-def prepared(scene: Scene) -> Prepared:
+def outset_of(scene: Scene) -> Outset:
     """What every mesh of a ``scene`` is made of."""
     lines = {name: neutral_line(beam.curve) for name, beam in scene.beams.items()}
     unit_length = max(line.length for line in lines.values())
@@ -99,7 +99,7 @@ def prepared(scene: Scene) -> Prepared:
         one, other = (Side(lines[name], sections[name], (starts[name], ends[name])) for name in of.between)
         return standing(one, other, unit_length, thick=of.thick)
 
-    return Prepared(
+    return Outset(
         lines=lines,
         moduli=moduli,
         sections=sections,
