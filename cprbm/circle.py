@@ -124,7 +124,7 @@ class Circle:
         turns = np.diff(state.theta[self.a.links])
         longest = float(self.a.sizes.max())
         sag = 0.25 * longest * float(np.abs(turns).max())
-        thicker = float(self._half(self.a.s).max()) - self.offset
+        thicker = float(self.half(self.a.s).max()) - self.offset
         return rho - min(0.5 * longest, longest**2 / (4.0 * max(rho, CLOSE))) - sag - self.radius - thicker
 
     def widening(self, s: Array) -> Array:

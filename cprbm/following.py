@@ -132,7 +132,7 @@ class Follower:
             if ending is Ending.COMPLETED:
                 accept(found.point, values)
                 self.point, self.values, done, here = found.point, values, fraction, there
-                self.trail = [*self.trail[-TRAIL:], Minimum(way.value(fraction), self.point, certificate)]
+                self.trail = [*self.trail[-TRAIL:], Minimum(way.value(fraction), self.point.bare, certificate)]
                 if fraction == 1.0:
                     return Reached(ending, "", replace(certificate, iterations=iterations))
                 step = self._cut(way, done, GROWTH * step) if refused else GROWTH * step

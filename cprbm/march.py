@@ -238,7 +238,7 @@ class March:
         mechanism, point, certificate = found
         spent, self.spent = self.spent, 0
         if mechanism is not self.on.mechanism:
-            self.stood = [*self.stood[1 - KEPT :], (value, mechanism, point)]
+            self.stood = [*self.stood[1 - KEPT :], (value, mechanism, point.bare)]
         # what is open on the march's mesh may be closed on this one
         self._note_closings(stage.name, stage.steps, point, value)
         self.remarks.look(mechanism, point, f"{stage.name} {value:.6g}")
@@ -355,7 +355,7 @@ class March:
             if station is not None:
                 fit, known = self.before.get(turn, (target.fit, []))
                 kept = known[1 - KEPT :] if alike(fit, target.fit) else []
-                self.before[turn] = target.fit, [*kept, (station, point)]
+                self.before[turn] = target.fit, [*kept, (station, point.bare)]
         if found is None or found.converged:
             return mechanism, point, found
         # of meshes on which the state is only near, the last that has one; on one that fits a little less it may stand

@@ -11,7 +11,7 @@ c, λ        contact constraints c ≤ 0 and forces λ ≥ 0, :mod:`cprbm.contac
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -121,6 +121,11 @@ class Point:
     A_E: Array
     work: LoadWork
     systems: list[tuple[Problem, System]] = field(default_factory=list, init=False, repr=False, compare=False)
+
+    @property
+    def bare(self) -> Point:
+        """The same without what was worked out from it, for those who keep many."""
+        return replace(self)
 
     @cached_property
     def slopes(self) -> Array:
