@@ -184,7 +184,7 @@ class Clearances:
 
     def near(self, state: State, at: Positions) -> list[str]:
         """Names of the contacts that may have rows, in the scene's order."""
-        return self._named(self.at(state, at) < self.reach)
+        return self._named(self.at(state, at) < self.reach) if self.names else []
 
     def may_pass(self, before: tuple[State, Positions], after: tuple[State, Positions]) -> list[str]:
         """Names of the contacts that something may go through between two states, the unknowns going evenly."""
