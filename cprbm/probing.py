@@ -43,7 +43,7 @@ def _value(
             return resultant(point, probe.of, first) * model.unit_force
         case "centre":
             arc, pressing = contact_pressure(point, probe.of, model.chain(scene.contacts[probe.of].beams[0]))
-            return float(pressing @ arc / pressing.sum()) * model.unit_length if pressing.size else []
+            return float((pressing / pressing.sum()) @ arc) * model.unit_length if pressing.size else []
         case "ends":
             zones = zones_of(mechanism.pairs[probe.of], point)
             return [zones[0].begin * model.unit_length, zones[-1].end * model.unit_length] if zones else []
