@@ -35,6 +35,7 @@ from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAns
 
 AGAIN = 12  # iterations on a mesh that fits a little better
 LAST = 4  # meshes less one, on one of which there is an equilibrium
+FITS, TURNS = 5, 2  # PASSES and STRAIGHT where contacts are long
 PASSES = 8  # of fitting the mesh to where contact is, at most
 STRAIGHT = 6  # of them before two that take turns are eased
 BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is no doubt that it has ended
@@ -327,7 +328,11 @@ class March:
             zones = all_zones(mechanism, point)
             if settings is not asked and not long_ones(zones):
                 continue  # a few places need no mesh between the coarsest and the finest
-            fit = fitted(mechanism, point, zones, settings, eased=turn > len(meshes) - PASSES + STRAIGHT)
+            passes, straight = (FITS, TURNS) if long_ones(zones) else (PASSES, STRAIGHT)
+            turns = turn - (len(meshes) - PASSES)
+            if turns >= passes:
+                break
+            fit = fitted(mechanism, point, zones, settings, eased=turns > straight)
             if settings is now and fits(mechanism, fit):
                 if found is None or found.converged:
                     break
@@ -339,7 +344,9 @@ class March:
             target = mechanism_of(self.scene, settings, fit, mechanism)
             carried = carried_state(mechanism.problem.model, point.state, target.problem.model)
             solved = self._resumed(turn, target, carried, values, station)
-            if solved is None and now is asked and mechanism is not self.on.mechanism:
+            # from the march's own mesh, fitted ones may take turns for good, and which is the last would hang on round-off
+            # if they were solved only nearly; from one that fitted at the last station they do not
+            if solved is None and now is asked and mechanism is not self.on.mechanism and station is None:
                 solved = self._nearly(target, values, carried_over(mechanism, point, target, values))
             if solved is None:
                 # the first mesh, or one for other zones, may settle which places there are; the next ones know them

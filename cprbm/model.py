@@ -241,7 +241,10 @@ class Model:
             roots=roots,
             places=Linear(base.ravel(), over.reshape(2 * len(held), -1)),
             moving=roots[on_bodies],
-            moved=Linear(base[:, on_bodies].ravel(), over[:, on_bodies].reshape(-1, over.shape[-1])),
+            moved=Linear(
+                base[:, on_bodies].ravel(),
+                over[:, on_bodies].reshape(2 * int(on_bodies.sum()), 5 * len(self.free_bodies)),
+            ),
         )
 
     @cached_property
