@@ -521,7 +521,8 @@ class March:
     def _misled(self, pressures: Mapping[Contact, float]) -> bool:
         """Whether a lead belongs to another pressure than the axial forces give."""
         return any(
-            abs(pressure - self.penalties[pair].lead * self.penalties[pair].stiffness) > _LED * pressure
+            abs(pressure / self.penalties[pair].stiffness - self.penalties[pair].lead)
+            > _LED * max(pressure / self.penalties[pair].stiffness, self.settings.penetration * pair.scale)
             for pair, pressure in pressures.items()
         )
 
@@ -532,7 +533,7 @@ class March:
         """
         allowed = self.settings.penetration
         return {
-            one.pair: max(one.penetration, allowed * one.pair.scale)
+            one.pair: one.penetration if one.push > 0.0 else allowed * one.pair.scale
             for one in self.system.touches
             if isinstance(one.pair, Pair)
             and one.zones.least <= _CLOSED * one.pair.scale
