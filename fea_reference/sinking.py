@@ -99,7 +99,8 @@ def sunk(
 
 def _opening(model: Model, system: System, one: Touch) -> Array | None:
     """v, (size,)."""
-    c = np.bincount(one.dofs.ravel(), one.mean.ravel(), model.size)
+    c = np.zeros(model.size)
+    np.add.at(c, one.dofs, one.mean)
     v = system.solve(c)
     if v is None:
         return None
