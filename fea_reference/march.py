@@ -31,6 +31,7 @@ _SETTLINGS = 8
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
 _NEARBY = (1e-3, 1e-2, 1e-1)  # of a step: where to look for a closing under tighter penalties
 _DEEPER = 1e-3  # of the shortest element: by how much a contact sinks that is about to be passed
+_THROUGH = 0.5  # of the thickness: a way on which nothing passes through it unseen
 _CLOSED = 1e-9  # of the thickness, a gap that is none
 _AT_LIMIT = 1e-10  # rad: by which an angle may be beyond its limit before its stop closes
 _PULLS = 1e-9  # of the largest force or of EI/length: with which a stop may pull before it lets go
@@ -292,7 +293,8 @@ class March:
         if least > 2.0 * moved:
             return False
         deepest = least - _DEEPER * self._finest if least < 0.0 else 0.0
-        parts = max(2, int(np.ceil(moved / self._finest)))
+        thick = min(pair.distance, pair.scale) if isinstance(pair, Pair) else 0.0
+        parts = max(2, int(np.ceil(moved / max(self._finest, _THROUGH * thick))))
         pace = against(self.model, pair, before, after) / parts
 
         def overlaps(first: int, last: int) -> bool:
@@ -521,18 +523,19 @@ class March:
     def _misled(self, pressures: Mapping[Contact, float]) -> bool:
         """Whether a lead belongs to another pressure than the axial forces give."""
         return any(
-            abs(pressure - self.penalties[pair].lead * self.penalties[pair].stiffness) > _LED * pressure
+            abs(pressure / self.penalties[pair].stiffness - self.penalties[pair].lead)
+            > _LED * max(pressure / self.penalties[pair].stiffness, self.settings.penetration * pair.scale)
             for pair, pressure in pressures.items()
         )
 
     def depths(self) -> dict[Contact, float]:
-        """The penetrations of the closed contacts of beams; of those just closed, what they will be allowed.
+        """The penetrations of the closed contacts of beams; of those that do not press yet, what they will be allowed.
 
         A contact in search of its zone is none of them: its penalty is soft enough to be let go.
         """
         allowed = self.settings.penetration
         return {
-            one.pair: max(one.penetration, allowed * one.pair.scale)
+            one.pair: one.penetration if one.push > 0.0 else allowed * one.pair.scale
             for one in self.system.touches
             if isinstance(one.pair, Pair)
             and one.zones.least <= _CLOSED * one.pair.scale

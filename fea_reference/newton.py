@@ -17,7 +17,7 @@ convergence (Magisano, Leonetti and Garcea, Comput. Methods Appl. Mech. Engrg. 3
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +28,7 @@ from fea_reference.hermite import Index
 from fea_reference.linesearch import searched
 from fea_reference.model import Model
 from fea_reference.settings import Settings
+from fea_reference.sinking import known_depths, sunk
 from fea_reference.state import State
 from fea_reference.system import Drag, System, assemble
 from fea_reference.touch import Contact, Penalty, Touch
@@ -79,6 +80,11 @@ def equilibrium(
     held = {one.pair: depths[one.pair] for one in system.touches if _to_hold(one, depths, before)}
     if held:
         system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
+    known = known_depths(system, depths, before)
+
+    def settled_at(system: System, z: State) -> State:
+        return sunk(model, penalties, settings.quadrature, system, z, foreseen, known)
+
     while True:
         unbalanced = float(np.abs(system.residual).max())
         accepted = max(settings.residual * system.scale, system.floor)
@@ -101,10 +107,10 @@ def equilibrium(
         step *= min(1.0, _TURN / max(correction, _TURN))
         foreseen = {one.pair: one.foreseen(step) for one in system.touches}
         if penalties and not held and unbalanced > accepted:
-            system = _along(model, settings, penalties, values, system, step, moving, foreseen, drag)
+            system = _along(model, settings, penalties, values, system, step, moving, foreseen, drag, settled_at)
             z = system.z
         else:
-            z = advance(model, z, step)
+            z = settled_at(system, advance(model, z, step))
             system = assemble(model, penalties, settings.quadrature, values, z, acting, held, foreseen, drag)
         settled = iteration >= _HELD or correction < _SETTLED
         lost = [one.pair for one in system.touches if _lost(one, depths, foreseen) and one.pair not in held]
@@ -151,6 +157,7 @@ def _along(
     moving: Index,
     foreseen: Mapping[Contact, Array],
     drag: Drag | None,
+    settled_at: Callable[[System, State], State],
 ) -> System:
     """The system after as much of ``step`` as lowers the energy; forces take all of theirs."""
     forces = step.copy()
@@ -159,6 +166,8 @@ def _along(
 
     def after(fraction: float) -> System:
         z = advance(model, system.z, forces + fraction * motions)
+        if fraction == 1.0:
+            z = settled_at(system, z)
         return assemble(model, penalties, settings.quadrature, values, z, system.acting, {}, foreseen, drag)
 
     def slope(there: System) -> float:

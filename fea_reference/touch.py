@@ -210,6 +210,11 @@ class Touch:
         """Of the penalty's energy by the unknowns, (M, c)."""
         return self.chain.gradient(self._summed(-self.pushes * self.gap_by))
 
+    @property
+    def mean(self) -> Array:
+        """Of the points' gaps by their stiffness, by the unknowns, (M, c)."""
+        return self.chain.gradient(self._summed(self.stiffness / self.stiffness.sum() * self.gap_by))
+
     def hessian(self, pushes: Array) -> Array:
         """Of the penalty's energy by the unknowns, (M, M, c), if the points push with ``pushes`` (k,)."""
         local = self.stiffness * self.gap_by[:, None] * self.gap_by[None, :] - pushes * self.gap_by_twice
