@@ -344,8 +344,8 @@ class March:
             target = mechanism_of(self.scene, settings, fit, mechanism)
             carried = carried_state(mechanism.problem.model, point.state, target.problem.model)
             solved = self._resumed(turn, target, carried, values, station)
-            # from the march's own mesh, fitted ones may take turns for good, and which is the last would hang on round-off
-            # if they were solved only nearly; from one that fitted at the last station they do not
+            # from the march's own mesh, fitted ones may take turns for good, and if they were solved only nearly, which
+            # is the last would hang on round-off; from one that fitted at the last station they do not
             if solved is None and now is asked and mechanism is not self.on.mechanism and station is None:
                 solved = self._nearly(target, values, carried_over(mechanism, point, target, values))
             if solved is None:

@@ -28,7 +28,7 @@ from frozendict import frozendict
 
 import cprbm.circle
 import cprbm.mechanism
-import cprbm.nearest
+import cprbm.standing
 import fea_reference.circle
 import fea_reference.contact
 import fea_reference.model
@@ -184,7 +184,7 @@ SIDED = [
 
 @pytest.mark.parametrize("case", SIDED)
 def test_a_contact_of_the_wrong_sign_in_the_cprbm(case, monkeypatch):
-    monkeypatch.setattr(cprbm.nearest, "_side", _turned(cprbm.nearest._side))
+    monkeypatch.setattr(cprbm.standing, "_side", _turned(cprbm.standing._side))
     if any(isinstance(contact, CircleContact) for contact in SCENES[case].contacts.values()):
         monkeypatch.setattr(cprbm.circle.Circle, "distance", _turned(cprbm.circle.Circle.distance))
     assert word(case, "cprbm", asked_in_vain(case, "cprbm")) is not Word.AGREE
