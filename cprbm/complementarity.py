@@ -24,6 +24,7 @@ from scene.answer import Array, Flags, Ints
 
 PATIENCE = 4
 RIGID = 1e-13  # of the largest compliance
+TRACE = 1e-13  # of every row's own compliance
 
 
 def pressing(G: Array, b: Array, first: Flags) -> tuple[Array, Flags]:
@@ -46,7 +47,7 @@ def pressing(G: Array, b: Array, first: Flags) -> tuple[Array, Flags]:
     scale = np.sqrt(compliance)
     # rows in units of their own compliance; a trace of the identity parts rows that are the same twice
     H = G / (scale * scale[:, None])
-    H.flat[:: m + 1] += 1e-13
+    H.flat[:: m + 1] += TRACE
     c = b / scale
     active = first.copy()
     fewest, patience = m + 1, PATIENCE
@@ -60,14 +61,22 @@ def pressing(G: Array, b: Array, first: Flags) -> tuple[Array, Flags]:
         wrong = np.where(active, force, gap) < -slack
         count = int(np.count_nonzero(wrong))
         if count == 0:
-            return np.maximum(force, 0.0) / scale, active
+            return _sharpened(H, force, active) / scale, active
         if count < fewest:
             fewest, patience = count, PATIENCE
         else:
             patience -= 1
         active = active ^ wrong
     force, active = _descended(H, c, first, slack)
-    return force / scale, active
+    return _sharpened(H, force, active) / scale, active
+
+
+def _sharpened(H: Array, force: Array, active: Flags) -> Array:
+    """Forces (m,) without what the trace leaves the gaps open by."""
+    held = active.nonzero()[0]
+    if held.size:
+        force[held] += _balancing(H, TRACE * force, held)
+    return np.maximum(force, 0.0)
 
 
 def _balancing(H: Array, c: Array, held: Ints) -> Array:
