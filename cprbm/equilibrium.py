@@ -12,7 +12,7 @@ import numpy as np
 
 from cprbm.energy import spring_moments
 from cprbm.kinematics import most_turned
-from cprbm.newton import knows_system, many, newton_step, own_system
+from cprbm.newton import known_system, many, newton_step
 from cprbm.point import Point, Problem, point_at, point_under
 
 LONGEST_TURN = 0.5  # of any link in one iteration, rad
@@ -125,13 +125,10 @@ def _serves(problem: Problem, before: Point, point: Point, left: float, toleranc
 
     That is the residual times the length of the last step: by so much the system is another.
     """
-    return (
-        left <= tolerance
-        and not many(point.rows)
-        and point.rows.same(before.rows)
-        and knows_system(problem, before)
-        and own_system(problem, before).convex
-    )
+    if not left <= tolerance or many(point.rows) or not point.rows.same(before.rows):
+        return False
+    known = known_system(problem, before)
+    return known is not None and known.convex
 
 
 def _returns(seen: list[float], residual: float) -> bool:

@@ -326,9 +326,10 @@ class March:
         asked, seen = self.family[-1], [(mechanism, found)] if found is not None else []
         for turn, settings in enumerate(meshes):
             zones = all_zones(mechanism, point)
-            if settings is not asked and not long_ones(zones):
+            long = long_ones(zones)
+            if settings is not asked and not long:
                 continue  # a few places need no mesh between the coarsest and the finest
-            passes, straight = (FITS, TURNS) if long_ones(zones) else (PASSES, STRAIGHT)
+            passes, straight = (FITS, TURNS) if long else (PASSES, STRAIGHT)
             turns = turn - (len(meshes) - PASSES)
             if turns >= passes:
                 break

@@ -198,17 +198,16 @@ def own_system(problem: Problem, point: Point) -> System:
     Raises:
         np.linalg.LinAlgError: the tridiagonal part is exactly singular.
     """
-    for its, found in point.systems:
-        if its is problem:
-            return found
-    found = system(problem, point, np.zeros(point.rows.size), 0.0)
-    point.systems.append((problem, found))
+    found = known_system(problem, point)
+    if found is None:
+        found = system(problem, point, np.zeros(point.rows.size), 0.0)
+        point.systems.append((problem, found))
     return found
 
 
-def knows_system(problem: Problem, point: Point) -> bool:
-    """Whether :func:`own_system` has been asked."""
-    return any(its is problem for its, _ in point.systems)
+def known_system(problem: Problem, point: Point) -> System | None:
+    """What :func:`own_system` hands out, if it has been asked before."""
+    return next((found for its, found in point.systems if its is problem), None)
 
 
 def _convex_system(problem: Problem, point: Point) -> System:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
 from scipy import optimize
 
 from comparisons.peers.formulas import Formulas
-from comparisons.peers.solving import LATE, Clock, Solve, Solved, TimeIsUpError
+from comparisons.peers.solving import Clock, Solve, by_scipy
 
 if TYPE_CHECKING:
     from comparisons.pairing import Discretised
@@ -26,24 +25,17 @@ def prepared(problem: Discretised, seconds: float) -> Solve:
     if len(formulas.contact(formulas.rest)):
         constraints.append({"type": "ineq", "fun": lambda z: -formulas.contact(z)})
 
-    def solve() -> Solved:
-        clock = Clock(seconds)
-        try:
-            # SciPy's own standard differences, forward, of everything: what a user of the paper's formulas has
-            found = optimize.minimize(
-                formulas.energy,
-                formulas.rest,
-                jac="2-point",
-                method="SLSQP",
-                constraints=constraints,
-                callback=clock,
-                options={"maxiter": MOST, "ftol": STOPS_AT},
-            )
-        except TimeIsUpError as up:
-            return Solved(up.z, up.iterations, LATE)
-        except np.linalg.LinAlgError:
-            return Solved(formulas.rest, clock.iterations, "no curve can be fitted where it went")
-        # how it ends is judged by the residual alone: at the end of its digits it says that a line search has failed
-        return Solved(np.asarray(found.x), int(found.nit))
+    def minimised(clock: Clock) -> optimize.OptimizeResult:
+        # SciPy's own standard differences, forward, of everything: what a user of the paper's formulas has
+        return optimize.minimize(
+            formulas.energy,
+            formulas.rest,
+            jac="2-point",
+            method="SLSQP",
+            constraints=constraints,
+            callback=clock,
+            options={"maxiter": MOST, "ftol": STOPS_AT},
+        )
 
-    return solve
+    # how it ends is judged by the residual alone: at the end of its digits it says that a line search has failed
+    return lambda: by_scipy(minimised, formulas.rest, seconds)

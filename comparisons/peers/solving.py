@@ -7,9 +7,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from scene.answer import Array
 
 if TYPE_CHECKING:
+    from scipy.optimize import OptimizeResult
+
     from comparisons.pairing import Discretised
 
 
@@ -51,3 +55,21 @@ class Clock:
         self.iterations += 1
         if time.process_time() > self.until:
             raise TimeIsUpError(z.copy(), self.iterations)
+
+
+def by_scipy(minimised: Callable[[Clock], OptimizeResult], rest: Array, seconds: float) -> Solved:
+    """What one of SciPy's optimisers comes to from the state ``rest`` in so many ``seconds`` of the processor.
+
+    Args:
+        minimised: runs it with a clock for its callback.
+        rest: where it begins (n_z,).
+        seconds: after which it is ended.
+    """
+    clock = Clock(seconds)
+    try:
+        found = minimised(clock)
+    except TimeIsUpError as up:
+        return Solved(up.z, up.iterations, LATE)
+    except np.linalg.LinAlgError:
+        return Solved(rest, clock.iterations, "no curve can be fitted where it went")
+    return Solved(np.asarray(found.x), int(found.nit))

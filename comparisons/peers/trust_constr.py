@@ -8,7 +8,7 @@ import numpy as np
 from scipy import optimize
 
 from comparisons.peers.formulas import Formulas
-from comparisons.peers.solving import LATE, Clock, Solve, Solved, TimeIsUpError
+from comparisons.peers.solving import Clock, Solve, by_scipy
 
 if TYPE_CHECKING:
     from comparisons.pairing import Discretised
@@ -40,23 +40,16 @@ def prepared(problem: Discretised, seconds: float) -> Solve:
             )
         )
 
-    def solve() -> Solved:
-        clock = Clock(seconds)
-        try:
-            found = optimize.minimize(
-                formulas.energy,
-                formulas.rest,
-                jac=formulas.energy_slope,
-                hess=formulas.energy_second,
-                method="trust-constr",
-                constraints=constraints,
-                callback=clock,
-                options=OPTIONS,
-            )
-        except TimeIsUpError as up:
-            return Solved(up.z, up.iterations, LATE)
-        except np.linalg.LinAlgError:
-            return Solved(formulas.rest, clock.iterations, "no curve can be fitted where it went")
-        return Solved(np.asarray(found.x), int(found.nit))
+    def minimised(clock: Clock) -> optimize.OptimizeResult:
+        return optimize.minimize(
+            formulas.energy,
+            formulas.rest,
+            jac=formulas.energy_slope,
+            hess=formulas.energy_second,
+            method="trust-constr",
+            constraints=constraints,
+            callback=clock,
+            options=OPTIONS,
+        )
 
-    return solve
+    return lambda: by_scipy(minimised, formulas.rest, seconds)
