@@ -30,6 +30,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.faces import Face, Seen
+from scene import LineContact
 from scene.answer import Array
 
 NEAREST = 1e-9  # of ℓ: ends of pieces that are closer are one
@@ -69,6 +70,18 @@ class Corner:
         # along what comes before it, and against what follows
         ahead, back = by * normals[:, 0] - bx * normals[:, 1], fx * normals[:, 1] - fy * normals[:, 0]
         return np.asarray(np.minimum(ahead, back) / size)
+
+
+def stands_out(line: LineContact) -> bool:
+    """Whether a line stands out somewhere between its ends, told from its points alone."""
+    points = np.array(line.points)
+    along = np.diff(points, axis=0)
+    along /= np.hypot(along[:, 0], along[:, 1])[:, None]
+    if line.closed:
+        along = np.concatenate((along, along[:1]))
+    turning = along[:-1, 0] * along[1:, 1] - along[:-1, 1] * along[1:, 0]
+    away = -turning if line.side == "left" else turning
+    return bool(np.any(away > JUTTING))
 
 
 def corners_of(faces: Sequence[Face]) -> tuple[Corner, ...]:

@@ -14,6 +14,7 @@ from cprbm.circle import Circle, circle_of
 from cprbm.clearance import Clearances, clearances_of
 from cprbm.closure import closure_of
 from cprbm.contact import Formulation, Group, Rows
+from cprbm.corner import stands_out
 from cprbm.edge import Edge, edge_of
 from cprbm.energy import dead_loads, end_moments
 from cprbm.hinging import hinges_of
@@ -34,9 +35,9 @@ from cprbm.strands import NO_FACES
 from scene import (
     BeamContact,
     CircleContact,
-    FunctionContact,
-    HalfPlaneContact,
+    LineContact,
     Mistake,
+    RigidContact,
     Scene,
     SceneError,
     SelfContact,
@@ -254,11 +255,12 @@ def _boundary(scene: Scene, model: Model, pair: AnyPair, settings: Settings) -> 
 
 def _refused(scene: Scene, model: Model, boundaries: Mapping[str, Boundary], name: str) -> None:
     """Raise what making a contact's boundary would, and make it now where nothing less tells."""
-    match scene.contacts[name]:
-        case CircleContact(beam=beam) | HalfPlaneContact(beam=beam) | FunctionContact(beam=beam):
-            related_joints(scene, name, model.chain(beam), fewest=1)
-        case _:
-            boundaries[name]
+    contact = scene.contacts[name]
+    cornered = isinstance(contact, LineContact) and stands_out(contact)
+    if isinstance(contact, RigidContact) and not cornered:
+        related_joints(scene, name, model.chain(contact.beam), fewest=1)
+    else:
+        boundaries[name]
 
 
 def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN, before: Mechanism | None = None) -> Mechanism:

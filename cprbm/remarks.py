@@ -33,10 +33,8 @@ class Remarks:
 
     def look(self, mechanism: Mechanism, point: Point, where: str) -> None:
         """Look at a station, which is known as ``where``."""
-        closed = pressing(point) if mechanism.boundaries else frozenset()
-        for name, boundary in mechanism.boundaries.items():
-            if name not in closed:
-                continue
+        for name in sorted(pressing(point) & mechanism.boundaries.keys()):
+            boundary = mechanism.boundaries[name]
             if isinstance(boundary, RigidEdge) and boundary.presses_beside_own_pin(point):
                 self.beside_pins.setdefault(name, where)
             if isinstance(boundary, FittedBoundary) and boundary.approximates:
@@ -44,7 +42,7 @@ class Remarks:
                 self.misfits[name] = max(now, self.misfits.get(name, now), key=lambda seen: seen[0])
 
     def told(self, mechanism: Mechanism, point: Point) -> list[str]:
-        """Sentences of all that was seen, and of where the boundaries are at the last ``point``."""
+        """Sentences of all that was seen, and of where the boundaries near by are at the last ``point``."""
         unit = mechanism.problem.model.unit_length
         said = [
             f"in contact '{name}', from {first} on, the joint next to the beam's own pin presses: it holds the chord "
@@ -56,7 +54,9 @@ class Remarks:
             f"at {where}: more links do not take that away"
             for name, (most, where) in self.misfits.items()
         ]
-        for name, boundary in mechanism.boundaries.items():
+        near = mechanism.near(point.state, point.at) if mechanism.boundaries else []
+        for name in near:
+            boundary = mechanism.boundaries[name]
             if not isinstance(boundary, FittedBoundary):
                 continue
             own = contact_imbalance(mechanism.problem, point, name)

@@ -56,8 +56,9 @@ def last_station(name: str) -> Scene:
     return scene.model_copy(update={"stages": stages})
 
 
-def test_far_obstacles_change_nothing_and_are_never_made(monkeypatch):
-    scene = last_station("hinge")
+@pytest.mark.parametrize("formulation", ["auto", "paper"])
+def test_far_obstacles_change_nothing_and_are_never_made(monkeypatch, formulation):
+    scene, settings = last_station("hinge"), cprbm.Settings(links=21, formulation=formulation)
     made: list[str] = []
 
     def noted(make):
@@ -65,8 +66,8 @@ def test_far_obstacles_change_nothing_and_are_never_made(monkeypatch):
 
     for what in ("circle_of", "edge_of", "pair_of"):
         monkeypatch.setattr(mechanism, what, noted(getattr(mechanism, what)))
-    alone = cprbm.answer(scene, SMALL)
-    crowded = cprbm.answer(with_more(scene, obstacles(scene, 2.0, 50, "AC")), SMALL)
+    alone = cprbm.answer(scene, settings)
+    crowded = cprbm.answer(with_more(scene, obstacles(scene, 2.0, 50, "AC")), settings)
     assert crowded.ending is Ending.COMPLETED
     assert set(made) == {"contact"}
     (one,), (other,) = alone.stations, crowded.stations
