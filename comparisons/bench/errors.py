@@ -4,7 +4,8 @@
 symbol      meaning
 ==========  ==============================================================================================
 v, v*       values of a probe at the last station, and the reference
-scale       the larger of |v*| and a thousandth of the largest |v*| of its quantity: a probe may vanish by symmetry
+scale       the largest of |v*|, of a thousandth of the largest |v*| of its quantity, since a probe may vanish by
+            symmetry, and of 1e-7 of its natural scale (:mod:`comparisons.scales`), since all may
 e           largest |v − v*| / scale over the probes of a measure
 U           the same of the reference's own uncertainty; zero where it is exact
 ==========  ==============================================================================================
@@ -26,6 +27,7 @@ from comparisons.bench.question import MEASURES, Measure, measure_of
 from comparisons.choices import Choices
 from comparisons.converging.limits import limit
 from comparisons.pairing import Solvers
+from comparisons.scales import SMALLEST_EVENT, natural_scale
 from scene import Scene, SceneError
 from scene.answer import Array
 
@@ -92,7 +94,8 @@ def _worst(scene: Scene, known: Reference, apart: Mapping[str, float]) -> Mappin
     found: dict[Measure, float] = {}
     for probe in scene.probes:
         measure = measure_of(scene, probe)
-        scale = max(sizes.get(probe.name, 0.0), SMALL * largest[probe.quantity])
-        if measure is not None and probe.name in apart and scale > 0.0:
+        if measure is not None and probe.name in apart:
+            natural = natural_scale(scene, probe.quantity, scene.stages[-1], contact=probe.of)
+            scale = max(sizes[probe.name], SMALL * largest[probe.quantity], SMALLEST_EVENT * natural)
             found[measure] = max(found.get(measure, 0.0), apart[probe.name] / scale)
     return frozendict({measure: found[measure] for measure in MEASURES if measure in found})
