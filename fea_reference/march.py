@@ -34,6 +34,8 @@ _DEEPER = 1e-3  # of the shortest element: by how much a contact sinks that is a
 _THROUGH = 0.5  # of the thickness: a way on which nothing passes through it unseen
 _CLOSED = 1e-9  # of the thickness, a gap that is none
 _AT_LIMIT = 1e-10  # rad: by which an angle may be beyond its limit before its stop closes
+_SHARP = 1e-3  # of the unbalanced force accepted: what is left at a station, where that is more than round-off
+_SHARPENINGS = 3
 _PULLS = 1e-9  # of the largest force or of EI/length: with which a stop may pull before it lets go
 _SWITCHED = 1e-8  # rad, or of these: how near to its change a stop is found
 _AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
@@ -483,6 +485,22 @@ class March:
                 self.acting, self.closing = before, closing
                 return
             self.system = system
+
+    def sharpen(self) -> None:
+        """Take what is left of the unbalanced force down to round-off, where few iterations more do.
+
+        What is accepted is a part of the largest force within the elements, which may be a hundred times the loads.
+        """
+        settings = replace(self.settings, residual=_SHARP * self.settings.residual, newton_limit=_SHARPENINGS)
+        system = self.system
+        if float(np.abs(system.residual).max()) <= max(settings.residual * system.scale, system.floor):
+            return
+        solved = equilibrium(
+            self.model, settings, self.penalties, self.values, system.z, self.acting, self.depths(), self.pushes()
+        )
+        self.iterations += solved.iterations
+        if solved.converged and self.moved(solved.system, system.z) <= _SHARP:
+            self.system = solved.system
 
     def _wanted(self, one: Touch, fall: float) -> float:
         """The factor from a penalty to the one that leaves the penetration aimed at, or to the least for a station.

@@ -69,7 +69,7 @@ def reach(march: March, course: Course, target: float) -> None:
     origin, before = march.saved(), march.zones()
     if march.far and march.values[load] != target:
         march.loosen(Circle, Face)
-    _arrive(march, course, target)
+    _arrive(march, course, target, watched=course.beyond is not None)
     march.settle(load)
     same = len(march.critical) == len(origin.critical) and march.values[load] != origin.values[load]
     if same and not march.minimum:
@@ -78,18 +78,25 @@ def reach(march: March, course: Course, target: float) -> None:
         march.restore(origin)
         lost = followed(march, load, target, course.span)
         if lost is None:
-            march.restore(there)
+            # no end: a long step has left the branch for another, on which short ones may stay
+            march.restore(origin)
+            try:
+                _arrive(march, course, target, watched=True)
+                march.settle(load)
+            except StoppedError:
+                march.restore(there)
         else:
             _beyond(march, course, target, lost)
             march.iterations, march.behind = 0, None
-            _arrive(march, course, target)
+            _arrive(march, course, target, watched=course.beyond is not None)
             march.settle(load)
+    march.sharpen()
     after = march.zones()
     march.far = march.far and any(np.abs(after[one] - before[one]).max() > _FAR for one in before if one in after)
 
 
-def _arrive(march: March, course: Course, target: float) -> None:
-    """March to the value ``target``, with penalties as they are.
+def _arrive(march: March, course: Course, target: float, *, watched: bool) -> None:
+    """March to the value ``target``, with penalties as they are; ``watched``, from minimum to minimum.
 
     Raises:
         StoppedError: it cannot be reached.
@@ -100,7 +107,6 @@ def _arrive(march: March, course: Course, target: float) -> None:
     known: list[tuple[float, float]] = []
     limit = march.settings.iteration_limit
     rate: Array | None = None
-    watched = course.beyond is not None
     while march.values[load] != target:
         if cuts > _CUTS:
             raise StoppedError(*reason)
@@ -137,6 +143,9 @@ def _arrive(march: March, course: Course, target: float) -> None:
                     )
                 elif watched:
                     unstable = minimum and march.curvature <= 0.0
+        if unstable and not follow:
+            # the branch has no end near by, and this is another one
+            trouble = Ending.NOT_A_MINIMUM, f"beyond {saved.shown(load, saved.values[load])} no minimum is found"
         tired = trouble is not None and cuts >= _TIRED
         if minimum and follow and (close or unstable or tired):
             march.restore(saved)

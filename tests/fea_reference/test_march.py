@@ -5,6 +5,7 @@ import pytest
 from comparisons import cases
 from fea_reference import Settings, answer
 from scene.answer import Ending
+from scene.reading import scene_from
 
 
 def with_stations(scene, *stations):
@@ -61,3 +62,90 @@ def test_tips_that_slide_are_held_while_a_circle_s_penalty_rises():
     scene = with_stations(cases.opened("stack"), 0.01, 0.015, 0.02, 0.025, 0.03, 0.035)
     found = answer(scene, Settings(elements=40, kinematics="bending", penetration=6e-9))
     assert found.ending is Ending.COMPLETED, found.sentence
+
+
+def nudged_column(*stations):
+    """A column between a clamp and a slide, thinner towards one end, which a little load across it lies on."""
+    tip = [-0.031212, 0.0080202]
+    return scene_from(
+        {
+            "name": "nudged",
+            "materials": {"m": {"youngs_modulus": 1.14e11, "poisson_ratio": 0.33}},
+            "bodies": {
+                "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
+                "tip": {"motion": "slides", "along": tip, "points": {"T": tip}},
+            },
+            "beams": {
+                "beam": {
+                    "curve": {"kind": "line", "start": [0.0, 0.0], "end": tip},
+                    "thickness": {"at": [0.0, 1.0], "values": [0.000202, 0.000183]},
+                    "width": 0.00686,
+                    "material": "m",
+                    "start": {"joint": "weld", "point": "R"},
+                    "end": {"joint": "weld", "point": "T"},
+                }
+            },
+            "loads": {
+                "nudge": {"kind": "distributed", "beam": "beam", "direction": [0.249, 0.969]},
+                "press": {"kind": "force", "point": "T", "direction": [-tip[0], -tip[1]]},
+            },
+            "stages": [
+                {"name": "aside", "steps": "nudge", "stations": [2.342]},
+                {"name": "press", "steps": "press", "stations": list(stations)},
+            ],
+            "probes": [{"of": "T", "quantity": "displacement"}, {"of": "scene", "quantity": "potential_energy"}],
+        }
+    )
+
+
+def test_a_long_step_past_a_buckling_load_stays_on_the_branch_of_minima():
+    """It buckles at 4π²EI/L² = 17.7 N; in one step from before that, Newton's method lands on a branch of saddles."""
+    settings = Settings(elements=37, kinematics="bending")
+    long = answer(nudged_column(13.12, 19.68, 21.86), settings)
+    assert long.ending is Ending.COMPLETED, long.sentence
+    short = answer(nudged_column(*(13.12 + 0.437 * step for step in range(20)), 21.86), settings)
+    assert short.ending is Ending.COMPLETED, short.sentence
+    for name, value in short.stations[-1].values.items():
+        assert long.stations[-1].values[name] == pytest.approx(value, rel=1e-7), name
+
+
+def test_what_is_left_at_a_station_is_no_part_of_the_loads():
+    """Where elements are short, forces within them are a hundred times the loads, of which nothing may be missing."""
+    found = answer(pressed_hook(), Settings(elements=120, kinematics="bending"))
+    assert found.ending is Ending.COMPLETED, found.sentence
+    for station in found.stations:
+        assert station.certificate.force_balance <= 1e-10
+
+
+def pressed_hook():
+    """A thick strip that is clamped at one end and turned by a moment until it leans on a circle."""
+    points = [[0.0, 0.0], [-0.017982, 0.026535], [-0.059447, 0.042669], [-0.090298, 0.065915], [-0.085977, 0.11308]]
+    return scene_from(
+        {
+            "name": "hook",
+            "materials": {"steel": {"youngs_modulus": 2.07e11, "poisson_ratio": 0.29}},
+            "bodies": {"wall": {"motion": "fixed", "points": {"R": points[0]}}},
+            "beams": {
+                "beam": {
+                    "curve": {"kind": "spline", "points": points, "start_direction": [-0.419, 0.938]},
+                    "thickness": 0.0081,
+                    "width": 0.0228,
+                    "material": "steel",
+                    "start": {"joint": "weld", "point": "R"},
+                    "end": {"joint": "free"},
+                }
+            },
+            "loads": {"turn": {"kind": "beam_moment", "beam": "beam", "at": 0.71}},
+            "contacts": {
+                "circle": {
+                    "kind": "beam-circle",
+                    "beam": "beam",
+                    "body": "wall",
+                    "center": [-0.116003, 0.049526],
+                    "radius": 0.025,
+                }
+            },
+            "stages": [{"name": "turn", "steps": "turn", "stations": [1103.0, 2206.0]}],
+            "probes": [{"of": "circle", "quantity": "force"}],
+        }
+    )
