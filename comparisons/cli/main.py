@@ -18,7 +18,7 @@ from comparisons.cli.commands import Commands
 if TYPE_CHECKING:
     from comparisons.pairing import Solvers
 
-_COMMANDS = ("list", "solve", "compare", "converge", "bench", "study", "regress")
+_COMMANDS = ("list", "solve", "compare", "converge", "bench", "study", "regress", "new", "schema", "doctor")
 
 WRONG_QUESTION = 2
 INTERRUPTED = 130
@@ -48,6 +48,12 @@ class _SubCommands(Commands):
                 from comparisons.cli.study_ import command
             case "regress":
                 from comparisons.cli.regress_ import command
+            case "new":
+                from comparisons.cli.new_ import command
+            case "schema":
+                from comparisons.cli.schema_ import command
+            case "doctor":
+                from comparisons.cli.doctor_ import command
             case _:
                 return None
         return command

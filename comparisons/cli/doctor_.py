@@ -1,0 +1,32 @@
+"""``cprbm doctor``: what is there, what is missing, and what installs it."""
+
+from __future__ import annotations
+
+import click
+
+INCOMPLETE = 1
+
+
+@click.command("doctor")
+def command() -> int:
+    """Say which libraries are there and which are missing, with the line that installs each.
+
+    Exit code 1 says that something is missing without which nothing works.
+    """
+    import platform
+
+    from comparisons.starting.present import looked_for
+
+    click.echo(f"Python {platform.python_version()}")
+    whole = True
+    for state in looked_for():
+        library = state.library
+        if state.there:
+            said = f"{state.version:<12} for {library.needed_for}"
+        elif state.version:
+            said = f"{state.version:<12} cannot be imported ({state.trouble}); for {library.needed_for}"
+        else:
+            said = f"{'missing':<12} for {library.needed_for}; install it: {library.line}"
+        whole &= state.there or bool(library.extra)
+        click.echo(f"{library.name:<14} {said}")
+    return 0 if whole else INCOMPLETE

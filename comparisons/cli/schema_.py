@@ -1,0 +1,16 @@
+"""``cprbm schema``: what editors need to help with scene files."""
+
+from __future__ import annotations
+
+import json
+
+import click
+
+
+@click.command("schema")
+def command() -> int:
+    """Print the JSON schema of scene files."""
+    from scene.schema import schema
+
+    click.echo(json.dumps(schema(), indent=1, ensure_ascii=False))
+    return 0

@@ -1,0 +1,1 @@
+"""A first scene to start from, and what an editor needs to help with it."""

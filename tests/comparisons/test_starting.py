@@ -1,0 +1,115 @@
+"""What a newcomer begins with: a scene that says something, its schema, and what is missing."""
+
+import copy
+import json
+import tomllib
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+import cprbm
+from comparisons import cases
+from comparisons.cli.main import run
+from comparisons.starting import present
+from comparisons.starting.begun import SCHEMA, text
+from scene import read
+from scene.schema import schema
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_the_first_scene_is_solved_and_touches(tmp_path, capsys):
+    assert run(["new", "my-strip", "--out", str(tmp_path)]) == 0
+    path = tmp_path / "my-strip.toml"
+    assert str(path) in capsys.readouterr().out
+    scene = read(path)
+    assert scene.name == "my-strip"
+    answer = cprbm.answer(scene, cprbm.Settings(links=23))
+    assert answer.completed
+    assert "pin" in answer.stations[-1].touching
+
+
+def test_what_is_there_is_kept(tmp_path, capsys):
+    path = tmp_path / "mine.toml"
+    path.write_text("my own", encoding="utf-8")
+    assert run(["new", "mine", "--out", str(tmp_path)]) == 2
+    assert "mine.toml, which is kept as it is; allowed: another name" in capsys.readouterr().err
+    assert path.read_text(encoding="utf-8") == "my own"
+
+
+@pytest.mark.parametrize("name", ["", "9lives", "a/b", "über", "x" * 65])
+def test_a_name_that_no_scene_may_have_is_refused(tmp_path, capsys, name):
+    assert run(["new", name, "--out", str(tmp_path)]) == 2
+    assert f"found {name!r}; allowed: letters" in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_schema_is_one_and_stands_beside_the_scene(tmp_path, capsys):
+    run(["new", "one", "--out", str(tmp_path)])
+    capsys.readouterr()
+    assert run(["schema"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    jsonschema.Draft7Validator.check_schema(said)
+    assert json.loads((tmp_path / SCHEMA).read_text(encoding="utf-8")) == said
+    assert f"#:schema {SCHEMA}" in (tmp_path / "one.toml").read_text(encoding="utf-8").splitlines()[0]
+
+
+@pytest.mark.parametrize("name", cases.scenes())
+def test_every_built_in_scene_is_as_the_schema_says(name):
+    jsonschema.validate(cases._data(name), schema())
+
+
+@pytest.mark.parametrize(
+    ("place", "value"),
+    [
+        (("beams", "strip", "thicknes"), 0.001),
+        (("beams", "strip", "thickness"), -0.001),
+        (("beams", "strip", "curve", "kind"), "parabola"),
+        (("beams", "strip", "start", "joint"), "glue"),
+        (("contacts", "pin", "radius"), "wide"),
+        (("stages",), []),
+        (("file",), "somewhere"),
+    ],
+)
+def test_the_schema_refuses_what_reading_refuses(place, value):
+    data = copy.deepcopy(tomllib.loads(text("strip")))
+    jsonschema.validate(data, schema())
+    *path, last = place
+    table = data
+    for key in path:
+        table = table[key]
+    table[last] = value
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(data, schema())
+
+
+def test_the_doctor_names_what_is_missing_and_what_installs_it(monkeypatch, capsys):
+    asked = (
+        present.Library("numpy", "numpy", "every number"),
+        present.Library("no-such-thing", "nothing", "the impossible", "dreams"),
+        present.Library("scipy", "scipy.no_such_part", "linear algebra", "dreams"),
+    )
+    monkeypatch.setattr(present, "LIBRARIES", asked)
+    assert run(["doctor"]) == 0
+    said = capsys.readouterr().out
+    assert 'no-such-thing  missing      for the impossible; install it: pip install "cprbm[dreams]"' in said
+    assert "cannot be imported (ModuleNotFoundError: No module named 'scipy.no_such_part')" in said
+    monkeypatch.setattr(present, "LIBRARIES", (present.Library("no-such-thing", "nothing", "all"),))
+    assert run(["doctor"]) == 1
+
+
+def test_the_doctor_lists_all_that_the_project_asks_for():
+    from packaging.requirements import Requirement
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = {name: asked for name, asked in project["optional-dependencies"].items() if name not in ("build", "test")}
+    wanted = {(Requirement(each).name, "") for each in project["dependencies"]}
+    wanted |= {(Requirement(each).name, extra) for extra, asked in extras.items() for each in asked}
+    assert {(library.name, library.extra) for library in present.LIBRARIES} == wanted
+
+
+def test_a_library_that_ends_the_process_is_no_end_of_the_doctor(tmp_path, monkeypatch):
+    (tmp_path / "fatal.py").write_text("import os\nos._exit(7)\n", encoding="utf-8")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    assert present._trouble("fatal") == "importing it ends Python with 7"
