@@ -90,10 +90,10 @@ def force_of(draft: Draft, beam: str) -> float:
 
 def drawn_turn(rng: Generator) -> float:
     """ψ, from nearly nothing to more than a right angle."""
-    kind = weighted(rng, (("tiny", 0.07), ("moderate", 0.28), ("large", 0.65)))
+    kind = weighted(rng, (("tiny", 0.07), ("moderate", 0.2), ("large", 0.73)))
     if kind == "tiny":
         return spread(rng, 0.003, 0.1)
-    return between(rng, 0.15, 1.0) if kind == "moderate" else between(rng, 1.1, 2.2)
+    return between(rng, 0.15, 1.0) if kind == "moderate" else between(rng, 1.2, 2.3)
 
 
 def led(model: Estimate, state: State, action: Action, turn: float) -> list[State]:

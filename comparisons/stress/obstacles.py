@@ -26,6 +26,7 @@ from comparisons.stress.estimate import BARS, Estimate, State
 Array = NDArray[np.float64]
 Distance = Callable[[Array], Array]
 _TRIES = 12
+_KINDS = (("circle", 0.3), ("half-plane", 0.16), ("line", 0.22), ("roof", 0.14), ("block", 0.12), ("function", 0.18))
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,10 +81,7 @@ def spot_on(draft: Draft, model: Estimate, states: Sequence[State]) -> Spot:
 
 def rigid(rng: Generator, spot: Spot) -> Obstacle:
     """Something rigid whose surface is at a spot."""
-    kind = weighted(
-        rng,
-        (("circle", 0.3), ("half-plane", 0.16), ("line", 0.22), ("roof", 0.14), ("block", 0.12), ("function", 0.18)),
-    )
+    kind = weighted(rng, _KINDS)
     return _RIGID[kind](rng, spot)
 
 

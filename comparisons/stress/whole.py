@@ -116,7 +116,7 @@ def column(draft: Draft) -> None:
     else:
         draft.body("tip", "slides", {"T": (1.0, 0.0)}, along=along)
     start, end = draft.place("R"), draft.place("T")
-    turn = spread(rng, 0.01, 0.15) * sign(rng)
+    turn = spread(rng, 0.03, 0.2) * sign(rng)
     bent = happens(rng, 0.6)
     curve: Data = arc_of_turn(start, end, turn) if bent else _line(start, end)
     draft.beam_of("beam1", curve, _weld("R"), {"joint": ends[-1] if ends != ("free",) else "weld", "point": "T"})
@@ -127,13 +127,13 @@ def column(draft: Draft) -> None:
     if not bent or happens(rng, 0.3):
         side = draft.frame.direction((0.0, sign(rng)))
         loads["nudge"] = {"kind": "distributed", "beam": "beam1", "direction": [round(c, 3) for c in side]}
-        stages.append({"name": "aside", "steps": "nudge", "stations": [rounded(spread(rng, 0.1, 1.0) * force / size)]})
+        stages.append({"name": "aside", "steps": "nudge", "stations": [rounded(spread(rng, 0.3, 1.5) * force / size)]})
     if happens(rng, 0.5) and ends != ("free",):
         draft.data["drives"] = {"press": {"kind": "displacement", "point": "T", "direction": back}}
         last = size * between(rng, 0.05, 0.45)
     else:
         loads["press"] = {"kind": "force", "point": "T", "direction": back}
-        last = force * critical * between(rng, 1.03, 1.7 if ends == ("free",) else 1.25)
+        last = force * critical * between(rng, 1.12, 1.7 if ends == ("free",) else 1.2)
     stages.append({"name": "press", "steps": "press", "stations": [rounded(share * last) for share in (0.6, 0.9, 1.0)]})
     draft.data |= {"loads": loads, "stages": stages}
     if happens(rng, 0.8):
