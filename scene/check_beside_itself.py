@@ -63,7 +63,7 @@ def _closed_ring(name: str, beam: Beam, curve: Arc) -> Mistake | None:
 
 
 def _apart(u: Array, p: Array, half: Array, away: float) -> Array:
-    """Distances (n, n) of places' edges, in lengths; infinite where they are less than ``away`` apart along the beam."""
+    """Distances (n, n) of places' edges, in lengths; infinite where ``u`` differ by less than ``away``."""
     x, y = p[:, None, 0] - p[:, 0], p[:, None, 1] - p[:, 1]
     apart = np.sqrt(x * x + y * y) - half[:, None] - half
     apart[u - u[:, None] < away] = np.inf
