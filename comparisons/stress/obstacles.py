@@ -149,7 +149,7 @@ def _function(rng: Generator, spot: Spot) -> Obstacle:
         "range": [low, high],
         "side": "above" if above else "below",
     }
-    v = np.linspace(low, high, 25)
+    v = np.linspace(low, high, 9)
     w = np.polynomial.polynomial.polyval(v, coefficients)
     points = np.column_stack((v, w) if axis == 0 else (w, v))
     if above == (axis == 1):  # the beam on the left
