@@ -133,7 +133,7 @@ def column(draft: Draft) -> None:
         last = size * between(rng, 0.05, 0.45)
     else:
         loads["press"] = {"kind": "force", "point": "T", "direction": back}
-        last = force * critical * between(rng, 1.12, 1.7 if ends == ("free",) else 1.2)
+        last = force * critical * between(rng, 1.12, 1.6 if ends == ("free",) else 1.15)
     stages.append({"name": "press", "steps": "press", "stations": [rounded(share * last) for share in (0.6, 0.9, 1.0)]})
     draft.data |= {"loads": loads, "stages": stages}
     if happens(rng, 0.8):
