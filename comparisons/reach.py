@@ -1,4 +1,4 @@
-"""What of a scene can be compared where the branch ends before the last station and nothing follows it."""
+"""What of a scene can be compared where answers end before the last station."""
 
 from __future__ import annotations
 
@@ -20,12 +20,18 @@ def within_reach(scene: Scene, runs: Runs) -> tuple[Scene, Runs] | None:
     every = [answer for _, answer in runs.everything()]
     asked = sum(len(stage.stations) for stage in scene.stages)
     if not any(map(ends_at_critical, every)) or any(
-        len(answer.stations) < asked for answer in every if not ends_at_critical(answer)
+        not answer.completed or len(answer.stations) < asked for answer in every if not ends_at_critical(answer)
     ):
         return None
     count = min(len(answer.stations) for answer in every)
-    if count == 0:
-        return None
+    return None if count == 0 else up_to(scene, runs, count)
+
+
+def up_to(scene: Scene, runs: Runs, count: int) -> tuple[Scene, Runs]:
+    """A scene's first stations, ``count`` of them, and the answers to these alone, each as far as it goes.
+
+    An answer that has them all says that it is complete, which it is for such a scene.
+    """
     stages, left = [], count
     for stage in scene.stages:
         stations = stage.stations[:left]
@@ -34,7 +40,7 @@ def within_reach(scene: Scene, runs: Runs) -> tuple[Scene, Runs] | None:
             stages.append(stage.model_copy(update={"stations": stations}))
 
     def cut(answer: Answer) -> Answer:
-        ending = Ending.COMPLETED if ends_at_critical(answer) else answer.ending
+        ending = Ending.COMPLETED if len(answer.stations) >= count else answer.ending
         return replace(answer, stations=answer.stations[:count], ending=ending)
 
     def maybe(answer: Answer | None) -> Answer | None:
