@@ -1,7 +1,7 @@
 """A call in a process of its own, which may crash or hang and takes nothing else along.
 
 The process is forked from this one, so that all that is loaded here is loaded there at no cost.  It has so many
-seconds of the processor, some times as many of the clock, and so much memory; what it prints is dropped.
+seconds of the processor, more of the clock, and so much memory; what it prints is dropped.
 """
 
 from __future__ import annotations
@@ -21,15 +21,20 @@ from typing import Generic, NoReturn, TypeVar
 A = TypeVar("A")
 R = TypeVar("R")
 
-WAITING = 10
-"""Seconds of the clock for each of the processor: other work on the machine is no reason to be out of time."""
-
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What a call may take: ``seconds`` of the processor, and ``memory`` in bytes of address space."""
+    """What a call may take.
+
+    Attributes:
+        seconds: of the processor; whole ones count.
+        waiting: seconds of the clock for each of the processor: other work on the machine is no reason to be out of
+            time, and waiting for ever is one.
+        memory: bytes of address space.
+    """
 
     seconds: float = 60.0
+    waiting: float = 10.0
     memory: int = 4 * 2**30
 
 
@@ -107,7 +112,7 @@ def _alone(call: Callable[[A], R], argument: A, limits: Limits, writing: Connect
         whole = math.ceil(limits.seconds)
         resource.setrlimit(resource.RLIMIT_CPU, (whole, whole + 5))
         signal.signal(signal.SIGALRM, signal.SIG_DFL)
-        signal.setitimer(signal.ITIMER_REAL, WAITING * limits.seconds)
+        signal.setitimer(signal.ITIMER_REAL, limits.waiting * limits.seconds)
         end: End[R]
         try:
             end = Returned(call(argument))
@@ -131,8 +136,9 @@ def _said(error: Exception) -> str:
 def _ended(code: int, limits: Limits) -> Crashed | OutOfTime:
     """How a process ended that handed nothing back, from its exit code."""
     if -code in (signal.SIGXCPU, signal.SIGALRM):
-        what = "seconds of the processor" if -code == signal.SIGXCPU else f"times {WAITING} seconds of the clock"
-        return OutOfTime(f"no end was reached in {limits.seconds:g} {what}")
+        if -code == signal.SIGXCPU:
+            return OutOfTime(f"no end was reached in {limits.seconds:g} seconds of the processor")
+        return OutOfTime(f"no end was reached in {limits.waiting * limits.seconds:g} seconds of the clock")
     if code < 0:
         return Crashed(f"its process was ended by {signal.Signals(-code).name}")
     return Crashed(f"its process ended by itself, with the exit code {code}")

@@ -8,7 +8,7 @@ An answer is *wrong* if it is certified and
 
 * a row of the verdict differs, also of a scene whose other stations were not reached, or an answer that calls itself
   complete is not whole; or
-* at one size a value is further from that at four times the size than F times what is stated of both; or
+* a value is further from that at four times the links or elements than F times what is stated of it; or
 * it is further from the exact answer, where one is known, than F times what is stated of it,
 
 with the F of :mod:`comparisons.calibration`: a stated uncertainty is to hold in 95 % of the rows and not in all.
@@ -29,6 +29,7 @@ from comparisons.memory import Remembering
 from comparisons.pairing import Runs, Solvers, paired
 from comparisons.reach import up_to
 from comparisons.scales import norm
+from comparisons.stations import station_of
 from comparisons.stress.outcomes import Outcome, Way
 from comparisons.stress.strata import met, stated
 from comparisons.verdict import Comparison, compared
@@ -45,7 +46,7 @@ class Effort:
         sizes: how many there are, each of twice the links and elements of the one before.
     """
 
-    first: Choices = field(default_factory=lambda: Choices(links=20, elements=20, penetration=1.6e-3))
+    first: Choices = field(default_factory=lambda: Choices(links=40, elements=20, penetration=1.6e-3))
     sizes: int = 2
 
     def each(self) -> Iterator[Choices]:
@@ -152,32 +153,37 @@ def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
 
 
 def _beside(coarser: _Finding, finding: _Finding) -> _Finding:
-    """The finding of a size beside that of half of it: wrong where one value is too far from the other."""
-    finer = {(row.probe.name, row.stage, row.station): row for row in finding.rows}
+    """The finding of a size with what it says of half of it: wrong where a value is too far from its refinement."""
     worst, said = 1.0, ""
     for row in coarser.rows:
-        other = finer.get((row.probe.name, row.stage, row.station))
-        if other is None or row.bounds is None or other.bounds is None:
-            continue
-        for solver, off, allowed in _apart(row, row.bounds, other, other.bounds):
+        for solver, off, allowed in _from_refinement(row, finding.runs):
             if off > worst * allowed:
-                worst = off / allowed if allowed > 0.0 else float("inf")
+                worst = off / allowed
                 said = (
-                    f"{solver}: {row.probe.name} at {row.stage} {row.station:g} is {number(worst)} times as far from "
-                    f"its value at twice the size as {FAR:g} times what is stated of both."
+                    f"{solver}: {row.probe.name} at {row.stage} {row.station:g} is {number(FAR * worst)} times as far "
+                    f"from its value at four times the size as is stated of it."
                 )
     return finding if not said else replace(finding, way=Way.WRONG, sentence=said, ending="")
 
 
-def _apart(row: Row, bounds: Bounds, other: Row, others: Bounds) -> Iterator[tuple[str, float, float]]:
-    """By solver the distance of two sizes' values, and what it may be."""
-    rounding = bounds.round_off + others.round_off
-    for solver, mine, its, stated_of_both in (
-        ("cprbm", row.cprbm, other.cprbm, bounds.cprbm + others.cprbm),
-        ("fea", row.fea, other.fea, bounds.fea + others.fea),
+def _from_refinement(row: Row, finer: Runs) -> Iterator[tuple[str, float, float]]:
+    """By solver the distance of a row's value from the finest of the finer runs, and what it may be.
+
+    Of stresses, whose places next to contacts do not count, and of rows that are not compared nothing is said.
+    """
+    if row.bounds is None or row.arc_length is not None:
+        return
+    for solver, mine, answer, own in (
+        ("cprbm", row.cprbm, finer.cprbm[1], row.bounds.cprbm),
+        ("fea", row.fea, finer.fea[finer.kinematics][1], row.bounds.fea),
     ):
-        if mine.shape == its.shape and row.arc_length is None:
-            yield solver, norm(row.probe.quantity, mine - its), FAR * (stated_of_both + rounding)
+        try:
+            station = station_of(answer, row.stage, row.station)
+        except KeyError:
+            continue
+        its = station.values[row.probe.name]
+        if mine.shape == its.shape and station.branch == row.branch:
+            yield solver, norm(row.probe.quantity, mine - its), FAR * (own + row.bounds.round_off)
 
 
 def _told(scene: Scene, finding: _Finding) -> Outcome:

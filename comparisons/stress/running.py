@@ -43,11 +43,19 @@ class Plan:
 
 @dataclass(frozen=True, slots=True)
 class Crew:
-    """Who works on it: the solvers, how many hosts, and what draws a scene of a seed and an index."""
+    """Who works on it.
+
+    Attributes:
+        solvers: who answers.
+        hosts: how many processes.
+        draw: the scene of a seed and an index.
+        patience: with which what fails is shrunk.
+    """
 
     solvers: Solvers
     hosts: int
     draw: Callable[[int, int], Drawn] = drawn
+    patience: Patience = field(default_factory=Patience)
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,4 +197,4 @@ def _smaller(plan: Plan, crew: Crew, outcomes: dict[int, Outcome], index: int) -
         end = apart(partial(judged_data, solvers=crew.solvers, effort=plan.effort), data, plan.limits)
         return _outcome(outcome.name, end).kind == outcome.kind
 
-    return toml_of(shrunk(crew.draw(plan.seed, index).data, alike, Patience()))
+    return toml_of(shrunk(crew.draw(plan.seed, index).data, alike, crew.patience))

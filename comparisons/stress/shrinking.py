@@ -60,8 +60,10 @@ def shrunk(data: Plain, alike: Callable[[Plain], bool], patience: Patience) -> P
 def steps(data: Plain) -> Iterator[Plain]:
     """Smaller scenes, each by one step, the largest steps first; none is the same."""
     every = chain(
+        _without(data, "claims"),
         _fewer(data, "stages"),
         _without_names(data),
+        _without(data, "assembly"),
         _fewer_stations(data),
         _fewer(data, "probes"),
         _without_keys(data),
@@ -69,6 +71,12 @@ def steps(data: Plain) -> Iterator[Plain]:
         _rounded(data),
     )
     return (each for each in every if each != data)
+
+
+def _without(data: Plain, key: str) -> Iterator[Plain]:
+    """What need not be there, left out as a whole."""
+    if key in data:
+        yield {other: value for other, value in data.items() if other != key}
 
 
 def _fewer(data: Plain, key: str) -> Iterator[Plain]:
@@ -86,8 +94,9 @@ def _fewer(data: Plain, key: str) -> Iterator[Plain]:
 def _fewer_stations(data: Plain) -> Iterator[Plain]:
     for place, stage in enumerate(data["stages"]):
         for fewer in _fewer({"stations": stage["stations"]}, "stations"):
-            shown = {"shown": [value for value in stage["shown"] if value in fewer["stations"]]}
-            smaller = {**stage, **fewer, **(shown if "shown" in stage else {})}
+            smaller = {**stage, **fewer}
+            if "shown" in stage:
+                smaller["shown"] = [value for value in stage["shown"] if value in fewer["stations"]]
             yield {**data, "stages": [*data["stages"][:place], smaller, *data["stages"][place + 1 :]]}
 
 
@@ -96,8 +105,6 @@ def _without_names(data: Plain) -> Iterator[Plain]:
         for name in data.get(table, {}):
             rest = {other: each for other, each in data[table].items() if other != name}
             yield _whole({**data, table: rest})
-    if "assembly" in data:
-        yield {key: value for key, value in data.items() if key != "assembly"}
 
 
 def _without_keys(data: Plain) -> Iterator[Plain]:
