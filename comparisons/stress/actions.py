@@ -42,7 +42,7 @@ def drawn_action(draft: Draft, name: str) -> Action:
     moving = {body: each for body, each in data["bodies"].items() if each["motion"] != "fixed"}
     turning = [body for body, each in moving.items() if each["motion"] in ("free", "turns") or each.get("turns")]
     beam = any_of(rng, list(data["beams"]))
-    force, size = _force(draft, beam), draft.frame.size
+    force, size = force_of(draft, beam), draft.frame.size
     kinds = [("beam_force", 0.7), ("beam_moment", 0.6), ("distributed", 0.8)]
     if moving:
         kinds += [("force", 1.6), ("displacement", 1.3)]
@@ -77,7 +77,7 @@ def _direction(rng: Generator) -> list[float]:
     return [round(cos(a), 3), round(sin(a), 3)]
 
 
-def _force(draft: Draft, beam: str) -> float:
+def force_of(draft: Draft, beam: str) -> float:
     """EI/L² of a beam, N, with its mean sizes."""
     sizes = draft.data["beams"][beam]
     t, w = (

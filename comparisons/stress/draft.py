@@ -52,13 +52,14 @@ class Draft:
         """Add a beam of a given line."""
         self.data["beams"][name] = {
             "curve": curve,
-            **self._section(),
+            **self.section(),
             "material": self.material,
             "start": start,
             "end": end,
         }
 
-    def _section(self) -> Data:
+    def section(self) -> Data:
+        """Thickness and width of a beam."""
         rng, size = self.rng, self.frame.size
         ratio = np.clip(spread(rng, 0.75, 1.3) / self.slenderness, THINNEST, THICKEST)
         thickness = rounded(float(ratio) * size, 3)

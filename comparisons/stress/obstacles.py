@@ -18,7 +18,8 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from comparisons.stress.chance import RedrawError, any_of, between, happens, spread, weighted
+from comparisons.stress.chance import RedrawError, any_of, between, happens, sign, spread, weighted
+from comparisons.stress.curves import curve_between
 from comparisons.stress.draft import Data, Draft
 from comparisons.stress.estimate import BARS, Estimate, State
 
@@ -58,10 +59,10 @@ def spot_on(draft: Draft, model: Estimate, states: Sequence[State]) -> Spot:
     """
     rng, size = draft.rng, draft.frame.size
     for _ in range(_TRIES):
-        beam = any_of(rng, list(draft.data["beams"]))
-        share = between(rng, 0.2, 0.85)
+        beam = any_of(rng, list(model.scene.beams))
+        share = between(rng, 0.12, 0.65)
         state = states[min(int(share * len(states)), len(states) - 1)]
-        place = int(rng.integers(2, BARS + 1))
+        place = int(rng.integers(2, BARS)) if happens(rng, 0.9) else int(any_of(rng, (1, BARS)))
         now, at_rest = model.shape(state.q, beam), model.shape(np.zeros(model.unknowns), beam)
         after = model.shape(states[-1].q, beam)
         low, high = max(place - 1, 0), min(place + 1, BARS)
@@ -125,9 +126,9 @@ def _gable(rng: Generator, spot: Spot) -> list[Array]:
 
 
 def _polyline(rng: Generator, points: list[Array], spot: Spot) -> Obstacle:
-    side = "right"
+    side = "left"
     if happens(rng, 0.5):
-        points, side = points[::-1], "left"
+        points, side = points[::-1], "right"
     written = [_written(point, spot) for point in points]
     data = {"kind": "beam-line", "points": written, "side": side}
     return Obstacle(data, lambda p: _from_pieces(np.array(points), p))
@@ -154,6 +155,45 @@ def _function(rng: Generator, spot: Spot) -> Obstacle:
     w = np.polynomial.polynomial.polyval(v, coefficients)
     points = np.column_stack((v, w) if axis == 0 else (w, v))
     return Obstacle(data, lambda p: _from_pieces(points, p))
+
+
+def companion(draft: Draft, name: str, spot: Spot) -> Obstacle:
+    """A further beam whose edge is at a spot, from the wall to nothing or to the wall again; it joins the draft."""
+    rng, size = draft.rng, spot.size
+    tau = _turned(spot.along, between(rng, -0.35, 0.35)) * sign(rng)
+    a, b = between(rng, 0.3, 0.8) * size, between(rng, 0.15, 0.6) * size
+    section = draft.section()
+    thickness = section["thickness"]["values"][0] if isinstance(section["thickness"], dict) else section["thickness"]
+    middle = spot.s + 0.5 * thickness * spot.n
+    bow = between(rng, 0.0, 0.2) * size * spot.n
+    root, end = draft.frame.written(_pair(middle - a * tau + bow)), draft.frame.written(_pair(middle + b * tau + bow))
+    if happens(rng, 0.35):
+        between_them = draft.frame.written(_pair(middle))
+        curve: Data = {"kind": "spline", "points": [list(root), list(between_them), list(end)]}
+        points = np.array([root, between_them, end])
+    else:
+        curve = curve_between(rng, draft.frame, root, end, bowed=0.0 if happens(rng, 0.5) else 0.15)
+        points = np.array([root, end])
+    wall = draft.data["bodies"]["wall"]["points"]
+    wall[f"{name}_root"] = list(root)
+    joints = weighted(rng, ((("weld", "free"), 0.5), (("weld", "weld"), 0.25), (("weld", "pin"), 0.25)))
+    ends: list[Data] = [{"joint": "weld", "point": f"{name}_root"}, {"joint": "free"}]
+    if joints[1] != "free":
+        wall[f"{name}_end"] = list(end)
+        ends[1] = {"joint": joints[1], "point": f"{name}_end"}
+    draft.data["beams"][name] = {
+        "curve": curve,
+        **section,
+        "material": draft.material,
+        "start": ends[0],
+        "end": ends[1],
+    }
+    data = {"kind": "beam-beam", "between": [spot.beam, name]}
+    return Obstacle(data, lambda p: _from_pieces(points, p) - 0.5 * 1.3 * thickness)
+
+
+def _pair(place: Array) -> tuple[float, float]:
+    return float(place[0]), float(place[1])
 
 
 _RIGID = {
