@@ -27,17 +27,22 @@ def within_reach(scene: Scene, runs: Runs) -> tuple[Scene, Runs] | None:
     return None if count == 0 else up_to(scene, runs, count)
 
 
-def up_to(scene: Scene, runs: Runs, count: int) -> tuple[Scene, Runs]:
-    """A scene's first stations, ``count`` of them, and the answers to these alone, each as far as it goes.
-
-    An answer that has them all says that it is complete, which it is for such a scene.
-    """
+def first_stations(scene: Scene, count: int) -> Scene:
+    """A scene with its first stations alone, ``count`` of them, and the stages that have one."""
     stages, left = [], count
     for stage in scene.stages:
         stations = stage.stations[:left]
         left -= len(stations)
         if stations:
             stages.append(stage.model_copy(update={"stations": stations}))
+    return scene.model_copy(update={"stages": tuple(stages)})
+
+
+def up_to(scene: Scene, runs: Runs, count: int) -> tuple[Scene, Runs]:
+    """A scene's first stations, ``count`` of them, and the answers to these alone, each as far as it goes.
+
+    An answer that has them all says that it is complete, which it is for such a scene.
+    """
 
     def cut(answer: Answer) -> Answer:
         ending = Ending.COMPLETED if len(answer.stations) >= count else answer.ending
@@ -46,7 +51,7 @@ def up_to(scene: Scene, runs: Runs, count: int) -> tuple[Scene, Runs]:
     def maybe(answer: Answer | None) -> Answer | None:
         return None if answer is None else cut(answer)
 
-    return scene.model_copy(update={"stages": tuple(stages)}), replace(
+    return first_stations(scene, count), replace(
         runs,
         cprbm=(cut(runs.cprbm[0]), cut(runs.cprbm[1])),
         fea=frozendict({theory: tuple(map(cut, answers)) for theory, answers in runs.fea.items()}),

@@ -2,7 +2,8 @@
 
 It is the verdict of ``compare`` on the runs on which it rests, at few links and elements first.  Where that cannot be
 told, or a run ended early, everything is done once more at twice the size, as often as the effort allows.  The finer
-runs of one size are then the coarser ones of the next, and nothing is solved twice.
+runs of one size are then the coarser ones of the next, and nothing is solved twice.  Of a scene whose answers end early
+at every size the stations that both reached are judged as a scene of their own.
 
 An answer is *wrong* if it is certified and
 
@@ -27,7 +28,7 @@ from comparisons.formats import number
 from comparisons.measures import Bounds, Row
 from comparisons.memory import Remembering
 from comparisons.pairing import Runs, Solvers, paired
-from comparisons.reach import up_to
+from comparisons.reach import ends_at_critical, first_stations, up_to
 from comparisons.scales import norm
 from comparisons.stations import station_of
 from comparisons.stress.outcomes import Outcome, Way
@@ -59,14 +60,15 @@ class Effort:
 
 @dataclass(frozen=True, slots=True)
 class _Finding:
-    """What one size says: a way, why, and the rows on which it rests."""
+    """What one size says: a way, why, and the rows on which it rests; of answers that ended, how many they reached."""
 
     way: Way
     sentence: str
     choices: Choices
-    runs: Runs
+    runs: Runs | None = None
     rows: tuple[Row, ...] = ()
     ending: str = ""
+    reached: int = 0
 
 
 def judged(scene: Scene, solvers: Solvers, effort: Effort) -> Outcome:
@@ -97,16 +99,15 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Remembering) 
     Raises:
         SceneError: a solver refuses the scene.
     """
-    coarser: _Finding | None = None
-    finding: _Finding | None = None
-    for choices in effort.each():
-        finding = _at_one_size(scene, choices, memory)
-        if coarser is not None and finding.way is not Way.WRONG:
-            finding = _beside(coarser, finding)
+    first, *further = effort.each()
+    finding = _at_one_size(scene, first, memory)
+    for choices in further:
         if finding.way not in (Way.UNDECIDED, Way.ENDED):
             break
-        coarser = finding
-    assert finding is not None
+        finer = _at_one_size(scene, choices, memory)
+        finding = finer if finer.way is Way.WRONG else _beside(finding, finer)
+    if finding.runs is None:
+        return _as_far_as_it_goes(scene, finding, memory)
     if solvers.exact is None or finding.way not in (Way.AGREE, Way.UNDECIDED):
         return finding
     exact = solvers.exact(scene, finding.choices)
@@ -116,22 +117,38 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Remembering) 
 
 
 def _at_one_size(scene: Scene, choices: Choices, memory: Remembering) -> _Finding:
-    """What one size says.
+    """What one size says; where one of the two compared answers ends early, nothing is asked beside them.
 
     Raises:
         SceneError: a solver refuses the scene.
     """
-    runs = paired(scene, choices, memory.solvers, memory, bare=True)
+    solvers = memory.solvers
+    two = memory.answers([(solvers.cprbm, scene, choices), (solvers.fea, scene, choices)])
+    if any(not answer.completed and not ends_at_critical(answer) for answer in two):
+        early = [(answer.solver, answer) for answer in two if not answer.completed]
+        reached = min(len(answer.stations) for answer in two)
+        return _Finding(Way.ENDED, _why(early), choices, ending=early[0][1].ending.name, reached=reached)
+    runs = paired(scene, choices, solvers, memory, bare=True)
     finding = _of_comparison(choices, compared(scene, runs))
-    if finding.way is not Way.ENDED or finding.rows:
-        return finding
     reached = min(len(answer.stations) for _, answer in runs.everything())
-    if reached == 0:
+    if finding.way is not Way.ENDED or finding.rows or reached == 0:
         return finding
     part = compared(*up_to(scene, runs, reached))
     if part.verdict.word is Word.DIFFER:
         return replace(finding, way=Way.WRONG, sentence=part.verdict.sentence, rows=part.rows, ending="")
     return replace(finding, rows=part.rows)
+
+
+def _as_far_as_it_goes(scene: Scene, finding: _Finding, memory: Remembering) -> _Finding:
+    """The finding of answers that ended early, unless what they reached is wrong.
+
+    Raises:
+        SceneError: a solver refuses the scene.
+    """
+    if finding.reached == 0:
+        return finding
+    part = _at_one_size(first_stations(scene, finding.reached), finding.choices, memory)
+    return part if part.way is Way.WRONG else replace(finding, rows=part.rows, runs=part.runs)
 
 
 def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
@@ -144,7 +161,7 @@ def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
     elif early:
         way = Way.ENDED
         ending = early[0][1].ending.name
-        sentence = "; ".join(f"{name}: {answer.ending.name}, {answer.sentence}" for name, answer in early)
+        sentence = _why(early)
     elif not verdict.completed:
         way = Way.WRONG
     else:
@@ -152,9 +169,16 @@ def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
     return _Finding(way, sentence, choices, runs, comparison.rows, ending)
 
 
+def _why(early: Iterable[tuple[str, Answer]]) -> str:
+    """Which answers ended early, and what each of them says of it."""
+    return "; ".join(f"{name}: {answer.ending.name}, {answer.sentence}" for name, answer in early)
+
+
 def _beside(coarser: _Finding, finding: _Finding) -> _Finding:
     """The finding of a size with what it says of half of it: wrong where a value is too far from its refinement."""
     worst, said = 1.0, ""
+    if finding.runs is None:
+        return finding
     for row in coarser.rows:
         for solver, off, allowed in _from_refinement(row, finding.runs):
             if off > worst * allowed:
@@ -202,7 +226,7 @@ def _told(scene: Scene, finding: _Finding) -> Outcome:
         beyond=max((each.ratio for row, _ in rows for each in every(row)), default=None),
         links=links,
         elements=elements,
-        met=tuple(sorted(met(scene, finding.runs.reference))),
+        met=() if finding.runs is None else tuple(sorted(met(scene, finding.runs.reference))),
     )
 
 

@@ -25,7 +25,7 @@ from comparisons.stress.running import FAILURES, Crew, Plan, run
 from comparisons.stress.shrinking import Patience, shrunk, steps
 from comparisons.stress.told import document
 from comparisons.stress.toml import toml_of
-from scene import SceneError, read
+from scene import Ending, SceneError, read
 from scene.reading import scene_from
 from tests.comparisons.made_up import MadeUp
 from tests.comparisons.stressed import FATES, WAYS, fated, fated_solvers, nothing
@@ -258,14 +258,14 @@ class Drifting:
     """A CPRBM whose error does not fall as it says: at four times the links its value is another."""
 
     def __call__(self, scene, choices):
-        stiffness = 1.2 if choices.links >= 80 else 1.0
-        return MadeUp("cprbm", 0.012, stiffness=stiffness, contact=False)(scene, choices)
+        stiffness = 1.2 if choices.links >= 160 else 1.0
+        return MadeUp("cprbm", 0.06, stiffness=stiffness, contact=False)(scene, choices)
 
 
 def test_a_value_that_leaves_its_refinement_is_wrong():
     scene = scene_from(fated(1, 0).data)
     drifting = Solvers(Drifting(), MadeUp("fea", 2e-3, contact=False))
-    steady = Solvers(MadeUp("cprbm", 0.012, contact=False), drifting.fea)
+    steady = Solvers(MadeUp("cprbm", 0.06, contact=False), drifting.fea)
     assert judged(scene, steady, Effort()).way is Way.UNDECIDED
     assert judged(scene, drifting, Effort()).way is Way.WRONG
 
@@ -290,9 +290,9 @@ def test_the_part_that_was_reached_can_be_wrong():
     stiff = MadeUp("cprbm", 2e-3, stiffness=1.02, contact=False)
 
     def early(scene, choices):
-        from scene import Ending
-
         found = stiff(scene, choices)
+        if len(found.stations) == 1:
+            return found
         return replace(found, stations=found.stations[:1], ending=Ending.STEP_TOO_SMALL)
 
     assert judged(scene, Solvers(early, fated_solvers().fea), Effort()).way is Way.WRONG
@@ -316,7 +316,7 @@ def test_shrinking_keeps_what_is_asked_and_makes_the_rest_smaller():
     assert list(small["contacts"]) == ["circle"]
     assert len(small["probes"]) == 1
     assert [len(stage["stations"]) for stage in small["stages"]] == [1]
-    assert len(toml_of(small)) < 0.3 * len(toml_of(GRIPPER))
+    assert len(toml_of(small)) < 0.5 * len(toml_of(GRIPPER))
     assert not any(alike(smaller) for smaller in steps(small))
 
 
