@@ -23,6 +23,7 @@ from comparisons.stress.estimate import Estimate, State, followed
 
 GROWTH = 1.3  # of a load from one state to the next
 MOST_STATES = 34
+ENERGY = [{"of": "scene", "quantity": "potential_energy"}]
 STEP, FARTHEST = 0.03, 0.7  # of a driven displacement, in sizes
 
 

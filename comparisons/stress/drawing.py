@@ -6,24 +6,22 @@ is in its way.  What would be no question (a free motion, beams that overlap as 
 
 from __future__ import annotations
 
-from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.random import Generator, Philox
 
-from comparisons.stress.actions import drawn_action, drawn_turn, led, stations_to
-from comparisons.stress.chance import RedrawError, happens, weighted
+from comparisons.stress.actions import ENERGY, drawn_action, drawn_turn, led, stations_to
+from comparisons.stress.chance import RedrawError, between, happens, rounded, weighted
+from comparisons.stress.contacts import put_in_the_way
 from comparisons.stress.draft import Draft, started
 from comparisons.stress.estimate import Estimate, State
 from comparisons.stress.mechanisms import MECHANISMS
-from comparisons.stress.obstacles import Spot, companion, is_clear, rigid, spot_on
-from comparisons.stress.pushers import put_pusher
+from comparisons.stress.pushers import push
 from comparisons.stress.stopping import put_stops
 from comparisons.stress.toml import toml_of
 from comparisons.stress.whole import WHOLE
-from scene import Scene
 from scene.mistakes import SceneError
 from scene.reading import scene_from
 
@@ -67,7 +65,7 @@ def _scene(rng: Generator, name: str) -> Data:
     else:
         weighted(rng, MECHANISMS)(draft)
         if kind == "pushed":
-            _push(draft)
+            push(draft)
         else:
             _act(draft)
     _ask(draft)
@@ -75,84 +73,36 @@ def _scene(rng: Generator, name: str) -> Data:
     return {key: data[key] for key in sorted(data, key=_ORDER.index) if data[key]}
 
 
-def _push(draft: Draft) -> None:
-    if not put_pusher(draft, Estimate(_at_rest(draft))):
-        raise RedrawError
-
-
-def _at_rest(draft: Draft) -> Scene:
-    """The mechanism with a load that is nothing to it: a scene has at least one stage."""
-    beam = next(iter(draft.data["beams"]))
-    idle = {"loads": {"none": {"kind": "beam_moment", "beam": beam, "at": 0.5}}}
-    stages = [{"name": "none", "steps": "none", "stations": [0.0]}]
-    return scene_from({**draft.data, **idle, "stages": stages, "probes": _ENERGY})
-
-
 def _act(draft: Draft) -> None:
     rng = draft.rng
     actions = [drawn_action(draft, f"act{i + 1}") for i in range(1 if happens(rng, 0.65) else 2)]
     for action in actions:
         draft.data.setdefault(action.group, {})[action.name] = action.data
-    stages = [{"name": f"stage{i + 1}", "steps": action.name, "stations": [1.0]} for i, action in enumerate(actions)]
-    draft.data |= {"stages": stages, "probes": _ENERGY}
+    stages: list[Data] = [
+        {"name": f"stage{i + 1}", "steps": action.name, "stations": [1.0]} for i, action in enumerate(actions)
+    ]
+    draft.data |= {"stages": stages, "probes": ENERGY}
     model = Estimate(scene_from(draft.data))
     states, state = [], State(np.zeros(model.unknowns), {})
-    for action, stage in zip(actions, stages, strict=True):
-        way = led(model, state, action, drawn_turn(rng))
-        stage["stations"] = stations_to(rng, way[-1].values[action.name])
-        states += way
-        state = way[-1]
+    for action in actions:
+        states += led(model, state, action, drawn_turn(rng))
+        state = states[-1]
     put_stops(draft, model, states)
-    _put_in_the_way(draft, model, states)
-
-
-_ENERGY = [{"of": "scene", "quantity": "potential_energy"}]
+    way = put_in_the_way(draft, model, states, [action.name for action in actions])
+    last = {name: value for name, value in way[-1].values.items() if value}
+    for stage in stages:
+        stage["stations"] = stations_to(rng, last.get(stage["steps"], 0.0))
+    begun = [stage for stage in stages if stage["steps"] in last]
+    if happens(rng, 0.12):
+        acting = begun[-1]["steps"]
+        begun.append({"name": "back", "steps": acting, "stations": [rounded(between(rng, 0.2, 0.7) * last[acting])]})
+    draft.data["stages"] = begun
 
 
 _ORDER = (
     "name", "materials", "bodies", "pins", "beams", "assembly", "stops", "loads", "drives", "contacts",
     "stages", "probes",
 )  # fmt: skip
-
-
-def _put_in_the_way(draft: Draft, model: Estimate, states: list[State]) -> None:
-    contacts: Data = {}
-    for i in range(weighted(draft.rng, ((0, 0.08), (1, 0.5), (2, 0.27), (3, 0.1), (4, 0.05)))):
-        for _ in range(12):
-            try:
-                spot = spot_on(draft, model, states)
-                if happens(draft.rng, 0.25):
-                    if _put_companion(draft, model, f"contact{i + 1}", spot, contacts):
-                        break
-                    continue
-                obstacle = rigid(draft.rng, spot)
-            except RedrawError:
-                continue
-            if is_clear(model, obstacle, list(model.scene.beams), spot):
-                body = "wall"
-                kind = obstacle.data["kind"]
-                contacts[f"contact{i + 1}"] = {"kind": kind, "beam": spot.beam, "body": body} | obstacle.data
-                if happens(draft.rng, 0.2):
-                    contacts[f"contact{i + 1}"]["thick"] = False
-                break
-    if contacts:
-        draft.data["contacts"] = contacts
-
-
-def _put_companion(draft: Draft, model: Estimate, name: str, spot: Spot, contacts: Data) -> bool:
-    """Add a further beam in the way of another, if there is room for it."""
-    beam = f"beam{len(draft.data['beams']) + 1}"
-    if beam == "beam5":
-        return False
-    before = deepcopy(draft.data)
-    obstacle = companion(draft, beam, spot)
-    if not is_clear(model, obstacle, list(model.scene.beams), spot):
-        draft.data = before
-        return False
-    contacts[name] = obstacle.data
-    if happens(draft.rng, 0.25):
-        contacts[name]["thick"] = False
-    return True
 
 
 def _ask(draft: Draft) -> None:

@@ -20,7 +20,7 @@ Equilibrium is K q − λ·∂(work) + Aᵀμ = 0.  A turn is counted from the s
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,6 +48,7 @@ BARS = 10  # of a beam
 _ITERATIONS = 15
 _CLOSE = 1e-8
 _FARTHEST = 0.5  # rad, in one step
+_STIFF = 20.0  # of a barrier's springs, in those of the beams
 _SOFTEST = 1e-6  # of the stiffest spring
 
 
@@ -109,6 +110,7 @@ class Estimate:
         self.unknowns = n
         self.lengths = {name: arc_length(beam.curve) for name, beam in scene.beams.items()}
         self.nodes: dict[str, list[Sums]] = {name: self._nodes(name) for name in scene.beams}
+        self.lines = {name: _stacked(nodes, n) for name, nodes in self.nodes.items()}
         self.stiffness = self._springs()
         self.held = _stacked(self._joints(), n)
         self.size = max(self.lengths.values())
@@ -130,7 +132,7 @@ class Estimate:
 
     def shape(self, q: Array, beam: str) -> Array:
         """Nodes (bars + 1, 2) of a beam, m."""
-        return np.array([node.at(q) for node in self.nodes[beam]])
+        return self.lines[beam].at(q).reshape(-1, 2)
 
     def largest_turn(self, q: Array) -> float:
         """The largest turn of a bar or a body, rad."""
@@ -232,6 +234,15 @@ def rigidity_of(scene: Scene, beam: Beam, u: Array) -> Array:
 
 
 @dataclass(frozen=True, slots=True)
+class Barrier:
+    """What keeps the nodes of a ``beam`` at least ``apart`` (m) away: its signed ``distance`` from places (k, 2), m."""
+
+    beam: str
+    distance: Callable[[Array], Array]
+    apart: float
+
+
+@dataclass(frozen=True, slots=True)
 class State:
     """Unknowns ``q`` at ``values`` of loads and drives; ``stable`` where they are a minimum of the energy."""
 
@@ -239,7 +250,9 @@ class State:
     values: Mapping[str, float]
 
 
-def followed(model: Estimate, state: State, acting: str, growing: Iterator[float]) -> Iterator[State]:
+def followed(
+    model: Estimate, state: State, acting: str, growing: Iterator[float], barriers: Sequence[Barrier] = ()
+) -> Iterator[State]:
     """The states along values of one load or drive, as long as they are stable and near each other."""
     scene = model.scene
     loads = {name: model.acted(load) for name, load in scene.loads.items()}
@@ -252,7 +265,7 @@ def followed(model: Estimate, state: State, acting: str, growing: Iterator[float
         while share < 1.0:
             target = min(1.0, share + step)
             values[acting] = before + target * (value - before)
-            found = _equilibrium(model, q, values, loads, held, list(drives))
+            found = _equilibrium(model, q, values, loads, held, list(drives), barriers)
             if found is None or np.abs(found - q).max() > _FARTHEST * max(1.0, model.size):
                 step *= 0.5
                 if step < 0.05:
@@ -263,7 +276,13 @@ def followed(model: Estimate, state: State, acting: str, growing: Iterator[float
 
 
 def _equilibrium(
-    model: Estimate, q: Array, values: Mapping[str, float], loads: Mapping[str, Sums], held: Sums, drives: list[str]
+    model: Estimate,
+    q: Array,
+    values: Mapping[str, float],
+    loads: Mapping[str, Sums],
+    held: Sums,
+    drives: list[str],
+    barriers: Sequence[Barrier],
 ) -> Array | None:
     """The equilibrium near ``q`` if it is found and stable."""
     K, n, m = model.stiffness, model.unknowns, held.c.size
@@ -279,6 +298,9 @@ def _equilibrium(
             gradient = gradient - values.get(name, 0.0) * work.slopes(q)[0]
             diagonal = diagonal - values.get(name, 0.0) * work.bends(q)[0]
         H = K + np.diag(diagonal)
+        for barrier in barriers:
+            pushed, stiffer = _held_off(model, q, barrier)
+            gradient, H = gradient + pushed, H + stiffer
         # all rows in one unit: lengths over the size, and forces over the stiffest spring
         matrix = np.block([[H / force, A.T / model.size], [A / model.size, np.zeros((m, m))]])
         try:
@@ -292,6 +314,23 @@ def _equilibrium(
         if np.abs(dq).max() < _CLOSE:
             return q if _stable(H / force, A / model.size) else None
     return None
+
+
+def _held_off(model: Estimate, q: Array, barrier: Barrier) -> tuple[Array, Array]:
+    """Derivatives (unknowns,) and (unknowns, unknowns) of a barrier's energy: springs at nodes that are too near."""
+    nodes = model.lines[barrier.beam]
+    p = nodes.at(q).reshape(-1, 2)
+    gap = np.minimum(barrier.distance(p) - barrier.apart, 0.0)
+    near = np.flatnonzero(gap < 0.0)
+    if not near.size:
+        return np.zeros(model.unknowns), np.zeros((model.unknowns, model.unknowns))
+    step, J = 1e-6 * model.size, nodes.slopes(q).reshape(-1, 2, model.unknowns)[near]
+    n = np.array([barrier.distance(p[near] + e) - barrier.distance(p[near] - e) for e in step * np.eye(2)]) / (
+        2.0 * step
+    )
+    rows = np.einsum("ik,kij->kj", n, J)
+    k = _STIFF * float(np.abs(model.stiffness).max()) / model.size**2
+    return k * gap[near] @ rows, k * rows.T @ rows
 
 
 def _stable(H: Array, A: Array) -> bool:

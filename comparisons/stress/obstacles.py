@@ -81,7 +81,8 @@ def spot_on(draft: Draft, model: Estimate, states: Sequence[State]) -> Spot:
 def rigid(rng: Generator, spot: Spot) -> Obstacle:
     """Something rigid whose surface is at a spot."""
     kind = weighted(
-        rng, (("circle", 0.3), ("half-plane", 0.2), ("line", 0.14), ("roof", 0.14), ("block", 0.12), ("function", 0.18))
+        rng,
+        (("circle", 0.3), ("half-plane", 0.16), ("line", 0.22), ("roof", 0.14), ("block", 0.12), ("function", 0.18)),
     )
     return _RIGID[kind](rng, spot)
 
@@ -119,19 +120,18 @@ def _gable(rng: Generator, spot: Spot) -> list[Array]:
     sides = []
     for side in (-1.0, 1.0):
         fall = between(rng, 0.25, 1.1)
-        sides.append(spot.s + spot.size * between(rng, 0.1, 0.35) * _turned(side * spot.along, -side * fall * -1.0))
+        sides.append(spot.s + spot.size * between(rng, 0.1, 0.35) * _turned(side * spot.along, -side * fall))
     if (sides[0] - spot.s) @ spot.n < 0.0 or (sides[1] - spot.s) @ spot.n < 0.0:
         raise RedrawError
     return [sides[0], spot.s, sides[1]]
 
 
 def _polyline(rng: Generator, points: list[Array], spot: Spot) -> Obstacle:
-    side = "left"
+    corners, side = np.array(points), "left"
     if happens(rng, 0.5):
         points, side = points[::-1], "right"
-    written = [_written(point, spot) for point in points]
-    data = {"kind": "beam-line", "points": written, "side": side}
-    return Obstacle(data, lambda p: _from_pieces(np.array(points), p))
+    data = {"kind": "beam-line", "points": [_written(point, spot) for point in points], "side": side}
+    return Obstacle(data, lambda p: _from_pieces(corners, p))
 
 
 def _function(rng: Generator, spot: Spot) -> Obstacle:
@@ -154,6 +154,8 @@ def _function(rng: Generator, spot: Spot) -> Obstacle:
     v = np.linspace(low, high, 25)
     w = np.polynomial.polynomial.polyval(v, coefficients)
     points = np.column_stack((v, w) if axis == 0 else (w, v))
+    if above == (axis == 1):  # the beam on the left
+        points = points[::-1]
     return Obstacle(data, lambda p: _from_pieces(points, p))
 
 
@@ -189,7 +191,7 @@ def companion(draft: Draft, name: str, spot: Spot) -> Obstacle:
         "end": ends[1],
     }
     data = {"kind": "beam-beam", "between": [spot.beam, name]}
-    return Obstacle(data, lambda p: _from_pieces(points, p) - 0.5 * 1.3 * thickness)
+    return Obstacle(data, lambda p: np.abs(_from_pieces(points, p)) - 0.5 * 1.3 * thickness)
 
 
 def _pair(place: Array) -> tuple[float, float]:
@@ -217,12 +219,20 @@ def is_clear(model: Estimate, obstacle: Obstacle, beams: Sequence[str], spot: Sp
 
 
 def _from_pieces(points: Array, p: Array) -> Array:
-    """Distances of places (k, 2) from a line of straight pieces, without a sign."""
+    """Distances of places (k, 2) from a line of straight pieces, negative where they are behind it, on its right."""
     a, ab = points[:-1], np.diff(points, axis=0)
     r = p[:, None, :] - a
     t = np.clip((r * ab).sum(axis=2) / (ab * ab).sum(axis=1), 0.0, 1.0)
     away = r - t[:, :, None] * ab
-    return np.asarray(np.hypot(away[:, :, 0], away[:, :, 1]).min(axis=1))
+    nearest = np.hypot(away[:, :, 0], away[:, :, 1]).argmin(axis=1)
+    every = np.arange(len(p))
+    away, t = away[every, nearest], t[every, nearest]
+    n = np.column_stack((-ab[:, 1], ab[:, 0])) / np.hypot(ab[:, 0], ab[:, 1])[:, None]
+    closed = len(points) > 2 and bool(np.all(points[0] == points[-1]))
+    other = np.where(t <= 0.0, nearest - 1, np.where(t >= 1.0, nearest + 1, nearest))
+    beyond = np.zeros(len(p), bool) if closed else (other < 0) | (other >= len(ab))
+    side = (away * (n[nearest] + n[other % len(ab)])).sum(axis=1)
+    return np.asarray(np.where(beyond | (side >= 0.0), 1.0, -1.0) * np.hypot(away[:, 0], away[:, 1]))
 
 
 def _turned(v: Array, angle: float) -> Array:

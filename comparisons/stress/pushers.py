@@ -4,39 +4,57 @@ from __future__ import annotations
 
 import numpy as np
 
-from comparisons.stress.chance import any_of, between, happens, rounded, sign
+from comparisons.stress.actions import ENERGY, Action, force_of, led
+from comparisons.stress.chance import RedrawError, any_of, between, happens, rounded, sign
 from comparisons.stress.draft import Data, Draft
-from comparisons.stress.estimate import BARS, Estimate
+from comparisons.stress.estimate import BARS, Estimate, State
 from comparisons.stress.obstacles import Obstacle, Spot, is_clear, rigid
+from scene.reading import scene_from
 
 CLEAR = 0.02  # of the size, between the beam and what is driven against it
-_TRIES = 20
+LARGEST_TURN = 1.4  # rad, of what is pushed
+_TRIES = 8
 
 
-def put_pusher(draft: Draft, model: Estimate) -> bool:
-    """Add a driven body with an obstacle beside some beam, the contact, and the stage; whether a place was found."""
+def push(draft: Draft) -> None:
+    """Add a driven body with an obstacle beside some beam, the contact and the stage.
+
+    How far the beam may be bent a force tells that does it in the obstacle's place.
+
+    Raises:
+        RedrawError: there is no room for it, or the beam does not give way.
+    """
     rng, size = draft.rng, draft.frame.size
-    rest = np.zeros(model.unknowns)
+    beam, place = any_of(rng, list(draft.data["beams"])), int(rng.integers(4, BARS))
+    x, y = draft.frame.direction((0.0, sign(rng)))
+    load: Data = {"kind": "beam_force", "beam": beam, "at": place / BARS, "direction": [x, y]}
+    stages = [{"name": "push", "steps": "push", "stations": [1.0]}]
+    model = Estimate(scene_from({**draft.data, "loads": {"push": load}, "stages": stages, "probes": ENERGY}))
+    rest = State(np.zeros(model.unknowns), {})
+    nodes = model.shape(rest.q, beam)
+    tangent = (nodes[place + 1] - nodes[place - 1]) / np.hypot(*(nodes[place + 1] - nodes[place - 1]))
+    n = np.array([-tangent[1], tangent[0]])  # from the beam to the obstacle
+    if n @ np.array([x, y]) > 0.0:
+        n = -n
+    force = force_of(draft, beam)
+    states = led(model, rest, Action("push", "loads", load, force), between(rng, 0.2, LARGEST_TURN))
+    moved = [-float((model.shape(state.q, beam)[place] - nodes[place]) @ n) for state in states]
+    depth = min(max(moved), 0.4 * size)
+    if depth < 0.03 * size:
+        raise RedrawError
+    gap = 0.5 * model.scene.beams[beam].thickest + CLEAR * size
+    spot = Spot(beam, nodes[place] + gap * n, n, size)
     for _ in range(_TRIES):
-        beam = any_of(rng, list(draft.data["beams"]))
-        place = int(rng.integers(4, BARS))
-        nodes = model.shape(rest, beam)
-        tangent = (nodes[place + 1] - nodes[place - 1]) / np.hypot(*(nodes[place + 1] - nodes[place - 1]))
-        n = sign(rng) * np.array([-tangent[1], tangent[0]])  # from the beam to the obstacle
-        gap = 0.5 * model.scene.beams[beam].thickest + CLEAR * size
-        spot = Spot(beam, nodes[place] + gap * n, n, size)
         obstacle = rigid(rng, spot)
-        if not is_clear(model, obstacle, list(draft.data["beams"]), spot):
-            continue
-        _drive(draft, spot, obstacle)
-        return True
-    return False
+        if is_clear(model, obstacle, list(model.scene.beams), spot):
+            _drive(draft, spot, obstacle, depth + CLEAR * size)
+            return
+    raise RedrawError
 
 
-def _drive(draft: Draft, spot: Spot, obstacle: Obstacle) -> None:
+def _drive(draft: Draft, spot: Spot, obstacle: Obstacle, depth: float) -> None:
     rng, size = draft.rng, spot.size
     name = "slider" if happens(rng, 0.5) else "lever"
-    depth = size * between(rng, 0.06, 0.32) + CLEAR * size
     direction = [round(float(-c), 3) for c in spot.n]
     if name == "slider":
         at = draft.frame.written((float(spot.s[0]), float(spot.s[1])))
@@ -52,7 +70,7 @@ def _drive(draft: Draft, spot: Spot, obstacle: Obstacle) -> None:
         towards = float(np.array([-arm[1], arm[0]]) @ -spot.n)
         last = float(np.sign(towards)) * depth / float(np.hypot(*arm))
     draft.data["bodies"][name] = body
-    draft.data.setdefault("drives", {})["push"] = drive
+    draft.data["drives"] = {"push": drive}
     contact = {"kind": obstacle.data["kind"], "beam": spot.beam, "body": name} | obstacle.data
     draft.data["contacts"] = {"contact1": contact}
     shares = any_of(rng, ((1.0,), (0.5, 1.0), (0.35, 0.7, 1.0)))

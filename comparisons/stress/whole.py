@@ -157,7 +157,7 @@ def _walls(draft: Draft, gap: float, start: tuple[float, float], end: tuple[floa
     draft.data["contacts"] = contacts
 
 
-WHOLE = ((rolled, 0.05), (assembled, 0.08), (lying, 0.07), (column, 0.1))
+WHOLE = ((rolled, 0.065), (assembled, 0.08), (lying, 0.07), (column, 0.1))
 
 
 def _weld(point: str) -> Data:

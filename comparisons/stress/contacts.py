@@ -1,0 +1,84 @@
+"""Contacts of a mechanism that is acted on: things in its way, one after the other, each where the others let it go."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from copy import deepcopy
+
+import numpy as np
+
+from comparisons.stress.chance import RedrawError, happens, weighted
+from comparisons.stress.draft import Data, Draft
+from comparisons.stress.estimate import Barrier, Estimate, State, followed
+from comparisons.stress.obstacles import Obstacle, Spot, companion, is_clear, rigid, spot_on
+
+MOST_BEAMS = 4
+_TRIES = 10
+_STRIDE = 2  # of the states without a barrier, which are followed anew with it
+_AWAY = 0.85  # of the states before one that was not found
+_REACHED = 0.55  # of the way: a mechanism that a barrier ends before is left without it
+
+
+def put_in_the_way(draft: Draft, model: Estimate, states: Sequence[State], acting: Sequence[str]) -> list[State]:
+    """Put none to four things in the way of some beams; the states with them, as far as they go.
+
+    The stages' loads and drives are ``acting`` one after the other.
+    """
+    rng = draft.rng
+    contacts: Data = {}
+    barriers: list[Barrier] = []
+    way = list(states)
+    for i in range(weighted(rng, ((0, 0.07), (1, 0.45), (2, 0.3), (3, 0.12), (4, 0.06)))):
+        name = f"contact{i + 1}"
+        for _ in range(_TRIES):
+            before = deepcopy(draft.data)
+            try:
+                spot = spot_on(draft, model, way)
+                obstacle = _obstacle(draft, spot)
+            except RedrawError:
+                draft.data = before
+                continue
+            thick = happens(rng, 0.78)
+            beam = model.scene.beams[spot.beam]
+            barrier = Barrier(spot.beam, obstacle.distance, 0.5 * beam.thickest if thick else 0.0)
+            held = _with(model, states, acting, [*barriers, barrier]) if _fits(model, obstacle, spot) else []
+            if len(held) < _REACHED * len(states[::_STRIDE]):
+                draft.data = before
+                continue
+            contacts[name] = obstacle.data | ({} if thick else {"thick": False})
+            barriers.append(barrier)
+            # beyond where the estimate found nothing there may be a jump: what follows keeps away from it
+            way = held if len(held) == len(states[::-_STRIDE]) else held[: int(_AWAY * len(held))]
+            break
+    if contacts:
+        draft.data["contacts"] = contacts
+    return way
+
+
+def _obstacle(draft: Draft, spot: Spot) -> Obstacle:
+    beams = draft.data["beams"]
+    if len(beams) < MOST_BEAMS and happens(draft.rng, 0.36):
+        return companion(draft, f"beam{len(beams) + 1}", spot)
+    found = rigid(draft.rng, spot)
+    kind = found.data["kind"]
+    return Obstacle({"kind": kind, "beam": spot.beam, "body": "wall"} | found.data, found.distance)
+
+
+def _fits(model: Estimate, obstacle: Obstacle, spot: Spot) -> bool:
+    return is_clear(model, obstacle, list(model.scene.beams), spot)
+
+
+def _with(model: Estimate, states: Sequence[State], acting: Sequence[str], barriers: list[Barrier]) -> list[State]:
+    """The states at every second one's values with barriers, until there is none near by."""
+    state, found = State(np.zeros(model.unknowns), {}), list[State]()
+    chosen = list(states[::-_STRIDE])[::-1]
+    for target in chosen:
+        for name in acting:
+            value = target.values.get(name, 0.0)
+            if value == state.values.get(name, 0.0):
+                continue
+            state = next(followed(model, state, name, iter([value]), barriers), None) or State(state.q, {})
+            if not state.values:
+                return found
+        found.append(state)
+    return found
