@@ -94,7 +94,7 @@ def exit_code(outcomes: Iterable[Outcome]) -> int:
 def _cores() -> int:
     import os
 
-    return min(2, len(os.sched_getaffinity(0)))
+    return min(2, os.cpu_count() or 1)
 
 
 def _show(there: Stress, json_file: Path | None, out: Path, *, quiet: bool) -> None:
