@@ -47,7 +47,7 @@ class Effort:
         sizes: how many there are, each of twice the links and elements of the one before.
     """
 
-    first: Choices = field(default_factory=lambda: Choices(links=40, elements=20, penetration=1.6e-3))
+    first: Choices = field(default_factory=lambda: Choices(links=40, elements=40))
     sizes: int = 2
 
     def each(self) -> Iterator[Choices]:
