@@ -2,7 +2,8 @@
 
 It is the verdict of ``compare`` on the runs on which it rests, at few links and elements first.  Where that cannot be
 told, or a run ended early, everything is done once more at twice the size, as often as the effort allows.  The finer
-runs of one size are then the coarser ones of the next, and nothing is solved twice.  Of a scene whose answers end early
+runs of one size are then the coarser ones of the next, and nothing is solved twice.  Nothing is done once more where
+the step between the theories is too large already, which no size makes smaller.  Of a scene whose answers end early
 at every size the stations that both reached are judged as a scene of their own.
 
 An answer is *wrong* if it is certified and
@@ -102,7 +103,7 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Remembering) 
     first, *further = effort.each()
     finding = _at_one_size(scene, first, memory)
     for choices in further:
-        if finding.way not in (Way.UNDECIDED, Way.ENDED):
+        if finding.way not in (Way.UNDECIDED, Way.ENDED) or _theory_is_too_much(scene, finding):
             break
         finer = _at_one_size(scene, choices, memory)
         finding = finer if finer.way is Way.WRONG else _beside(finding, finer)
@@ -167,6 +168,13 @@ def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
     else:
         way = Way.AGREE if verdict.word is Word.AGREE else Way.UNDECIDED
     return _Finding(way, sentence, choices, runs, comparison.rows, ending)
+
+
+def _theory_is_too_much(scene: Scene, finding: _Finding) -> bool:
+    """Whether what lies between the theories alone is more than may be stated: no finer size can tell such a row."""
+    return finding.way is Way.UNDECIDED and any(
+        row.bounds.theory > scene.limit(row.probe) * row.scale for row in finding.rows if row.bounds is not None
+    )
 
 
 def _why(early: Iterable[tuple[str, Answer]]) -> str:
