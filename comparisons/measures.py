@@ -68,6 +68,7 @@ from itertools import pairwise
 import numpy as np
 
 from comparisons.branches import Place, Spot, spots_of
+from comparisons.choices import KINEMATICS
 from comparisons.geometry import length
 from comparisons.order import order_of, richardson
 from comparisons.pairing import Runs
@@ -355,7 +356,7 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, spot: Spot, unset
     return replace(
         row,
         bounds=bounds,
-        steps=_steps(probe.quantity, [step[counts] for step in ladder]),
+        steps=_steps(probe.quantity, [step[counts] for step in ladder]) if _whole_ladder(runs) else None,
         contact_model=None if formulations is None else size(formulations[0] - formulations[1]),
         true_errors=true_errors,
     )
@@ -485,6 +486,11 @@ def direction(quantity: Quantity, way: Array) -> Array:
 def components(ladder: Sequence[Array], along: Array) -> tuple[float, ...]:
     """Each step down a ladder of values (k,), its component along the unit vector ``along`` (k,)."""
     return tuple(float(np.dot(a - b, along)) for a, b in pairwise(ladder))
+
+
+def _whole_ladder(runs: Runs) -> bool:
+    """Whether no theory between ``bending`` and the chosen one was left out."""
+    return len(runs.fea) == KINEMATICS.index(runs.kinematics) + 1
 
 
 def _steps(quantity: Quantity, ladder: list[Array]) -> Steps | None:

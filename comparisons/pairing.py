@@ -190,7 +190,8 @@ class Runs:
     Attributes:
         kinematics: the beam theory that was chosen for the reference.
         cprbm: at N and 2N links; the second always in the formulation ``auto``.
-        fea: by theory, from ``bending`` up to the chosen one: at n and, for these two, at 2n elements.
+        fea: by theory, from ``bending`` up to the chosen one: at n and, for these two, at 2n elements; the one between
+            them may have been left out.
         auto: the CPRBM at N links in the formulation ``auto``, if another was chosen.
         paper: the same in the formulation ``paper``, if ``auto`` was chosen and the other could be asked;
             nothing rests on it.
@@ -298,7 +299,7 @@ def crew_of(workers: int) -> Iterator[Crew]:
         pool.shutdown(cancel_futures=True)
 
 
-def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE) -> Runs:
+def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE, *, bare: bool = False) -> Runs:
     """Run both solvers on a scene.
 
     Args:
@@ -306,14 +307,15 @@ def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE)
         choices: how finely, and by which variants.
         solvers: who answers.
         crew: processes to share the runs.
+        bare: whether to leave out the runs on which no word of the verdict rests.
 
     Raises:
         SceneError: a solver refuses the question.
     """
-    return begin(scene, choices, solvers, crew)()
+    return begin(scene, choices, solvers, crew, bare=bare)()
 
 
-def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew) -> Callable[[], Runs]:
+def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare: bool = False) -> Callable[[], Runs]:
     """Have the crew begin with the runs of a scene; called, the result waits for them.
 
     The arguments, and what it then raises, are those of :func:`paired`.
@@ -325,14 +327,17 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew) -> Calla
     even = replace(choices, formulation="auto")
     extra = [] if even == choices else [(solvers.cprbm, scene, even)]
     beside = [(solvers.cprbm, scene, even.beside())] if may_be_uneven(scene) else []
-    driven = nearby(scene)
+    driven = None if bare else nearby(scene)
     round_each = [] if driven is None else [(solvers.cprbm, driven, choices)]
     jobs = [(solvers.cprbm, scene, choices), (solvers.cprbm, scene, even.finer()), *extra, *beside, *round_each]
     first = len(jobs)
     places: list[tuple[Kinematics, int]] = []
     for kinematics in KINEMATICS[: KINEMATICS.index(choices.kinematics) + 1]:
+        between = kinematics not in ("bending", choices.kinematics)
+        if bare and between:
+            continue
         variant = choices.within(kinematics)
-        levels = (variant, variant.finer()) if kinematics in ("bending", choices.kinematics) else (variant,)
+        levels = (variant,) if between else (variant, variant.finer())
         for level, settings in enumerate(levels):
             places.append((kinematics, level))
             jobs.append((solvers.fea, scene, settings))
@@ -352,7 +357,7 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew) -> Calla
             (answers[0], answers[1]),
             frozendict(fea),
             auto=answers[2] if extra else None,
-            paper=None if extra else in_paper(scene, choices, solvers),
+            paper=None if extra or bare else in_paper(scene, choices, solvers),
             beside=answers[2 + len(extra)] if beside else None,
             ratio=ratio_beside(even),
             nearby=answers[first - 1] if round_each else None,

@@ -1,4 +1,4 @@
-"""What of a scene can be compared where the branch ends before the last station and nothing follows it."""
+"""What of a scene can be compared where answers end before the last station."""
 
 from __future__ import annotations
 
@@ -20,27 +20,38 @@ def within_reach(scene: Scene, runs: Runs) -> tuple[Scene, Runs] | None:
     every = [answer for _, answer in runs.everything()]
     asked = sum(len(stage.stations) for stage in scene.stages)
     if not any(map(ends_at_critical, every)) or any(
-        len(answer.stations) < asked for answer in every if not ends_at_critical(answer)
+        not answer.completed or len(answer.stations) < asked for answer in every if not ends_at_critical(answer)
     ):
         return None
     count = min(len(answer.stations) for answer in every)
-    if count == 0:
-        return None
+    return None if count == 0 else up_to(scene, runs, count)
+
+
+def first_stations(scene: Scene, count: int) -> Scene:
+    """A scene with its first stations alone, ``count`` of them, and the stages that have one."""
     stages, left = [], count
     for stage in scene.stages:
         stations = stage.stations[:left]
         left -= len(stations)
         if stations:
             stages.append(stage.model_copy(update={"stations": stations}))
+    return scene.model_copy(update={"stages": tuple(stages)})
+
+
+def up_to(scene: Scene, runs: Runs, count: int) -> tuple[Scene, Runs]:
+    """A scene's first stations, ``count`` of them, and the answers to these alone, each as far as it goes.
+
+    An answer that has them all says that it is complete, which it is for such a scene.
+    """
 
     def cut(answer: Answer) -> Answer:
-        ending = Ending.COMPLETED if ends_at_critical(answer) else answer.ending
+        ending = Ending.COMPLETED if len(answer.stations) >= count else answer.ending
         return replace(answer, stations=answer.stations[:count], ending=ending)
 
     def maybe(answer: Answer | None) -> Answer | None:
         return None if answer is None else cut(answer)
 
-    return scene.model_copy(update={"stages": tuple(stages)}), replace(
+    return first_stations(scene, count), replace(
         runs,
         cprbm=(cut(runs.cprbm[0]), cut(runs.cprbm[1])),
         fea=frozendict({theory: tuple(map(cut, answers)) for theory, answers in runs.fea.items()}),

@@ -10,8 +10,9 @@ quantity                               the family's scale in a stage
 displacement                           largest displacement of any point, driven ones too, or rotation times length
 rotation                               largest rotation of any body, driven ones too, or displacement over length
 angle                                  largest angle of any stop
-force, reaction                        largest of them, of the force loads' resultants, and of the moments over length
-reaction_moment, moment                largest of them, of the moment loads, and of the forces times length
+force, reaction                        largest of them, of the force loads' resultants, of the moments over length, and
+                                       of what a drive is resisted with
+reaction_moment, moment                largest of them, of the moment loads, of the forces times length, and the same
 bending_stress, combined_stress        largest of them in any beam
 potential_energy                       largest energy
 closing_load                           largest value that the stage steps to
@@ -23,6 +24,10 @@ other supports' moments, and may be small by accident of that point.  Its scale 
 moment of the balance that it closes, of the supports', the drives' and the stepped one's.
 
 The length is the longest beam's.
+
+What a drive is resisted with is its reaction, and that need not be asked.  It is estimated, from below, by the softest
+beam, bent along the longest beam's length ℓ by as much as the drive turns (or moves over ℓ): a moment EI/ℓ per radian.
+Without it, of a mechanism that a drive bends a contact that hardly touches would be its own scale.
 
 Where hardly anything happens (a station at zero load), the family's largest value is round-off as well.  No
 family's scale is therefore less than 1e-7 of its *natural* scale, what the stiffest beam would show that is
@@ -135,11 +140,13 @@ def family_size(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[A
                 _stepped_force(scene, stage),
                 largest("reaction_moment", "moment") / lever,
                 _stepped_moment(scene, stage) / lever,
+                _resisted(scene, stage) / lever,
             )
         case "reaction_moment" | "moment":
             return max(
                 largest("reaction_moment", "moment"),
                 _stepped_moment(scene, stage),
+                _resisted(scene, stage),
                 largest("force", "reaction") * lever,
                 _stepped_force(scene, stage) * lever,
             )
@@ -195,6 +202,16 @@ def _stepped_force(scene: Scene, stage: Stage) -> float:
 def _stepped_moment(scene: Scene, stage: Stage) -> float:
     """Largest magnitude, N·m, of a moment on a body or a beam, if the stage steps one."""
     return max(_stepped(scene, stage, "moment"), _stepped(scene, stage, "beam_moment"))
+
+
+def _resisted(scene: Scene, stage: Stage) -> float:
+    """Moment, N·m, with which the softest beam resists the stage's drive; 0 where it steps a load."""
+    lever = _lever(scene)
+    turned = max(_stepped(scene, stage, "rotation"), _stepped(scene, stage, "displacement") / lever)
+    softest = min(
+        scene.materials[beam.material].youngs_modulus * float(np.min(_stiffness(beam))) for beam in scene.beams.values()
+    )
+    return turned * softest / lever
 
 
 def _stepped(scene: Scene, stage: Stage, kind: Kind) -> float:

@@ -479,6 +479,18 @@ class Edge:
         """On the beam what lies at ``s``."""
         return ((1.0, s, self.line(state, at).at(s).psi),)
 
+    def no_closer(self, state: State, at: Positions) -> float:
+        """What the least gap is at least, units of length, by the samples alone.
+
+        Along the beam a distance changes by no more than the way, and half of the thickness by less.  A corner that
+        stands out may be all between two samples, and of an edge that has one nothing is known by them.
+        """
+        if self.corners:
+            return -np.inf
+        A = self.line(state, at).sampled
+        apart = float(np.max(np.diff(A.s)))
+        return float(self._nearest(A, self.frame(state, at))[0].min()) - self.offset - 2.0 * apart
+
     def least_gap(self, state: State, at: Positions) -> float:
         """Least gap anywhere along the beam, units of length; negative where it overlaps."""
         line, frame = self.line(state, at), self.frame(state, at)

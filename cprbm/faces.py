@@ -154,13 +154,13 @@ class Graph:
 
     def curvature(self, v: Array) -> Array:
         """κ at some v (k,)."""
-        f1, f2 = (polynomial.polyval(v, polynomial.polyder(self.coefficients, m)) for m in (1, 2))
+        f1, f2 = (polynomial.polyval(v, each) for each in _derivatives(self.coefficients)[1:])
         return np.asarray(-self.side * f2 / (1.0 + f1 * f1) ** 1.5)
 
     def seen(self, q: Array) -> Seen:
         """The piece from places ``q`` (k, 2)."""
         v, w = (q[:, ::-1] if self.swapped else q).T + np.array(self.origin)[:, None]
-        f, f1, f2 = (polynomial.polyder(self.coefficients, m) for m in range(3))
+        f, f1, f2 = _derivatives(self.coefficients)
         samples = np.linspace(self.low, self.high, SAMPLES)
         heights = polynomial.polyval(samples, f)
         at = samples[np.argmin((samples - v[:, None]) ** 2 + (heights - w[:, None]) ** 2, axis=1)]
@@ -186,8 +186,15 @@ class Graph:
 
 
 @lru_cache(maxsize=GRAPHS)
+def _derivatives(coefficients: tuple[float, ...]) -> tuple[Array, Array, Array]:
+    """Coefficients of a polynomial and of its first two derivatives."""
+    f, f1, f2 = (np.asarray(polynomial.polyder(coefficients, m), dtype=float) for m in range(3))
+    return f, f1, f2
+
+
+@lru_cache(maxsize=GRAPHS)
 def _roof(graph: Graph) -> Roof:
-    f, f1 = (graph.side * np.asarray(polynomial.polyder(graph.coefficients, m), dtype=float) for m in range(2))
+    f, f1 = (graph.side * each for each in _derivatives(graph.coefficients)[:2])
     # w is measured from the base, f from the axis
     base, along, out = (-graph.origin[0], -graph.origin[1]), (1.0, 0.0), (0.0, graph.side)
     if graph.swapped:

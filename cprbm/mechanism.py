@@ -150,7 +150,13 @@ class Mechanism:
         slack = max(pair.offset, DIP) if isinstance(pair, Edge) else pair.offset
         slack += self._sag(pair, after.state)
         allowed = slack + uneven * _turned(before.state, after.state) ** 2
-        return any(pair.least_gap(state, at) + pair.offset < -allowed for state, at in way())
+
+        def across(state: State, at: Positions) -> bool:
+            if isinstance(pair, Edge) and pair.no_closer(state, at) + pair.offset >= -allowed:
+                return False
+            return pair.least_gap(state, at) + pair.offset < -allowed
+
+        return any(across(state, at) for state, at in way())
 
     def _sag(self, pair: Pair | Edge, state: State) -> float:
         """By how much beams may sag between their joints, which are all that ``paper`` holds; units of length."""

@@ -46,7 +46,7 @@ def own_pins(scene: Scene, model: Model, name: str) -> tuple[AngleStop | None, A
             continue
         onwards, backwards = (atan2(y, x) for x, y in directions)
         most = (backwards - onwards) % tau
-        # as drawn the beam leaves on the free side
+        # as drawn the beam leaves on the free side, or beyond it by the rounding of numbers, and stands free of stress
         leaves = float(chain.line.angle(np.array([arc]))[0]) + back
         beta = 0.5 * most + remainder(leaves - onwards - 0.5 * most, tau)
         found.append(
@@ -55,7 +55,7 @@ def own_pins(scene: Scene, model: Model, name: str) -> tuple[AngleStop | None, A
                 link=link,
                 body=body,
                 drawn=beta - float(model.rest[link]),
-                limits=np.array([most, 0.0]),
+                limits=np.array([max(most, beta), min(0.0, beta)]),
                 signs=np.array([1.0, -1.0]),
                 arc=arc / model.unit_length,
             )

@@ -23,13 +23,17 @@ A cubic over an arc is slower in the middle, by α²/8 of its speed with the ele
 
     ∂(½ c (f·n)²)/∂α = −c (f·n)(f·t),    ∂²/∂α² = c ((f·t)² − (f·n)²)
 
-A moment M does the work M (ψ − ψ⁰) of the tangent angle ψ at its place, which by x' = ∂x/∂ξ, its size g and the normal
-and tangent n', t' there has
+A moment M does the work M (θ − θ⁰) of the section's rotation θ at its place, and not of the line's tangent: that leans
+by the shear, and a moment on it would be a couple of forces as far apart as an element is long, which shear the beam
+the more the shorter that is.  With the angle of shear γ of its element, and ψ the tangent angle of the cubic whose
+nodes have the sections' rotations for tangents, θ = ψ − 6 ξ (1 − ξ) γ.  By x' = ∂x/∂ξ, its size g and the normal and
+tangent n', t' there
 
     dψ = n'·dx'/g,    d²ψ = n'·d²x'/g − 2 (n'·dx')(t'·dx')/g²
 
-and, as a force has, a give of its place in an element whose ends are held, c' = (u v/L)(1 − 3 u v/L²)/EI: a constant
-½ c' M².  Two in one element, at u ≤ u', turn each other's places by (u v'/L)(1 − 3 v u'/L²)/EI.
+As a force has, it has a give of its place in an element whose ends are held, c' = (u v/L)(1 − 3 σ u v/L²)/EI: a
+constant ½ c' M².  Two in one element, at u ≤ u', turn each other's places by (u v'/L)(1 − 3 σ v u'/L²)/EI.  With shear
+σ = 1/(1 + 12 EI/(GA L²)), which by the slip c of :mod:`fea_reference.element` is 1 − c₁ − c₂.
 """
 
 from __future__ import annotations
@@ -103,18 +107,22 @@ def beam_load(model: Model, part: OnBeam, value: float, z: State) -> BeamLoad:
 def _beam_moment(model: Model, part: BeamMomentPart, value: float, z: State) -> BeamLoad:
     """A moment of a ``value`` in state ``z``."""
     beam, zeta = model.beams[part.beam], np.array([part.zeta])
-    line = model.line(beam, z)
-    e, _ = line.locate(zeta)
-    psi, local, twice = _turning(line, zeta)
-    rest, _, _ = _turning(model.line(beam, model.start), zeta)
-    give = _mutual(model, part, part, line)
-    chain = model.chain([(beam, e)], z)
+    sections = model.line_of_sections(beam, z)
+    e, xi = sections.locate(zeta)
+    theta, local, twice = _turning(sections, zeta)
+    rest, _, _ = _turning(model.line_of_sections(beam, model.start), zeta)
+    bow = 6.0 * xi * (1.0 - xi)
+    gamma, leaning = model.sheared(beam, e, z)
+    none_yet, _ = model.sheared(beam, e, model.start)
+    theta, rest = theta - bow * gamma, rest - bow * none_yet
+    local[:6] -= bow * leaning.by
+    twice[:6, :6] -= bow * leaning.by_twice
+    give = _mutual(model, part, part, sections)
+    chain = model.chain_of_sections(beam, e)
     local, twice = value * local, value * twice
-    work = value * float(psi[0] - rest[0]) + 0.5 * value**2 * give
-    none = np.zeros((2, 1))
-    return BeamLoad(
-        part, value, none, line.at(zeta)[0], work, chain, chain.gradient(local), chain.hessian(twice, local)
-    )
+    work = value * float(theta[0] - rest[0]) + 0.5 * value**2 * give
+    none, place = np.zeros((2, 1)), model.line(beam, z).at(zeta)[0]
+    return BeamLoad(part, value, none, place, work, chain, chain.gradient(local), chain.hessian(twice, local))
 
 
 def shared_work(model: Model, part: BeamMomentPart, other: BeamMomentPart, z: State) -> float:
@@ -131,8 +139,10 @@ def _mutual(model: Model, part: BeamMomentPart, other: BeamMomentPart, line: Neu
         return 0.0
     first, last = float(xi.min()), float(xi.max())
     straight = first * (1.0 - last)
-    bending = float(model.beams[part.beam].bending(zeta / line.n).mean())
-    return float(line.lengths[e[0]]) * straight * (1.0 - 3.0 * last * (1.0 - first)) / bending
+    beam = model.beams[part.beam]
+    bending = float(beam.bending(zeta / line.n).mean())
+    sigma = 1.0 - float(model.elements.slip[:, beam.elements][:, e[0]].sum())
+    return float(line.lengths[e[0]]) * straight * (1.0 - 3.0 * sigma * last * (1.0 - first)) / bending
 
 
 def _turning(line: NeutralLine, zeta: Array) -> tuple[Array, Array, Array]:

@@ -117,7 +117,7 @@ def chain(elements: Elements, lines: tuple[tuple[Span, Index], ...], body: Index
     shares = [(i, _LINE * i, e) for i, (_, e) in enumerate(lines)]
     leaning = [(i, line) for i, line in enumerate(lines) if elements.slip[:, line[0].part].any()]
     if not leaning:
-        return Chain(own, (), np.empty((0, *own.shape)), np.empty((0, len(own), *own.shape)), tuple(shares))
+        return _upright(own, tuple(shares))
     size, k = len(own) + 12 * len(leaning), own.shape[1]
     rows, beside = [], [own]
     by, twice = np.zeros((2 * len(leaning), size, k)), np.zeros((2 * len(leaning), size, size, k))
@@ -140,3 +140,12 @@ def chain(elements: Elements, lines: tuple[tuple[Span, Index], ...], body: Index
                 by[one, here] = weight * slip_by[:, where]
                 twice[one, here, here] = weight * slip_twice[:, :, where]
     return Chain(np.concatenate(beside), tuple(rows), by, twice, tuple(shares))
+
+
+def own_chain(span: Span, e: Index) -> Chain:
+    """Of elements (k,) of a beam whose line has the sections' rotations for tangents: to their own unknowns."""
+    return _upright(span.dofs[:, e], ((0, 0, e),))
+
+
+def _upright(own: Index, shares: tuple[tuple[int, int, Index], ...]) -> Chain:
+    return Chain(own, (), np.empty((0, *own.shape)), np.empty((0, len(own), *own.shape)), shares)

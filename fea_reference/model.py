@@ -19,10 +19,10 @@ from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLi
 
 from fea_reference.acting import Acting
 from fea_reference.curves import length, sample
-from fea_reference.element import ElementForces, Elements, forces, reference
+from fea_reference.element import ElementForces, Elements, Shear, forces, reference, shear, shear_angle
 from fea_reference.hermite import Index, NeutralLine
 from fea_reference.known import Known
-from fea_reference.leaning import Chain, Span, chain, tangent_angles
+from fea_reference.leaning import Chain, Span, chain, own_chain, tangent_angles
 from fea_reference.own_pins import own_pins
 from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
 from fea_reference.settings import Settings
@@ -306,10 +306,17 @@ class Model:
         return self.lines.found(z, beam.name, lambda: self._line(beam, z))
 
     def _line(self, beam: BeamPart, z: State) -> NeutralLine:
+        return self._through(beam, tangent_angles(self.elements, self._span(beam), z), z)
+
+    def line_of_sections(self, beam: BeamPart, z: State) -> NeutralLine:
+        """The same with the sections' rotations for tangents: what it is without the shear."""
+        return self._through(beam, z[self.node_dofs[2, beam.nodes]], z)
+
+    def _through(self, beam: BeamPart, angles: Array, z: State) -> NeutralLine:
         dofs = self.node_dofs[:, beam.nodes]
         return NeutralLine.through(
             z[dofs[:2]],
-            tangent_angles(self.elements, self._span(beam), z),
+            angles,
             self.elements.length[beam.elements],
             z.rest[dofs[:2]],
             self.elements.compliance[beam.elements],
@@ -321,6 +328,16 @@ class Model:
         k = places[0][1].size
         moved = np.empty((0, k), dtype=np.int64) if body is None else np.repeat(body[:, None], k, axis=1)
         return chain(self.elements, tuple((self._span(beam), e) for beam, e in places), moved, z)
+
+    def chain_of_sections(self, beam: BeamPart, e: Index) -> Chain:
+        """From what :meth:`line_of_sections` goes by to the unknowns, at elements (k,) of a beam."""
+        return own_chain(self._span(beam), e)
+
+    def sheared(self, beam: BeamPart, e: Index, z: State) -> tuple[Array, Shear]:
+        """Angles of shear (k,) of elements (k,) of a beam, and their derivatives by the nodes' six unknowns."""
+        span = self._span(beam)
+        gamma = shear_angle(self.elements, span.part, span.dofs, z)[e]
+        return gamma, shear(self.elements, span.part.start + e, span.dofs[:, e], z)
 
     def _span(self, beam: BeamPart) -> Span:
         own = {stop.end for stop in self.stops if stop.owner}

@@ -21,7 +21,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -34,6 +34,7 @@ _SAME = 1e-6  # as near as a scene's places have to be
 _SAMPLES = 257  # of a graph, from which the nearest place is sought
 _PIECES = 64  # of a graph, as what a beam goes through
 _NEWTON_STEPS = 30
+_GRAPHS = 1024  # of which derivatives are known
 _ARRIVED = 1e-15
 
 
@@ -218,7 +219,7 @@ class Graph:
         """Distance and so on of places (2, k)."""
         v, w = y[::-1] if self.across else y
         low, high = self.span
-        f1, f2 = self.f.deriv(), self.f.deriv(2)
+        f1, f2 = _derivatives(self)
         samples = np.linspace(low, high, _SAMPLES)
         at = samples[((samples - v[:, None]) ** 2 + (self.f(samples) - w[:, None]) ** 2).argmin(axis=1)]
         for _ in range(_NEWTON_STEPS):
@@ -261,10 +262,16 @@ class Graph:
 
     def _at(self, v: Array) -> tuple[Array, Array]:
         """Points and unit tangents (2, k) at ``v`` (k,), the free side to the left."""
-        slope = self.f.deriv()(v)
+        slope = _derivatives(self)[0](v)
         tau = np.stack([np.ones_like(v), slope]) / np.hypot(1.0, slope) * (1.0 if self._forwards else -1.0)
         point = np.stack([v, self.f(v)])
         return (point[::-1], tau[::-1]) if self.across else (point, tau)
+
+
+@lru_cache(maxsize=_GRAPHS)
+def _derivatives(graph: Graph) -> tuple[Polynomial, Polynomial]:
+    """The first and the second of a graph's f."""
+    return graph.f.deriv(), graph.f.deriv(2)
 
 
 Outline = HalfPlane | Broken | Graph

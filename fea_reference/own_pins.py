@@ -79,7 +79,11 @@ def own_pins(
                 angle, limits = -_within(_angle(back) - along, -np.pi / 4.0), (None, 0.0)
             else:
                 continue
-            least, most = limits
+            # what was drawn from rounded numbers may lie beyond a limit by their rounding, and begins at it
+            least, most = (
+                None if limit is None else further(limit, angle)
+                for limit, further in zip(limits, (min, max), strict=True)
+            )
             phi = None if dofs is None else int(dofs[2])
             found.append(
                 StopPart(

@@ -18,7 +18,19 @@ from comparisons.cli.commands import Commands
 if TYPE_CHECKING:
     from comparisons.pairing import Solvers
 
-_COMMANDS = ("list", "solve", "compare", "converge", "bench", "study", "regress", "new", "schema", "doctor")
+_COMMANDS = (
+    "list",
+    "solve",
+    "compare",
+    "converge",
+    "bench",
+    "study",
+    "stress",
+    "regress",
+    "new",
+    "schema",
+    "doctor",
+)
 
 WRONG_QUESTION = 2
 INTERRUPTED = 130
@@ -46,6 +58,8 @@ class _SubCommands(Commands):
                 from comparisons.cli.bench_ import command
             case "study":
                 from comparisons.cli.study_ import command
+            case "stress":
+                from comparisons.cli.stress_ import command
             case "regress":
                 from comparisons.cli.regress_ import command
             case "new":

@@ -67,6 +67,28 @@ def progress(items: Sequence[T], *, shown: bool) -> Iterator[T]:
 
 
 @contextmanager
+def counted(whole: int, *, shown: bool) -> Iterator[Callable[[int], None]]:
+    """A bar on standard error, as in :func:`progress`, that is told how many of a ``whole`` are done.
+
+    It is drawn when it is told, by no thread of its own: who shows it may still start processes.
+    """
+    if not shown or not sys.stderr.isatty():
+        yield lambda done: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (TextColumn("solving"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True, auto_refresh=False) as bar:
+        task = bar.add_task("solving", total=whole)
+
+        def tell(done: int) -> None:
+            bar.update(task, completed=done, refresh=True)
+
+        yield tell
+
+
+@contextmanager
 def current(*, shown: bool) -> Iterator[Callable[[str], None]]:
     """A line on standard error that says what is being done, if that is a terminal and the line is wanted."""
     if not shown or not sys.stderr.isatty():

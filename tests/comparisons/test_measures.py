@@ -17,7 +17,9 @@ from comparisons.verdict import judged
 from comparisons.words import Word
 from scene import Probe, Stage
 from scene.answer import frozen_array
+from scene.reading import scene_from
 from tests.comparisons.made_up import CLOSES, MadeUp, with_value
+from tests.cprbm.scenes import LENGTH, RIGIDITY, cantilever_data
 
 
 def rows_by_name(scene, runs, station=0.67):
@@ -236,6 +238,21 @@ def test_a_probe_that_vanishes_by_symmetry_is_measured_by_its_family(hinge, righ
     probe = Probe(of="A", quantity="reaction")
     scale = probe_scale(hinge, probe, hinge.stages[0], answers)
     assert scale == pytest.approx(SMALLEST_SHARE * 0.67 / (math.pi * 0.025))
+
+
+def test_a_force_beside_a_drive_is_measured_by_what_the_drive_is_resisted_with(right):
+    """A cantilever of stiffness EI turned by 0.17 rad at its end takes a moment of 0.17·EI/L, and EI·0.17/L² is a
+    force; a contact's of 1e-17 N is none."""
+    turned = {**cantilever_data({"kind": "rotation", "body": "tip"}, [0.11, 0.17]), "loads": {}}
+    scene = scene_from({**turned, "drives": {"P": {"kind": "rotation", "body": "tip"}}})
+    probe = Probe(of="R", quantity="reaction")
+    stage, answer = scene.stages[0], MadeUp("fea", 1e-3, contact=False)(scene, Choices())
+    stations = tuple(
+        replace(station, values=frozendict({probe.name: frozen_array([1e-17, 0.0])})) for station in answer.stations
+    )
+    asked = scene.model_copy(update={"probes": (probe,)})
+    scale = probe_scale(asked, probe, stage, (replace(answer, stations=stations),))
+    assert scale == pytest.approx(SMALLEST_SHARE * 0.17 * RIGIDITY / LENGTH**2)
 
 
 def test_a_supports_moment_is_measured_by_the_largest_moment_of_the_balance(hinge, right):

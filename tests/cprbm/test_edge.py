@@ -7,7 +7,7 @@ from pydantic import TypeAdapter
 import cprbm
 from cprbm import newton
 from cprbm.contact import NO_ROWS, Local, over_unknowns
-from cprbm.kinematics import State, pulled_back, rest_state
+from cprbm.kinematics import State, positions, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import contact_gradient, contact_rows, point_at
 from scene import Ending
@@ -238,6 +238,23 @@ def test_rows_and_blocks_are_derivatives(kind, moves, formulation):
         product[n + 2 :: 3] += over_phi * d[n + 2 :: 3]
         bent = (contact_gradient(model, ahead) - contact_gradient(model, behind)) / 2e-6
         assert product == pytest.approx(bent, rel=1e-5, abs=1e-5 * np.max(np.abs(bent)))
+
+
+@pytest.mark.parametrize("kind", BENT)
+def test_the_samples_alone_never_take_a_beam_for_farther_than_it_is(kind):
+    contact = TypeAdapter(Contact).validate_python({**BENT[kind], "beam": "beam", "body": "wall"}, strict=False)
+    mechanism = mechanism_of(arch().model_copy(update={"contacts": {"edge": contact}}), cprbm.Settings(links=13))
+    model, edge = mechanism.problem.model, mechanism.pairs["edge"]
+    random, rest = np.random.default_rng(11), rest_state(mechanism.problem.model)
+    found = []
+    for _ in range(40):
+        theta = rest.theta * random.uniform(-1.0, 1.5) + random.uniform(-1.0, 1.0)
+        state = State(theta + 0.1 * random.standard_normal(model.n_links), rest.bodies)
+        at = positions(model, state)
+        found.append((edge.no_closer(state, at), edge.least_gap(state, at)))
+    bound, least = np.array(found).T
+    assert np.all(bound <= least)
+    assert edge.corners or np.median(least - bound) < 4.0 / 13 / 2  # so that it is worth asking
 
 
 def test_a_line_in_pieces_that_go_on_straight_is_one_line():

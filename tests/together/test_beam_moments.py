@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from frozendict import frozendict
 
 import cprbm
 import fea_reference
 from scene import SceneError, StationAnswer
 from scene.reading import scene_from
+from tests.cprbm.scenes import LENGTH as SCENES_LENGTH
+from tests.cprbm.scenes import MODULUS as SCENES_MODULUS
+from tests.cprbm.scenes import WIDTH, cantilever_data
 from tests.together.features import LENGTH, MODULUS, MOMENT, THICKNESS, Data, arc, cantilever, ended, probes, weld
 
 AT, FACTOR = 0.63, 1.3
@@ -28,6 +32,27 @@ def loaded(data: Data, at: float, value: float, *asked: str) -> Data:
     loads = {"M": {"kind": "beam_moment", "beam": "beam", "at": at}}
     stages = [{"name": "turn", "steps": "M", "stations": [value]}]
     return data | {"loads": loads, "stages": stages, "probes": probes(*asked)}
+
+
+@pytest.mark.parametrize("kinematics", ["stretch", "shear"])
+@pytest.mark.parametrize("n", [11, 37])
+def test_a_thick_cantilever_is_not_sheared_by_a_moment(kinematics: str, n: int) -> None:
+    # the same closed form: with neither a force across nor one along the beam no theory adds anything to bending
+    scene = scene_from(cantilever_data({"kind": "beam_moment", "beam": "beam", "at": 0.37}, [0.7]))
+    thick = scene.beams["beam"].model_copy(update={"thickness": 0.0091})
+    rigidity = SCENES_MODULUS * WIDTH * 0.0091**3 / 12.0
+    M, a = 0.31 * rigidity / SCENES_LENGTH, 0.37 * SCENES_LENGTH
+    stage = scene.stages[0].model_copy(update={"stations": (M,)})
+    scene = scene.model_copy(update={"beams": frozendict({"beam": thick}), "stages": (stage,)})
+    answer = fea_reference.answer(scene, fea_reference.Settings(elements=n, kinematics=kinematics))
+    assert answer.completed, answer.sentence
+    values = answer.stations[-1].values
+    bent, rest = M / rigidity, SCENES_LENGTH - a
+    x = np.sin(bent * a) / bent + rest * np.cos(bent * a) - SCENES_LENGTH
+    y = (1.0 - np.cos(bent * a)) / bent + rest * np.sin(bent * a)
+    assert values["T.displacement"] == pytest.approx([x, y], abs=2e-6 * SCENES_LENGTH)
+    assert values["tip.rotation"] == pytest.approx([bent * a], rel=1e-5)
+    assert values["scene.potential_energy"] == pytest.approx([-0.5 * M**2 * a / rigidity], rel=2e-5)
 
 
 @pytest.mark.parametrize(("solver", "error"), [("cprbm", 0.1), ("fea", 1e-3)])

@@ -1,0 +1,249 @@
+"""One scene judged: both solvers, the ordinary verdict, from coarse to fine until it can be told.
+
+It is the verdict of ``compare`` on the runs on which it rests, at few links and elements first.  Where that cannot be
+told, or a run ended early, everything is done once more at twice the size, as often as the effort allows.  The finer
+runs of one size are then the coarser ones of the next, and nothing is solved twice.  Nothing is done once more where
+the step between the theories is too large already, which no size makes smaller.  Of a scene whose answers end early
+at every size the stations that both reached are judged as a scene of their own.
+
+An answer is *wrong* if it is certified and
+
+* a row of the verdict differs, also of a scene whose other stations were not reached, or an answer that calls itself
+  complete is not whole; or
+* a value is further from that at four times the links or elements than F times what is stated of it; or
+* it is further from the exact answer, where one is known, than F times what is stated of it,
+
+with the F of :mod:`comparisons.calibration`: a stated uncertainty is to hold in 95 % of the rows and not in all.
+"""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
+
+from comparisons.calibration import FAR, every
+from comparisons.choices import Choices
+from comparisons.formats import number
+from comparisons.measures import Bounds, Row
+from comparisons.memory import Remembering
+from comparisons.pairing import Runs, Solvers, paired
+from comparisons.reach import ends_at_critical, first_stations, up_to
+from comparisons.scales import norm
+from comparisons.stations import station_of
+from comparisons.stress.outcomes import Outcome, Way
+from comparisons.stress.strata import met, stated
+from comparisons.verdict import Comparison, compared
+from comparisons.words import Word
+from scene import Answer, Scene, SceneError
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How much is done for one scene.
+
+    Attributes:
+        first: the coarsest choices.
+        sizes: how many there are, each of twice the links and elements of the one before.
+    """
+
+    first: Choices = field(default_factory=lambda: Choices(links=40, elements=40))
+    sizes: int = 2
+
+    def each(self) -> Iterator[Choices]:
+        """The choices, from coarse to fine."""
+        choices = self.first
+        for _ in range(self.sizes):
+            yield choices
+            choices = choices.finer()
+
+
+@dataclass(frozen=True, slots=True)
+class _Finding:
+    """What one size says: a way, why, and the rows on which it rests; of answers that ended, how many they reached."""
+
+    way: Way
+    sentence: str
+    choices: Choices
+    runs: Runs | None = None
+    rows: tuple[Row, ...] = ()
+    ending: str = ""
+    reached: int = 0
+
+
+def judged(scene: Scene, solvers: Solvers, effort: Effort) -> Outcome:
+    """How a scene ends."""
+    begun = time.process_time()
+    # those who know the exact answer are asked once, when the size is found
+    memory = Remembering(solvers=replace(solvers, exact=None))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            finding = _found(scene, solvers, effort, memory)
+        except SceneError as error:
+            outcome = Outcome(scene.name, Way.REFUSED, "; ".join(map(str, error.mistakes)))
+        else:
+            outcome = _told(scene, finding)
+    return replace(
+        outcome,
+        seconds=time.process_time() - begun,
+        iterations=sum(_iterations(memory.known.values())),
+        stated=tuple(sorted(stated(scene))),
+        warnings=tuple(dict.fromkeys(str(each.message) for each in caught)),
+    )
+
+
+def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Remembering) -> _Finding:
+    """What the first size says that says something, or the finest.
+
+    Raises:
+        SceneError: a solver refuses the scene.
+    """
+    first, *further = effort.each()
+    finding = _at_one_size(scene, first, memory)
+    for choices in further:
+        if finding.way not in (Way.UNDECIDED, Way.ENDED) or _theory_is_too_much(scene, finding):
+            break
+        finer = _at_one_size(scene, choices, memory)
+        finding = finer if finer.way is Way.WRONG else _beside(finding, finer)
+    if finding.runs is None:
+        return _as_far_as_it_goes(scene, finding, memory)
+    if solvers.exact is None or finding.way not in (Way.AGREE, Way.UNDECIDED):
+        return finding
+    exact = solvers.exact(scene, finding.choices)
+    if not exact.stations:
+        return finding
+    return _of_comparison(finding.choices, compared(scene, replace(finding.runs, exact=exact)))
+
+
+def _at_one_size(scene: Scene, choices: Choices, memory: Remembering) -> _Finding:
+    """What one size says; where one of the two compared answers ends early, nothing is asked beside them.
+
+    Raises:
+        SceneError: a solver refuses the scene.
+    """
+    solvers = memory.solvers
+    two = memory.answers([(solvers.cprbm, scene, choices), (solvers.fea, scene, choices)])
+    if any(not answer.completed and not ends_at_critical(answer) for answer in two):
+        early = [(answer.solver, answer) for answer in two if not answer.completed]
+        reached = min(len(answer.stations) for answer in two)
+        return _Finding(Way.ENDED, _why(early), choices, ending=early[0][1].ending.name, reached=reached)
+    runs = paired(scene, choices, solvers, memory, bare=True)
+    finding = _of_comparison(choices, compared(scene, runs))
+    reached = min(len(answer.stations) for _, answer in runs.everything())
+    if finding.way is not Way.ENDED or finding.rows or reached == 0:
+        return finding
+    part = compared(*up_to(scene, runs, reached))
+    if part.verdict.word is Word.DIFFER:
+        return replace(finding, way=Way.WRONG, sentence=part.verdict.sentence, rows=part.rows, ending="")
+    return replace(finding, rows=part.rows)
+
+
+def _as_far_as_it_goes(scene: Scene, finding: _Finding, memory: Remembering) -> _Finding:
+    """The finding of answers that ended early, unless what they reached is wrong.
+
+    Raises:
+        SceneError: a solver refuses the scene.
+    """
+    if finding.reached == 0:
+        return finding
+    part = _at_one_size(first_stations(scene, finding.reached), finding.choices, memory)
+    return part if part.way is Way.WRONG else replace(finding, rows=part.rows, runs=part.runs)
+
+
+def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
+    """The way in which a verdict is one of the seven."""
+    verdict, runs = comparison.verdict, comparison.runs
+    early = [(name, answer) for name, answer in runs.everything() if not answer.completed]
+    sentence, ending = verdict.sentence, ""
+    if verdict.word is Word.DIFFER:
+        way = Way.WRONG
+    elif early:
+        way = Way.ENDED
+        ending = early[0][1].ending.name
+        sentence = _why(early)
+    elif not verdict.completed:
+        way = Way.WRONG
+    else:
+        way = Way.AGREE if verdict.word is Word.AGREE else Way.UNDECIDED
+    return _Finding(way, sentence, choices, runs, comparison.rows, ending)
+
+
+def _theory_is_too_much(scene: Scene, finding: _Finding) -> bool:
+    """Whether what lies between the theories alone is more than may be stated: no finer size can tell such a row."""
+    return finding.way is Way.UNDECIDED and any(
+        row.bounds.theory > scene.limit(row.probe) * row.scale for row in finding.rows if row.bounds is not None
+    )
+
+
+def _why(early: Iterable[tuple[str, Answer]]) -> str:
+    """Which answers ended early, and what each of them says of it."""
+    return "; ".join(f"{name}: {answer.ending.name}, {answer.sentence}" for name, answer in early)
+
+
+def _beside(coarser: _Finding, finding: _Finding) -> _Finding:
+    """The finding of a size with what it says of half of it: wrong where a value is too far from its refinement."""
+    worst, said = 1.0, ""
+    if finding.runs is None:
+        return finding
+    for row in coarser.rows:
+        for solver, off, allowed in _from_refinement(row, finding.runs):
+            if off > worst * allowed:
+                worst = off / allowed
+                said = (
+                    f"{solver}: {row.probe.name} at {row.stage} {row.station:g} is {number(FAR * worst)} times as far "
+                    f"from its value at four times the size as is stated of it."
+                )
+    return finding if not said else replace(finding, way=Way.WRONG, sentence=said, ending="")
+
+
+def _from_refinement(row: Row, finer: Runs) -> Iterator[tuple[str, float, float]]:
+    """By solver the distance of a row's value from the finest of the finer runs, and what it may be.
+
+    Of stresses, whose places next to contacts do not count, and of rows that are not compared nothing is said.
+    """
+    if row.bounds is None or row.arc_length is not None:
+        return
+    for solver, mine, answer, own in (
+        ("cprbm", row.cprbm, finer.cprbm[1], row.bounds.cprbm),
+        ("fea", row.fea, finer.fea[finer.kinematics][1], row.bounds.fea),
+    ):
+        try:
+            station = station_of(answer, row.stage, row.station)
+        except KeyError:
+            continue
+        its = station.values[row.probe.name]
+        if mine.shape == its.shape and station.branch == row.branch:
+            yield solver, norm(row.probe.quantity, mine - its), FAR * (own + row.bounds.round_off)
+
+
+def _told(scene: Scene, finding: _Finding) -> Outcome:
+    """The outcome that a finding is, without what the whole effort took."""
+    rows = [(row, row.bounds) for row in finding.rows if row.bounds is not None]
+    links, elements = finding.choices.links, finding.choices.elements
+    assert isinstance(links, int)
+    assert isinstance(elements, int)
+    return Outcome(
+        scene.name,
+        finding.way,
+        finding.sentence,
+        finding.ending,
+        difference=max((_pressure(row, bounds) for row, bounds in rows), default=None),
+        uncertainty=max((max(bounds.total, bounds.same_theory) / row.scale for row, bounds in rows), default=None),
+        beyond=max((each.ratio for row, _ in rows for each in every(row)), default=None),
+        links=links,
+        elements=elements,
+        met=() if finding.runs is None else tuple(sorted(met(scene, finding.runs.reference))),
+    )
+
+
+def _pressure(row: Row, bounds: Bounds) -> float:
+    """The larger of a row's two differences over what is stated of each."""
+    pairs = ((row.difference, bounds.total), (row.same_theory, bounds.same_theory))
+    return max(off / allowed if allowed > 0.0 else (float("inf") if off else 0.0) for off, allowed in pairs)
+
+
+def _iterations(answers: Iterable[Answer]) -> Iterator[int]:
+    for answer in answers:
+        yield from (station.certificate.iterations for station in answer.stations)
