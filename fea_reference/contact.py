@@ -21,7 +21,8 @@ Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the first beam's undeformed arc
 the exact intervals on which g < δ, so the pressure vanishes at their moving ends, which therefore add nothing
 to either derivative, and what is integrated is smooth in between.  It does not vanish where an interval ends
 because the second beam does; there ½ ε (δ − g)²/|x'·τ| along τ is missing, x' by arc length.  So a beam whose end
-lies over the inside of the other is the first, and what is missing all the same is measured.
+lies over the inside of the other is the first, what is missing all the same is measured, and where that is more than
+nothing the beams change places.
 
 Where a thickness varies, g is the least of |x − x_m| − T − T_m over x_m, T and T_m being half of the thickness at
 either place (:mod:`fea_reference.facing`): a zone's middle is where that is least over x as well, n·x' = T' and, away
@@ -76,13 +77,16 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         first, second = model.beams[i], model.beams[j]
         mean = 0.5 * (first.thickness + second.thickness)
         least = 0.5 * (first.record.thinnest + second.record.thinnest) / model.units.length
-        side = side_of(model.line(first, model.start), model.line(second, model.start))
+        lines = [model.line(beam, model.start) for beam in (first, second)]
+        side, side_m = side_of(*lines), side_of(*lines[::-1])
         distance, scale, measure = (mean, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
         penalties = [_penalties(model, beam, mean) for beam in (first, second)]
         loosest, stiffness, stiffest = map(min, zip(*penalties, strict=True))
         tapers = _tapers(model, first, second, thick=contact.thick)
         found.append(
-            Pair(name, i, j, turned, side, distance, scale, measure, loosest, stiffness, stiffest, tapers=tapers)
+            Pair(
+                name, i, j, turned, side, side_m, distance, scale, measure, loosest, stiffness, stiffest, tapers=tapers
+            )
         )
     return tuple(found)
 
@@ -112,7 +116,7 @@ def selves(scene: Scene, model: Model) -> tuple[Pair, ...]:
         roles = unseen(later=later).renewed(model.line(beam, model.start))
         penalties = _penalties(model, beam, beam.thickness)
         tapers = _tapers(model, beam, beam, thick=contact.thick)
-        found.append(Pair(name, number, number, later, 0.0, T, scale, measure, *penalties, roles, tapers))
+        found.append(Pair(name, number, number, later, 0.0, 0.0, T, scale, measure, *penalties, roles, tapers))
     return tuple(found)
 
 

@@ -18,7 +18,7 @@ from fea_reference.settings import Settings
 from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
-from fea_reference.touch import Contact, Face, Pair, Penalty, Rigid, Touch
+from fea_reference.touch import LACKING, Contact, Face, Pair, Penalty, Rigid, Touch
 from scene.answer import Array, Critical, Ending
 
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
@@ -187,6 +187,7 @@ class March:
         if trouble is not None:
             return trouble
         self.values[load], self.system = value, system
+        self.change_places()
         if touched:
             self._close_tightly(load, value - start)
             self.watch_what_touches(load)
@@ -421,6 +422,25 @@ class March:
             self.system, self.penalties, self.loose = solved.system, looser, True
             return True
         return False
+
+    def change_places(self) -> None:
+        """Let the beams of a pair change places where an end of the second presses: only ends of the first are seen."""
+        for one in self.system.touches:
+            if not isinstance(one.pair, Pair) or one.pair.roles is not None or one.lacks <= LACKING:
+                continue
+            other = one.pair.about()
+            penalties = {other if pair == one.pair else pair: penalty for pair, penalty in self.penalties.items()}
+            depths = {other if pair == one.pair else pair: depth for pair, depth in self.depths().items()}
+            pushes = {pair: push for pair, push in self.pushes().items() if pair != one.pair}
+            solved = equilibrium(
+                self.model, self.settings, penalties, self.values, self.system.z, self.acting, depths, pushes
+            )
+            self.iterations += solved.iterations
+            if not solved.converged or self.moved(solved.system, self.system.z) > _CORRECTED:
+                continue
+            lacks = next((found.lacks for found in solved.system.touches if found.pair == other), 0.0)
+            if lacks < one.lacks:
+                self.system, self.penalties = solved.system, penalties
 
     def zones(self) -> dict[Contact, Array]:
         """Where the zones on what is rigid begin and end, (2,) each."""

@@ -221,4 +221,6 @@ MIRROR = ((1.0, 0.0), (0.0, -1.0))
 def has_graphs(data: Data) -> bool:
     """Whether there are polynomials in a scene, which stay such only where axes go to axes."""
     curves = (beam["curve"] for beam in data["beams"].values())
-    return any(each["kind"] in ("polynomial", "beam-function") for each in (*curves, *data.get("contacts", {}).values()))
+    return any(
+        each["kind"] in ("polynomial", "beam-function") for each in (*curves, *data.get("contacts", {}).values())
+    )

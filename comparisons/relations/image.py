@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from scene import Probe, Scene
+from scene import Answer, Probe, Scene
 from scene.answer import Array
 
 Data = dict[str, Any]
@@ -18,6 +18,9 @@ Expected = Callable[[Probe, str, Array], Array | None]
 
 Place = Callable[[str, float], float]
 """Of a stage's name and a station: the image's station."""
+
+Beyond = Callable[[Scene, Answer], dict[str, dict[tuple[str, float], float]]]
+"""Of an image and the answer to it, by the name of each condition: at stages and stations its violation, a fraction."""
 
 
 def copied(data: Data) -> Data:
@@ -54,12 +57,13 @@ class Image:
         data: the image's.
         expected: what a value of the first scene is in the image.
         place: what a station of the first scene is in the image; one that the image does not have is not compared.
-        beyond: what an answer to the image must be by itself: by the name of each condition, its violation at a
-            station as a fraction.
+        beyond: what an answer to the image must be by itself.
+        discretised_anew: whether the image has another discretisation than the scene.
     """
 
     what: str
     data: Data
     expected: Expected = as_it_was
     place: Place = where_it_was
-    beyond: Callable[[Scene, Any], dict[str, float]] | None = None
+    beyond: Beyond | None = None
+    discretised_anew: bool = False

@@ -5,15 +5,13 @@ symbol  meaning
 ======  ==============================================================================================
 v, w    a probe's value at a station, in the answer to the scene and in that to the image
 v′      what v is in the image
-V       v at twice the links or elements
 c       the probe's scale in the stage in the image, :mod:`comparisons.scales`
 e       |w − v′|/c, the violation
-r       what the certificates of both leave unsettled of the probe, over c
-u       S·2^p/(2^p − 1)·|v − V| over its own scale, and no less than F times the largest in the stage: the
-        uncertainty of the discretisation as :mod:`comparisons.measures` has it
+r       what the image's certificates leave unsettled of the probe (:func:`comparisons.measures.round_off`), over c
+u, u′   the uncertainties of v and w on their discretisations, :mod:`comparisons.relations.uncertain`
 ======  ==============================================================================================
 
-A relation that leaves the discretised problem what it is holds where e ≤ max(1e-7, r), another where e ≤ max(1e-7, r, u).
+An image that leaves the discretised problem what it is holds to e ≤ max(1e-7, r), another to e ≤ max(1e-7, r, u + u′).
 An image that is refused, that ends otherwise or earlier, or has another shape of value, violates it wholly: e = ∞.
 """
 
@@ -21,20 +19,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.measures import SAFETY, SHARE_OF_LARGEST, arc_lengths, round_off
-from comparisons.order import order_of, richardson
+from comparisons.measures import arc_lengths, probe_scales, round_off
 from comparisons.pairing import Solver
 from comparisons.relations.image import Data, Image, plain
 from comparisons.relations.relations import RELATIONS, Relation
-from comparisons.scales import norm, probe_scale
+from comparisons.relations.uncertain import Solved, solved, uncertainties
+from comparisons.scales import norm
 from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
-from scene import Answer, Probe, Scene, SceneError, Stage, StationAnswer
+from scene import Answer, Probe, Scene, SceneError, StationAnswer
+from scene.answer import Array, Flags
 from scene.reading import scene_from
 from scene.statement import STRESSES
 
@@ -42,46 +41,49 @@ TARGET = 1e-7
 
 
 @dataclass(frozen=True, slots=True)
-class Violation:
-    """The worst departure of an image's answer.
+class Departure:
+    """What one number of an image's answer departs from.
 
     Attributes:
-        relation: name of what was done.
-        case: the scene's name.
-        what: what exactly was done.
-        probe: name of the probe, or of what is to vanish.
-        stage: where.
-        station: of the first scene.
+        probe: its name, or that of what is to vanish; empty where no number is meant.
+        stage, station: where, in the image's own unit.
         size: e.
         allowed: by what it is bounded.
-        why: in a sentence, where there is nothing to be measured.
+        why: in words, where there is nothing to be measured.
     """
 
-    relation: str
-    case: str
-    what: str
     probe: str
     stage: str
     station: float
     size: float
-    allowed: float
+    allowed: float = TARGET
     why: str = ""
+
+    @property
+    def pressure(self) -> float:
+        """e over what is allowed: above 1 the relation does not hold."""
+        return self.size / self.allowed
+
+
+@dataclass(frozen=True, slots=True)
+class Violation:
+    """The worst of an image: ``what`` was done of a ``relation``, to which scene."""
+
+    relation: str
+    scene: str
+    what: str
+    worst: Departure
 
     @property
     def holds(self) -> bool:
         """Whether the relation does here."""
-        return self.size <= self.allowed
-
-    @property
-    def pressure(self) -> float:
-        """e over what is allowed."""
-        return self.size / self.allowed
+        return self.worst.pressure <= 1.0
 
 
 def violations(
     data: Data, solver: Solver, choices: Choices, relations: Iterable[Relation] = RELATIONS
-) -> tuple[Violation, ...]:
-    """The worst violation of every image of a scene, by the relations' order.
+) -> Iterator[Violation]:
+    """The worst violation of every image of a scene, in the relations' order.
 
     Args:
         data: the scene as a TOML file's plain data.
@@ -92,122 +94,116 @@ def violations(
     Raises:
         SceneError: the scene is refused; an image that is refused while the scene is not is a violation.
     """
-    data = plain(data)
-    scene = scene_from(data)
-    answer = solver(scene, choices)
-    finer: Answer | None = None
-    found = []
+    own = plain(data)
+    first = solved(scene_from(own), solver, choices)
     for relation in relations:
-        for image in relation.images(data):
-            if relation.within == "discretisation" and finer is None:
-                finer = solver(scene, choices.finer())
-            asked = finer if relation.within == "discretisation" else None
-            found.append(_worst(relation, scene, answer, image, solver, choices, asked))
-    return tuple(found)
+        for image in relation.images(own):
+            yield Violation(relation.name, first.scene.name, image.what, _worst(first, image, solver, choices))
 
 
-def _worst(
-    relation: Relation,
-    scene: Scene,
-    answer: Answer,
-    image: Image,
-    solver: Solver,
-    choices: Choices,
-    finer: Answer | None,
-) -> Violation:
-    def whole(why: str) -> Violation:
-        return Violation(relation.name, scene.name, image.what, "", "", math.nan, math.inf, TARGET, why)
-
+def _worst(first: Solved, image: Image, solver: Solver, choices: Choices) -> Departure:
     try:
-        other = scene_from(image.data)
-        theirs = solver(other, choices)
+        other = solved(scene_from(image.data), solver, choices)
     except SceneError as error:
-        return whole(f"refused: {error}")
-    if theirs.ending is not answer.ending:
-        return whole(f"{answer.ending.name} became {theirs.ending.name}: {theirs.sentence or theirs.ending.value}")
-    departures = list(_departures(relation.name, scene, answer, image, other, theirs, finer))
-    if not departures:
-        return whole("nothing to compare") if answer.stations else replace(whole(answer.sentence), size=0.0)
-    return max(departures, key=lambda each: (each.pressure, each.size))
+        return Departure("", "", math.nan, math.inf, why=f"refused: {error}")
+    mine, theirs = first.answer, other.answer
+    if theirs.ending is not mine.ending:
+        became = f"{mine.ending.name} became {theirs.ending.name}: {theirs.sentence or mine.sentence}"
+        return Departure("", "", math.nan, math.inf, why=became)
+    found = [
+        *_departures(first, image, other),
+        *_by_itself(image, other),
+        *_criticals(mine, image, other),
+    ]
+    nothing = Departure("", "", math.nan, 0.0, why=mine.sentence)
+    return max(found, key=lambda each: (each.pressure, each.size), default=nothing)
 
 
-def _departures(
-    relation: str,
-    scene: Scene,
-    answer: Answer,
-    image: Image,
-    other: Scene,
-    theirs: Answer,
-    finer: Answer | None,
-) -> Iterator[Violation]:
-    def violation(probe: str, stage: str, station: float, size: float, allowed: float, why: str = "") -> Violation:
-        return Violation(relation, scene.name, image.what, probe, stage, station, size, allowed, why)
-
-    stages = {stage.name: stage for stage in other.stages}
-    closed_in = _closing_stages(answer)
-    probes = {probe.name: probe for probe in other.probes}
-    unsettled = {name: round_off(_reached(other, theirs), probe, (theirs,), (theirs,)) for name, probe in probes.items()}
-    uncertain = {} if finer is None else _uncertainties(scene, answer, finer)
-    for mine in answer.stations:
-        stage = stages[mine.stage]
-        value = image.place(mine.stage, mine.value)
+def _departures(first: Solved, image: Image, other: Solved) -> Iterator[Departure]:
+    """Of every probe that both answers have, at every station that both scenes have."""
+    stages = {stage.name: stage for stage in other.scene.stages}
+    probes = {probe.name: probe for probe in other.scene.probes}
+    closed_in = _closing_stages(first.answer)
+    scales = probe_scales(other.scene, (other.answer,))
+    unsettled = {
+        name: round_off(_as_far_as(other), probe, (other.answer,), (other.answer,)) for name, probe in probes.items()
+    }
+    mine, theirs = ({}, {}) if not image.discretised_anew else (uncertainties(first), uncertainties(other))
+    for station in first.answer.stations:
+        stage = stages[station.stage]
+        value = image.place(stage.name, station.value)
         if value not in stage.stations:
             continue
         try:
-            station = station_of(theirs, stage.name, value)
+            its = station_of(other.answer, stage.name, value)
         except KeyError:
-            yield violation("", stage.name, mine.value, math.inf, TARGET, "it was not reached")
+            yield Departure("", stage.name, value, math.inf, why="it was not reached")
             continue
-        if station.branch != mine.branch:
-            why = f"branch {mine.branch} became {station.branch}"
-            yield violation("", stage.name, mine.value, math.inf, TARGET, why)
+        if its.branch != station.branch:
+            yield Departure("", stage.name, value, math.inf, why=f"branch {station.branch} became {its.branch}")
             continue
-        for probe in scene.probes:
-            expected = image.expected(probe, closed_in.get(probe.of, stage.name), mine.values[probe.name])
+        for probe in first.scene.probes:
+            in_stage = closed_in.get(probe.of, stage.name) if probe.quantity == "closing_load" else stage.name
+            expected = image.expected(probe, in_stage, station.values[probe.name])
             if expected is None:
                 continue
-            w = station.values[probe.name]
-            scale = probe_scale(other, probes[probe.name], stage, (theirs,))
-            allowed = max(TARGET, unsettled[probe.name] / scale, uncertain.get((probe.name, stage.name, mine.value), 0.0))
+            scale, w = scales[in_stage, probe.name], its.values[probe.name]
+            uncertain = mine.get((probe.name, stage.name, station.value), 0.0)
+            uncertain += theirs.get((probe.name, stage.name, value), 0.0)
+            allowed = max(TARGET, unsettled[probe.name] / scale, uncertain)
             if w.shape != expected.shape:
                 why = f"{expected.size} numbers became {w.size}"
-                yield violation(probe.name, stage.name, mine.value, math.inf, allowed, why)
+                yield Departure(probe.name, stage.name, value, math.inf, allowed, why)
                 continue
-            counts = np.ones(w.shape, dtype=bool)
-            if finer is not None and probe.quantity in STRESSES:
-                counts = clear_of_spots(scene, probe.of, arc_lengths(scene, probe), (mine, station))
-            size = norm(probe.quantity, (w - expected)[counts]) / scale
-            yield violation(probe.name, stage.name, mine.value, size, allowed)
-    if image.beyond is not None:
-        for name, sizes in image.beyond(other, theirs).items():
-            for (stage_name, value), size in sizes.items():
-                yield violation(name, stage_name, value, size, max(TARGET, _floor(station_of(theirs, stage_name, value))))
-    yield from _criticals(violation, answer, theirs, image, stages)
+            counts = _compared(first.scene, probe, image, (station, its), w)
+            yield Departure(
+                probe.name, stage.name, value, norm(probe.quantity, (w - expected)[counts]) / scale, allowed
+            )
 
 
-def _criticals(violation, answer, theirs, image, stages):
-    if len(answer.critical) != len(theirs.critical):
-        why = f"{len(answer.critical)} critical values became {len(theirs.critical)}"
-        yield violation("critical", "", math.nan, math.inf, TARGET, why)
+def _compared(
+    scene: Scene, probe: Probe, image: Image, stations: tuple[StationAnswer, StationAnswer], values: Array
+) -> Flags:
+    """Which of a probe are compared: of stresses on another discretisation those clear of where contacts end."""
+    if not image.discretised_anew or probe.quantity not in STRESSES:
+        return np.ones(values.shape, dtype=bool)
+    return clear_of_spots(scene, probe.of, arc_lengths(scene, probe), stations)
+
+
+def _by_itself(image: Image, other: Solved) -> Iterator[Departure]:
+    """What the image's answer must be whatever the scene's is."""
+    if image.beyond is None:
         return
-    for mine, other in zip(answer.critical, theirs.critical, strict=True):
-        span = max(abs(value) for value in stages[mine.stage].stations)
-        size = abs(other.value - image.place(mine.stage, mine.value)) / span
-        yield violation("critical", mine.stage, mine.value, size, max(TARGET, mine.uncertainty / span))
+    for name, sizes in image.beyond(other.scene, other.answer).items():
+        for (stage, value), size in sizes.items():
+            certificate = station_of(other.answer, stage, value).certificate
+            allowed = max(TARGET, certificate.residual, certificate.residual_floor)
+            yield Departure(name, stage, value, size, allowed)
 
 
-def _floor(station: StationAnswer) -> float:
-    return max(station.certificate.residual, station.certificate.residual_floor)
+def _criticals(mine: Answer, image: Image, other: Solved) -> Iterator[Departure]:
+    """Of where branches end, as shares of the largest value of the stage."""
+    theirs = other.answer
+    if len(mine.critical) != len(theirs.critical):
+        why = f"{len(mine.critical)} critical values became {len(theirs.critical)}"
+        yield Departure("critical", "", math.nan, math.inf, why=why)
+        return
+    largest = {stage.name: max(map(abs, stage.stations)) for stage in other.scene.stages}
+    for here, there in zip(mine.critical, theirs.critical, strict=True):
+        size = abs(there.value - image.place(here.stage, here.value)) / largest[there.stage]
+        yield Departure(
+            "critical", there.stage, there.value, size, max(TARGET, there.uncertainty / largest[there.stage])
+        )
 
 
-def _reached(scene: Scene, answer: Answer) -> Scene:
-    """The scene with the stages and stations that an answer has."""
-    stages: list[Stage] = []
-    for stage in scene.stages:
-        stations = tuple(station.value for station in answer.stations if station.stage == stage.name)
-        if stations:
-            stages.append(stage.model_copy(update={"stations": stations}))
-    return scene.model_copy(update={"stages": tuple(stages)})
+def _as_far_as(found: Solved) -> Scene:
+    """The scene with the stages and stations that were reached."""
+    reached = {
+        stage.name: tuple(station.value for station in found.answer.stations if station.stage == stage.name)
+        for stage in found.scene.stages
+    }
+    stages = (stage.model_copy(update={"stations": reached[stage.name]}) for stage in found.scene.stages)
+    return found.scene.model_copy(update={"stages": tuple(stage for stage in stages if stage.stations)})
 
 
 def _closing_stages(answer: Answer) -> dict[str, str]:
@@ -218,34 +214,3 @@ def _closing_stages(answer: Answer) -> dict[str, str]:
             if name.endswith(".closing_load") and value.size:
                 found.setdefault(name.removesuffix(".closing_load"), station.stage)
     return found
-
-
-def _uncertainties(scene: Scene, answer: Answer, finer: Answer) -> dict[tuple[str, str, float], float]:
-    """u by probe, stage and station."""
-    found: dict[tuple[str, str, float], float] = {}
-    for probe in scene.probes:
-        factor = SAFETY * richardson(order_of(scene, probe))
-        for stage in scene.stages:
-            scale = probe_scale(scene, probe, stage, (answer,))
-            changes: dict[float, float] = {}
-            for station in answer.stations:
-                if station.stage == stage.name:
-                    changes[station.value] = factor * _change(scene, probe, station, finer) / scale
-            least = SHARE_OF_LARGEST * max(changes.values(), default=0.0)
-            found.update({(probe.name, stage.name, value): max(size, least) for value, size in changes.items()})
-    return found
-
-
-def _change(scene: Scene, probe: Probe, station: StationAnswer, finer: Answer) -> float:
-    """|v − V|; of what is open in one of them nothing."""
-    try:
-        other = station_of(finer, station.stage, station.value)
-    except KeyError:
-        return 0.0
-    v, V = station.values[probe.name], other.values[probe.name]
-    if v.shape != V.shape:
-        return 0.0
-    if probe.quantity in STRESSES:
-        counts = clear_of_spots(scene, probe.of, arc_lengths(scene, probe), (station, other))
-        return norm(probe.quantity, (v - V)[counts])
-    return norm(probe.quantity, v - V)

@@ -11,7 +11,7 @@ UNORDERED = ("materials", "bodies", "beams", "loads", "drives", "contacts", "sto
 
 
 def backwards(data: Data) -> Image:
-    """Everything in the opposite order: beams, bodies and their points, contacts, loads, drives, stops, pins, probes."""
+    """Everything in the opposite order: the tables that have none, points of bodies and pins, probes."""
     new = copied(data)
     for table in UNORDERED:
         if table in new:
@@ -25,11 +25,14 @@ def backwards(data: Data) -> Image:
 
 
 def other_way_round(data: Data, contact: str) -> Image:
-    """The image in which a ``contact`` of two beams names the second one first; places are measured along that one."""
+    """The image in which a ``contact`` of two beams names the second one first.
+
+    Places are measured along that one, and a solver may have chosen where it asks for gaps by which is the first.
+    """
     new = copied(data)
     new["contacts"][contact]["between"].reverse()
 
     def expected(probe: Probe, stage: str, value: Array) -> Array | None:
         return None if probe.of == contact and probe.quantity in ("centre", "ends", "moment") else value
 
-    return Image(f"{contact} named the other way round", new, expected)
+    return Image(f"{contact} named the other way round", new, expected, discretised_anew=True)

@@ -12,6 +12,9 @@ M       a moment, N·m
 ΣF, ΣM  ΣR and Σ(M + x × R), as shares of the largest in any station
 ======  =====================================================================
 
+A beam may be clamped on what it touches, and solvers know how clamp and contact share the force there (the elements
+next to it do not say).  On a body of its own, which might move, they do not, and the answer is the same but for that.
+
 What is told of slides and of loads along beams is a force without its place, so that ΣM is asked only without them.
 """
 
@@ -27,7 +30,6 @@ from scene import Answer, Scene, StationAnswer
 from scene.answer import Array
 from scene.reading import scene_from
 from scene.statement import (
-    BeamContact,
     BeamForce,
     BeamMoment,
     DisplacementDrive,
@@ -41,6 +43,7 @@ from scene.statement import (
     RotationDrive,
     SlidingBody,
     TurningBody,
+    WeldedEnd,
 )
 
 
@@ -49,7 +52,11 @@ def on_drives(data: Data) -> Image:
     scene = scene_from(data)
     new = copied(data)
     new.setdefault("drives", {})
-    own = {name: contact for name, contact in scene.contacts.items() if _stands_alone(scene, contact)}
+    own = {
+        name: contact
+        for name, contact in scene.contacts.items()
+        if isinstance(contact, RigidContact) and _stands_alone(scene, contact)
+    }
     for name, contact in own.items():
         body, point = f"{name}_body", f"{name}_point"
         place = list(next(iter(scene.bodies[contact.body].points.values())))
@@ -67,7 +74,8 @@ def on_drives(data: Data) -> Image:
         *((name, "force") for name in own),
     ]
     new["probes"] += [{"of": of, "quantity": q} for of, q in dict.fromkeys(wanted) if (of, q) not in asked]
-    return Image("rigid things held by drives", new, beyond=balance)
+    anew = any(_beside_clamp(scene, contact) for contact in own.values())
+    return Image("rigid things held by drives", new, beyond=balance, discretised_anew=anew)
 
 
 def balance(scene: Scene, answer: Answer) -> dict[str, dict[tuple[str, float], float]]:
@@ -143,7 +151,7 @@ def _place(scene: Scene, station: StationAnswer, point: str) -> Array:
 
 
 def _unit(direction: tuple[float, float]) -> Array:
-    return np.array(direction) / np.hypot(*direction)
+    return np.asarray(np.array(direction) / np.hypot(*direction))
 
 
 def _told_without_place(scene: Scene) -> bool:
@@ -152,11 +160,20 @@ def _told_without_place(scene: Scene) -> bool:
     )
 
 
-def _stands_alone(scene: Scene, contact: object) -> bool:
+def _stands_alone(scene: Scene, contact: RigidContact) -> bool:
     """Whether what is rigid stands on the ground and can be given a body of its own."""
-    if not isinstance(contact, RigidContact) or not isinstance(scene.bodies[contact.body], FixedBody):
+    if not isinstance(scene.bodies[contact.body], FixedBody):
         return False
-    return not any(isinstance(end, PinnedEnd) for end in (scene.beams[contact.beam].start, scene.beams[contact.beam].end))
+    return not any(
+        isinstance(end, PinnedEnd) for end in (scene.beams[contact.beam].start, scene.beams[contact.beam].end)
+    )
+
+
+def _beside_clamp(scene: Scene, contact: RigidContact) -> bool:
+    """Whether an end of the beam is welded to the body of what is rigid."""
+    beam = scene.beams[contact.beam]
+    points = scene.bodies[contact.body].points
+    return any(isinstance(end, WeldedEnd) and end.point in points for end in (beam.start, beam.end))
 
 
 def _alone(scene: Scene, contact: RigidContact) -> bool:
@@ -191,5 +208,7 @@ def _turning_holds(scene: Scene) -> list[str]:
 def _moved_points(scene: Scene) -> list[str]:
     """Points at which something acts, and which may move."""
     return list(
-        dict.fromkeys([*_driven_points(scene), *(load.point for load in scene.loads.values() if isinstance(load, Force))])
+        dict.fromkeys(
+            [*_driven_points(scene), *(load.point for load in scene.loads.values() if isinstance(load, Force))]
+        )
     )

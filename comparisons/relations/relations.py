@@ -26,14 +26,13 @@ class Relation:
 
     Attributes:
         name: of the relation.
+        says: what holds, in words.
         images: of a scene's data, one for each way in which it can be done.
-        within: what is to bound the change of the answer: round-off, or the uncertainty of the discretisation where
-            that is another.
     """
 
     name: str
+    says: str
     images: Callable[[Data], Iterator[Image]]
-    within: str = "round-off"
 
 
 def _motion(data: Data) -> Iterator[Image]:
@@ -85,16 +84,16 @@ def _pair(data: Data) -> Iterator[Image]:
 
 
 RELATIONS = (
-    Relation("motion", _motion),
-    Relation("mirror", _mirror),
-    Relation("order", _order),
-    Relation("direction", _direction),
-    Relation("modulus", _modulus),
-    Relation("length", _length),
-    Relation("steps", _steps),
-    Relation("company", _company),
-    Relation("reaction", _reaction),
-    Relation("pair", _pair, within="discretisation"),
+    Relation("motion", "moved and turned as a whole, the answer moves and turns with it", _motion),
+    Relation("mirror", "the mirror image of a scene has the mirror image of its answer", _mirror),
+    Relation("order", "the order in which things are named does not matter", _order),
+    Relation("direction", "nor from which end a beam is drawn", _direction),
+    Relation("modulus", "E and all loads a thousand million times as large: the same shape", _modulus),
+    Relation("length", "all lengths a million times as large, and loads to match: the same shape", _length),
+    Relation("steps", "the way to a load in other steps ends in the same state", _steps),
+    Relation("company", "what is far away does not matter", _company),
+    Relation("reaction", "what pushes is pushed, and all forces and moments balance", _reaction),
+    Relation("pair", "two beams touch each other, whichever is named first", _pair),
 )
 
 
