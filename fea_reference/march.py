@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from fea_reference.acting import Acting
 from fea_reference.advance import advance, bend
-from fea_reference.contacts import against, looked_at, passed_through, resting_pressure, room, zones_of
+from fea_reference.contacts import against, least_gap, looked_at, passed_through, resting_pressure, room, zones_of
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
@@ -386,7 +386,7 @@ class March:
 
     def gaps(self, system: System) -> list[float]:
         """Of the open contacts, and how far stops are from changing."""
-        gaps = [zones_of(self.model, pair, system.z).least for pair in self.open]
+        gaps = [least_gap(self.model, pair, system.z) for pair in self.open]
         return [*gaps, *(self.room(stop, system) for stop in self.model.stops)]
 
     def least_gap(self, system: System) -> float:
@@ -395,10 +395,14 @@ class March:
 
     def watch_what_touches(self, load: int) -> None:
         """Give a penalty to every open contact whose gap has vanished."""
-        closing = [p for p in self.open if zones_of(self.model, p, self.system.z).least <= _CLOSED * p.scale]
+        z = self.system.z
+        closing = [p for p in self.open if least_gap(self.model, p, z) <= _CLOSED * p.scale]
         for pair in closing:
             self.open.remove(pair)
-            self.penalties[pair] = Penalty(pair.stiffness)
+            # an end that touches is to be the first beam's
+            unseen = zones_of(self.model, pair, z).least > _CLOSED * pair.scale
+            closed = pair.about() if unseen and isinstance(pair, Pair) else pair
+            self.penalties[closed] = Penalty(pair.stiffness)
             self.closing.setdefault(pair.name, self.value(load))
         if closing:
             self.renew()

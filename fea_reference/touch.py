@@ -27,6 +27,8 @@ class Pair:
         side: of the second on which the first lies; of a beam and itself its ``roles`` tell.
         side_m: of the first on which the second lies.
         distance: T, of the neutral lines when they touch where the beams are thickest.
+        ends, ends_m: which ends of the first and of the second (0 and 1) may come to lie on the other's side: not those
+            that a body holds beside it.
         tapers: how the thickness varies, of beams that touch by their edges if it does.
         scale: what the penetration asked is a share of: the mean thickness, or a hundredth of the longest beam for
             lines, which have none.
@@ -49,6 +51,8 @@ class Pair:
     loosest: float
     stiffness: float
     stiffest: float
+    ends: tuple[int, ...] = ()
+    ends_m: tuple[int, ...] = ()
     roles: Roles | None = None
     tapers: Tapers | None = None
 
@@ -76,6 +80,8 @@ class Pair:
             turned=not self.turned,
             side=self.side_m,
             side_m=self.side,
+            ends=self.ends_m,
+            ends_m=self.ends,
             tapers=None if self.tapers is None else Tapers(self.tapers.second, self.tapers.first),
         )
 

@@ -132,10 +132,11 @@ class Frame:
                 acting["direction"] = self.turned(acting["direction"])
         if self.sense < 0.0:
             for stop in new.get("stops", {}).values():
-                limits = {"least": stop.pop("most", None), "most": stop.pop("least", None)}
-                stop.update({key: -limit for key, limit in limits.items() if limit is not None})
-        moments = new.get("assembly", {}).get("moments", {})
-        moments.update({beam: self.stepped("moment") * moment for beam, moment in moments.items()})
+                most, least = stop.pop("least", None), stop.pop("most", None)
+                stop |= {key: -limit for key, limit in (("least", least), ("most", most)) if limit is not None}
+        moments: dict[str, float] = new.get("assembly", {}).get("moments", {})
+        for beam in moments:
+            moments[beam] *= self.stepped("moment")
         for stage in new["stages"]:
             factor = self.stepped(kinds[stage["steps"]])
             stage.update({key: [factor * v for v in stage[key]] for key in ("stations", "shown") if key in stage})
@@ -151,7 +152,7 @@ class Frame:
     def _curve(self, curve: Data) -> Data:
         if curve["kind"] == "polynomial":
             return {**curve, **self._graph(curve)}
-        new = {**curve, **{key: self.placed(curve[key]) for key in ("start", "end", "center") if key in curve}}
+        new: Data = {**curve, **{key: self.placed(curve[key]) for key in ("start", "end", "center") if key in curve}}
         if "points" in curve:
             new["points"] = [self.placed(place) for place in curve["points"]]
         for key in ("start_direction", "end_direction"):

@@ -28,8 +28,7 @@ _MOST_DRAWS = 400
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """A scene's ``name``, its ``data`` as read from a file, the ``text`` of that file, and the number of ``draws``.
-    """
+    """A scene's ``name``, its ``data`` as read from a file, the ``text`` of that file, and the number of ``draws``."""
 
     name: str
     data: Data
