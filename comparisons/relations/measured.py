@@ -12,7 +12,8 @@ u, u′   the uncertainties of v and w on their discretisations, :mod:`compariso
 ======  ==============================================================================================
 
 An image that leaves the discretised problem what it is holds to e ≤ max(1e-7, r), another to e ≤ max(1e-7, r, u + u′).
-An image that is refused, that ends otherwise or earlier, or has another shape of value, violates it wholly: e = ∞.
+An image that is refused, that alone completes or alone does not, that ends before a station that the scene's answer
+has, or that has another shape of value, violates it wholly: e = ∞.
 """
 
 from __future__ import annotations
@@ -46,7 +47,7 @@ class Departure:
 
     Attributes:
         probe: its name, or that of what is to vanish; empty where no number is meant.
-        stage, station: where, in the image's own unit.
+        stage, station: where, of the scene; of what is said of the image alone, of that.
         size: e.
         allowed: by what it is bounded.
         why: in words, where there is nothing to be measured.
@@ -107,7 +108,7 @@ def _worst(first: Solved, image: Image, solver: Solver, choices: Choices) -> Dep
     except SceneError as error:
         return Departure("", "", math.nan, math.inf, why=f"refused: {error}")
     mine, theirs = first.answer, other.answer
-    if theirs.ending is not mine.ending:
+    if theirs.completed is not mine.completed:
         became = f"{mine.ending.name} became {theirs.ending.name}: {theirs.sentence or mine.sentence}"
         return Departure("", "", math.nan, math.inf, why=became)
     found = [
@@ -137,10 +138,11 @@ def _departures(first: Solved, image: Image, other: Solved) -> Iterator[Departur
         try:
             its = station_of(other.answer, stage.name, value)
         except KeyError:
-            yield Departure("", stage.name, value, math.inf, why="it was not reached")
+            if other.answer.completed:
+                yield Departure("", stage.name, station.value, math.inf, why="it was not reached")
             continue
         if its.branch != station.branch:
-            yield Departure("", stage.name, value, math.inf, why=f"branch {station.branch} became {its.branch}")
+            yield Departure("", stage.name, station.value, math.inf, why=f"branch {station.branch} became {its.branch}")
             continue
         for probe in first.scene.probes:
             in_stage = closed_in.get(probe.of, stage.name) if probe.quantity == "closing_load" else stage.name
@@ -153,11 +155,11 @@ def _departures(first: Solved, image: Image, other: Solved) -> Iterator[Departur
             allowed = max(TARGET, unsettled[probe.name] / scale, uncertain)
             if w.shape != expected.shape:
                 why = f"{expected.size} numbers became {w.size}"
-                yield Departure(probe.name, stage.name, value, math.inf, allowed, why)
+                yield Departure(probe.name, stage.name, station.value, math.inf, allowed, why)
                 continue
             counts = _compared(first.scene, probe, image, (station, its), w)
             yield Departure(
-                probe.name, stage.name, value, norm(probe.quantity, (w - expected)[counts]) / scale, allowed
+                probe.name, stage.name, station.value, norm(probe.quantity, (w - expected)[counts]) / scale, allowed
             )
 
 

@@ -11,18 +11,16 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solver, Solvers
 from comparisons.relations.image import Data
 from comparisons.relations.measured import Violation, violations
-from comparisons.relations.relations import RELATIONS, Relation
 from scene import SceneError
 
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """What is measured at once: all images of one relation, of one scene's data, by one solver."""
+    """What is measured at once: all images of one scene's data, by one solver."""
 
     solver: str
     answer: Solver
     data: Data
-    relation: Relation
     choices: Choices
 
 
@@ -60,22 +58,24 @@ def pieces(scenes: Iterable[str], choices: Choices, solvers: Solvers) -> tuple[A
         SceneError: there is no such case, or it is no scene of beams.
     """
     named = tuple(scenes) or cases.scenes()
-    data = [cases.opened(name) and cases.data(name) for name in named]
+    data = [_scene_data(name) for name in named]
     return tuple(
-        Asked(solver, answer, each, relation, choices)
+        Asked(solver, answer, each, choices)
         for each in data
         for solver, answer in (("cprbm", solvers.cprbm), ("fea", solvers.fea))
-        for relation in RELATIONS
     )
 
 
+def _scene_data(case: str) -> Data:
+    cases.opened(case)
+    return cases.data(case)
+
+
 def with_piece(found: Relations, piece: Asked) -> Relations:
-    """What was found, and a relation of a scene more; a scene that the solver refuses says so once."""
+    """What was found, and a scene more."""
     case = str(piece.data["name"])
-    if any(refused[:2] == (piece.solver, case) for refused in found.refused):
-        return found
     try:
-        measured = tuple(violations(piece.data, piece.answer, piece.choices, (piece.relation,)))
+        measured = tuple(violations(piece.data, piece.answer, piece.choices))
     except SceneError as error:
         return replace(found, refused=(*found.refused, (piece.solver, case, str(error))))
     return replace(found, seen=tuple(chain(found.seen, (Seen(piece.solver, case, each) for each in measured))))

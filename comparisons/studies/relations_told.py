@@ -6,7 +6,7 @@ import math
 
 from comparisons.documents import Plain
 from comparisons.formats import number
-from comparisons.relations.measured import TARGET, Departure
+from comparisons.relations.measured import TARGET
 from comparisons.relations.relations import RELATIONS
 from comparisons.sheet import Sheet
 from comparisons.studies.relations import Relations, Seen
@@ -48,8 +48,8 @@ def _worst(found: Relations) -> Sheet:
         "Worst violations",
         ("relation", "solver", "images", "worst", "allowed", "case", "what", "probe", "at"),
         tuple(body),
-        f"Shares of the probe's scale. Allowed are {TARGET:g}, or what round-off leaves by the certificate; where an image "
-        "is another discretised problem also the uncertainties that two sizes of either state.",
+        f"Shares of the probe's scale. Allowed are {TARGET:g}, or what round-off leaves by the certificate; where an "
+        "image is another discretised problem also the uncertainties that two sizes of either state.",
     )
 
 
@@ -93,12 +93,11 @@ def _data(found: Relations) -> Plain:
 
 
 def _violation(seen: Seen) -> Plain:
-    return {"case": seen.case, "what": seen.violation.what, "holds": seen.violation.holds, **_departure(seen)}
-
-
-def _departure(seen: Seen) -> dict[str, Plain]:
-    worst: Departure = seen.violation.worst
+    worst = seen.violation.worst
     return {
+        "case": seen.case,
+        "what": seen.violation.what,
+        "holds": seen.violation.holds,
         "probe": worst.probe or None,
         "stage": worst.stage or None,
         "station": worst.station if math.isfinite(worst.station) else None,
