@@ -37,8 +37,7 @@ _AT_LIMIT = 1e-10  # rad: by which an angle may be beyond its limit before its s
 _PULLS = 1e-9  # of the largest force or of EI/length: with which a stop may pull before it lets go
 _SWITCHED = 1e-8  # rad, or of these: how near to its change a stop is found
 _AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
-_EVEN = 0.03  # by which penetrations differ that tell how they fall, and penalties that are stiff enough
-_WANTED = 1e-3  # by which a penalty may differ from the one wanted: which of these it is hangs on the way
+_EVEN = 0.03  # by which a penalty may differ from the one wanted
 _SAME = 1e-9  # by which the one of a circle may
 _POLISHINGS = 8  # tries after which a penetration below the one asked will do
 _IN_A_POINT = 1.5  # the power of one over the penetration with which the penalty of a contact in a point goes
@@ -528,7 +527,7 @@ class March:
         """Whether a penalty is as wanted; after some tries that of beams may be stiffer."""
         if isinstance(one.pair, Rigid) and not one.sharp:
             return factor <= 1.0 + _SAME
-        if abs(factor - 1.0) <= _WANTED:
+        if abs(factor - 1.0) <= _EVEN:
             return True
         enough = one.penetration <= self.settings.penetration * one.pair.scale
         stiff = one.pair.stiffest <= (1.0 + _EVEN) * self.penalties[one.pair].stiffness
