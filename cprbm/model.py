@@ -60,6 +60,7 @@ class Chain:
         section: thickness and E·I along the beam.
         youngs_modulus: E, Pa.
         start, end: what the ends are joined to; no end is None for a free one, a free start a body of its own.
+        held: whether start and end are joined to anything in the scene.
     """
 
     name: str
@@ -81,6 +82,7 @@ class Chain:
     youngs_modulus: float
     start: Attachment
     end: Attachment | None
+    held: tuple[bool, bool]
 
     @cached_property
     def halves(self) -> Array:
@@ -375,6 +377,7 @@ def build(scene: Scene, settings: Settings, fit: Fit = EVEN, known: Outset | Non
                 youngs_modulus=own.moduli[name],
                 start=own.starts[name],
                 end=own.ends[name],
+                held=(name not in own.loose, own.ends[name] is not None),
             )
         )
         first_link += n + 1

@@ -43,6 +43,7 @@ class Outset:
         free_bodies: names of the bodies that move.
         references: initial positions of their reference places (B, 2), units of length.
         starts, ends: what the beams' ends are joined to; no end is None for a free one, a free start a body of its own.
+        loose: beams with a free start.
         marks: centres of circles and first places of edges on bodies that move, by contact.
         bent: where moments act within beams, shares of the length, ascending; of beams with any.
         standing: how the two beams of a contact stand to each other, made when it is asked for.
@@ -57,6 +58,7 @@ class Outset:
     references: Array
     starts: Mapping[str, Attachment]
     ends: Mapping[str, Attachment | None]
+    loose: frozenset[str]
     marks: Mapping[str, Attachment]
     bent: Mapping[str, tuple[float, ...]]
     standing: Mapping[str, Standing]
@@ -70,7 +72,8 @@ def outset_of(scene: Scene) -> Outset:
     unit_moment = max(largest_rigidity(beam, moduli[name]) for name, beam in scene.beams.items()) / unit_length
     places = {name: next(iter(body.points.values())) for name, body in scene.bodies.items() if body.motion != "fixed"}
     # a chain begins somewhere: a start that nothing holds is welded to a body that nothing else holds
-    places |= {_loose(name): beam.curve.start for name, beam in scene.beams.items() if isinstance(beam.start, FreeEnd)}
+    loose = frozenset(name for name, beam in scene.beams.items() if isinstance(beam.start, FreeEnd))
+    places |= {_loose(name): scene.beams[name].curve.start for name in scene.beams if name in loose}
     number = {name: i for i, name in enumerate(places)}
 
     def on(owner: str, point: tuple[float, float], *, welded: bool) -> Attachment:
@@ -109,6 +112,7 @@ def outset_of(scene: Scene) -> Outset:
         references=np.array(list(places.values()), dtype=float).reshape(-1, 2) / unit_length,
         starts=starts,
         ends=ends,
+        loose=loose,
         marks={
             name: on(contact.body, anchor(contact), welded=False)
             for name, contact in scene.contacts.items()

@@ -123,7 +123,7 @@ def fitted(
         # and a dead force is known whatever the curvature
         dead = mechanism.problem.loads.keys()
         between = [one != other and dead.isdisjoint((one, other)) for one, other in pairwise(of)]
-        needy = np.array([True, *between, chain.end is not None])
+        needy = np.array([chain.held[0], *between, chain.held[1]])
         numbers = _shared_out(marks, n, needy)
         # a zone's end is a border; a place need not be one, and as it goes on its way the mesh changes evenly
         at_end = np.array([False, *(name in names for name in of), False])

@@ -9,7 +9,7 @@ from fea_reference.model import Model, OnBeam
 from fea_reference.stops import acting_stops
 from fea_reference.supports import grounded, held, support
 from fea_reference.system import System
-from fea_reference.touch import Pair
+from fea_reference.touch import LACKING, Pair
 from scene.answer import Array, Certificate
 
 _VIOLATION = 1e-9
@@ -18,7 +18,6 @@ _RESOLVED = 0.05  # of the thickness: overlap with what is rigid, whose penalty 
 _SOFT = 0.05  # by which a penalty may fall short of the stiffness that its elements ask for
 _NOTHING = 10.0  # floors: forces below this are round-off themselves
 _PULLS = 1e-8  # of the largest force or of EI/length: what a stop may pull with
-_MISSING = 1e-3  # of a contact's resultant
 
 
 def certify(march: March) -> Certificate:
@@ -64,7 +63,7 @@ def certify(march: March) -> Certificate:
     if not moment <= balance:
         failures.append(f"the moments of loads and supports leave {moment:.1e} of the largest")
     for one in system.touches:
-        if isinstance(one.pair, Pair) and one.missing > _MISSING * float(np.hypot(*one.force.sum(axis=1))):
+        if isinstance(one.pair, Pair) and one.lacks > LACKING:
             end, side = model.beams[one.pair.second].name, model.beams[one.pair.first].name
             failures.append(
                 f"in {one.pair.name} an end of {end} presses on the side of {side}, and a force of "

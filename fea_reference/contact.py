@@ -21,7 +21,8 @@ Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the first beam's undeformed arc
 the exact intervals on which g < δ, so the pressure vanishes at their moving ends, which therefore add nothing
 to either derivative, and what is integrated is smooth in between.  It does not vanish where an interval ends
 because the second beam does; there ½ ε (δ − g)²/|x'·τ| along τ is missing, x' by arc length.  So a beam whose end
-lies over the inside of the other is the first, and what is missing all the same is measured.
+lies over the inside of the other is the first, what is missing all the same is measured, and where that is more than
+nothing the beams change places.
 
 Where a thickness varies, g is the least of |x − x_m| − T − T_m over x_m, T and T_m being half of the thickness at
 either place (:mod:`fea_reference.facing`): a zone's middle is where that is least over x as well, n·x' = T' and, away
@@ -50,10 +51,22 @@ from fea_reference.facing import Borders, Tapers, borders, lean
 from fea_reference.hermite import NeutralLine, along, apart, plane, shape_slopes, shapes, twice_along
 from fea_reference.itself import seen_itself, unseen
 from fea_reference.model import BeamPart, Model
+from fea_reference.neighbours import nearest
 from fea_reference.state import State
 from fea_reference.touch import Pair, Penalty, Touch, gauss, together
-from fea_reference.zones import Survey, Zones, ends_over, nodes_apart, out_of_reach, overlap, seen, side_of
-from scene.statement import BeamContact, FreeEnd, Scene, SelfContact
+from fea_reference.zones import (
+    Survey,
+    Zones,
+    ends_over,
+    gap,
+    nodes_apart,
+    one_side,
+    out_of_reach,
+    overlap,
+    seen,
+    side_of,
+)
+from scene.statement import BeamContact, BeamEnd, FreeEnd, Scene, SelfContact
 
 _AT_END = 1e-6  # elements
 _SLENDER = 0.01  # of the longest beam: what stands for the thickness of beams that touch as lines
@@ -76,15 +89,33 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         first, second = model.beams[i], model.beams[j]
         mean = 0.5 * (first.thickness + second.thickness)
         least = 0.5 * (first.record.thinnest + second.record.thinnest) / model.units.length
-        side = side_of(model.line(first, model.start), model.line(second, model.start))
+        lines = [model.line(beam, model.start) for beam in (first, second)]
+        side, side_m = side_of(*lines), side_of(*lines[::-1])
         distance, scale, measure = (mean, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
+        ends, ends_m = _loose(scene, first, second), _loose(scene, second, first)
         penalties = [_penalties(model, beam, mean) for beam in (first, second)]
         loosest, stiffness, stiffest = map(min, zip(*penalties, strict=True))
         tapers = _tapers(model, first, second, thick=contact.thick)
+        strengths = (loosest, stiffness, stiffest)
         found.append(
-            Pair(name, i, j, turned, side, distance, scale, measure, loosest, stiffness, stiffest, tapers=tapers)
+            Pair(name, i, j, turned, side, side_m, distance, scale, measure, *strengths, ends, ends_m, tapers=tapers)
         )
     return tuple(found)
+
+
+def _loose(scene: Scene, beam: BeamPart, other: BeamPart) -> tuple[int, ...]:
+    """Ends of a beam that no body holds beside another: 0 for its start, 1 for its end."""
+    theirs = {_holder(scene, end) for end in (scene.beams[other.name].start, scene.beams[other.name].end)} - {None}
+    mine = (scene.beams[beam.name].start, scene.beams[beam.name].end)
+    return tuple(which for which, end in enumerate(mine) if _holder(scene, end) not in theirs)
+
+
+def _holder(scene: Scene, end: BeamEnd) -> str | None:
+    """Of an end's body its name, of all that are fixed together none; None of a free end."""
+    if isinstance(end, FreeEnd):
+        return None
+    body = scene.body_of(end.point)
+    return "" if scene.bodies[body].motion == "fixed" else body
 
 
 def _tapers(model: Model, first: BeamPart, second: BeamPart, *, thick: bool) -> Tapers | None:
@@ -112,7 +143,9 @@ def selves(scene: Scene, model: Model) -> tuple[Pair, ...]:
         roles = unseen(later=later).renewed(model.line(beam, model.start))
         penalties = _penalties(model, beam, beam.thickness)
         tapers = _tapers(model, beam, beam, thick=contact.thick)
-        found.append(Pair(name, number, number, later, 0.0, T, scale, measure, *penalties, roles, tapers))
+        found.append(
+            Pair(name, number, number, later, 0.0, 0.0, T, scale, measure, *penalties, roles=roles, tapers=tapers)
+        )
     return tuple(found)
 
 
@@ -133,6 +166,23 @@ def zones_of(model: Model, pair: Pair, z: State) -> Zones:
     """Where the beams of a pair overlap in state ``z``."""
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
     return overlap(first, second, pair.distance, _seen(pair, first, second, pair.distance), 0.0, _rays(pair, second))
+
+
+def least_at_ends(model: Model, pair: Pair, z: State) -> float:
+    """The least gap of the ends of the second beam that may come to lie on the first; infinite where none is near.
+
+    The gap along the first is normal to the second.  An end meets the first's side along the normal of that, and where
+    the beams are not parallel that is the less.
+    """
+    if not pair.ends_m:
+        return np.inf
+    first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
+    about, zeta = pair.about(), second.n * np.array(pair.ends_m, dtype=float)
+    near = nearest(second.nodes[zeta.astype(int)], first.nodes)[1].astype(float)
+    there = gap(second, first, one_side(about.side), pair.distance, about.tapers, zeta, near)
+    inside = there.found & (there.zeta_m > _AT_END) & (there.zeta_m < first.n - _AT_END)
+    # deeper is the other side, which it has come to round an end
+    return float(there.g[inside & (there.g > -0.5 * pair.scale)].min(initial=np.inf))
 
 
 def room(model: Model, pair: Pair, z: State) -> float:

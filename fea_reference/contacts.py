@@ -33,6 +33,14 @@ def zones_of(model: Model, what: Contact, z: State) -> Zones:
     return model.overlaps.found(z, what, lambda: _zones_of(model, what, z))
 
 
+def least_gap(model: Model, what: Contact, z: State) -> float:
+    """The least gap in state ``z``; of two beams also where an end of the second is on the side of the first."""
+    least = zones_of(model, what, z).least
+    if not isinstance(what, Pair) or what.roles is not None or least > FAR:
+        return least
+    return min(least, contact.least_at_ends(model, what, z))
+
+
 def _zones_of(model: Model, what: Contact, z: State) -> Zones:
     apart = least_apart(model, what, z)
     if apart > FAR:

@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 
 from fea_reference.acting import Acting
 from fea_reference.advance import advance, bend
-from fea_reference.contacts import against, looked_at, passed_through, resting_pressure, room, zones_of
+from fea_reference.contacts import against, least_gap, looked_at, passed_through, resting_pressure, room, zones_of
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
@@ -18,7 +18,7 @@ from fea_reference.settings import Settings
 from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
-from fea_reference.touch import Contact, Face, Pair, Penalty, Rigid, Touch
+from fea_reference.touch import LACKING, Contact, Face, Pair, Penalty, Rigid, Touch
 from scene.answer import Array, Critical, Ending
 
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
@@ -189,6 +189,7 @@ class March:
         if trouble is not None:
             return trouble
         self.values[load], self.system = value, system
+        self.change_places()
         if touched:
             self._close_tightly(load, value - start)
             self.watch_what_touches(load)
@@ -387,7 +388,7 @@ class March:
 
     def gaps(self, system: System) -> list[float]:
         """Of the open contacts, and how far stops are from changing."""
-        gaps = [zones_of(self.model, pair, system.z).least for pair in self.open]
+        gaps = [least_gap(self.model, pair, system.z) for pair in self.open]
         return [*gaps, *(self.room(stop, system) for stop in self.model.stops)]
 
     def least_gap(self, system: System) -> float:
@@ -396,10 +397,14 @@ class March:
 
     def watch_what_touches(self, load: int) -> None:
         """Give a penalty to every open contact whose gap has vanished."""
-        closing = [p for p in self.open if zones_of(self.model, p, self.system.z).least <= _CLOSED * p.scale]
+        z = self.system.z
+        closing = [p for p in self.open if least_gap(self.model, p, z) <= _CLOSED * p.scale]
         for pair in closing:
             self.open.remove(pair)
-            self.penalties[pair] = Penalty(pair.stiffness)
+            # an end that touches is to be the first beam's
+            unseen = zones_of(self.model, pair, z).least > _CLOSED * pair.scale
+            closed = pair.about() if unseen and isinstance(pair, Pair) else pair
+            self.penalties[closed] = Penalty(pair.stiffness)
             self.closing.setdefault(pair.name, self.value(load))
         if closing:
             self.renew()
@@ -423,6 +428,25 @@ class March:
             self.system, self.penalties, self.loose = solved.system, looser, True
             return True
         return False
+
+    def change_places(self) -> None:
+        """Let the beams of a pair change places where an end of the second presses: only ends of the first are seen."""
+        for one in self.system.touches:
+            if not isinstance(one.pair, Pair) or one.pair.roles is not None or one.lacks <= LACKING:
+                continue
+            other = one.pair.about()
+            penalties = {other if pair == one.pair else pair: penalty for pair, penalty in self.penalties.items()}
+            depths = {other if pair == one.pair else pair: depth for pair, depth in self.depths().items()}
+            pushes = {pair: push for pair, push in self.pushes().items() if pair != one.pair}
+            solved = equilibrium(
+                self.model, self.settings, penalties, self.values, self.system.z, self.acting, depths, pushes
+            )
+            self.iterations += solved.iterations
+            if not solved.converged or self.moved(solved.system, self.system.z) > _CORRECTED:
+                continue
+            lacks = next((found.lacks for found in solved.system.touches if found.pair == other), 0.0)
+            if lacks < one.lacks:
+                self.system, self.penalties = solved.system, penalties
 
     def zones(self) -> dict[Contact, Array]:
         """Where the zones on what is rigid begin and end, (2,) each."""

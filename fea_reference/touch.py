@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -25,7 +25,10 @@ class Pair:
         first, second: their numbers; the first carries the integral.
         turned: whether the first is the scene's second.
         side: of the second on which the first lies; of a beam and itself its ``roles`` tell.
+        side_m: of the first on which the second lies.
         distance: T, of the neutral lines when they touch where the beams are thickest.
+        ends, ends_m: which ends of the first and of the second (0 and 1) may come to lie on the other's side: not those
+            that a body holds beside it.
         tapers: how the thickness varies, of beams that touch by their edges if it does.
         scale: what the penetration asked is a share of: the mean thickness, or a hundredth of the longest beam for
             lines, which have none.
@@ -41,12 +44,15 @@ class Pair:
     second: int
     turned: bool
     side: float
+    side_m: float
     distance: float
     scale: float
     measure: float
     loosest: float
     stiffness: float
     stiffest: float
+    ends: tuple[int, ...] = ()
+    ends_m: tuple[int, ...] = ()
     roles: Roles | None = None
     tapers: Tapers | None = None
 
@@ -64,6 +70,20 @@ class Pair:
         """How far apart the neutral lines are when they touch at places ``zeta`` and ``zeta_m`` (k,)."""
         thinner = np.zeros(zeta.shape) if self.tapers is None else self.tapers.thinner(zeta, zeta_m)
         return np.asarray(self.distance - thinner)
+
+    def about(self) -> Pair:
+        """Two beams that have changed places."""
+        return replace(
+            self,
+            first=self.second,
+            second=self.first,
+            turned=not self.turned,
+            side=self.side_m,
+            side_m=self.side,
+            ends=self.ends_m,
+            ends_m=self.ends,
+            tapers=None if self.tapers is None else Tapers(self.tapers.second, self.tapers.first),
+        )
 
     @property
     def edge_m(self) -> Edge | None:
@@ -139,6 +159,9 @@ class Face:
         """The penalty to begin with."""
         return self.loosest
 
+
+LACKING = 1e-3
+"""Of a contact's resultant: more may not be left out."""
 
 Rigid = Circle | Face
 Contact = Pair | Rigid
@@ -239,6 +262,12 @@ class Touch:
     def push(self) -> float:
         """The resultant with its sign: negative while a held contact pulls."""
         return float(self.pushes.sum())
+
+    @property
+    def lacks(self) -> float:
+        """What ends of the second beam leave out, as a share of the resultant; none where that is none."""
+        resultant = float(np.hypot(*self.force.sum(axis=1)))
+        return self.missing / resultant if self.missing > 0.0 < resultant else 0.0
 
     @property
     def closed(self) -> bool:

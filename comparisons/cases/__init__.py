@@ -14,6 +14,16 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
+def data(case: str) -> dict[str, Any]:
+    """The plain data of a built-in case's name or of a file, as far as :func:`asked` finds it a question.
+
+    Raises:
+        SceneError: as :func:`asked`.
+    """
+    asked(case)
+    return _data(case) if case in names() else tomllib.loads(Path(case).read_text(encoding="utf-8"))
+
+
 def names() -> tuple[str, ...]:
     """Names of the built-in cases, in alphabetical order."""
     found = (entry.name for entry in files(__name__).iterdir())

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 import click
 
 from comparisons.cli.commands import Commands
-from comparisons.cli.options import folder, output, timed
+from comparisons.cli.options import count, folder, output, timed
 
 if TYPE_CHECKING:
     from comparisons.studies.told import Told
@@ -131,6 +131,38 @@ def table1(
     begun = study.begun(solvers, machine.described())
     found = _answered(begun, runs, lambda found, run: study.solved(found, run, solvers, at_most), told, show)
     return 1 if found.unfinished else 0
+
+
+@command.command("relations")
+@click.argument("scenes", nargs=-1, metavar="[CASE]...")
+@click.option("-n", "links", callback=count, metavar="COUNT", default="20", show_default=True,
+              help="CPRBM links per beam: one number or beam1=30,beam2=40.")  # fmt: skip
+@click.option("--elements", callback=count, metavar="COUNT", default="20", show_default=True,
+              help="Finite elements per beam, likewise.")  # fmt: skip
+@output
+@folder("Folder for the page and the numbers.")
+@click.pass_obj
+def relations(
+    planted: object,
+    scenes: tuple[str, ...],
+    links: int | dict[str, int],
+    elements: int | dict[str, int],
+    json_file: Path | None,
+    quiet: bool,  # noqa: FBT001 - click hands it over by name
+    out: Path | None,
+) -> int:
+    """What must not change an answer: place, mirror, order, direction, units, steps, company; action and reaction."""
+    from comparisons.choices import Choices
+    from comparisons.cli import showing
+    from comparisons.pairing import solvers_of
+    from comparisons.studies import relations as study
+    from comparisons.studies.relations_told import told
+
+    showing.room_for(json_file, out)
+    show = partial(_show, json_file=json_file, out=out, quiet=quiet)
+    asked = study.pieces(scenes, Choices(links=links, elements=elements), solvers_of(planted))
+    found = _answered(study.Relations(), showing.progress(asked, shown=not quiet), study.with_piece, told, show)
+    return 1 if found.broken else 0
 
 
 def _answered(

@@ -194,8 +194,36 @@ def test_a_beams_end_presses_along_the_others_normal(order):
     assert values["touch.centre"][0] == pytest.approx(C + longer * (order[0] == "upper"), rel=2e-4)
 
 
-def test_an_integral_along_the_wrong_beam_is_not_certified(monkeypatch):
+def first_at_first(monkeypatch):
+    """The beam named first carries the integral, whichever has an end over the other's inside."""
     monkeypatch.setattr("fea_reference.contact.ends_over", lambda first, second: False)
+
+
+def test_beams_change_places_where_an_end_of_the_second_touches(monkeypatch):
+    settings = Settings(elements=30, penetration=1e-6)
+    expected = answer(end_under_side(("upper", "lower")), settings).stations[0].values
+    first_at_first(monkeypatch)
+    found = answer(end_under_side(("upper", "lower")), settings).stations[0].values
+    for probe, value in expected.items():
+        np.testing.assert_allclose(found[probe], value, rtol=0.0, atol=1e-9 * np.abs(value).max(), err_msg=probe)
+
+
+def test_beams_change_places_where_an_end_of_the_second_comes_to_press(monkeypatch):
+    settings = Settings(elements=30, penetration=1e-6)
+    expected = answer(end_under_side(("upper", "lower")), settings).stations[0].values
+    first_at_first(monkeypatch)
+    monkeypatch.setattr("fea_reference.contact.least_at_ends", lambda model, pair, z: np.inf)
+    got = answer(end_under_side(("upper", "lower")), settings)
+    assert got.ending is Ending.COMPLETED, got.sentence
+    found = got.stations[0].values
+    for probe in ("touch.force", "V.reaction", "tip.displacement"):
+        np.testing.assert_allclose(found[probe], expected[probe], rtol=1e-7, err_msg=probe)
+
+
+def test_an_integral_along_the_wrong_beam_is_not_certified(monkeypatch):
+    first_at_first(monkeypatch)
+    monkeypatch.setattr("fea_reference.contact.least_at_ends", lambda model, pair, z: np.inf)
+    monkeypatch.setattr("fea_reference.march.March.change_places", lambda march: None)
     got = answer(end_under_side(("upper", "lower")), Settings(elements=30, penetration=1e-6))
     assert got.ending is Ending.NOT_CERTIFIED
     assert "an end of lower presses on the side of upper" in got.sentence

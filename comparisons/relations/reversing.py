@@ -1,0 +1,67 @@
+"""A beam that begins where it ended."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from comparisons.geometry import length
+from comparisons.relations.frames import OTHER_WAY
+from comparisons.relations.image import Data, Image, copied
+from scene import Probe
+from scene.answer import Array
+from scene.reading import scene_from
+
+
+def reversed_beam(data: Data, beam: str) -> Image:
+    """The image in which a ``beam`` runs the other way.
+
+    Where it touches itself its places are not compared: they are the smaller of two, and from the other end the other.
+    """
+    scene = scene_from(data)
+    L = length(scene.beams[beam].curve)
+    first = {name for name, each in scene.contacts.items() if each.beams[0] == beam}
+    own = {name for name, each in scene.contacts.items() if each.kind == "beam-self"}
+
+    def expected(probe: Probe, stage: str, value: Array) -> Array | None:
+        if probe.quantity in ("centre", "ends") and probe.of in first:
+            return None if probe.of in own else np.asarray(L - value[::-1])
+        if probe.of != beam:
+            return value
+        return np.asarray((-1.0 if probe.quantity == "bending_stress" else 1.0) * value[::-1])
+
+    return Image(f"{beam} reversed", _data(data, beam), expected)
+
+
+def _data(data: Data, name: str) -> Data:
+    new = copied(data)
+    beam = new["beams"][name]
+    beam["start"], beam["end"] = beam["end"], beam["start"]
+    beam["curve"] = _curve(beam["curve"])
+    for size in ("thickness", "width"):
+        if isinstance(beam[size], dict):
+            at, values = beam[size]["at"], beam[size]["values"]
+            beam[size] = {"at": [1.0 - u for u in at[::-1]], "values": values[::-1]}
+    for load in new.get("loads", {}).values():
+        if load.get("beam") == name and "at" in load:
+            load["at"] = 1.0 - load["at"]
+        if load.get("beam") == name and "along" in load:
+            load["along"] = [1.0 - u for u in load["along"][::-1]]
+    for stop in new.get("stops", {}).values():
+        if stop["beam"] == name:
+            stop["end"] = "start" if stop["end"] == "end" else "end"
+    return new
+
+
+def _curve(curve: Data) -> Data:
+    match curve["kind"]:
+        case "polynomial":
+            return {**curve, "range": curve["range"][::-1]}
+        case "spline":
+            new = {"kind": "spline", "points": curve["points"][::-1]}
+            for key, other in (("start_direction", "end_direction"), ("end_direction", "start_direction")):
+                if curve.get(other) is not None:
+                    new[key] = [-c for c in curve[other]]
+            return new
+        case _:
+            new = {**curve, "start": curve["end"], "end": curve["start"]}
+            return new | ({"direction": OTHER_WAY[curve["direction"]]} if "direction" in curve else {})
