@@ -24,7 +24,7 @@ from cprbm.model import Chain
 from cprbm.point import Point
 from cprbm.standing import Attachment
 from scene import FreeEnd, Scene
-from scene.answer import Array, Inside, Statics, frozen_array
+from scene.answer import Array, Inside, Ints, Statics, frozen_array
 
 NO_PULLS = frozen_array(np.zeros(0))
 
@@ -87,7 +87,7 @@ def _at_ends(scene: Scene, mechanism: Mechanism, point: Point) -> Iterator[_Acti
     # ∂L/∂θ of the whole, whose entry at a link that does not turn is the moment that holds it
     turned = point.gradient + point.held + point.pressed
     welds = {weld: -float(point.mu[2 * len(closure.ends) + row]) for row, weld in enumerate(closure.welds)}
-    names = {index: name for index, name in enumerate(model.free_bodies)}
+    names = dict(enumerate(model.free_bodies))
     for chain, start in zip(model.chains, starts, strict=False):
         beam, last = scene.beams[chain.name], chain.joints.stop - 1
         if not isinstance(beam.start, FreeEnd):
@@ -140,13 +140,30 @@ def _touching(mechanism: Mechanism, point: Point) -> Iterator[_Acting]:
         pair = mechanism.pairs[group.contact]
         fx, fy = group.on_first(pair.a)
         forces = -(lam[:, None] * np.stack((fx, fy), axis=1))[pressing]
-        none, arcs = np.zeros(len(pressing)), group.arc[pressing]
+        arcs = group.arc[pressing]
         for chain, (sign, s, _) in zip(pair.chains, pair.pressed(point.state, point.at, arcs), strict=True):
             s = np.asarray(s)
             at = _places(mechanism, point, chain, s)
-            yield _Acting(group.contact, chain.name, s, at, sign * forces, none)
+            moments = -lam[pressing] * _couples(group, chain, point, pressing, at)
+            yield _Acting(group.contact, chain.name, s, at, sign * forces, moments)
             if isinstance(pair, Circle | Edge) and (body := _body(mechanism, group)) >= 0:
-                yield _Acting(group.contact, model.free_bodies[body], np.full(len(s), np.nan), at, -forces, none)
+                yield _Acting(group.contact, model.free_bodies[body], np.full(len(s), np.nan), at, -forces, -moments)
+
+
+def _couples(group: Group, chain: Chain, point: Point, rows: Ints, places: Array) -> Array:
+    """Moments about ``places`` (k, 2) of what ``rows`` (k,) with multipliers of −1 do to a beam.
+
+    A row of the mean gap around a joint acts in several places.  Of a beam that touches itself it is not told apart.
+    """
+    if group.itself:
+        return np.zeros(len(rows))
+    joints, p = group.joints[rows], group.joints.shape[1]
+    slopes = group.slopes[rows]
+    mine = (joints >= chain.joints.start) & (joints < chain.joints.stop)
+    turning = (group.angles[rows] >= chain.links.start) & (group.angles[rows] < chain.links.stop)
+    x, y = point.at.x[joints] - places[:, :1], point.at.y[joints] - places[:, 1:]
+    moments = mine * (x * slopes[:, p : 2 * p] - y * slopes[:, :p])
+    return np.asarray(moments.sum(axis=1) + (turning * slopes[:, 2 * p :]).sum(axis=1))
 
 
 def _body(mechanism: Mechanism, group: Group) -> int:
