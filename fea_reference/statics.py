@@ -16,7 +16,7 @@ from fea_reference.stops import acting_stops
 from fea_reference.supports import held, support
 from fea_reference.touch import Pair, Touch
 from scene.answer import Array, Inside, Statics, frozen_array
-from scene.statement import Scene
+from scene.statement import Scene, TurningBody
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +87,9 @@ def _on_bodies(scene: Scene, march: March) -> Iterator[_Acting]:
     model, z = march.model, march.system.z
     for part in (*model.guides, *model.drives):
         body, (force, moment) = model.bodies[part.body], held(part, z)
-        yield _one(part.name, body.name, np.nan, model.carried(body, part.arm, z), force, moment)
+        owner = scene.bodies.get(part.name)
+        name = owner.about if isinstance(owner, TurningBody) else part.name
+        yield _one(name, body.name, np.nan, model.carried(body, part.arm, z), force, moment)
     for name, hinge in zip(scene.pins, model.hinges, strict=True):
         for i, arm, sign in zip(hinge.bodies, hinge.arms, (-1.0, 1.0), strict=True):
             if model.bodies[i].dofs is not None:

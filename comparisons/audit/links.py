@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -117,7 +118,7 @@ class Links:
     def fine(self) -> Array:
         """Arc lengths of a fine line, joints and borders among them."""
         knots = np.unique(np.concatenate((self.joints_at, self.inside.borders)))
-        parts = [np.linspace(a, b, PER_HALF, endpoint=False) for a, b in zip(knots[:-1], knots[1:], strict=True)]
+        parts = [np.linspace(a, b, PER_HALF, endpoint=False) for a, b in pairwise(knots)]
         return np.concatenate([*parts, knots[-1:]])
 
     def misplaced(self) -> float:

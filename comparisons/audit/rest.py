@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from comparisons.geometry import length
 from scene import Beam, Scene
-from scene.answer import Array
+from scene.answer import Array, Ints
 from scene.geometry import points_on, tangents_on
 
 Complex = NDArray[np.complex128]
@@ -50,7 +50,7 @@ class Rest:
         """At arc lengths ``s``, m, in the same shape."""
         return self.beam.thickness_at(np.clip(s / self.length, 0.0, 1.0))
 
-    def over(self, borders: Array) -> tuple[Array, Array, Array]:
+    def over(self, borders: Array) -> tuple[Ints, Array, Array]:
         """Of what lies between ``borders`` (n+1,): number (m,), arc lengths and weights (m, 16) to integrate by.
 
         Between two borders, and knots of the section, no size more than grows by half.
@@ -70,7 +70,7 @@ class Rest:
     def summed(self, borders: Array, integrand: Array) -> Array:
         """What an ``integrand`` (m, 16) at the places of :meth:`over` comes to between the borders, (n,)."""
         number, _, weights = self.over(borders)
-        return np.bincount(number, (integrand * weights).sum(axis=1), len(borders) - 1)
+        return np.asarray(np.bincount(number, (integrand * weights).sum(axis=1), len(borders) - 1), dtype=float)
 
 
 def rests_of(scene: Scene) -> dict[str, Rest]:

@@ -101,26 +101,27 @@ class Seen:
     def _loads(self) -> Iterator[tuple[str, str, Array, Complex, Complex, Array]]:
         """On what each load acts, its name, arc lengths, places, forces and moments."""
         none = np.zeros(1)
+        still = np.zeros(1, dtype=complex)
         for name, load in self.scene.loads.items():
             value = self.values[name]
             match load:
                 case Moment():
                     at = self.carried(load.body, self.motion(load.body)[0])
-                    yield load.body, name, none + np.nan, none + at, none + 0j, none + value
+                    yield load.body, name, none + np.nan, still + at, still, none + value
                 case Force():
                     at, force = self.point(load.point), value * _unit(load.direction)
-                    yield self.scene.body_of(load.point), name, none + np.nan, none + at, none + force, none
+                    yield self.scene.body_of(load.point), name, none + np.nan, still + at, still + force, none
                 case BeamForce():
                     s = none + load.at * self.rests[load.beam].length
                     at_s = self.beams[load.beam].line(s)[0]
-                    yield load.beam, name, s, at_s, none + value * _unit(load.direction), none
+                    yield load.beam, name, s, at_s, still + value * _unit(load.direction), none
                 case BeamMoment():
                     s = none + load.at * self.rests[load.beam].length
-                    yield load.beam, name, s, self.beams[load.beam].line(s)[0], none + 0j, none + value
+                    yield load.beam, name, s, self.beams[load.beam].line(s)[0], still, none + value
                 case DistributedLoad():
                     s, weights = self.spread(load)
-                    force = value * weights * _unit(load.direction)
-                    yield load.beam, name, s, self.beams[load.beam].line(s)[0], force, 0.0 * s
+                    pressure = np.asarray(value * weights * _unit(load.direction))
+                    yield load.beam, name, s, self.beams[load.beam].line(s)[0], pressure, 0.0 * s
 
     def spread(self, load: DistributedLoad) -> tuple[Array, Array]:
         """Arc lengths (k,) at which a distributed load is summed, and the lengths that they stand for."""
@@ -135,7 +136,7 @@ class Seen:
     def energy(self) -> tuple[float, float]:
         """Strain energy and the loads' work from rest, J."""
         strain, work = sum(beam.strain_energy for beam in self.beams.values()), 0.0
-        for name, load in self.scene.loads.items():
+        for name in self.scene.loads:
             work += self.values[name] * self.way_of(name)
         return strain, work
 
