@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -116,7 +116,7 @@ def _pressed(seen: Seen, name: str, beam: str) -> tuple[Array, Complex, Complex]
 
 def _pressing(seen: Seen, name: str, beam: str, feet: Feet, other: AnyBeam | None, *, thick: bool) -> Iterator[str]:
     """Forces where nothing touches, and such as pull or rub."""
-    s, places, forces = _pressed(seen, name, beam)
+    s, _, forces = _pressed(seen, name, beam)
     if not s.size:
         return
     size = np.abs(forces)
@@ -137,7 +137,8 @@ def _pressing(seen: Seen, name: str, beam: str, feet: Feet, other: AnyBeam | Non
     worst = int(np.argmin(np.where(real, along, 1.0)))
     if real[worst] and not along[worst] >= 1.0 - ALIGNED:
         how = "pulls" if along[worst] < 0.0 else "rubs"
-        yield f"{name} {how} {beam} at {s[worst]:.4g} m: its force of {size[worst]:.3g} N is {along[worst]:.3f} along the normal"
+        said = f"its force of {size[worst]:.3g} N is {along[worst]:.3f} along the normal"
+        yield f"{name} {how} {beam} at {s[worst]:.4g} m: {said}"
 
 
 def _deepest(what: str, s: Array, gap: Array, counted: Flags, allowed: float) -> Iterator[str]:
@@ -291,10 +292,7 @@ def _crossings(seen: Seen, first: AnyBeam, second: AnyBeam) -> Iterator[tuple[co
     a, b = (beam.line(beam.fine)[0] for beam in (first, second))
     at, places = _intersections(a, b)
     ends = np.concatenate(([0], at + 1, [len(a)]))
-    depths = [
-        np.max(np.abs(_feet(a[i:j], second).distance)) if j > i else 0.0
-        for i, j in zip(ends[:-1], ends[1:], strict=True)
-    ]
+    depths = [np.max(np.abs(_feet(a[i:j], second).distance)) if j > i else 0.0 for i, j in pairwise(ends)]
     allowed = SUNK * seen.longest
     joints = [beam.line(np.array([0.0, beam.rest.length]))[0] for beam in (first, second)]
     shared = [p for p in joints[0] if np.min(np.abs(joints[1] - p)) < 1e-6 * seen.longest]
