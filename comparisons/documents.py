@@ -114,7 +114,9 @@ def solver(answer: Answer, audited: Audit | None = None) -> Plain:
     }
 
 
-def _audit(found: Audit) -> Plain:
+def _audit(found: Audit) -> Plain | None:
+    if not found.stations:
+        return None
     return {
         "holds": not found.complaints,
         "complaints": list(found.complaints),

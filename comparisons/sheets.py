@@ -382,7 +382,10 @@ def _certificates(compared: Comparison) -> Sheet:
     audits = [compared.audits.get(answer.solver) for answer in answers]
     body.append(("audit", *(_audited(one) for one in audits)))
     body.append(
-        ("moments by the shape less those by statics", *("–" if a is None else number(a.scaled) for a in audits))
+        (
+            "moments by the shape less those by statics",
+            *("–" if one is None or not one.stations else number(one.scaled) for one in audits),
+        )
     )
     body.append(("iterations", *("–" if cert is None else str(cert["iterations"]) for cert in found)))
     body.append(("seconds", *(number(answer.seconds, 2) for answer in answers)))

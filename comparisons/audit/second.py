@@ -28,9 +28,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh, null_space
 
-from comparisons.audit.elements import ElementsOfBeam
+from comparisons.audit.links import Links
 from comparisons.audit.rest import Complex
-from comparisons.audit.seen import Acting, Seen
+from comparisons.audit.seen import Acting, AnyBeam, Seen
 from scene.answer import Array
 from scene.statement import (
     BeamContact,
@@ -46,25 +46,30 @@ from scene.statement import (
 
 SURE = 0.03  # EI/ℓ²: a curvature this far below zero is no discretisation's
 COARSE = 2.0  # the same over the square of the fewest elements
+MOST = 48  # turns of a beam that are looked at
 SPOT = 2.0  # elements
 FAR = 1e-6  # rad: a link that lies within this of a stop
 
 
 @dataclass(frozen=True)
 class _Rows:
-    """Where the unknowns stand: of each beam the ``turns`` and the start's ``place``, of bodies (u, v, φ)."""
+    """Where the unknowns stand: of each beam the ``turns`` and the start's ``place``, of bodies (u, v, φ).
+
+    ``polygons`` are what :func:`_polygon` says of every beam.
+    """
 
     turns: dict[str, slice]
     places: dict[str, int]
     bodies: dict[str, int]
     size: int
+    polygons: dict[str, tuple[Array, Complex, Array]]
 
 
 def saddles(seen: Seen, least: float | None) -> Iterator[str]:
     """Whether a state whose smallest curvature is the ``least`` is no minimum of the potential energy."""
     if least is None:
         return
-    fewest = min(len(beam.inside.borders) - 1 for beam in seen.beams.values())
+    fewest = min(len(_knots(beam)) - 1 for beam in seen.beams.values())
     if not least >= -(SURE + COARSE / fewest**2):
         yield f"the energy's smallest curvature on the feasible directions is {least:.3g} EI/ℓ²: it is no minimum"
 
@@ -97,42 +102,50 @@ def smallest_curvature(seen: Seen) -> float | None:
 def _rows(seen: Seen) -> _Rows:
     turns, places, bodies, size = dict[str, slice](), dict[str, int](), dict[str, int](), 0
     for name, beam in seen.beams.items():
-        turns[name] = slice(size, size + len(beam.inside.angles))
+        turns[name] = slice(size, size + len(_knots(beam)))
         size = turns[name].stop
         places[name], size = size, size + 2
     for name in seen.statics.bodies:
         bodies[name], size = size, size + 3
-    return _Rows(turns, places, bodies, size)
+    return _Rows(turns, places, bodies, size, {name: _polygon(seen, name) for name in seen.beams})
 
 
 def _polygon(seen: Seen, name: str) -> tuple[Array, Complex, Array]:
     """Ends of pieces (m+1,) by arc length, their corners, and how much each turn has of each piece, (m, n+1)."""
     beam = seen.beams[name]
-    n = len(beam.inside.angles)
-    if isinstance(beam, ElementsOfBeam):
-        shares = np.zeros((n - 1, n))
-        np.fill_diagonal(shares, 0.5)
-        np.fill_diagonal(shares[:, 1:], 0.5)
-        return beam.inside.borders, beam.nodes, shares
-    return beam.joints_at, beam.joints, np.eye(n)
+    knots = _knots(beam)
+    n = len(knots)
+    if isinstance(beam, Links) and n == len(beam.inside.borders):
+        return beam.joints_at, beam.joints, np.eye(n)
+    shares = np.zeros((n - 1, n))
+    np.fill_diagonal(shares, 0.5)
+    np.fill_diagonal(shares[:, 1:], 0.5)
+    return knots, beam.line(knots)[0], shares
+
+
+def _knots(beam: AnyBeam) -> Array:
+    """Arc lengths where turns are unknown: borders of elements, of many every few."""
+    e = beam.inside.borders
+    every = -(-(len(e) - 1) // MOST)
+    return np.append(e[:-1:every], e[-1])
 
 
 def _moved(seen: Seen, rows: _Rows, name: str, s: float) -> Array:
     """δp at an arc length over q, (2, size): of the polygon, with what is left of the piece there."""
-    ends, corners, shares = _polygon(seen, name)
+    ends, corners, shares = rows.polygons[name]
     found = np.zeros((2, rows.size))
     found[:, rows.places[name] : rows.places[name] + 2] = np.eye(2)
     steps = np.diff(corners)
     part = np.clip((s - ends[:-1]) / np.diff(ends), 0.0, 1.0)
-    turned = (1j * steps * part) @ shares
-    found[:, rows.turns[name]] = turned.real, turned.imag
+    turned = 1j * steps * part
+    found[:, rows.turns[name]] = turned.real @ shares, turned.imag @ shares
     return found
 
 
 def _turned(seen: Seen, rows: _Rows, name: str, s: float) -> Array:
     """δψ at an arc length over q, (size,)."""
     found = np.zeros(rows.size)
-    knots = seen.beams[name].inside.borders  # of links that of link i is the tangent at border i
+    knots = _knots(seen.beams[name])  # of links that of link i is the tangent at border i
     i = int(np.clip(np.searchsorted(knots, s) - 1, 0, len(knots) - 2))
     share = (s - knots[i]) / (knots[i + 1] - knots[i])
     found[rows.turns[name].start + i : rows.turns[name].start + i + 2] = 1.0 - share, share
@@ -153,7 +166,7 @@ def _energy(seen: Seen, rows: _Rows) -> tuple[Array, Array]:
     """Twice the second variation with dead forces, (size, size), and what motions are measured by, (size,)."""
     H, M = np.zeros((rows.size, rows.size)), np.zeros(rows.size)
     for name, beam in seen.beams.items():
-        e, acting, at = beam.inside.borders, seen.acting[name], rows.turns[name]
+        e, acting, at = _knots(beam), seen.acting[name], rows.turns[name]
         _, s, _ = beam.rest.over(e)
         K = 1.0 / beam.rest.summed(e, 1.0 / beam.rest.rigidity(s))
         n = len(e)
@@ -163,7 +176,7 @@ def _energy(seen: Seen, rows: _Rows) -> tuple[Array, Array]:
         stiff[i + 1, i + 1] += K
         stiff[i, i + 1] -= K
         stiff[i + 1, i] -= K
-        ends, corners, shares = _polygon(seen, name)
+        ends, corners, shares = rows.polygons[name]
         steps = np.diff(corners)
         pull = np.array([_along(acting, *piece) for piece in zip(ends[:-1], ends[1:], steps, strict=True)])
         H[at, at] = stiff + shares.T @ (pull[:, None] * shares)

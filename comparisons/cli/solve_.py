@@ -61,7 +61,7 @@ def command(
         answer = asked(scene, choices)
     from comparisons.audit import audit
 
-    checked = None if found else audit(scene, answer)
+    checked = audit(scene, answer)
     if json_file is not None:
         from comparisons import documents
 
@@ -73,7 +73,7 @@ def command(
     if not answer.completed:
         click.echo(f"cprbm: {scene.name}: {answer.ending.value}. {answer.sentence}".rstrip(), err=True)
         return NOT_COMPLETED
-    if checked is not None and checked.complaints:
+    if checked.complaints:
         for complaint in checked.complaints:
             click.echo(f"cprbm: {scene.name}: the audit fails {complaint}", err=True)
         return NOT_WITHIN
