@@ -17,6 +17,7 @@ from scene.statement import BeamContact, BeamMoment, SelfContact, WeldedEnd
 
 CLOSED = 1e-7  # of the largest force or moment in a sum
 ROUNDED = 100.0  # times what round-off leaves
+SMALL = 1e-3  # of the longest beam
 LEVER = 0.4  # h: by how much the lever of a force near a cut may be off
 NEAR, NEAR_SHEAR = 1.6, 2.6  # h: how near that is
 
@@ -61,12 +62,11 @@ def unbalance(seen: Seen) -> tuple[float, float]:
 
     Unscaled, N·m, and over the largest moment in the mechanism.
     """
-    largest, worst = 0.0, 0.0
+    worst, largest = 0.0, _largest(seen)[1]
     for name, beam in seen.beams.items():
         arc, _, inside = beam.cuts
         off = np.abs(inside - moments_beyond(seen, name, arc))[near(seen, name, arc) == 0.0]
         worst = max(worst, float(np.max(off, initial=0.0)))
-        largest = max(largest, float(np.max(np.abs(inside))))
     return worst, worst / largest if largest > 0.0 else 0.0
 
 
@@ -102,13 +102,18 @@ def _size(beam: AnyBeam, arc: np.ndarray) -> np.ndarray:
     return np.asarray(np.diff(e)[np.clip(np.searchsorted(e, arc, side="right") - 1, 0, len(e) - 2)])
 
 
-def _floor(seen: Seen) -> tuple[float, float]:
-    """What a force and a moment may be left over by, N and N·m."""
+def _largest(seen: Seen) -> tuple[float, float]:
+    """The largest force and moment, N and N·m; of a moment no less than a small lever makes of the force."""
     force = max((float(np.max(np.abs(one.forces), initial=0.0)) for one in seen.acting.values()), default=0.0)
     inside = max(float(np.max(np.abs(beam.cuts[2]))) for beam in seen.beams.values())
-    rounding = ROUNDED * max(beam.rounding for beam in seen.beams.values())
     moment = max(inside, *(float(np.max(np.abs(one.moments), initial=0.0)) for one in seen.acting.values()))
-    moment = max(moment, 1e-3 * force * seen.longest)
+    return force, max(moment, SMALL * force * seen.longest)
+
+
+def _floor(seen: Seen) -> tuple[float, float]:
+    """What a force and a moment may be left over by, N and N·m."""
+    force, moment = _largest(seen)
+    rounding = ROUNDED * max(beam.rounding for beam in seen.beams.values())
     h = min(float(np.diff(beam.inside.borders).min()) for beam in seen.beams.values())
     return CLOSED * max(force, moment / seen.longest) + rounding / h, CLOSED * moment + rounding
 
