@@ -13,7 +13,7 @@ from frozendict import frozendict
 
 from comparisons.documents import Plain, plain
 from scene import Answer, Certificate, Critical, Ending, Event, Loss, Shape, StationAnswer
-from scene.answer import Array, frozen_array
+from scene.answer import Array, Inside, Statics, frozen_array
 
 
 def text(answers: Mapping[str, Answer]) -> str:
@@ -43,6 +43,7 @@ def packed(answer: Answer) -> Plain:
                     "shapes": {name: _fields(shape) for name, shape in station.shapes.items()},
                     "touching": station.touching,
                     "certificate": _fields(station.certificate),
+                    "statics": None if station.statics is None else _packed_statics(station.statics),
                 }
                 for station in answer.stations
             ],
@@ -51,7 +52,11 @@ def packed(answer: Answer) -> Plain:
     return found
 
 
-def _fields(record: Critical | Event | Shape | Certificate) -> Plain:
+def _packed_statics(statics: Statics) -> Plain:
+    return {**_fields(statics), "inside": {name: _fields(inside) for name, inside in statics.inside.items()}}
+
+
+def _fields(record: Statics | Inside | Critical | Event | Shape | Certificate) -> Plain:
     return {field.name: getattr(record, field.name) for field in fields(record)}
 
 
@@ -97,12 +102,35 @@ def _unpacked_station(data: Plain) -> StationAnswer:
                 for name, shape in data["shapes"].items()
             }
         ),
-        touching=frozendict(
-            {name: frozen_array(np.reshape(_array(places), (-1, 2))) for name, places in data["touching"].items()}
-        ),
+        touching=frozendict({name: _pairs(places) for name, places in data["touching"].items()}),
         certificate=Certificate(**certificate),
         branch=data["branch"],
+        statics=None if data["statics"] is None else _unpacked_statics(data["statics"]),
     )
+
+
+def _unpacked_statics(data: Plain) -> Statics:
+    return Statics(
+        by=tuple(data["by"]),
+        on=tuple(data["on"]),
+        s=_array(data["s"]),
+        places=_pairs(data["places"]),
+        forces=_pairs(data["forces"]),
+        moments=_array(data["moments"]),
+        bodies=frozendict({name: _array(values) for name, values in data["bodies"].items()}),
+        inside=frozendict(
+            {
+                name: Inside(
+                    inside["made_of"], _array(inside["borders"]), _array(inside["angles"]), _array(inside["pulls"])
+                )
+                for name, inside in data["inside"].items()
+            }
+        ),
+    )
+
+
+def _pairs(values: list[Any]) -> Array:
+    return frozen_array(np.reshape(_array(values), (-1, 2)))
 
 
 def _array(values: list[Any]) -> Array:  # touching places are lists of pairs

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from comparisons.audit import Audit
 from comparisons.claims import claim_met, claim_of, claim_of_critical, claimed_difference, critical_difference
 from comparisons.criticals import CriticalRow, released
 from comparisons.measures import Row, arc_lengths, unit_of
@@ -39,8 +40,14 @@ def comparison(compared: Comparison) -> Plain:
         "verdict": compared.verdict.word.value,
         "sentence": compared.verdict.sentence,
         "solvers": {
-            "cprbm": {**solver(compared.runs.cprbm[0]), **_tolerance(compared.tolerances, "cprbm")},
-            "fea": {**solver(compared.runs.reference), **_tolerance(compared.tolerances, "fea")},
+            "cprbm": {
+                **solver(compared.runs.cprbm[0], compared.audits.get("cprbm")),
+                **_tolerance(compared.tolerances, "cprbm"),
+            },
+            "fea": {
+                **solver(compared.runs.reference, compared.audits.get("fea")),
+                **_tolerance(compared.tolerances, "fea"),
+            },
             **({} if compared.runs.exact is None else {"exact": solver(compared.runs.exact)}),
         },
         "rows": [
@@ -64,12 +71,14 @@ def comparison(compared: Comparison) -> Plain:
     }
 
 
-def solution(scene: Scene, answer: Answer, tolerances: tuple[Tolerance, ...] = ()) -> Plain:
+def solution(
+    scene: Scene, answer: Answer, tolerances: tuple[Tolerance, ...] = (), audited: Audit | None = None
+) -> Plain:
     """One case of ``solve``: the same shape with one solver's column and no verdict."""
     stages = {stage.name: stage for stage in scene.stages}
     return {
         "case": scene.name,
-        "solvers": {answer.solver: {**solver(answer), **_tolerance(tolerances, answer.solver)}},
+        "solvers": {answer.solver: {**solver(answer, audited), **_tolerance(tolerances, answer.solver)}},
         "rows": [
             {
                 "probe": probe.name,
@@ -86,14 +95,15 @@ def solution(scene: Scene, answer: Answer, tolerances: tuple[Tolerance, ...] = (
     }
 
 
-def solver(answer: Answer) -> Plain:
-    """How a solver fared; the certificate is the worst over its stations."""
+def solver(answer: Answer, audited: Audit | None = None) -> Plain:
+    """How a solver fared; the certificate is the worst over its stations, the audit null where there was none."""
     return {
         "ending": answer.ending.name,
         "sentence": answer.sentence,
         "seconds": plain(answer.seconds),
         "settings": plain(answer.settings),
         "certificate": worst(tuple(station.certificate for station in answer.stations)),
+        "audit": None if audited is None else _audit(audited),
         "stations": len(answer.stations),
         "events": [
             {"stage": event.stage, "contact": event.contact, "kind": event.kind, "value": plain(event.value)}
@@ -101,6 +111,20 @@ def solver(answer: Answer) -> Plain:
         ],
         "critical": [critical(each) for each in answer.critical],
         "notes": list(answer.notes),
+    }
+
+
+def _audit(found: Audit) -> Plain | None:
+    if not found.stations:
+        return None
+    return {
+        "holds": not found.complaints,
+        "complaints": list(found.complaints),
+        "remarks": list(found.remarks),
+        "stations": found.stations,
+        "unbalance": plain(found.unbalance),
+        "scaled_unbalance": plain(found.scaled),
+        "smallest_curvature": None if found.curvature is None else plain(found.curvature),
     }
 
 

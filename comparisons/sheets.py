@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from comparisons.audit import Audit
 from comparisons.branch_sheets import of_branches, of_criticals, of_ends
 from comparisons.branches import Place
 from comparisons.calibration import FAR, JUDGED, Held, every, held, tally
@@ -378,6 +379,14 @@ def _certificates(compared: Comparison) -> Sheet:
         ("smallest_curvature", "smallest curvature of the energy"),
     )
     body.extend((label, *("–" if cert is None else number(cert[key]) for cert in found)) for key, label in keys)
+    audits = [compared.audits.get(answer.solver) for answer in answers]
+    body.append(("audit", *(_audited(one) for one in audits)))
+    body.append(
+        (
+            "moments by the shape less those by statics",
+            *("–" if one is None or not one.stations else number(one.scaled) for one in audits),
+        )
+    )
     body.append(("iterations", *("–" if cert is None else str(cert["iterations"]) for cert in found)))
     body.append(("seconds", *(number(answer.seconds, 2) for answer in answers)))
     return Sheet(
@@ -386,6 +395,12 @@ def _certificates(compared: Comparison) -> Sheet:
         tuple(body),
         "All numbers but iterations and seconds are relative to a scale of the problem; see the README.",
     )
+
+
+def _audited(found: Audit | None) -> str:
+    if found is None or not found.stations:
+        return "–"
+    return "holds" if not found.complaints else f"{len(found.complaints)} complaints"
 
 
 def _answered(scene: Scene, answer: Answer, station: StationAnswer) -> Sheet:

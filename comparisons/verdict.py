@@ -30,6 +30,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from frozendict import frozendict
+
+from comparisons.audit import Audit, audit
 from comparisons.branches import Place
 from comparisons.calibration import FAR, JUDGED, every, held, tally
 from comparisons.criticals import CriticalRow, critical_rows
@@ -66,7 +69,10 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """A scene, all answers to it, the rows and critical values, the verdict, reactions by two ways, how N was found."""
+    """A scene, all answers to it, the rows and critical values, the verdict, reactions by two ways, how N was found.
+
+    ``audits`` are of the two answers that are compared, by solver, where these are whole.
+    """
 
     scene: Scene
     runs: Runs
@@ -75,6 +81,7 @@ class Comparison:
     criticals: tuple[CriticalRow, ...] = ()
     reactions: tuple[Reaction, ...] = ()
     tolerances: tuple[Tolerance, ...] = ()
+    audits: Mapping[str, Audit] = frozendict()
 
 
 def compared(scene: Scene, runs: Runs) -> Comparison:
@@ -102,7 +109,23 @@ def compared(scene: Scene, runs: Runs) -> Comparison:
     verdict = judged(within, rows, criticals)
     if reach is not None:
         verdict = _up_to_there(verdict, rows[-1])
-    return Comparison(scene, runs, rows, verdict, criticals, _reactions(scene, runs))
+    audits = {answer.solver: audit(within, answer) for answer in (cut.cprbm[0], cut.reference)}
+    return Comparison(
+        scene, runs, rows, _as_audited(verdict, audits), criticals, _reactions(scene, runs), audits=audits
+    )
+
+
+def _as_audited(verdict: Verdict, audits: Mapping[str, Audit]) -> Verdict:
+    """The verdict where an answer's audit finds something: two answers may agree on what is no equilibrium."""
+    said = []
+    for name, found in audits.items():
+        if found.complaints:
+            more = f" (and {len(found.complaints) - 1} more)" if len(found.complaints) > 1 else ""
+            said.append(f"The audit of {name}'s answer fails: {found.complaints[0]}{more}.")
+    if not said:
+        return verdict
+    word = Word.UNDECIDED if verdict.word is Word.AGREE else verdict.word
+    return replace(verdict, word=word, sentence=" ".join((*said, verdict.sentence)))
 
 
 def _up_to_there(verdict: Verdict, last: Row) -> Verdict:

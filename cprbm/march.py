@@ -31,6 +31,7 @@ from cprbm.rate import rate, strayed
 from cprbm.refining import all_zones, carried_over, carried_state, fits, fitted, long_ones
 from cprbm.remarks import Remarks
 from cprbm.settings import Settings
+from cprbm.statics import statics
 from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAnswer
 
 AGAIN = 12  # iterations on a mesh that fits a little better
@@ -251,6 +252,7 @@ class March:
             touching=touching(mechanism, point),
             certificate=replace(certificate, iterations=spent),
             branch=len(self.critical),
+            statics=statics(self.scene, mechanism, point),
         )
 
     def _gone_on(self, stage: Stage, value: float) -> tuple[Mechanism, Point, Certificate] | None:

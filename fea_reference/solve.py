@@ -15,6 +15,7 @@ from fea_reference.march import March, StoppedError, begin
 from fea_reference.model import build
 from fea_reference.probes import probed, shapes, touching
 from fea_reference.settings import Settings
+from fea_reference.statics import statics
 from fea_reference.travel import Course, reach
 from scene.answer import Answer, Ending, Event, StationAnswer
 from scene.statement import Scene, Stage
@@ -129,6 +130,7 @@ def _certified(scene: Scene, march: March, stage: Stage, station: float) -> Stat
         touching=touching(march),
         certificate=certificate,
         branch=len(march.critical),
+        statics=statics(scene, march),
     )
 
 

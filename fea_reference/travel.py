@@ -19,7 +19,7 @@ changes in between by something between both; one that does not is on another br
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -59,9 +59,28 @@ class Course:
 def reach(march: March, course: Course, target: float) -> None:
     """March to the value ``target`` and land on it exactly.
 
+    Where steps look for no end of the branch and one leads nowhere, they may have passed it: they are gone again from
+    where they began, looking.
+
     Raises:
         StoppedError: it cannot be reached.
     """
+    origin = march.saved()
+    try:
+        _reach(march, course, target)
+    except StoppedError as stopped:
+        if course.beyond is not None:
+            raise
+        march.restore(origin)
+        march.critical, march.behind = list(origin.critical), None
+        try:
+            _reach(march, replace(course, beyond="stop"), target)
+        except StoppedError as looking:
+            raise looking if looking.ending is Ending.BRANCH_ENDS else stopped from None
+
+
+def _reach(march: March, course: Course, target: float) -> None:
+    """The same, and whether steps look for ends is the course's."""
     load = course.load
     march.iterations = 0
     march.switched = {}

@@ -36,6 +36,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,11 +106,62 @@ class Shape:
 
 
 @dataclass(frozen=True, slots=True)
+class Inside:
+    """A beam as its solver sees it: what its bending moments and its smooth line follow from, and no more.
+
+    Of ``links`` they begin at the beam's first place and end in the middle of each element, where they are joined by
+    springs, and at its last place; ``angles`` are theirs, one more than elements, and ``pulls`` empty.  Of ``elements``
+    the shape's places are their nodes, ``angles`` those of the sections there, and ``pulls`` the axial force in each.
+
+    Attributes:
+        made_of: ``links`` or ``elements``.
+        borders: arc lengths at which elements begin and end, (n+1,), m.
+        angles: rad, counter-clockwise, (n+1,).
+        pulls: N, positive in tension, (n,) or (0,).
+    """
+
+    made_of: Literal["links", "elements"]
+    borders: Array
+    angles: Array
+    pulls: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Statics:
+    """What acts at a station besides the scene's loads, so that others can sum it up anew; SI.
+
+    Every force of a joint, a contact, a stop, a slide, a pivot, a drive or a pin between bodies stands there once for
+    each beam and body that it acts on; the ground's share is left out.  k is how many there are.
+
+    Attributes:
+        by: what exerts each: name of the point that a beam's end is joined to, of the contact, stop, drive, pin or
+            sliding body, or of the point that is a pivot.
+        on: name of the beam or body that it acts on.
+        s: arc lengths of the places on beams, m; of those on bodies nan, (k,).
+        places: where, m (k, 2): of contacts on the beam's neutral line, through which the force's line goes.
+        forces: N (k, 2).
+        moments: about the places, counter-clockwise, N·m (k,).
+        bodies: of every body that moves the displacement of its first point, m, and its rotation, rad, (3,).
+        inside: of every beam.
+    """
+
+    by: tuple[str, ...]
+    on: tuple[str, ...]
+    s: Array
+    places: Array
+    forces: Array
+    moments: Array
+    bodies: Mapping[str, Array]
+    inside: Mapping[str, Inside]
+
+
+@dataclass(frozen=True, slots=True)
 class StationAnswer:
     """What was asked at one station: ``values`` by probe name, the shapes, and the certificate.
 
     ``value`` is the stepped load's or drive's; ``touching`` holds, per closed contact, the places (k, 2) in metres
-    where the beams touch; ``branch`` is the number of branches that have ended before, each at a critical point.
+    where the beams touch; ``branch`` is the number of branches that have ended before, each at a critical point;
+    ``statics`` what acts, of solvers that say so.
     """
 
     stage: str
@@ -119,6 +171,7 @@ class StationAnswer:
     touching: Mapping[str, Array]
     certificate: Certificate
     branch: int = 0
+    statics: Statics | None = None
 
 
 @dataclass(frozen=True, slots=True)

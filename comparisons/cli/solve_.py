@@ -59,10 +59,13 @@ def command(
     else:
         asked = {"cprbm": solvers.cprbm, "fea": solvers.fea, "exact": solvers.exact or exact_answer}[solver]
         answer = asked(scene, choices)
+    from comparisons.audit import audit
+
+    checked = audit(scene, answer)
     if json_file is not None:
         from comparisons import documents
 
-        showing.json(json_file, {"cases": [documents.solution(scene, answer, found)]})
+        showing.json(json_file, {"cases": [documents.solution(scene, answer, found, checked)]})
     if not quiet and str(json_file) != "-":
         from comparisons import sheets
 
@@ -70,6 +73,10 @@ def command(
     if not answer.completed:
         click.echo(f"cprbm: {scene.name}: {answer.ending.value}. {answer.sentence}".rstrip(), err=True)
         return NOT_COMPLETED
+    if checked.complaints:
+        for complaint in checked.complaints:
+            click.echo(f"cprbm: {scene.name}: the audit fails {complaint}", err=True)
+        return NOT_WITHIN
     for reached in found:
         if not reached.met:
             click.echo(f"cprbm: {scene.name}: {reached.sentence}", err=True)

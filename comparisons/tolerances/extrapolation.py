@@ -91,7 +91,9 @@ def _station(
         if found is None:
             found = _kept(scene, probe, three[1], three[2], orders[fine.stage, probe.name])
         values[probe.name], beside[probe.name] = map(frozen_array, found)
-    return replace(fine, values=frozendict(values)), replace(fine, values=frozendict(beside), branch=coarse.branch)
+    # limits are no state's, so that nothing says what acts
+    beside_it = replace(fine, values=frozendict(beside), branch=coarse.branch, statics=None)
+    return replace(fine, values=frozendict(values), statics=None), beside_it
 
 
 def _orders(scene: Scene, answers: Three) -> Orders:

@@ -255,3 +255,31 @@ def test_lever_goes_over_the_centre(solve, within):
     turned = rest.lever - TOGGLE.beyond(pushed).lever
     assert answer.stations[-1].values["lever.rotation"][0] == pytest.approx(turned, rel=3.0 * within)
     assert [station.branch for station in answer.stations] == [0, 0, 1]
+
+
+# ------------------------------------------------------------------------------------ where nobody has asked for ends
+
+
+def unasked(data):
+    """The same scene without a word on what to do where a branch ends."""
+    return {**data, "stages": [{k: v for k, v in stage.items() if k != "beyond"} for stage in data["stages"]]}
+
+
+@SOLVERS
+def test_an_end_that_nobody_asked_for_is_told_all_the_same(solve, within):
+    # reference: arch.py and snap.py; a station beyond is not reached by a jump without a word
+    times = 1.37
+    clamped, pinned = CLAMPED_ARCH.force_fold.force, PINNED_ARCH.bifurcation.force
+    scenes = [
+        (branches.arch(CLAMPED_ARCH.half_angle, "weld", "weld", [0.83 * clamped, times * clamped]), Loss.FOLD),
+        (branches.arch(PINNED_ARCH.half_angle, "pin", "pin", [0.83 * pinned, times * pinned]), Loss.BIFURCATION),
+        (branches.snap([[0.47, min(0.9, 0.66 * times)]]), Loss.FOLD),
+    ]
+    values = [clamped * FORCE, pinned * FORCE, SNAP.fold.clamp]
+    for (data, loss), value in zip(scenes, values, strict=True):
+        answer = solve(unasked(data))
+        assert answer.ending is Ending.BRANCH_ENDS, answer.sentence
+        assert lost(answer) == [(loss, "")]
+        assert answer.critical[0].value == pytest.approx(value, rel=within)
+        assert answer.critical[0].after is None
+        assert len(answer.stations) == 1

@@ -1,0 +1,323 @@
+"""What touches, overlaps and crosses, by the auditor's own fine lines; which way contacts push, and where.
+
+Distances are of neutral lines less half of both thicknesses; a foot is a place that the other line's normal goes
+through, or one of its ends.  Where beams lie as near as their thickness already at rest, beside a joint that both
+have, is left out.  Lines that touch without thickness may not cross, but for what rounding and sinking leaves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from comparisons.audit.rest import Complex
+from comparisons.audit.seen import AnyBeam, Seen
+from scene.answer import Array, Flags
+from scene.statement import BeamContact, CircleContact, FunctionContact, HalfPlaneContact, LineContact, SelfContact
+
+DEEP = 0.05  # of the mean thickness: as deep as beams of any certificate may overlap
+SUNK = 2e-3  # of the longest beam: the same of lines without thickness
+APART = 0.05  # of the mean thickness: by which a contact may press across a gap
+ALIGNED = 0.02  # 1 − cos: by which a force may lean from the normal
+BESIDE = 3.0  # thicknesses beside a common joint in which an overlap is the joint's
+NOTHING = 1e-6  # of a contact's largest force
+
+
+@dataclass(frozen=True)
+class Feet:
+    """Of places (k,) what faces them: distance, the normal from there, its arc length, whether that is an end."""
+
+    distance: Array
+    normal: Complex
+    s: Array
+    at_end: Flags
+
+
+def contacts(seen: Seen) -> Iterator[str]:
+    """Everything that is wrong with gaps and contact forces."""
+    for name, contact in seen.scene.contacts.items():
+        if isinstance(contact, BeamContact):
+            yield from _of_beams(seen, name, contact)
+        elif isinstance(contact, SelfContact):
+            yield from _of_itself(seen, name, contact)
+        else:
+            yield from _of_rigid(seen, name, contact)
+    for (one, first), (other, second) in combinations(seen.beams.items(), 2):
+        if name := _named(seen, one, other):
+            for at, depth in _crossings(seen, first, second):
+                yield f"{one} and {other} of {name} cross at {_told(at)}, by {depth:.2g} m"
+
+
+def strangers(seen: Seen) -> Iterator[str]:
+    """Beams that cross though no contact names them, and did not at rest: the scene lets them."""
+    for (one, first), (other, second) in combinations(seen.beams.items(), 2):
+        if not _named(seen, one, other) and not _crossed_at_rest(seen, one, other):
+            for at, _ in _crossings(seen, first, second):
+                yield f"{one} and {other}, which no contact names, cross at {_told(at)}"
+
+
+def _of_beams(seen: Seen, name: str, contact: BeamContact) -> Iterator[str]:
+    one, other = contact.between
+    for a, b in ((one, other), (other, one)):
+        A, B = seen.beams[a], seen.beams[b]
+        s = A.fine
+        feet = _feet(A.line(s)[0], B)
+        if contact.thick:
+            T = 0.5 * (A.rest.thickness(s) + B.rest.thickness(feet.s))
+            counted = ~feet.at_end & ~_beside_joint(seen, a, b, s) & ~_near_at_rest(seen, a, b, s)
+            yield from _deepest(f"{a} and {b} of {name}", s, feet.distance - T, counted, DEEP * float(T.mean()))
+        yield from _pressing(seen, name, a, _feet(_pressed(seen, name, a)[1], B), B, thick=contact.thick)
+
+
+def _of_itself(seen: Seen, name: str, contact: SelfContact) -> Iterator[str]:
+    A = seen.beams[contact.beam]
+    s, (at, _, _) = A.fine, _pressed(seen, name, contact.beam)
+    if contact.thick:
+        feet = _own_feet(A, s)
+        T = 0.5 * (A.rest.thickness(s) + A.rest.thickness(feet.s))
+        counted = ~feet.at_end & np.isfinite(feet.distance)
+        yield from _deepest(f"{contact.beam} beside itself", s, feet.distance - T, counted, DEEP * float(T.mean()))
+    if at.size:
+        yield from _pressing(seen, name, contact.beam, _own_feet(A, at), A, thick=contact.thick)
+
+
+def _of_rigid(
+    seen: Seen, name: str, contact: CircleContact | LineContact | HalfPlaneContact | FunctionContact
+) -> Iterator[str]:
+    A, a = seen.beams[contact.beam], contact.beam
+    first, moved, phi = seen.motion(contact.body)
+    turn = complex(np.exp(1j * phi))
+
+    def surface(places: Complex) -> Feet:
+        feet = _surface(contact, first + (places - first - moved) / turn)
+        return Feet(feet.distance, feet.normal * turn, feet.s, feet.at_end)
+
+    s = A.fine
+    feet, rest = surface(A.line(s)[0]), _surface(contact, A.rest.places(s))
+    half = 0.5 * A.rest.thickness(s) if contact.thick else np.zeros(len(s))
+    overlapping = rest.distance < half * (1.0 - 1e-9) - 1e-12 * seen.longest
+    counted = ~feet.at_end & ~_spread(s, overlapping, BESIDE * float(A.rest.thickness(s).max()))
+    allowed = DEEP * 2.0 * float(half.mean()) if contact.thick else SUNK * seen.longest
+    yield from _deepest(f"{a} and what is rigid in {name}", s, feet.distance - half, counted, allowed)
+    yield from _pressing(seen, name, a, surface(_pressed(seen, name, a)[1]), None, thick=contact.thick)
+
+
+def _pressed(seen: Seen, name: str, beam: str) -> tuple[Array, Complex, Complex]:
+    """Arc lengths, places and forces (k,) of a contact on a beam."""
+    acting = seen.acting[beam]
+    mine = np.array([by == name for by in acting.by], dtype=bool) & (np.abs(acting.forces) > 0.0)
+    s = acting.s[mine]
+    return s, seen.beams[beam].line(s)[0], acting.forces[mine]
+
+
+def _pressing(seen: Seen, name: str, beam: str, feet: Feet, other: AnyBeam | None, *, thick: bool) -> Iterator[str]:
+    """Forces where nothing touches, and such as pull or rub."""
+    s, _, forces = _pressed(seen, name, beam)
+    if not s.size:
+        return
+    size = np.abs(forces)
+    T = np.zeros(len(s))
+    if thick:
+        across = seen.rests[beam].thickness(s)
+        T = 0.5 * (across + (0.0 if other is None else other.rest.thickness(feet.s)))
+    allowed = APART * (T if other is not None else 2.0 * T) + (0.0 if thick else SUNK * seen.longest)
+    real = size > NOTHING * size.max()
+    gap = np.where(real, np.abs(feet.distance - T) - allowed, -1.0)
+    worst = int(np.argmax(gap))
+    if gap[worst] > 0.0:
+        off = feet.distance[worst] - T[worst]
+        yield f"{name} presses {beam} at {s[worst]:.4g} m with {size[worst]:.3g} N across a gap of {off:.2g} m"
+    if not thick and other is not None:
+        return  # lines: which way a normal points is lost where they touch
+    along = (forces * np.conj(feet.normal)).real / np.where(size > 0.0, size, 1.0)
+    worst = int(np.argmin(np.where(real, along, 1.0)))
+    if real[worst] and not along[worst] >= 1.0 - ALIGNED:
+        how = "pulls" if along[worst] < 0.0 else "rubs"
+        said = f"its force of {size[worst]:.3g} N is {along[worst]:.3f} along the normal"
+        yield f"{name} {how} {beam} at {s[worst]:.4g} m: {said}"
+
+
+def _deepest(what: str, s: Array, gap: Array, counted: Flags, allowed: float) -> Iterator[str]:
+    gap = np.where(counted, gap, np.inf)
+    worst = int(np.argmin(gap))
+    if gap[worst] < -allowed:
+        yield f"{what} overlap by {-gap[worst]:.2g} m at {s[worst]:.4g} m"
+
+
+def _feet(places: Complex, beam: AnyBeam) -> Feet:
+    """On a beam's fine line."""
+    s = beam.fine
+    line = beam.line(s)[0]
+    if not places.size:
+        return Feet(np.zeros(0), places, np.zeros(0), np.zeros(0, dtype=bool))
+    nearest = cKDTree(np.stack((line.real, line.imag), axis=1)).query(np.stack((places.real, places.imag), axis=1))[1]
+    return _projected(places, line, s, np.asarray(nearest))
+
+
+def _projected(places: Complex, line: Complex, s: Array, nearest: np.ndarray) -> Feet:
+    """From the nearest of the line's places to the foot on one of the pieces beside it."""
+    last = len(line) - 1
+    best = Feet(np.full(len(places), np.inf), places * 0.0, np.zeros(len(places)), np.zeros(len(places), dtype=bool))
+    for first in (np.maximum(nearest - 1, 0), np.minimum(nearest, last - 1)):
+        step = line[first + 1] - line[first]
+        share = ((places - line[first]) * np.conj(step)).real / np.maximum(np.abs(step) ** 2, np.finfo(float).tiny)
+        held = np.clip(share, 0.0, 1.0)
+        away = places - line[first] - held * step
+        closer = np.abs(away) < best.distance
+        ended = ((first == 0) & (share < 0.0)) | ((first == last - 1) & (share > 1.0))
+        foot = s[first] + held * (s[first + 1] - s[first])
+        normal = away / np.maximum(np.abs(away), np.finfo(float).tiny)
+        best = Feet(
+            np.where(closer, np.abs(away), best.distance),
+            np.where(closer, normal, best.normal),
+            np.where(closer, foot, best.s),
+            np.where(closer, ended, best.at_end),
+        )
+    return best
+
+
+def _own_feet(beam: AnyBeam, at: Array) -> Feet:
+    """On another lap of the same beam: between the two the tangent has turned by more than a right angle."""
+    s = beam.fine
+    line, psi = beam.line(s)
+    psi = np.unwrap(psi)
+    places = beam.line(at)[0]
+    turned = np.maximum.accumulate(np.abs(np.diff(psi, prepend=psi[0]))).sum()
+    if not turned > 0.0:
+        none = np.full(len(at), np.inf)
+        return Feet(none, places * 0.0, none * 0.0, np.zeros(len(at), dtype=bool))
+    own = np.interp(at, s, psi)
+    away = np.abs(places[:, None] - line)
+    away[np.abs(own[:, None] - psi) < 0.5 * np.pi] = np.inf
+    nearest = away.argmin(axis=1)
+    feet = _projected(places, line, s, nearest)
+    none = ~np.isfinite(away[np.arange(len(at)), nearest])
+    return Feet(np.where(none, np.inf, feet.distance), feet.normal, feet.s, feet.at_end)
+
+
+def _surface(contact: CircleContact | LineContact | HalfPlaneContact | FunctionContact, places: Complex) -> Feet:
+    """On what is rigid where it is at rest; distances are negative behind its surface."""
+    nowhere = np.zeros(len(places), dtype=bool)
+    if isinstance(contact, CircleContact):
+        away = places - complex(*contact.center)
+        size = np.abs(away)
+        return Feet(size - contact.radius, away / size, 0.0 * size, nowhere)
+    if isinstance(contact, HalfPlaneContact):
+        normal = complex(*contact.normal) / abs(complex(*contact.normal))
+        distance = ((places - complex(*contact.point)) * np.conj(normal)).real
+        return Feet(distance, np.full(len(places), normal), 0.0 * distance, nowhere)
+    if isinstance(contact, LineContact):
+        corners = np.array([complex(*point) for point in contact.points])
+        left = contact.side == "left"
+    else:
+        v = np.linspace(*contact.range, 4001)
+        f = np.polynomial.polynomial.polyval(v, contact.coefficients)
+        corners = v + 1j * f if contact.axis == "x" else f + 1j * v
+        # along growing x what is above lies to the left; along growing y what is at larger x to the right
+        left = (contact.side == "above") == (contact.axis == "x") == (contact.range[1] > contact.range[0])
+    steps = np.diff(corners)
+    share = ((places[:, None] - corners[:-1]) * np.conj(steps)).real / np.abs(steps) ** 2
+    held = np.clip(share, 0.0, 1.0)
+    away = places[:, None] - corners[:-1] - held * steps
+    piece = np.abs(away).argmin(axis=1)
+    rows = np.arange(len(places))
+    side = (1j if left else -1j) * steps / np.abs(steps)
+    across = (away * np.conj(side)).real[rows, piece]
+    share, held, away = share[rows, piece], held[rows, piece], away[rows, piece]
+    closed = bool(abs(corners[0] - corners[-1]) == 0.0)
+    ended = ((piece == 0) & (share < 0.0)) | ((piece == len(steps) - 1) & (share > 1.0))
+    # of a corner that is nearest the pieces beside say on which side; one is behind if it is behind either
+    sign = np.where(across >= 0.0, 1.0, -1.0)
+    corner = (held != share) & (np.abs(away) > 0.0)
+    size = np.abs(away)
+    lying = size <= 1e-12 * np.abs(steps).max()
+    normal = np.where(
+        lying | ~corner & (size < 1e-9), side[piece], sign * away / np.maximum(size, np.finfo(float).tiny)
+    )
+    return Feet(sign * size, normal, 0.0 * size, ended & ~closed)
+
+
+def _beside_joint(seen: Seen, a: str, b: str, s: Array) -> Flags:
+    """Places of the beam a beside an end that is joined to where one of b's is."""
+    A, B = seen.rests[a], seen.rests[b]
+    reach = BESIDE * max(A.beam.thickest, B.beam.thickest)
+    found = np.zeros(len(s), dtype=bool)
+    others = B.places(np.array([0.0, B.length]))
+    for end, place in zip((0.0, A.length), A.places(np.array([0.0, A.length])), strict=True):
+        if np.min(np.abs(others - place)) < reach:
+            found |= np.abs(s - end) < reach
+    return found
+
+
+def _near_at_rest(seen: Seen, a: str, b: str, s: Array) -> Flags:
+    """Places of a that overlap b at rest, and what is beside them."""
+    A, B = seen.rests[a], seen.rests[b]
+    line = B.places(seen.beams[b].fine)
+    places = A.places(s)
+    nearest = cKDTree(np.stack((line.real, line.imag), axis=1)).query(np.stack((places.real, places.imag), axis=1))[1]
+    feet = _projected(places, line, seen.beams[b].fine, np.asarray(nearest))
+    T = 0.5 * (A.thickness(s) + B.thickness(feet.s))
+    return _spread(s, ~feet.at_end & (feet.distance < T * (1.0 - 1e-6)), float(T.max()))
+
+
+def _spread(s: Array, flags: Flags, reach: float) -> Flags:
+    """Places within a reach of flagged ones."""
+    if not flags.any():
+        return flags
+    at = s[flags]
+    beside = np.searchsorted(at, s)
+    low, high = at[np.maximum(beside - 1, 0)], at[np.minimum(beside, len(at) - 1)]
+    return np.asarray((np.abs(s - low) <= reach) | (np.abs(high - s) <= reach))
+
+
+def _named(seen: Seen, one: str, other: str) -> str:
+    """The contact of two beams; empty if there is none."""
+    for name, contact in seen.scene.contacts.items():
+        if isinstance(contact, BeamContact) and set(contact.between) == {one, other}:
+            return name
+    return ""
+
+
+def _crossed_at_rest(seen: Seen, one: str, other: str) -> bool:
+    lines = [seen.rests[name].places(seen.beams[name].fine) for name in (one, other)]
+    return bool(_intersections(*lines)[0].size)
+
+
+def _crossings(seen: Seen, first: AnyBeam, second: AnyBeam) -> Iterator[tuple[complex, float]]:
+    """Where lines cross, and by how much the less deep of both parts of the first is beyond."""
+    a, b = (beam.line(beam.fine)[0] for beam in (first, second))
+    at, places = _intersections(a, b)
+    ends = np.concatenate(([0], at + 1, [len(a)]))
+    depths = [np.max(np.abs(_feet(a[i:j], second).distance)) if j > i else 0.0 for i, j in pairwise(ends)]
+    allowed = SUNK * seen.longest
+    joints = [beam.line(np.array([0.0, beam.rest.length]))[0] for beam in (first, second)]
+    shared = [p for p in joints[0] if np.min(np.abs(joints[1] - p)) < 1e-6 * seen.longest]
+    for k, place in enumerate(places):
+        depth = min(depths[k], depths[k + 1])
+        if depth > allowed and all(abs(place - p) > allowed for p in shared):
+            yield complex(place), float(depth)
+
+
+def _intersections(a: Complex, b: Complex) -> tuple[np.ndarray, Complex]:
+    """Pieces of the line a that cross b, ascending, and where."""
+    u, v = np.diff(a), np.diff(b)
+    reach = 0.5 * (np.abs(u).max() + np.abs(v).max())
+    trees = [cKDTree(np.stack((m.real, m.imag), axis=1)) for m in (0.5 * (a[1:] + a[:-1]), 0.5 * (b[1:] + b[:-1]))]
+    pairs = trees[0].sparse_distance_matrix(trees[1], reach, output_type="ndarray")
+    i, j = pairs["i"], pairs["j"]
+    cross = (np.conj(u[i]) * v[j]).imag
+    off = b[j] - a[i]
+    safe = np.where(cross == 0.0, 1.0, cross)
+    share, other = (np.conj(off) * v[j]).imag / safe, (np.conj(off) * u[i]).imag / safe
+    hit = (cross != 0.0) & (share >= 0.0) & (share < 1.0) & (other >= 0.0) & (other < 1.0)
+    order = np.argsort(i[hit], kind="stable")
+    at = i[hit][order]
+    return at, np.asarray(a[at] + share[hit][order] * u[at])
+
+
+def _told(place: complex) -> str:
+    return f"({place.real:.4g}, {place.imag:.4g}) m"
