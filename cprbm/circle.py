@@ -38,7 +38,7 @@ from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
-from cprbm.pairs import Pressed
+from cprbm.pairs import THINNEST, Pressed
 from scene import CircleContact, Scene
 from scene.answer import Array, Flags, Ints
 
@@ -306,8 +306,10 @@ class Circle:
 
     @property
     def thickness(self) -> float:
-        """What an overlap is measured by: the thickness, for a line the longest beam; units of length."""
-        return 2.0 * self.offset if self.offset > 0.0 else 1.0
+        """What an overlap is measured by: the thickness, if it is not very thin, for a line the longest beam; units of
+        length.
+        """
+        return max(2.0 * self.offset, THINNEST) if self.offset > 0.0 else 1.0
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
         """Where the edge touches that touches at arc lengths ``s``, (k, 2), units of length."""

@@ -142,17 +142,17 @@ def _force(point: Point, rows: frozenset[Key]) -> float:
 
 
 def _continued(value: float, amount: float, before: float, earlier: float) -> float | None:
-    """Where what falls linearly is zero; None where it does not fall."""
-    if not earlier > amount:
+    """Where what falls linearly is zero; None where it does not fall, or where nothing was free before."""
+    if not amount < earlier < np.inf:
         return None
     return value + amount * (value - before) / (earlier - amount)
 
 
 def _part_in(mechanism: Mechanism, last: Minimum, before: Minimum, soft: Softest) -> float:
-    """|τ·φ| in the metric of lengths, τ from two states; nothing where the branch does not move."""
+    """|τ·φ| in the metric of lengths, τ from two states; nothing where the branch does not move or nothing is free."""
     lengths = mechanism.problem.model.lengths
     tau = last.point.state.theta - before.point.state.theta
-    if float(np.max(np.abs(tau))) < STILL:
+    if float(np.max(np.abs(tau))) < STILL or not np.any(soft.direction):
         return 0.0
     sizes = np.sqrt((lengths @ tau**2) * (lengths @ soft.direction**2))
     return float(abs(lengths @ (tau * soft.direction)) / sizes)

@@ -46,7 +46,7 @@ from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
 from cprbm.outset import anchor
 from cprbm.own_pins import ON_IT as PIN_ON_IT
 from cprbm.own_pins import own_pins
-from cprbm.pairs import Pressed
+from cprbm.pairs import THINNEST, Pressed
 from cprbm.stops import AngleStop
 from scene import EdgeContact, Scene
 from scene.answer import Array, Flags
@@ -136,8 +136,10 @@ class Edge:
 
     @property
     def thickness(self) -> float:
-        """What an overlap is measured by: the thickness, for a line the longest beam; units of length."""
-        return 2.0 * self.offset if self.offset > 0.0 else 1.0
+        """What an overlap is measured by: the thickness, if it is not very thin, for a line the longest beam; units of
+        length.
+        """
+        return max(2.0 * self.offset, THINNEST) if self.offset > 0.0 else 1.0
 
     def line(self, state: State, at: Positions) -> smooth.SmoothLine:
         """The beam's smooth line in a state."""

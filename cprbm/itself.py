@@ -294,17 +294,18 @@ class Itself:
     def passed(self, way: Iterable[tuple[State, Positions]], end: tuple[State, Positions], allowed: float) -> bool:
         """Whether the beam went through itself on a ``way`` from where its faces are known to an ``end``.
 
-        The way is known to ``allowed``.  Parts that begin to face each other at less than that may have met in it.
+        The way is known to ``allowed``.  Parts that begin to face each other at less than that, edge from edge, may
+        have met in it: such as ends of which neither lies inside the other.
         """
-        here = self
+        here, close = self, self.offset + allowed
         for state, at in way:
             facing = here.facing(state, at)
-            if facing.fresh < allowed or here._least(facing) + self.offset < -allowed:
+            if facing.fresh < close or here._least(facing) + self.offset < -allowed:
                 return True
             here = here.seen(facing.faces)
         facing = here.facing(*end)
         dip = LEVEL * self.a.h**2 * (2.0 * np.max(np.abs(facing.lines[0].sampled.bend)) + 1.0)
-        return bool(facing.fresh < allowed or here._least(facing) + self.offset < -dip)
+        return bool(facing.fresh < close or here._least(facing) + self.offset < -dip)
 
     def _faced(self, facing: Facing, s: Array) -> tuple[Array, Array]:
         """What faces the beam at arc lengths ``s`` most closely: a and σ (k,)."""
@@ -352,7 +353,7 @@ class Itself:
             mine, pair = side == of, self._sided(of, of)
             A, B = pair.on_a(facing.lines, s[mine]), pair.on_b(facing.lines, sigma[mine])
             D = of * (np.cos(B.psi) * (A.y - B.y) - np.sin(B.psi) * (A.x - B.x)) - pair.wider(s[mine], sigma[mine])
-            parting[mine] = pair.parting_at(facing.lines, s[mine], sigma[mine], D)
+            parting[mine] = pair.parting_at(facing.lines, A, B, D)
         return parting
 
 

@@ -9,6 +9,11 @@ from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
 from scene.answer import Array
 
+THINNEST = 1e-3
+"""Of the longest beam: of beams thinner than that an overlap with what is rigid is measured by it, as of lines by all
+of the beam.  Between places a beam overlaps by what its elements leave of its shape, however thin it is.
+"""
+
 Pressed = tuple[float, Array, Array]
 """On one beam: the sign of the force, and places and tangent angles."""
 

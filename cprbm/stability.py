@@ -27,6 +27,7 @@ BLOCKS = 8
 KNOWN = (
     1e-4  # of the eigenvalue: what is left of the equation that its vector solves; its own error goes with the square
 )
+HELD = 1e-3  # of the least compliance that a chain's springs leave any motion: less is round-off, and nothing is free
 SMALL = 1e-9  # of the largest compliance: negative ones below it are round-off
 
 
@@ -41,7 +42,7 @@ class Softest:
 def softest(problem: Problem, point: Point) -> Softest:
     """κ and φ of PE on the directions that keep the equalities and the pressing contacts.
 
-    Minus infinity where the system is singular.
+    Minus infinity where the system is singular, infinity where no direction is free.
     """
     root = np.sqrt(problem.model.lengths)
     root[problem.closure.fixed] = 0.0
@@ -54,8 +55,12 @@ def softest(problem: Problem, point: Point) -> Softest:
             value, vector = _extreme(_bordered_inverse(problem, point, root), problem.model.n_links, lowest=True)
     except (np.linalg.LinAlgError, RuntimeError):
         return Softest(float("-inf"), np.zeros(problem.model.n_links))
+    # joints of links h long, side by side, turn against each other by 4 E·I/h² at most
+    least = 0.25 * float(np.min(root, where=root > 0.0, initial=1.0)) ** 4
+    if abs(value) <= HELD * least:
+        return Softest(float("inf"), np.zeros(problem.model.n_links))
     direction = np.divide(vector, root, out=np.zeros_like(vector), where=root > 0.0)
-    return Softest(1.0 / value if value != 0.0 else float("inf"), direction)
+    return Softest(1.0 / value, direction)
 
 
 def smallest_curvature(problem: Problem, point: Point) -> float:

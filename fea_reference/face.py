@@ -41,7 +41,7 @@ from fea_reference.model import BodyPart, Model, turned
 from fea_reference.outline import Near
 from fea_reference.own_pins import held_on
 from fea_reference.state import Complex, State, summed
-from fea_reference.touch import Face, Penalty, Touch, gauss, together
+from fea_reference.touch import THINNEST, Face, Penalty, Touch, gauss, together
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, none
 from scene.answer import Array
 from scene.statement import EdgeContact, Scene
@@ -84,7 +84,7 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
                 tuple(float(elements) if end == "end" else 0.0 for end in own),
                 edge,
                 2.0 * edge.nearest if contact.thick else _SLENDER,
-                2.0 * edge.nearest if contact.thick else 1.0,
+                max(2.0 * edge.nearest, THINNEST) if contact.thick else 1.0,
                 beam.softest / layer**4,
                 beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
             )

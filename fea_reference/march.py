@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from fea_reference.acting import Acting
-from fea_reference.advance import advance, bend
+from fea_reference.advance import advance, bend, way_to
 from fea_reference.contacts import against, least_gap, looked_at, passed_through, resting_pressure, room, zones_of
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
@@ -151,7 +151,24 @@ class March:
             self.model, self.settings, self.penalties, values, z, self.acting, self.depths(), self.pushes()
         )
         self.iterations += solved.iterations
-        return solved.system if solved.converged else None
+        return solved.system if solved.converged else self._let_go(values, way_to(self.model, self.system.z, z))
+
+    def _let_go(self, values: Array, foreseen: Array) -> System | None:
+        """Equilibrium under ``values`` without one of the contacts that press here, but would pull a step further on.
+
+        A beam that lies on something along itself comes off place by place: each iteration sets free what pulls, and
+        presses elsewhere.  Without the contact there is nothing to search, and what does not overlap then is right.
+        """
+        for one in (one for one in self.system.touches if one.closed and one.foreseen(foreseen).sum() <= 0.0):
+            left = {pair: penalty for pair, penalty in self.penalties.items() if pair is not one.pair}
+            solved = equilibrium(
+                self.model, self.settings, left, values, self.system.z, self.acting, self.depths(), self.pushes()
+            )
+            self.iterations += solved.iterations
+            if solved.converged and zones_of(self.model, one.pair, solved.system.z).least >= 0.0:
+                z = solved.system.z
+                return assemble(self.model, self.penalties, self.settings.quadrature, values, z, self.acting)
+        return None
 
     def step(self, load: int, value: float, rate: Array) -> Trouble | None:
         """Try to step to ``value``, or to where a contact or stop changes before; the trouble if neither can be."""

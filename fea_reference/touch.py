@@ -16,6 +16,11 @@ from fea_reference.outline import Outline
 from fea_reference.zones import Zones
 from scene.answer import Array, frozen_array
 
+THINNEST = 1e-3
+"""Of the longest beam: the least thickness by which a penetration of something rigid is measured.  It goes with the
+elements, not with the thickness, and what touches as a line is measured by far more.
+"""
+
 
 @dataclass(frozen=True, slots=True)
 class Pair:
@@ -125,8 +130,8 @@ class Circle:
 
     @property
     def measure(self) -> float:
-        """What penetration is reported by."""
-        return self.scale
+        """What penetration is reported by: the same, if it is not very thin."""
+        return max(self.scale, THINNEST)
 
 
 @dataclass(frozen=True, slots=True)

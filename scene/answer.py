@@ -69,7 +69,7 @@ class Certificate:
         residual_floor: the same in units of round-off at this discretisation: below it nothing can be asked.
         violation: largest violation of a joint or loop closure, as a fraction of the longest beam.
         penetration: largest depth by which beams of a contact overlap, as a fraction of the mean thickness;
-            for lines, of the longest beam.
+            for lines, of the longest beam.  On what is rigid a thousandth of that beam is the least thickness.
         complementarity: largest product of gap and contact force over their scales.
         force_balance: norm of ΣF, supports and contacts included, over the largest force in it.
         moment_balance: the same for ΣM.

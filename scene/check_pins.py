@@ -1,4 +1,4 @@
-"""Pins between bodies: of two that meet, each motion held once, and nothing left that moves by itself.
+"""Pins between bodies, each motion held once; and of any mechanism, nothing left that moves by itself.
 
 =======  ==================================================================================
 symbol   meaning
@@ -24,10 +24,12 @@ from scene.freedoms import (
     NEGLIGIBLE,
     Row,
     body_of,
+    frame,
     guide_rows,
     pin_rows,
     rank,
     row_of,
+    unit,
 )
 from scene.geometry import distance
 from scene.mistakes import Mistake, written_place
@@ -56,8 +58,11 @@ def wrong_pins(scene: Scene) -> Iterator[Mistake]:
 
 
 def loose_bodies(scene: Scene) -> Iterator[Mistake]:
-    """Bodies of a scene with pins that can move, at least a little, without bending a beam."""
-    if not scene.pins or not _sound(scene) or any(wrong_supports(scene)):
+    """Bodies that can move, at least a little, without bending a beam; of scenes without pins only where nothing else,
+    a contact, a stop or an assembly, may hold them.
+    """
+    held_otherwise = scene.contacts or scene.stops or scene.assembly is not None
+    if (held_otherwise and not scene.pins) or not _sound(scene) or any(wrong_supports(scene)):
         return
     columns = {key: i for i, key in enumerate((*_keys("body", scene.bodies), *_keys("beam", scene.beams)))}
     rows = _rigid_rows(scene, columns)
@@ -77,9 +82,24 @@ def loose_bodies(scene: Scene) -> Iterator[Mistake]:
     _, values, motions = np.linalg.svd(matrix)
     left = motions[np.count_nonzero(values > NEGLIGIBLE) :]
     for (kind, name), i in columns.items():
-        if kind == "body" and np.abs(left[:, 3 * i : 3 * i + 3]).max(initial=0.0) > NEGLIGIBLE:
-            found = "a body that can move where it is without bending a beam"
+        own = left[:, 3 * i : 3 * i + 3]
+        if kind == "body" and np.abs(own).max(initial=0.0) > NEGLIGIBLE:
+            how = _motion(scene, own[0]) if len(own) == 1 else f"move in {rank(list(own))} ways"
+            found = f"a body that can {how} where it is without bending a beam"
             yield Mistake(f"bodies.{name}", found, "pins, guides, drives and beams that hold it")
+
+
+def _motion(scene: Scene, motion: Row) -> str:
+    """What a small motion (3,) of a body is, in words: a turn about a place, or a way along a direction."""
+    u, v, turn = motion
+    if abs(turn) <= NEGLIGIBLE * np.hypot(u, v):
+        e = unit((float(u), float(v))) * np.sign(u if abs(u) > abs(v) else v)
+        e = np.where(np.abs(e) <= NEGLIGIBLE, 0.0, e)
+        return f"move along [{e[0]:.4g}, {e[1]:.4g}]"
+    origin, extent = frame(scene)
+    away = np.array([-v, u]) / turn
+    pole = origin + extent * np.where(np.abs(away) <= NEGLIGIBLE, 0.0, away)
+    return f"turn about [{pole[0]:.4g}, {pole[1]:.4g}] m"
 
 
 def _held_twice(scene: Scene) -> Iterator[Mistake]:

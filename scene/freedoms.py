@@ -155,8 +155,15 @@ def _offsets(scene: Scene) -> dict[tuple[str, str], Row]:
     """r/ℓ (2,) of every body's points."""
     names = [(name, point) for name, body in scene.bodies.items() for point in body.points]
     places = np.array([scene.bodies[name].points[point] for name, point in names])
+    origin, extent = frame(scene)
     # first to order one, so that no length is too large or too small to be squared
-    places = places / (float(np.max(np.abs(places))) or 1.0)
-    places = places - places[0]
-    extent = float(np.max(np.hypot(places[:, 0], places[:, 1]))) or 1.0
-    return dict(zip(names, places / extent, strict=True))
+    size = float(np.max(np.abs(places))) or 1.0
+    return dict(zip(names, (places / size - origin / size) / (extent / size), strict=True))
+
+
+def frame(scene: Scene) -> tuple[Row, float]:
+    """The origin (2,) that bodies turn about, m, and ℓ."""
+    places = np.array([place for body in scene.bodies.values() for place in body.points.values()])
+    size = float(np.max(np.abs(places))) or 1.0
+    away = (places - places[0]) / size
+    return places[0], size * (float(np.max(np.hypot(away[:, 0], away[:, 1]))) or 1.0)

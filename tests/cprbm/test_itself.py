@@ -14,6 +14,7 @@ from cprbm.local import local_step
 from cprbm.newton import local_system_at, newton_step
 from cprbm.point import contact_gradient, point_at
 from scene import Ending, SceneError
+from scene.reading import scene_from
 from tests.cprbm import necks
 from tests.cprbm.rolled import MODULUS, NARROWS, THICKNESS, WIDTH, coil, hooked, neck, roll, strip
 from tests.references import rolled as rolled_strip
@@ -387,6 +388,40 @@ def test_ends_that_meet_head_on_are_no_result(thick):
     assert answer.ending in (Ending.BEAMS_CROSSED, Ending.STEP_TOO_SMALL)
     assert [station.value for station in answer.stations] == [5.0, 5.5]
     assert all(station.values["lap.force"][0] == 0.0 for station in answer.stations)
+
+
+@pytest.mark.parametrize("turns", [(1.03,), (0.97, 1.03)])
+def test_an_even_strip_that_closes_to_a_circle_goes_no_further(turns):
+    # reference: M L/(E I) is the angle by which an even strip turns, a circle at 2 pi; by symmetry neither end may come
+    # to lie inside the other
+    moment = 2.0 * np.pi * MODULUS * WIDTH * THICKNESS**3 / 12.0
+    data = roll((1.0,), ((0.0, 1.0), (1.0, 1.0))).model_dump(mode="json", exclude={"file"})
+    data["drives"] = {}
+    data["loads"] = {"M": {"kind": "moment", "body": "tip"}}
+    data["stages"] = [{"name": "roll", "steps": "M", "stations": [turn * moment for turn in turns]}]
+    data["probes"] = [{"of": "T", "quantity": "displacement"}, {"of": "lap", "quantity": "force"}]
+    answer = cprbm.answer(scene_from(data), cprbm.Settings(links=40))
+    assert answer.ending in (Ending.BEAMS_CROSSED, Ending.STEP_TOO_SMALL)
+    assert [station.value for station in answer.stations] == [turn * moment for turn in turns if turn < 1.0]
+
+
+def test_how_strands_part():
+    # reference: second differences of the distance from the same coil's later parts, integrated in steps of 1/20000
+    mechanism, state = strip(coil, 0.001, links=120)
+    at = positions(mechanism.problem.model, state)
+    pair = mechanism.pairs["lap"]
+    middles = (np.arange(20000) + 0.5) / 20000.0
+    x, y = (np.append(0.0, np.cumsum(part)) / 20000.0 for part in (np.cos(coil(middles)), np.sin(coil(middles))))
+    s, step = np.array([0.13, 0.15]), 0.015  # where strands run nearly side by side
+
+    def distance(at_s):
+        i = round(20000 * at_s)
+        away = np.hypot(x[i + 10000 :] - x[i], y[i + 10000 :] - y[i])
+        k = int(np.argmin(away))
+        return away[k] if 0 < k < len(away) - 1 else np.nan
+
+    expected = [(distance(one + step) - 2.0 * distance(one) + distance(one - step)) / step**2 for one in s]
+    assert pair.parting(state, at, s) == pytest.approx(np.array(expected), rel=0.03)
 
 
 def test_the_papers_formulation_has_no_form_for_it():

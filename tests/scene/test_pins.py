@@ -140,3 +140,55 @@ def test_where_a_beam_has_a_say_nothing_is_said_of_closing():
     """With the coupler's pin gone, the beam leads the rocker."""
     edits = [("pins/at_B", REMOVED), ("beams/spring/end/point", "B"), ("bodies/rocker", REMOVED)]
     assert not mistakes(*driven("crank", 3.0), *edits, base=LINKAGE)
+
+
+BEAM = {"thickness": 0.001, "width": 0.01, "material": "steel"}
+HUNG = {
+    "name": "hung",
+    "materials": {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
+    "bodies": {
+        "ground": {"motion": "fixed", "points": {"R": [0.0, 0.0], "S": [0.031, 0.047]}},
+        "plate": {"motion": "free", "points": {"P": [0.0731, 0.0], "Q": [0.0731, 0.0193]}},
+    },
+    "beams": {
+        "low": {
+            "curve": {"kind": "line", "start": [0.0, 0.0], "end": [0.0731, 0.0]},
+            "start": {"joint": "pin", "point": "R"},
+            "end": {"joint": "pin", "point": "P"},
+            **BEAM,
+        },
+        "high": {
+            "curve": {"kind": "line", "start": [0.031, 0.047], "end": [0.0731, 0.0193]},
+            "start": {"joint": "pin", "point": "S"},
+            "end": {"joint": "pin", "point": "Q"},
+            **BEAM,
+        },
+    },
+    "loads": {"F": {"kind": "force", "point": "P", "direction": [0.0, -1.0]}},
+    "stages": [{"name": "load", "steps": "F", "stations": [1.0]}],
+    "probes": [{"of": "P", "quantity": "displacement"}],
+}
+BELOW = {"kind": "beam-half-plane", "beam": "low", "body": "ground", "point": [0.0, -0.013], "normal": [0.0, 1.0]}
+
+
+def test_a_motion_that_bends_no_beam_is_told():
+    # reference: a plate on two bars turns about the point in which their lines meet
+    pole = 0.0731 + 0.0193 * (0.0731 - 0.031) / (0.047 - 0.0193)
+    (found,) = mistakes(base=HUNG).values()
+    assert f"turn about [{pole:.4g}, 0] m" in found
+    # on bars side by side it goes along, across them
+    even = [("bodies/ground/points/S", [0.0, 0.0193]), ("beams/high/curve/start", [0.0, 0.0193])]
+    (found,) = mistakes(*even, base=HUNG).values()
+    assert "move along [0, 1]" in found
+
+
+@pytest.mark.parametrize(
+    "edits",
+    [
+        [("beams/low/start/joint", "weld"), ("beams/low/end/joint", "weld")],
+        [("drives", {"D": {"kind": "rotation", "body": "plate"}})],
+        [("contacts", {"below": BELOW})],
+    ],
+)
+def test_what_a_weld_a_drive_or_a_contact_may_hold_is_a_scene(edits):
+    assert not mistakes(*edits, base=HUNG)

@@ -1,0 +1,22 @@
+"""The page of edges names tests that there are."""
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "edges.md"
+
+
+def test_every_test_that_the_page_names_is_there():
+    page = PAGE.read_text(encoding="utf-8")
+    known = {path.stem for path in (ROOT / "tests").rglob("test_*.py")}
+    for path in (ROOT / "tests").rglob("test_*.py"):
+        known.update(re.findall(r"^def (test_\w+)", path.read_text(encoding="utf-8"), re.MULTILINE))
+    named = set(re.findall(r"\btest_\w+", page))
+    assert len(named) > 20
+    assert named <= known, named - known
+    files = re.findall(r"`((?:cprbm|fea_reference|together|scene)/\w+\.py)(?:::(\w+))?`", page)
+    for file, test in files:
+        path = ROOT / "tests" / file
+        assert path.is_file(), file
+        assert not test or f"def {test}(" in path.read_text(encoding="utf-8"), f"{file}::{test}"
