@@ -89,7 +89,7 @@ class Run:
             OSError: it cannot be noted.
         """
         if self.folder is not None:
-            write(self.folder / f"{name}.told", "")
+            write(self.folder / f"{name}.told", name)
 
     def caught_up(self, names: Collection[str]) -> bool:
         """Whether with these questions all are told that were told before; if not, what is written says more."""
