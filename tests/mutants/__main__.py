@@ -100,7 +100,9 @@ def sample(number: int, seed: int, only: list[str]) -> list[Mutant]:
 def reached(folders: list[str]) -> dict[str, dict]:
     """By test, seconds and functions; test files that have not changed are not run again."""
     found: dict[str, dict] = {}
-    for file in sorted(path for folder in folders for path in (ROOT / folder).glob("**/test_*.py")):
+    named = [ROOT / folder for folder in folders]
+    files = [path for one in named for path in ([one] if one.is_file() else one.glob("**/test_*.py"))]
+    for file in sorted(files):
         name = file.relative_to(ROOT)
         kept = WORK / "map" / f"{name.stem}-{name.parent.name}-{sha256(file.read_bytes()).hexdigest()[:12]}.json"
         if not kept.exists():

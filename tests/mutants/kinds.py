@@ -188,10 +188,14 @@ def _altered(node, told, again, indexed) -> Iterator[tuple[str, ast.AST, str]]:
             yield "function", function, f"{told(value)}.{OTHER[name]}"
         case ast.Call(func=ast.Name(id=name) as function) if name in OTHER:
             yield "function", function, OTHER[name]
-        case ast.Return(value=ast.BinOp() | ast.Call() as value):
+        case ast.Return(value=ast.BinOp(op=ast.Add() | ast.Sub() | ast.Mult() | ast.Div() | ast.MatMult()) as value):
             yield "float32", value, f"{SINGLE}({told(value)})"
         case ast.Assign(targets=targets, value=value):
             if again is not None and _names(node) and _names(node) <= again:
                 yield "stale", node, "pass"
-            if isinstance(value, ast.BinOp) and all(isinstance(target, ast.Name) for target in targets):
+            if (
+                isinstance(value, ast.BinOp)
+                and not isinstance(value.op, ast.BitOr)
+                and all(isinstance(target, ast.Name) for target in targets)
+            ):
                 yield "float32", value, f"{SINGLE}({told(value)})"
