@@ -33,6 +33,17 @@ EQUIVALENT = Path(__file__).parent / "equivalent.json"
 COPIED = ("scene", "cprbm", "fea_reference", "exact", "comparisons", "tests", "pyproject.toml", "Makefile", "README.md")
 ROOMS = ("cprbm", "fea_reference")
 NO_MECHANICS = ("__init__.py", "settings.py", "remarks.py")
+TOLD = ROOT / "docs" / "mutants.md"
+CAUGHT = ("caught", "endless")
+HEAD = (
+    "# Mutants of the mechanics",
+    "",
+    "What `make mutants` has put into the mechanics of both solvers, one small fault at a time, and whether a test",
+    "catches it. The kinds are told in `tests/mutants/kinds.py`, every mutant with the test that caught it in",
+    "`tests/mutants/results.json`.",
+    "A mutant is equivalent where it was understood why nothing that can be asked shows it; the reason stands below.",
+    "",
+)
 ENDLESS = 6.0
 """A mutant's tests may take so many times their seconds, and a minute more."""
 
@@ -48,9 +59,11 @@ def main() -> None:
     options = asked.parse_args()
     mapped = reached(options.tests)
     results = json.loads(RESULTS.read_text("utf-8")) if RESULTS.exists() else {}
+    mine = []
     for mutant in sample(options.mutants, options.seed, options.only):
-        key = f"{mutant.name} {source_digest(mutant.file)}"
-        if key in results and results[key]["fate"] in ("caught", "endless"):
+        key = f"{mutant.name} {source_digest(mutant.file)}"  # of a file that has changed all are tried again
+        mine.append(key)
+        if key in results and results[key]["fate"] in CAUGHT:
             continue
         fate, by = tried(mutant, mapped, options.seconds)
         line = (ROOT / mutant.file).read_text("utf-8").splitlines()[mutant.line - 1].strip()
@@ -65,7 +78,7 @@ def main() -> None:
         write(RESULTS, json.dumps(results, indent=1, ensure_ascii=False) + "\n")
         sys.stdout.write(f"{fate:10s} {mutant.name}  {by}\n")
         sys.stdout.flush()
-    told(results)
+    told({key: results[key] for key in mine})
 
 
 def source_digest(file: str) -> str:
@@ -178,17 +191,26 @@ def _pytest(tree: Path, arguments: list[str], seconds: float, report: Path | Non
 
 
 def told(results: dict[str, dict]) -> None:
-    """The score, and who survives."""
+    """Write the score by kind, and who survives."""
     equivalent = json.loads(EQUIVALENT.read_text("utf-8")) if EQUIVALENT.exists() else {}
-    fates = [each["fate"] for each in results.values()]
-    alive = {key: each for key, each in results.items() if each["fate"] in ("survived", "unreached")}
-    understood = [key for key in alive if key in equivalent]
-    caught = fates.count("caught") + fates.count("endless")
-    counted = len(fates) - len(understood)
-    sys.stdout.write(f"{len(fates)} mutants: {caught} caught, {len(understood)} equivalent, of the others ")
-    sys.stdout.write(f"{100.0 * caught / max(counted, 1):.1f} % caught\n")
-    for key in alive:
-        sys.stdout.write(f"  {key}: {equivalent.get(key, alive[key]['fate'])}\n")
+    lines = [*HEAD, "| kind | mutants | caught | equivalent | alive |", "|---|---|---|---|---|"]
+    total = [0, 0, 0, 0]
+    for kind in KINDS:
+        mine = {key: each for key, each in results.items() if each["kind"] == kind}
+        caught = sum(each["fate"] in CAUGHT for each in mine.values())
+        same = sum(each["fate"] not in CAUGHT and key in equivalent for key, each in mine.items())
+        row = [len(mine), caught, same, len(mine) - caught - same]
+        total = [one + other for one, other in zip(total, row, strict=True)]
+        lines.append(f"| {kind} | {' | '.join(map(str, row))} |")
+    lines += [f"| all | {' | '.join(map(str, total))} |", "", "## Survivors", ""]
+    lines += ["| where | line | becomes | what is known of it |", "|---|---|---|---|"]
+    for key, each in results.items():
+        if each["fate"] not in CAUGHT:
+            known = equivalent.get(key) or f"alive: {each['fate']} {each['by']}".rstrip()
+            told = [f"`{text}`".replace("|", "\\|") for text in (key.split()[0], each["line"], each["new"])]
+            lines.append(f"| {' | '.join(told)} | {known} |")
+    write(TOLD, "\n".join(lines) + "\n")
+    sys.stdout.write(f"{total[0]} mutants: {total[1]} caught, {total[2]} equivalent, {total[3]} alive; {TOLD}\n")
 
 
 if __name__ == "__main__":
