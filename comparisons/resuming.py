@@ -29,7 +29,7 @@ from scene import Answer, Scene
 _FOLDER = ".unfinished"
 _ENDED = ".ended"
 """What that is called while it is taken away, so that half of it is never taken for the whole."""
-_ROOMS = ("scene", "cprbm", "fea_reference", "exact")
+_ROOMS = ("scene", "cprbm", "fea_reference", "exact", "comparisons")
 _LIBRARIES = ("numpy", "scipy", "scikit-fem")
 
 
@@ -123,13 +123,13 @@ def resumed(out: Path | None, solvers: Solvers, asked: tuple[str, ...]) -> Itera
 
 @cache
 def _program() -> str:
-    """A digest of the solvers' sources and of what they compute with."""
+    """A digest of all sources and of what they compute with."""
     digest = sha256(sys.version.encode())
     for library in _LIBRARIES:
         digest.update(f"{library} {version(library)}\n".encode())
-    for room in _ROOMS:
-        for source in sorted(_sources(files(room)), key=lambda each: each.name):
-            digest.update(source.name.encode() + b"\0" + source.read_bytes())
+    sources = [source for room in _ROOMS for source in _sources(files(room))]
+    for source in sorted(source.name.encode() + b"\0" + source.read_bytes() for source in sources):
+        digest.update(source)
     return digest.hexdigest()
 
 

@@ -198,7 +198,7 @@ def told(results: dict[str, dict]) -> None:
     for kind in KINDS:
         mine = {key: each for key, each in results.items() if each["kind"] == kind}
         caught = sum(each["fate"] in CAUGHT for each in mine.values())
-        same = sum(each["fate"] not in CAUGHT and key in equivalent for key, each in mine.items())
+        same = sum(each["fate"] not in CAUGHT and _fault(each) in equivalent for each in mine.values())
         row = [len(mine), caught, same, len(mine) - caught - same]
         total = [one + other for one, other in zip(total, row, strict=True)]
         lines.append(f"| {kind} | {' | '.join(map(str, row))} |")
@@ -206,11 +206,16 @@ def told(results: dict[str, dict]) -> None:
     lines += ["| where | line | becomes | what is known of it |", "|---|---|---|---|"]
     for key, each in results.items():
         if each["fate"] not in CAUGHT:
-            known = equivalent.get(key) or f"alive: {each['fate']} {each['by']}".rstrip()
+            known = equivalent.get(_fault(each)) or f"alive: {each['fate']} {each['by']}".rstrip()
             told = [f"`{text}`".replace("|", "\\|") for text in (key.split()[0], each["line"], each["new"])]
             lines.append(f"| {' | '.join(told)} | {known} |")
     write(TOLD, "\n".join(lines) + "\n")
     sys.stdout.write(f"{total[0]} mutants: {total[1]} caught, {total[2]} equivalent, {total[3]} alive; {TOLD}\n")
+
+
+def _fault(each: dict) -> str:
+    """What a mutant is called in ``equivalent.json``: it stays the same as lines move."""
+    return f"{each['file']}: {each['line']} -> {each['new']}"
 
 
 if __name__ == "__main__":
