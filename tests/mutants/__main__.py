@@ -59,11 +59,12 @@ def main() -> None:
     options = asked.parse_args()
     mapped = reached(options.tests)
     results = json.loads(RESULTS.read_text("utf-8")) if RESULTS.exists() else {}
+    with_tests = sha256(repr((sorted(mapped), options.seconds)).encode()).hexdigest()[:12]
     mine = []
     for mutant in sample(options.mutants, options.seed, options.only):
         key = f"{mutant.name} {source_digest(mutant.file)}"  # of a file that has changed all are tried again
         mine.append(key)
-        if key in results and results[key]["fate"] in CAUGHT:
+        if key in results and (results[key]["fate"] in CAUGHT or results[key]["with"] == with_tests):
             continue
         fate, by = tried(mutant, mapped, options.seconds)
         line = (ROOT / mutant.file).read_text("utf-8").splitlines()[mutant.line - 1].strip()
@@ -74,11 +75,14 @@ def main() -> None:
             "file": mutant.file,
             "line": line,
             "new": mutant.new,
+            "with": with_tests,
         }
         write(RESULTS, json.dumps(results, indent=1, ensure_ascii=False) + "\n")
         sys.stdout.write(f"{fate:10s} {mutant.name}  {by}\n")
         sys.stdout.flush()
-    told({key: results[key] for key in mine})
+    drawn = f"Drawn by seed {options.seed} from {', '.join(options.only) or ' and '.join(ROOMS)}; at most"
+    tests = f"{options.seconds:g} s of the processor of the {len(mapped)} tests in {', '.join(options.tests)}."
+    told({key: results[key] for key in mine}, (f"{drawn} {tests}", ""))
 
 
 def source_digest(file: str) -> str:
@@ -190,10 +194,10 @@ def _pytest(tree: Path, arguments: list[str], seconds: float, report: Path | Non
         ).returncode
 
 
-def told(results: dict[str, dict]) -> None:
+def told(results: dict[str, dict], how: tuple[str, ...]) -> None:
     """Write the score by kind, and who survives."""
     equivalent = json.loads(EQUIVALENT.read_text("utf-8")) if EQUIVALENT.exists() else {}
-    lines = [*HEAD, "| kind | mutants | caught | equivalent | alive |", "|---|---|---|---|---|"]
+    lines = [*HEAD, *how, "| kind | mutants | caught | equivalent | alive |", "|---|---|---|---|---|"]
     total = [0, 0, 0, 0]
     for kind in KINDS:
         mine = {key: each for key, each in results.items() if each["kind"] == kind}
