@@ -3,13 +3,18 @@
 #   make compare   set up where that is missing, run the comparison of all cases, write report/
 #   make test      set up where that is missing, run the whole test suite
 #   make check     the rules of style and the types
+#   make fuzz      alter scene files at places drawn from SEED, RUNS times, and see that the reader takes them
+#   make mutants   put MUTANTS small faults, drawn from SEED, into the solvers, and see which the tests catch; hours
 #   make setup     only the set-up
 #   make lock      renew requirements.lock (needs uv)
 
 .POSIX:
-.PHONY: setup compare test check lock clean
+.PHONY: setup compare test check fuzz mutants lock clean
 
 PYTHON = python3
+SEED = 905
+RUNS = 2000
+MUTANTS = 200
 BIN = .venv/bin
 READY = .venv/ready
 ENVIRONMENT = MPLBACKEND=Agg PIP_DISABLE_PIP_VERSION_CHECK=1
@@ -24,6 +29,12 @@ check: $(READY)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+fuzz: $(READY)
+	OMP_NUM_THREADS=1 $(BIN)/python -m tests.scene.fuzzing --runs $(RUNS) --seed $(SEED)
+
+mutants: $(READY)
+	$(ENVIRONMENT) OMP_NUM_THREADS=1 $(BIN)/python -m tests.mutants --mutants $(MUTANTS) --seed $(SEED)
 
 setup: $(READY)
 

@@ -25,9 +25,10 @@ import signal
 import threading
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from multiprocessing import get_context
+from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Protocol
 
 from frozendict import frozendict
@@ -288,15 +289,25 @@ ALONE = Crew()
 
 @contextmanager
 def crew_of(workers: int) -> Iterator[Crew]:
-    """A crew of so many processes, which end with the context; one worker is this process itself."""
+    """A crew of so many processes, which end with the context; one worker is this process itself.
+
+    They end at once if the context is left by an error, or this process by force.
+    """
     if workers <= 1:
         yield ALONE
         return
-    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_prepared_worker)
+    context = get_context("spawn")
+    listening, held = context.Pipe(duplex=False)
+    pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_prepared_worker, initargs=(listening,))
     try:
         yield Crew(pool)
+    except BaseException:
+        held.close()  # what they still solve nobody waits for
+        raise
     finally:
         pool.shutdown(cancel_futures=True)
+        held.close()
+        listening.close()
 
 
 def paired(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew = ALONE, *, bare: bool = False) -> Runs:
@@ -432,14 +443,23 @@ def _workers_deaf_at_first() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _prepared_worker() -> None:
+def _prepared_worker(listening: Connection) -> None:
     """An interrupt ends a worker at once and without a word: the main process says what happened.
 
+    It ends as soon as the other end of ``listening`` is closed, which nobody but the main process holds.
     Its collector of cycles looks less often, and never at what is loaded: records of a march are many and make none.
     """
     gc.freeze()
     gc.set_threshold(*COLLECTED)
     signal.signal(signal.SIGINT, signal.SIG_DFL)
+    threading.Thread(target=_end_with, args=(listening,), daemon=True).start()
+
+
+def _end_with(listening: Connection) -> None:
+    """End this process when there is nobody to listen to any more."""
+    with suppress(EOFError, OSError):
+        listening.recv_bytes()
+    os._exit(1)
 
 
 @contextmanager

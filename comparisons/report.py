@@ -36,16 +36,15 @@ class Chapter:
     files: tuple[str, ...]
 
 
-def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison | OffsetComparison) -> tuple[Chapter, ...]:
-    """Write a finished case into a report.
+def added(folder: Path, compared: Comparison | OffsetComparison) -> Chapter:
+    """Write a finished case's files into a report.
 
     Args:
         folder: the report's folder; it is made where it is missing.
-        earlier: the chapters that the page holds already.
         compared: the case.
 
     Returns:
-        All chapters that the page holds now.
+        Its chapter of the page.
 
     Raises:
         OSError: the folder cannot be written to.
@@ -53,17 +52,25 @@ def add(folder: Path, earlier: tuple[Chapter, ...], compared: Comparison | Offse
     if isinstance(compared, OffsetComparison):
         own, pictures = folder / compared.question.name, offset_drawn.of_comparison(compared)
         write(own / "comparison.json", documents.text({"cases": [offset_pages.document(compared)]}))
-        chapters = (*earlier, offset_chapter(compared, pictures))
+        found = offset_chapter(compared, pictures)
     else:
         own = folder / compared.scene.name
         pictures = tuple(picture for drawn in _DRAWN for picture in drawn.of_comparison(compared))
         _archive(own, compared)
-        chapters = (*earlier, chapter(compared, pictures))
+        found = chapter(compared, pictures)
     for picture in pictures:
         write(own / f"{picture.name}.svg", picture.svg)
         write(own / f"{picture.name}.png", picture.png)
+    return found
+
+
+def put_page(folder: Path, chapters: tuple[Chapter, ...]) -> None:
+    """Write the page of some chapters.
+
+    Raises:
+        OSError: the folder cannot be written to.
+    """
     write(folder / "index.html", page(chapters))
-    return chapters
 
 
 def _archive(own: Path, compared: Comparison) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect
 from collections.abc import Iterator
 from math import isclose
 
@@ -88,12 +89,17 @@ def wrong_stages(scene: Scene) -> Iterator[Mistake]:
         if stage.name in seen:
             yield Mistake(f"stages[{i}].name", f"{stage.name!r} again", "each stage's name once")
         seen.add(stage.name)
+        before: list[float] = []  # in ascending order: what a value is close to stands beside its place
         for j, value in enumerate(stage.stations):
-            if any(isclose(value, before, rel_tol=1e-9) for before in stage.stations[:j]):
+            place = bisect(before, value)
+            beside = before[max(0, place - 1) : place + 1]
+            before.insert(place, value)
+            if any(isclose(value, other, rel_tol=1e-9) for other in beside):
                 allowed = "each value once in a stage; a further stage may go back to it"
                 yield Mistake(f"stages[{i}].stations[{j}]", f"{value:g} again", allowed)
+        stations = set(stage.stations)
         for j, value in enumerate(stage.shown):
-            if value not in stage.stations:
+            if value not in stations:
                 yield Mistake(f"stages[{i}].shown[{j}]", f"{value:g}", "one of the stage's stations")
 
 

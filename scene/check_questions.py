@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from bisect import bisect
+from collections.abc import Iterator, Mapping
 
 from scene.check_names import RESERVED, point_names
 from scene.mistakes import Mistake, unknown_name
@@ -48,6 +49,9 @@ _SAID = {
     RESERVED: f"{RESERVED!r}, the scene itself",
 }
 
+_LISTED = 200
+"""Stations of a stage that a mistake lists."""
+
 _SEVERAL = STRESSES | {"displacement", "reaction", "ends"}
 """Quantities of more than one number."""
 
@@ -81,6 +85,7 @@ def wrong_claims(scene: Scene) -> Iterator[Mistake]:
     """Claims about probes, stages or stations that the scene does not have, and values of what has several."""
     probes = {probe.name: probe for probe in scene.probes}
     stages = [stage.name for stage in scene.stages]
+    ascending = {stage.name: sorted(stage.stations) for stage in scene.stages}
     for i, claim in enumerate(scene.claims):
         key = f"claims[{i}]"
         if claim.probe not in probes and claim.probe != CRITICAL:
@@ -96,10 +101,21 @@ def wrong_claims(scene: Scene) -> Iterator[Mistake]:
             allowed = f"none: of {CRITICAL!r} the first of a stage is meant"
             yield Mistake(f"{key}.station", f"{claim.station:g}", allowed)
             continue
-        stations = [(stage.name, value) for stage in scene.stages for value in stage.stations]
-        if not any(claim.speaks_of(*station) for station in stations):
-            listed = ", ".join(f"{value:g}" for stage, value in stations if claim.in_stage(stage))
+        if not any(claim.speaks_of(*station) for station in _beside(ascending, claim.station)):
+            listed = ", ".join(
+                f"{value:g}"
+                for stage in scene.stages
+                if claim.in_stage(stage.name)
+                for value in stage.stations[:_LISTED]
+            )
             yield Mistake(f"{key}.station", f"{claim.station:g}", f"a station of a stage: {listed}")
+
+
+def _beside(ascending: Mapping[str, list[float]], value: float) -> Iterator[tuple[str, float]]:
+    """Of every stage the two stations between which a value lies."""
+    for name, stations in ascending.items():
+        place = bisect(stations, value)
+        yield from ((name, station) for station in stations[max(0, place - 1) : place + 1])
 
 
 def _bearers(scene: Scene) -> dict[str, list[str]]:

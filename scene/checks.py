@@ -20,7 +20,7 @@ from scene.check_profiles import wrong_profiles
 from scene.check_questions import wrong_claims, wrong_probes
 from scene.check_shapes import wrong_curves, wrong_ends, wrong_sections
 from scene.check_stops import wrong_stops
-from scene.mistakes import Mistake
+from scene.mistakes import Mistake, first_of
 from scene.statement import Scene
 
 _CHECKS = (
@@ -58,10 +58,10 @@ _LAST = (open_linkages,)
 
 
 def mistakes_in(scene: Scene) -> list[Mistake]:
-    """Every mistake in what ties the records of ``scene`` together; empty where it is a good question.
+    """What is wrong in what ties the records of ``scene`` together; empty where it is a good question.
 
     A check that needs what another one found wrong keeps silent, so that one slip is named once.
     """
-    found = [mistake for check in _CHECKS for mistake in check(scene)]
-    found = found or [mistake for check in _LAST for mistake in check(scene)]
+    found = first_of(mistake for check in _CHECKS for mistake in check(scene))
+    found = found or first_of(mistake for check in _LAST for mistake in check(scene))
     return [replace(mistake, file=scene.file) for mistake in found]

@@ -5,6 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
+from itertools import islice
+
+_LISTED = 200
+"""Names that a mistake lists, and among which one that may have been meant is sought."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,20 +32,31 @@ class Mistake:
         return f"{where}: found {self.found}; allowed: {self.allowed}"
 
 
+MOST = 100
+"""Mistakes that are told at once: who made more has made one of them everywhere."""
+
+
 class SceneError(ValueError):
-    """The question was wrong: every mistake that was found, none twice."""
+    """The question was wrong: every mistake that was found, none twice, up to :data:`MOST`."""
 
     def __init__(self, mistakes: list[Mistake] | tuple[Mistake, ...]) -> None:
         self.mistakes = tuple(dict.fromkeys(mistakes))
         super().__init__("\n".join(str(mistake) for mistake in self.mistakes))
 
 
+def first_of(found: Iterable[Mistake], file: str = "") -> list[Mistake]:
+    """The first mistakes of those that are found, no more being looked for, and a word if there are more."""
+    some = list(islice(found, MOST + 1))
+    return some if len(some) <= MOST else [*some[:MOST], Mistake("", "more mistakes", "none; mend these first", file)]
+
+
 def unknown_name(key: str, name: str, what: str, known: Iterable[str]) -> Mistake:
     """The mistake of naming a ``what`` (such as ``beam``) that is not among the ``known``."""
-    names = list(known)
+    names = list(islice(known, _LISTED + 1))
     near = get_close_matches(name, names, n=1)
     hint = f" (is {near[0]!r} meant?)" if near else ""
-    listed = ", ".join(repr(each) for each in names) or "there is none"
+    listed = ", ".join(repr(each) for each in names[:_LISTED]) or "there is none"
+    listed += ", ..." if len(names) > _LISTED else ""
     return Mistake(key, f"{name!r}, which names no {what}{hint}", f"the name of a {what}: {listed}")
 
 

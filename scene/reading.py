@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
@@ -14,12 +15,21 @@ from pydantic_core import ErrorDetails
 from scene.check_offset import mistakes_in_offset
 from scene.checks import mistakes_in
 from scene.keys import is_tag, keys_at, tags_at
-from scene.mistakes import Mistake, SceneError, unknown_name
+from scene.mistakes import Mistake, SceneError, first_of, unknown_name
 from scene.offset import OffsetQuestion
 from scene.statement import Record, Scene
 
 Question = Scene | OffsetQuestion
 Asked = TypeVar("Asked", Scene, OffsetQuestion)
+
+LARGEST = 1_000_000
+"""Bytes that a file may have: a hundred times those of the longest built-in case."""
+
+PAIR = 2
+DEEPEST = 32
+_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+"""
+_DEEP_KEY = re.compile(rf"(?<![\w-])(?:{_PART}){{{DEEPEST}}}", re.ASCII)
+"""A dotted key that no scene has: the parser's time and memory grow with the square of its parts."""
 
 _ALLOWED = {
     "finite_number": "a finite number",
@@ -65,12 +75,20 @@ def read_question(path: str | Path) -> Question:
     """
     path = Path(path)
     try:
-        text = path.read_bytes().decode("utf-8")
+        with path.open("rb") as stream:
+            content = stream.read(LARGEST + 1)
+        if len(content) > LARGEST:
+            raise _file_error(path, "a file that is larger", f"at most {LARGEST // 1_000_000} MB of TOML in UTF-8")
+        text = content.decode("utf-8")
+    except SceneError:
+        raise
     except UnicodeDecodeError as error:
         raise _file_error(path, f"bytes that are no UTF-8 text (at byte {error.start})") from None
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise _file_error(path, f"a file that cannot be read ({reason})") from None
+    if _DEEP_KEY.search(text):
+        raise _file_error(path, f"a key of more than {DEEPEST} parts", "the keys of a scene")
     try:
         data = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
@@ -106,8 +124,8 @@ def _record(
     try:
         record = kind.model_validate({**_tuples(data), "file": file})
     except ValidationError as error:
-        mistakes = [_mistake(details, file, kind) for details in error.errors() if not _says_it_again(details)]
-        raise SceneError(mistakes) from None
+        mistakes = (_mistake(details, file, kind) for details in error.errors() if not _says_it_again(details))
+        raise SceneError(first_of(mistakes, file)) from None
     except RecursionError:
         raise SceneError([Mistake("", "tables nested too deeply", "a scene", file)]) from None
     found = mistakes_between(record)
@@ -116,8 +134,8 @@ def _record(
     return record
 
 
-def _file_error(path: Path, found: str) -> SceneError:
-    return SceneError([Mistake("", found, "a readable TOML file in UTF-8", str(path))])
+def _file_error(path: Path, found: str, allowed: str = "a readable TOML file in UTF-8") -> SceneError:
+    return SceneError([Mistake("", found, allowed, str(path))])
 
 
 def _tuples(value: Any) -> Any:  # noqa: ANN401 - whatever TOML holds
@@ -152,7 +170,8 @@ def _mistake(details: ErrorDetails, file: str, root: type[Record]) -> Mistake:
         case "too_short":
             allowed = f"at least {context['min_length']} of them"
         case "too_long":
-            allowed = f"{context['max_length']} of them"
+            exactly = context["max_length"] == PAIR
+            allowed = f"{'' if exactly else 'at most '}{context['max_length']} of them"
         case "string_too_long":
             allowed = f"at most {context['max_length']} characters"
         case "literal_error":

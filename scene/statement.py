@@ -534,7 +534,7 @@ class Stage(Record):
 
     name: Name
     steps: Name
-    stations: Annotated[tuple[float, ...], Field(min_length=1)]
+    stations: Annotated[tuple[float, ...], Field(min_length=1, max_length=10_001)]
     shown: tuple[float, ...] = ()
     critical_limit: Positive | None = None
     beyond: Literal["stop", "jump"] | None = None
@@ -622,11 +622,11 @@ class Scene(Record):
     title: str = ""
     source: str = ""
     materials: Named[Material]
-    beams: Annotated[Named[Beam], Field(min_length=1)]
-    bodies: Named[Body]
+    beams: Annotated[Named[Beam], Field(min_length=1, max_length=256)]
+    bodies: Annotated[Named[Body], Field(max_length=256)]
     loads: Named[Load] = Field(default_factory=frozendict)
     drives: Named[Drive] = Field(default_factory=frozendict)
-    contacts: Named[Contact] = Field(default_factory=frozendict)
+    contacts: Annotated[Named[Contact], Field(max_length=1000)] = Field(default_factory=frozendict)
     stops: Named[Stop] = Field(default_factory=frozendict)
     pins: Named[BodyPin] = Field(default_factory=frozendict)
     assembly: Assembly | None = None

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from comparisons.bench.contenders import Name
     from comparisons.bench.errors import Reference
     from comparisons.bench.running import Clock, Session
+    from comparisons.documents import Plain
 
 NOT_COMPLETED = 1
 OURS = ("auto", "paper", "fea")
@@ -104,7 +105,7 @@ def command(
     from frozendict import frozendict
 
     from comparisons import cases, machine
-    from comparisons.bench import contenders, errors, question, running
+    from comparisons.bench import contenders, errors, question, running, told
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
     from comparisons.pairing import solvers_of
@@ -141,6 +142,8 @@ def command(
     try:
         for job in showing.progress(session.jobs(), shown=not quiet):
             session.do(job)
+            if session.seconds:
+                _written(told.document(session.done(known)), json_file, out, scene.name)
     except KeyboardInterrupt:
         if session.seconds:
             _shown(session, known, json_file, out, quiet=quiet)
@@ -155,17 +158,16 @@ def _shown(session: Session, known: Reference, json_file: Path | None, out: Path
         SceneError: every method has refused the question.
         OSError: something cannot be written.
     """
-    from comparisons import documents
     from comparisons.bench import drawn, told
     from comparisons.cli import showing
     from comparisons.writing import write
 
     done = session.done(known)
     data = told.document(done)
-    if json_file is not None:
+    _written(data, json_file, out, done.scene.name)
+    if json_file is not None and str(json_file) == "-":
         showing.json(json_file, data)
     if out is not None:
-        write(out / done.scene.name / "bench.json", documents.text(data))
         for picture in drawn.pictures(done):
             write(out / done.scene.name / f"{picture.name}.svg", picture.svg)
             write(out / done.scene.name / f"{picture.name}.png", picture.png)
@@ -176,6 +178,22 @@ def _shown(session: Session, known: Reference, json_file: Path | None, out: Path
         who = f"{one.contender.label} at N = {told.sized(one.count)}"
         click.echo(f"cprbm: {done.scene.name}: {who}: {one.outcome.why}", err=True)
     return NOT_COMPLETED if failed else 0
+
+
+def _written(data: Plain, json_file: Path | None, out: Path | None, name: str) -> None:
+    """Put the numbers into their files, as many as there are.
+
+    Raises:
+        OSError: one cannot be written.
+    """
+    from comparisons import documents
+    from comparisons.cli import showing
+    from comparisons.writing import write
+
+    if json_file is not None and str(json_file) != "-":
+        showing.json(json_file, data)
+    if out is not None:
+        write(out / name / "bench.json", documents.text(data))
 
 
 def _why_not(name: Name, *, whole: bool) -> str:

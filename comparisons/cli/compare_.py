@@ -45,12 +45,12 @@ def command(
     from comparisons.cli.asking import questions
     from comparisons.offset_verdict import OffsetComparison, compared_offset
     from comparisons.pairing import Runs, begin, crew_of, solvers_of, workers_for
+    from comparisons.resuming import resumed
     from comparisons.tolerances.tolerated import paired_within
     from comparisons.verdict import compared
     from scene import OffsetQuestion, Scene
 
     one_of_both(tol)
-    solvers = solvers_of(planted)
     scenes = questions(asked)
     choices = Choices(links, formulation, elements, kinematics, penetration)
     for scene in scenes:
@@ -62,7 +62,9 @@ def command(
     printing = str(json_file) != "-"
     finished: list[Comparison | OffsetComparison] = []
     chapters: tuple[report.Chapter, ...] = ()
-    with crew_of(workers_for(planted)) as crew:
+    names = tuple(scene.name for scene in scenes)
+    with resumed(out, solvers_of(planted), names) as whole, crew_of(workers_for(planted)) as crew:
+        solvers = whole.solvers
 
         def begun(place: int) -> Callable[[], Runs] | None:
             scene = scenes[place] if tol is None and place < len(scenes) else None
@@ -87,9 +89,13 @@ def command(
                 comparison = replace(compared(scene, runs), tolerances=found)
             finished.append(comparison)
             if out is not None:
-                chapters = report.add(out, chapters, comparison)
-            if json_file is not None and str(json_file) != "-":
-                showing.json(json_file, {"cases": [_document(one) for one in finished]})
+                chapters = (*chapters, report.added(out, comparison))
+            whole.tells(scene.name)
+            if whole.caught_up(names[: place + 1]):
+                if out is not None:
+                    report.put_page(out, chapters)
+                if json_file is not None and printing:
+                    showing.json(json_file, {"cases": [_document(one) for one in finished]})
             if printing:
                 if not quiet:
                     if isinstance(comparison, OffsetComparison):

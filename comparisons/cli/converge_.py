@@ -52,9 +52,8 @@ def command(
     from comparisons.cli.asking import questions
     from comparisons.converging import report
     from comparisons.pairing import crew_of, solvers_of, workers_for
+    from comparisons.resuming import resumed
 
-    workers = workers_for(planted)
-    solvers = solvers_of(planted)
     wanted = questions(asked)
     if out is None and "all" in asked:
         out = Path("convergence")
@@ -63,14 +62,19 @@ def command(
     printing = str(json_file) != "-"
     finished: list[Told] = []
     chapters: tuple[report.Chapter, ...] = ()
-    with crew_of(workers) as crew:
-        for question in showing.progress(wanted, shown=not quiet):
-            told = _told(question, sizes, choices, solvers, crew)
+    names = tuple(question.name for question in wanted)
+    with resumed(out, solvers_of(planted), names) as whole, crew_of(workers_for(planted)) as crew:
+        for place, question in enumerate(showing.progress(wanted, shown=not quiet)):
+            told = _told(question, sizes, choices, whole.solvers, crew)
             finished.append(told)
             if out is not None:
-                chapters = report.add(out, chapters, told)
-            if json_file is not None and printing:
-                showing.json(json_file, _document(finished, wanted))
+                chapters = (*chapters, report.added(out, told))
+            whole.tells(question.name)
+            if whole.caught_up(names[: place + 1]):
+                if out is not None:
+                    report.put_page(out, chapters)
+                if json_file is not None and printing:
+                    showing.json(json_file, _document(finished, wanted))
             if printing and not quiet:
                 showing.tables(told.sheets)
             if printing:

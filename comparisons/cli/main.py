@@ -1,7 +1,8 @@
 """``cprbm``: the group of the sub-commands, and what becomes of every kind of trouble.
 
 Exit codes: 0 all agree, or all finished; 1 a verdict is DIFFER or a solve did not complete; 2 the question
-was wrong; 3 nothing worse than UNDECIDED; 130 interrupted.
+was wrong, or what comes out cannot be written; 3 nothing worse than UNDECIDED; 128 and the number of the signal
+(130: of Ctrl-C) if a signal ended it.
 """
 
 from __future__ import annotations
@@ -9,11 +10,13 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 import click
 
 from comparisons.cli.commands import Commands
+from comparisons.cli.signals import Ended
 
 if TYPE_CHECKING:
     from comparisons.pairing import Solvers
@@ -33,7 +36,6 @@ _COMMANDS = (
 )
 
 WRONG_QUESTION = 2
-INTERRUPTED = 130
 
 
 class _SubCommands(Commands):
@@ -103,6 +105,8 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
     Returns:
         The exit code; a sentence about any trouble is on standard error.
     """
+    if sys.stdout is None:
+        return _said("Standard output is closed.")
     try:
         # Not ``commands.main``, which would end the process by itself when standard output is closed.
         with commands.make_context("cprbm", list(arguments), obj=solvers) as context:
@@ -115,15 +119,15 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
         return _said(error.format_message())
     except click.exceptions.Exit as stop:
         return stop.exit_code
-    except KeyboardInterrupt:
-        return _said("Interrupted; what was finished before stands.", INTERRUPTED)
+    except KeyboardInterrupt as stop:
+        return interrupted(stop)
     except BrokenPipeError:
-        # What is still buffered must not be written again when the interpreter closes the stream.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        _give_up_output()
         return _said("Standard output was closed before everything was written.")
     except Exception as error:
         from comparisons.cli.troubles import told
 
+        _give_up_output()
         trouble = told(error)
         if trouble is None:
             raise
@@ -131,11 +135,21 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
     return code if isinstance(code, int) else 0
 
 
-def main() -> None:
-    """The entry point of ``cprbm``."""
-    sys.exit(run(sys.argv[1:]))
+def interrupted(stop: KeyboardInterrupt) -> int:
+    """Say that a signal has ended the run; the exit code."""
+    ended = stop if isinstance(stop, Ended) else Ended()
+    return _said(f"{ended.sentence}; what was finished before stands.", ended.code)
+
+
+def _give_up_output() -> None:
+    """Let go of what standard output does not take: the interpreter would try once more as it ends, and complain."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _said(sentence: str, code: int = WRONG_QUESTION) -> int:
-    click.echo(f"cprbm: {sentence}", err=True)
+    with suppress(OSError):  # where nobody can be told, the code still tells
+        click.echo(f"cprbm: {sentence}", err=True)
     return code

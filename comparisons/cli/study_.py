@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from functools import partial
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -41,14 +41,16 @@ def materials(
     """ABS, titanium and steel at one deformation: what of the error a material can change."""
     from comparisons.cli import showing
     from comparisons.pairing import solvers_of
+    from comparisons.resuming import resumed
     from comparisons.studies import materials as study
     from comparisons.studies.materials_told import told
 
     showing.room_for(json_file, out)
-    solvers = solvers_of(planted)
-    show = partial(_show, json_file=json_file, out=out, quiet=quiet)
+    show = Shown(json_file, out, quiet)
     pieces = showing.progress(study.pieces(), shown=not quiet)
-    found = _answered(study.Materials(), pieces, lambda found, piece: found.with_piece(piece(solvers)), told, show)
+    with resumed(out, solvers_of(planted), ()) as whole:
+        solvers = whole.solvers
+        found = _answered(study.Materials(), pieces, lambda found, piece: found.with_piece(piece(solvers)), told, show)
     return 0 if all(tested.comparison.verdict.completed for tested in found.tested) else 1
 
 
@@ -65,19 +67,19 @@ def calibration(
     """Stated uncertainties beside true errors, on every case of which an exact answer is known."""
     from comparisons.cli import showing
     from comparisons.pairing import crew_of, solvers_of, workers_for
+    from comparisons.resuming import resumed
     from comparisons.studies import calibration as study
     from comparisons.studies.calibration_told import told
     from comparisons.words import Word
 
     showing.room_for(json_file, out)
-    solvers = solvers_of(planted)
-    show = partial(_show, json_file=json_file, out=out, quiet=quiet)
+    show = Shown(json_file, out, quiet)
     pieces = showing.progress(study.pieces(), shown=not quiet)
-    with crew_of(workers_for(planted)) as crew:
+    with resumed(out, solvers_of(planted), ()) as whole, crew_of(workers_for(planted)) as crew:
         found = _answered(
             study.Calibration(),
             pieces,
-            lambda found, piece: study.with_piece(found, piece, solvers, crew),
+            lambda found, piece: study.with_piece(found, piece, whole.solvers, crew),
             told,
             show,
         )
@@ -98,7 +100,7 @@ def readings(
     from comparisons.studies.readings_told import told
 
     showing.room_for(json_file, out)
-    show = partial(_show, json_file=json_file, out=out, quiet=quiet)
+    show = Shown(json_file, out, quiet)
     pieces = showing.progress(study.pieces(), shown=not quiet)
     _answered(study.Readings(), pieces, lambda found, piece: found.with_piece(piece()), told, show)
     return 0
@@ -126,7 +128,7 @@ def table1(
 
     showing.room_for(json_file, out)
     solvers = solvers_of(planted)
-    show = partial(_show, json_file=json_file, out=out, quiet=quiet)
+    show = Shown(json_file, out, quiet)
     runs = showing.progress(study.runs(repeat), shown=not quiet)
     begun = study.begun(solvers, machine.described())
     found = _answered(begun, runs, lambda found, run: study.solved(found, run, solvers, at_most), told, show)
@@ -155,14 +157,59 @@ def relations(
     from comparisons.choices import Choices
     from comparisons.cli import showing
     from comparisons.pairing import solvers_of
+    from comparisons.resuming import resumed
     from comparisons.studies import relations as study
     from comparisons.studies.relations_told import told
 
     showing.room_for(json_file, out)
-    show = partial(_show, json_file=json_file, out=out, quiet=quiet)
-    asked = study.pieces(scenes, Choices(links=links, elements=elements), solvers_of(planted))
-    found = _answered(study.Relations(), showing.progress(asked, shown=not quiet), study.with_piece, told, show)
+    show = Shown(json_file, out, quiet)
+    with resumed(out, solvers_of(planted), ()) as whole:
+        asked = study.pieces(scenes, Choices(links=links, elements=elements), whole.solvers)
+        found = _answered(study.Relations(), showing.progress(asked, shown=not quiet), study.with_piece, told, show)
     return 1 if found.broken else 0
+
+
+@dataclass(frozen=True, slots=True)
+class Shown:
+    """Where a study goes, or as much of it as there is."""
+
+    json_file: Path | None
+    out: Path | None
+    quiet: bool
+
+    @property
+    def writes(self) -> bool:
+        """Whether it goes into files."""
+        return self.out is not None or (self.json_file is not None and str(self.json_file) != "-")
+
+    def write(self, told: Told) -> None:
+        """Write the files.
+
+        Raises:
+            OSError: one cannot be written.
+        """
+        from comparisons.cli import showing
+        from comparisons.studies.told import written
+
+        if self.json_file is not None and str(self.json_file) != "-":
+            showing.json(self.json_file, told.data)
+        if self.out is not None:
+            written(self.out, told)
+
+    def show(self, told: Told) -> None:
+        """Print what goes to standard output."""
+        from comparisons.cli import showing
+
+        if str(self.json_file) == "-":
+            showing.json(Path("-"), told.data)
+            return
+        if self.quiet:
+            return
+        showing.tables(told.sheets)
+        for sentence in told.words:
+            click.echo(sentence + "\n")
+        if self.out is not None:
+            click.echo(f"report: {self.out / told.name}.html")
 
 
 def _answered(
@@ -170,30 +217,19 @@ def _answered(
     steps: Iterable[Step],
     taken: Callable[[Found, Step], Found],
     told: Callable[[Found], Told],
-    show: Callable[[Told], None],
+    shown: Shown,
 ) -> Found:
-    """A study step by step; what there is of it is shown even where it is stopped."""
+    """A study step by step: what there is of it is written after each, and shown even where it is stopped."""
+    last: Told | None = None
     try:
         for step in steps:
-            found = taken(found, step)
+            found, last = taken(found, step), None
+            if shown.writes:
+                last = told(found)
+                shown.write(last)
     finally:
-        show(told(found))
+        if last is None:
+            last = told(found)
+            shown.write(last)
+        shown.show(last)
     return found
-
-
-def _show(told: Told, json_file: Path | None, out: Path | None, *, quiet: bool) -> None:
-    """Write and print a study, or as much of it as there is."""
-    from comparisons.cli import showing
-    from comparisons.studies.told import written
-
-    if json_file is not None:
-        showing.json(json_file, told.data)
-    if out is not None:
-        written(out, told)
-    if quiet or str(json_file) == "-":
-        return
-    showing.tables(told.sheets)
-    for sentence in told.words:
-        click.echo(sentence + "\n")
-    if out is not None:
-        click.echo(f"report: {out / told.name}.html")

@@ -38,8 +38,8 @@ class Chapter:
     pictures: tuple[Embedded, ...]
 
 
-def add(folder: Path, earlier: tuple[Chapter, ...], told: Told) -> tuple[Chapter, ...]:
-    """Write a finished case into the folder, which is made where it is missing; all chapters that it holds now.
+def added(folder: Path, told: Told) -> Chapter:
+    """Write a finished case into the folder, which is made where it is missing; its chapter of the page.
 
     Raises:
         OSError: the folder cannot be written to.
@@ -51,7 +51,13 @@ def add(folder: Path, earlier: tuple[Chapter, ...], told: Told) -> tuple[Chapter
         write(own / f"{picture.name}.svg", picture.svg)
         write(own / f"{picture.name}.png", picture.png)
     pictures = tuple(embedded(picture) for picture in told.pictures)
-    mine = Chapter(asked.name, asked.title or asked.name, asked.source, told.sentences, told.sheets, pictures)
-    chapters = (*earlier, mine)
+    return Chapter(asked.name, asked.title or asked.name, asked.source, told.sentences, told.sheets, pictures)
+
+
+def put_page(folder: Path, chapters: tuple[Chapter, ...]) -> None:
+    """Write the page of some chapters.
+
+    Raises:
+        OSError: the folder cannot be written to.
+    """
     write(folder / "index.html", rendered("convergence.html", {"cases": chapters}))
-    return chapters

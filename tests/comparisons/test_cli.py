@@ -325,7 +325,7 @@ def test_regress_accepts_compares_and_reports(right, capsys, tmp_path):
     assert "the file says" in capsys.readouterr().out
 
 
-PROGRAM = "from comparisons.cli.main import main\nif __name__ == '__main__':\n    main()\n"
+PROGRAM = "from comparisons.cli.program import main\nif __name__ == '__main__':\n    main()\n"
 
 
 def test_a_reader_that_goes_away_is_a_sentence(tmp_path):
@@ -352,7 +352,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import comparisons.pairing
-from comparisons.cli.main import main
+from comparisons.cli.program import main
 
 
 class Waiting:

@@ -23,7 +23,7 @@ def comparison():
 @pytest.fixture(scope="module")
 def written(comparison, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report") / "new" / "folder"
-    report.add(folder, (), comparison)
+    report.put_page(folder, (report.added(folder, comparison),))
     return folder
 
 
@@ -80,10 +80,10 @@ def test_names_from_a_scene_are_only_text(comparison):
 
 def test_a_case_that_did_not_complete_has_a_chapter_too(hinge, right, tmp_path):
     early = Solvers(MadeUp("cprbm", 0.0, until=2), right.fea)
-    chapters = report.add(tmp_path, (), compared(hinge, paired(hinge, Choices(), early)))
+    chapters = (report.added(tmp_path, compared(hinge, paired(hinge, Choices(), early))),)
     assert chapters[0].word == "UNDECIDED"
     assert chapters[0].pictures == ()
-    assert "UNDECIDED" in (tmp_path / "index.html").read_text("utf-8")
+    assert "UNDECIDED" in report.page(chapters)
 
 
 def test_a_later_case_leaves_the_earlier_on_the_page(comparison):

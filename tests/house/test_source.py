@@ -103,3 +103,37 @@ def test_the_rooms_print_nothing():
         and (getattr(node.func, "id", "") in {"print", "exit", "quit"} or ast.unparse(node.func) == "sys.exit")
     ]
     assert found == []
+
+
+def writes(source):
+    """Lines that write a file."""
+    return [
+        node.lineno
+        for node in ast.walk(ast.parse(source))
+        if _called(node) in {"write_text", "write_bytes", "tofile", "savetxt", "savez", "mkstemp"}
+        or (_called(node) in {"open", "fdopen"} and any(set("wax+") & set(mode) for mode in _texts(node)))
+    ]
+
+
+def _texts(call):
+    given = [*call.args, *(keyword.value for keyword in call.keywords)]
+    return [
+        each.value for each in given if isinstance(each, ast.Constant) and re.fullmatch("[rwaxbt+]+", str(each.value))
+    ]
+
+
+def test_files_are_written_in_one_place_where_they_are_whole_or_not_there():
+    found = [
+        f"{path.relative_to(ROOT)}:{line}"
+        for path in FILES
+        if path.suffix == ".py"
+        and path.relative_to(ROOT).parts[0] != "tests"
+        and path.relative_to(ROOT).parts != ("comparisons", "writing.py")
+        for line in writes(path.read_text(encoding="utf-8"))
+    ]
+    assert found == []
+
+
+@pytest.mark.parametrize("source", ["p.write_text(x)", "open(p, 'w')", "p.open(mode='ab')", "np.savez(p, x)"])
+def test_a_planted_write_is_found(source):
+    assert writes(source)
