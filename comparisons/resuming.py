@@ -9,28 +9,22 @@ from __future__ import annotations
 
 import json
 import shutil
-import sys
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
-from functools import cache
 from hashlib import sha256
-from importlib.metadata import version
-from importlib.resources import files
-from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from comparisons import archive
 from comparisons.choices import Choices
 from comparisons.pairing import Solver, Solvers
+from comparisons.sources import program
 from comparisons.writing import clear_partial, write
 from scene import Answer, Scene
 
 _FOLDER = ".unfinished"
 _ENDED = ".ended"
 """What that is called while it is taken away, so that half of it is never taken for the whole."""
-_ROOMS = ("scene", "cprbm", "fea_reference", "exact", "comparisons")
-_LIBRARIES = ("numpy", "scipy", "scikit-fem")
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +58,7 @@ class Kept:
     def _key(self, scene: Scene, choices: Choices) -> str:
         """What the answer depends on, as a file's name; where the scene was read from is no part of it."""
         who = getattr(self.solver, "__qualname__", None) or repr(self.solver)
-        asked = (self.name, who, scene.model_dump_json(exclude={"file"}), repr(choices), _program())
+        asked = (self.name, who, scene.model_dump_json(exclude={"file"}), repr(choices), program())
         return sha256("\n".join(asked).encode()).hexdigest()
 
 
@@ -119,23 +113,3 @@ def resumed(out: Path | None, solvers: Solvers, asked: tuple[str, ...]) -> Itera
     with suppress(FileNotFoundError):  # nothing was solved
         folder.rename(ended)
     shutil.rmtree(ended, ignore_errors=True)
-
-
-@cache
-def _program() -> str:
-    """A digest of all sources and of what they compute with."""
-    digest = sha256(sys.version.encode())
-    for library in _LIBRARIES:
-        digest.update(f"{library} {version(library)}\n".encode())
-    sources = [source for room in _ROOMS for source in _sources(files(room))]
-    for source in sorted(source.name.encode() + b"\0" + source.read_bytes() for source in sources):
-        digest.update(source)
-    return digest.hexdigest()
-
-
-def _sources(folder: Traversable) -> Iterator[Traversable]:
-    for entry in folder.iterdir():
-        if entry.is_dir():
-            yield from _sources(entry)
-        elif entry.name.endswith(".py"):
-            yield entry

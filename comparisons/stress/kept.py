@@ -14,22 +14,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-import comparisons
 from comparisons.documents import Plain
+from comparisons.sources import program
 from comparisons.stress.outcomes import Outcome, packed, unpacked
-
-_ROOMS = ("scene", "cprbm", "fea_reference", "exact", "comparisons")
+from comparisons.writing import add_line, whole_lines
 
 
 def digest(question: object) -> str:
     """Of a record, by what it shows of itself, and of the program that answers it: eight hexadecimal digits."""
-    found = hashlib.sha256(repr(question).encode())
-    root = Path(comparisons.__file__).parents[1]
-    for room in _ROOMS:
-        for path in sorted((root / room).rglob("*.py")):
-            found.update(str(path.relative_to(root)).encode())
-            found.update(path.read_bytes())
-    return found.hexdigest()[:8]
+    return hashlib.sha256(f"{question!r}\n{program()}".encode()).hexdigest()[:8]
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,15 +37,7 @@ class Kept:
         Raises:
             OSError: the file cannot be read, or not be cut to its whole lines.
         """
-        try:
-            content = self.path.read_bytes()
-        except FileNotFoundError:
-            return {}, {}
-        whole = content[: content.rfind(b"\n") + 1]
-        if len(whole) < len(content):
-            with self.path.open("r+b") as stream:
-                stream.truncate(len(whole))
-        lines: list[Mapping[str, Plain]] = [json.loads(line) for line in whole.splitlines()]
+        lines: list[Mapping[str, Plain]] = [json.loads(line) for line in whole_lines(self.path)]
         outcomes = {_index(line): unpacked(line["ended"]) for line in lines if "ended" in line}
         saved = {_index(line): str(line["saved"]) for line in lines if "saved" in line}
         return outcomes, saved
@@ -74,8 +59,7 @@ class Kept:
         self._add({"index": index, "saved": file})
 
     def _add(self, line: Plain) -> None:
-        with self.path.open("ab") as stream:
-            stream.write(json.dumps(line, ensure_ascii=False, allow_nan=False).encode() + b"\n")
+        add_line(self.path, json.dumps(line, ensure_ascii=False, allow_nan=False).encode())
 
 
 def _index(line: Mapping[str, object]) -> int:
