@@ -18,6 +18,7 @@ from scene.keys import is_tag, keys_at, tags_at
 from scene.mistakes import Mistake, SceneError, first_of, unknown_name
 from scene.offset import OffsetQuestion
 from scene.statement import Record, Scene
+from scene.units import in_si
 
 Question = Scene | OffsetQuestion
 Asked = TypeVar("Asked", Scene, OffsetQuestion)
@@ -51,7 +52,7 @@ def read(path: str | Path) -> Scene:
     """Read a scene file.
 
     Args:
-        path: a TOML file in SI units.
+        path: a TOML file, in SI units or in those that it states.
 
     Returns:
         The scene, with ``file`` set to ``path``.
@@ -128,6 +129,8 @@ def _record(
         raise SceneError(first_of(mistakes, file)) from None
     except RecursionError:
         raise SceneError([Mistake("", "tables nested too deeply", "a scene", file)]) from None
+    if isinstance(record, Scene):
+        record = in_si(record)
     found = mistakes_between(record)
     if found:
         raise SceneError(found)

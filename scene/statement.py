@@ -1,4 +1,4 @@
-"""The problem statement: frozen records in SI units, angles in radians.
+"""The problem statement: frozen records in SI units, angles in radians; a file may state others (:mod:`scene.units`).
 
 Every record refuses unknown keys, NaN and infinity.  Bounds stand only on
 dimensionless numbers and on signs that have no meaning (a thickness is
@@ -610,17 +610,28 @@ class Claim(Record):
         return self.stage is None or self.stage == stage
 
 
+class Units(Record):
+    """Units of the numbers in a file; moments, distributed loads and energies are of force and length."""
+
+    length: Literal["m", "cm", "mm", "um", "in"] = "m"
+    force: Literal["N", "kN", "mN", "uN"] = "N"
+    angle: Literal["rad", "deg"] = "rad"
+    stress: Literal["Pa", "kPa", "MPa", "GPa"] = "Pa"
+
+
 class Scene(Record):
     """One problem statement: what is there, what happens to it, and what is asked.
 
     Names of points, bodies, beams, contacts, stops, pins, loads and drives are unique across the scene.
     ``verdict_limit`` is the largest total uncertainty (a fraction of a probe's scale)
-    with which the scene still wants to hear AGREE; a probe may have its own.
+    with which the scene still wants to hear AGREE; a probe may have its own.  ``units`` are those of a file; of a scene
+    that was read they are SI (:mod:`scene.units`).
     """
 
     name: Name
     title: str = ""
     source: str = ""
+    units: Units = Units()
     materials: Named[Material]
     beams: Annotated[Named[Beam], Field(min_length=1, max_length=256)]
     bodies: Annotated[Named[Body], Field(max_length=256)]

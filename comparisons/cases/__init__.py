@@ -15,13 +15,16 @@ T = TypeVar("T")
 
 
 def data(case: str) -> dict[str, Any]:
-    """The plain data of a built-in case's name or of a file, as far as :func:`asked` finds it a question.
+    """The plain data, in SI, of a built-in case's name or of a file, as far as :func:`asked` finds it a question.
 
     Raises:
         SceneError: as :func:`asked`.
     """
-    asked(case)
-    return _data(case) if case in names() else tomllib.loads(Path(case).read_text(encoding="utf-8"))
+    question = asked(case)
+    found = _data(case) if case in names() else tomllib.loads(Path(case).read_text(encoding="utf-8"))
+    if "units" in found:
+        return question.model_dump(mode="json", exclude_unset=True, exclude={"file", "units"})
+    return found
 
 
 def names() -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 _LISTS = ("stages", "probes", "claims")
-_ONE_TABLE = ("pins", "assembly")
+_ONE_TABLE = ("units", "pins", "assembly")
 
 
 def toml_of(data: Mapping[str, Any]) -> str:
