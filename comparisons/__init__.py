@@ -1,4 +1,71 @@
 """The harness: one scene to both solvers, their answers beside each other, and a verdict.
 
 Only :mod:`comparisons.pairing` knows the solvers, and only :mod:`comparisons.figures` knows matplotlib.
+
+From Python it is :func:`compare` for a verdict, and :func:`records` and :func:`write_csv` for an answer's numbers::
+
+    >>> import comparisons, cprbm, scene
+    >>> hinge = scene.read("comparisons/cases/hinge.toml")
+    >>> answer = cprbm.answer(hinge, cprbm.Settings(links=20))
+    >>> answer.stations[-1].values["BD.rotation"].round(3)
+    array([0.782])
+    >>> len(comparisons.records(hinge, answer)) == sum(
+    ...     station.values[probe.name].size for station in answer.stations for probe in hinge.probes
+    ... )
+    True
 """
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from comparisons.choices import Choices
+    from comparisons.tidy import Number
+    from comparisons.verdict import Comparison
+    from scene import Answer, Scene
+
+__all__ = ["compare", "records", "write_csv"]
+
+
+def compare(scene: Scene, choices: Choices | None = None) -> Comparison:
+    """Both solvers' answers to a scene beside each other, and the verdict.
+
+    Args:
+        scene: the question, as :func:`scene.read` hands it back.
+        choices: how finely, and by which variants (:class:`comparisons.choices.Choices`); the standard ones if None.
+
+    Returns:
+        What ``cprbm compare`` tells: ``verdict``, ``rows`` with what is stated of each, and the answers in ``runs``.
+
+    Raises:
+        SceneError: a solver refuses the question.
+    """
+    from comparisons.choices import Choices
+    from comparisons.pairing import paired, solvers_of
+    from comparisons.verdict import compared
+
+    return compared(scene, paired(scene, choices or Choices(), solvers_of(None)))
+
+
+def records(scene: Scene, answer: Answer) -> list[Number]:
+    """Every number of an answer with what it is of: ``pandas.DataFrame(records(scene, answer))`` is one table.
+
+    As :func:`comparisons.tidy.numbers` has them.
+    """
+    from comparisons.tidy import numbers
+
+    return list(numbers(scene, answer))
+
+
+def write_csv(path: str | Path, scene: Scene, *answers: Answer) -> None:
+    """The same of one answer or several as a file of comma-separated values with a line of headers.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    from comparisons.tidy import csv_of
+    from comparisons.writing import write
+
+    write(Path(path), csv_of(scene, *answers))

@@ -103,6 +103,13 @@ UNITS: Mapping[Quantity, str] = {
     "moment": "N·m",
 }
 
+COMPONENTS: Mapping[Quantity, tuple[str, str]] = {
+    "displacement": ("x", "y"),
+    "reaction": ("x", "y"),
+    "ends": ("first", "last"),
+}
+"""Names of a quantity's numbers, where it has several that are not along a beam."""
+
 LOAD_UNITS = {
     "moment": "N·m",
     "force": "N",

@@ -27,7 +27,7 @@ import numpy as np
 
 from comparisons.choices import Choices, Kinematics
 from comparisons.converging.limits import COMMON, Limit, limit, observed, orders
-from comparisons.measures import OPEN_AT_ZERO, arc_lengths, probe_scales, round_off, unit_of
+from comparisons.measures import COMPONENTS, OPEN_AT_ZERO, arc_lengths, probe_scales, round_off, unit_of
 from comparisons.order import OWN, order_of
 from comparisons.pairing import Crew, Job, Solvers
 from comparisons.scales import norm
@@ -44,11 +44,6 @@ STIFF_AT = 160
 LOOSEST = 0.05
 _AS_LARGE = 1e-3  # of the largest stress, by which a place may have less and count as one with it
 _BESIDE_A_KINK = 1.5  # elements: the one that holds it, and half of those beside it
-_COMPONENTS: Mapping[str, tuple[str, str]] = {
-    "displacement": ("x", "y"),
-    "reaction": ("x", "y"),
-    "ends": ("first", "last"),
-}
 
 Method = Literal["cprbm", "fea"]
 Component = str | float | None
@@ -337,7 +332,7 @@ def _family(
 def _components(scene: Scene, probe: Probe, places: slice) -> tuple[Component, ...]:
     if probe.quantity in STRESSES:
         return (float(arc_lengths(scene, probe)[places][0]),)
-    return _COMPONENTS.get(probe.quantity, (None,))
+    return COMPONENTS.get(probe.quantity, (None,))
 
 
 def _exactly(

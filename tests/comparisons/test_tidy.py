@@ -1,0 +1,70 @@
+"""From Python: a verdict, an answer as a table of numbers, and the same as a file, each in one call."""
+
+import csv
+import doctest
+
+import numpy as np
+import pytest
+
+import comparisons
+import cprbm
+from comparisons import cases
+from comparisons.choices import Choices
+
+
+@pytest.fixture(scope="module")
+def wrapped():
+    scene = cases.opened("wrapped")
+    return scene, cprbm.answer(scene, cprbm.Settings(links=23))
+
+
+def test_every_number_of_an_answer_is_in_the_table_once_with_what_it_is_of(wrapped):
+    scene, answer = wrapped
+    found = comparisons.records(scene, answer)
+    assert len(found) == sum(values.size for station in answer.stations for values in station.values.values())
+    last = {(each["probe"], each["component"], each["arc_length"]): each for each in found if each["station"] == 191.0}
+    values = answer.stations[-1].values
+    assert last["T.displacement", "y", None]["value"] == values["T.displacement"][1]
+    assert last["contact.ends", "last", None]["value"] == values["contact.ends"][1]
+    assert last["contact.force", "", None]["value"] == values["contact.force"][0]
+    places = sorted(place for probe, _, place in last if probe == "beam.bending_stress")
+    np.testing.assert_allclose(places, np.linspace(0.0, 0.0973, 81), rtol=1e-12)
+    assert {(each["probe"], each["unit"]) for each in last.values()} >= {
+        ("T.displacement", "m"),
+        ("tip.rotation", "rad"),
+        ("beam.bending_stress", "Pa"),
+        ("C.reaction_moment", "N·m"),
+    }
+    assert {(each["scene"], each["solver"], each["stage"]) for each in found} == {("wrapped", "cprbm", "load")}
+
+
+def test_the_file_reads_back_to_the_table(wrapped, tmp_path):
+    scene, answer = wrapped
+    path = tmp_path / "numbers.csv"
+    comparisons.write_csv(path, scene, answer, answer)
+    with path.open(encoding="utf-8", newline="") as stream:
+        lines = list(csv.DictReader(stream))
+    found = comparisons.records(scene, answer)
+    assert len(lines) == 2 * len(found)
+    for line, each in zip(lines, [*found, *found], strict=True):
+        assert float(line["value"]) == each["value"]
+        assert line["arc_length"] == ("" if each["arc_length"] is None else repr(each["arc_length"]))
+        assert {key: line[key] for key in ("probe", "component", "unit")} == {
+            key: each[key] for key in ("probe", "component", "unit")
+        }
+
+
+def test_a_verdict_is_one_call():
+    scene = cases.opened("wrapped")
+    stage = scene.stages[0].model_copy(update={"stations": (43.0,)})
+    scene = scene.model_copy(update={"stages": (stage,)})
+    found = comparisons.compare(scene, Choices(links=23, elements=23))
+    assert found.verdict.word.value == "AGREE"
+    assert {row.probe.name for row in found.rows} == {probe.name for probe in scene.probes}
+
+
+def test_the_examples_in_the_documentation_are_so(monkeypatch):
+    monkeypatch.chdir(cases.__path__[0] + "/../..")
+    found = doctest.testmod(comparisons)
+    assert found.attempted
+    assert not found.failed
