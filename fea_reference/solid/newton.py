@@ -1,0 +1,56 @@
+"""Newton's iterations to an equilibrium at given loads and drives."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea_reference.solid.contacts import Pair
+from fea_reference.solid.model import Model
+from fea_reference.solid.settings import Settings
+from fea_reference.solid.system import System, assemble
+from scene.answer import Array
+
+_LONGEST = 0.5  # rad, and of the longest beam: a step that goes farther is shortened to this
+_ARRIVING = 1e-3  # a residual that falls by this and more in one iteration may go on beyond the limit
+_WILD = 1e12  # over the scale: what diverges
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """Where the iterations ended: the ``system`` of an equilibrium or None, and how many there were."""
+
+    system: System | None
+    iterations: int
+    why: str = ""
+
+
+def equilibrium(
+    model: Model, penalties: Mapping[Pair, float], settings: Settings, values: Array, z: Array
+) -> Found:
+    """Iterate from ``z``; an equilibrium has no element that is turned inside out.
+
+    The arguments are those of :func:`~fea_reference.solid.system.assemble`.
+    """
+    sigma: Array | None = None
+    for iteration in range(settings.newton_limit):
+        system = assemble(model, penalties, settings.quadrature, values, z, sigma)
+        residual = float(np.abs(system.residual).max())
+        if not np.isfinite(residual) or residual > _WILD * system.scale:
+            return Found(None, iteration, "Newton's iterations diverge")
+        if residual <= max(settings.residual * system.scale, system.floor):
+            if sigma is not None:
+                system = assemble(model, penalties, settings.quadrature, values, z)
+            if not float(system.strained.determinants.min()) > 0.0:
+                return Found(None, iteration, "an element is turned inside out")
+            return Found(system, iteration)
+        step = system.solve(-system.residual)
+        if step is None:
+            return Found(None, iteration, "the tangent is singular")
+        motion = float(np.abs(step[: model.size - len(model.rows)]).max())
+        share = min(1.0, _LONGEST / motion) if motion > 0.0 else 1.0
+        sigma = system.strained.foreseen(system.chain @ (share * step))
+        z = z + share * step
+    return Found(None, settings.newton_limit, "Newton's iterations do not arrive")
