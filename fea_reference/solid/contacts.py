@@ -10,7 +10,9 @@ w, ds   width, and length of the edge without stress
 ======  ===============================================================================
 
 The energy is ½ ∫ ε w g² ds over the places with g < 0; force and tangent are its derivatives.  A pair is every edge of the
-first beam with every one of the second, or with what is rigid.
+first beam with every one of the second, or with what is rigid.  In the course of Newton's iterations the part ε w g ∂²g of
+the tangent takes the g that the last step foresaw: where an edge has gone too deep the pressure of that state, which
+is far too large, has no say in what is stable.
 """
 
 from __future__ import annotations
@@ -46,6 +48,10 @@ class Pair:
     measure: float
 
 
+Foreseen = tuple[Array, Array]
+"""Places ζ (k,), ascending, and the g ≤ 0 that is foreseen there (k,)."""
+
+
 @dataclass(frozen=True, slots=True)
 class Touch:
     """A pair in a state.
@@ -60,6 +66,7 @@ class Touch:
         dofs: numbers (k, 16 or 11) among the mesh's q and, behind them, the bodies' unknowns as if all moved.
         gradient: forces on these, the energy's derivative (k, 16 or 11).
         hessian: (k, 16 or 11, 16 or 11).
+        gap: g of the points (k,), and its ``slope`` by the numbers (k, 16 or 11).
         energy: of the penalty.
     """
 
@@ -72,7 +79,13 @@ class Touch:
     dofs: Ints
     gradient: Array
     hessian: Array
+    gap: Array
+    slope: Array
     energy: float
+
+    def foreseen(self, step: Array) -> Foreseen:
+        """What the gap will be after a ``step`` of all that is numbered, to first order."""
+        return self.zeta, np.minimum(self.gap + (self.slope * step[self.dofs]).sum(axis=1), 0.0)
 
     @property
     def penetration(self) -> float:
@@ -134,12 +147,24 @@ def _shape(contact: CircleContact | HalfPlaneContact, body: BodyPart, model: Mod
     return Half((np.array(contact.point) - units.origin) / units.length - body.centre, normal)
 
 
-def touch(model: Model, pair: Pair, factor: float, quadrature: int, q: Array, z: Array) -> Touch:
-    """A pair with the penalty's ``factor`` ρ in the state of displacements ``q`` (2N,) and unknowns ``z``."""
+def touch(
+    model: Model, pair: Pair, factor: float, quadrature: int, q: Array, z: Array, foreseen: Foreseen | None = None
+) -> Touch:
+    """A pair in a state.
+
+    Args:
+        model: the mechanism.
+        pair: which.
+        factor: ρ of the penalty.
+        quadrature: Gauss points on each part of a zone.
+        q: displacements (2N,).
+        z: unknowns.
+        foreseen: the gap for the tangent's second part; without it the state's own.
+    """
     places = model.mesh.places + q.reshape(-1, 2)
     skin, other = pair.skin, pair.other
     x = places[skin.nodes]
-    found = _overlap(model, pair, places, z)
+    found = overlap(model, pair, places, z)
     zeta, weights = found.points(quadrature)
     nodes, N, _, _ = skin.shapes(zeta)
     here = (N[:, None] @ x[nodes])[:, 0]
@@ -162,15 +187,19 @@ def touch(model: Model, pair: Pair, factor: float, quadrature: int, q: Array, z:
         dofs = np.concatenate([dofs, np.broadcast_to(moved, (len(dofs), 3))], axis=1)
         softer = skin.at(skin.stiffness, zeta)
     g = np.minimum(g, 0.0)
+    bent = g
+    if foreseen is not None:
+        bent = np.interp(zeta, *foreseen, left=0.0, right=0.0) if foreseen[0].size else np.zeros_like(g)
     penalty = factor * softer * ds
     gradient = (penalty * g)[:, None] * first
-    hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + g[:, None, None] * second)
+    hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
     push = -gradient[:, :8].reshape(-1, 4, 2).sum(axis=1)
     energy = 0.5 * float((penalty * g**2).sum())
-    return Touch(pair, found, zeta, opposite, here, push, dofs, gradient, hessian, energy)
+    return Touch(pair, found, zeta, opposite, here, push, dofs, gradient, hessian, g, first, energy)
 
 
-def _overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
+def overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
+    """Where a pair overlaps, with the nodes at ``places`` (N, 2)."""
     skin, other = pair.skin, pair.other
     x = places[skin.nodes]
     if isinstance(other, Skin):

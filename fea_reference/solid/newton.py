@@ -10,11 +10,12 @@ import numpy as np
 from fea_reference.solid.contacts import Pair
 from fea_reference.solid.model import Model
 from fea_reference.solid.settings import Settings
-from fea_reference.solid.system import System, assemble
+from fea_reference.solid.system import Outlook, System, assemble, deepest
 from scene.answer import Array
 
 _LONGEST = 0.5  # rad, and of the longest beam: a step that goes farther is shortened to this
-_ARRIVING = 1e-3  # a residual that falls by this and more in one iteration may go on beyond the limit
+_DEEP = 0.02  # of the thickness
+_SHORTER = 5  # halvings of a step
 _WILD = 1e12  # over the scale: what diverges
 
 
@@ -34,14 +35,14 @@ def equilibrium(
 
     The arguments are those of :func:`~fea_reference.solid.system.assemble`.
     """
-    sigma: Array | None = None
+    foreseen: Outlook | None = None
     for iteration in range(settings.newton_limit):
-        system = assemble(model, penalties, settings.quadrature, values, z, sigma)
+        system = assemble(model, penalties, settings.quadrature, values, z, foreseen)
         residual = float(np.abs(system.residual).max())
         if not np.isfinite(residual) or residual > _WILD * system.scale:
             return Found(None, iteration, "Newton's iterations diverge")
         if residual <= max(settings.residual * system.scale, system.floor):
-            if sigma is not None:
+            if foreseen is not None:
                 system = assemble(model, penalties, settings.quadrature, values, z)
             if not float(system.strained.determinants.min()) > 0.0:
                 return Found(None, iteration, "an element is turned inside out")
@@ -51,6 +52,21 @@ def equilibrium(
             return Found(None, iteration, "the tangent is singular")
         motion = float(np.abs(step[: model.size - len(model.rows)]).max())
         share = min(1.0, _LONGEST / motion) if motion > 0.0 else 1.0
-        sigma = system.strained.foreseen(system.chain @ (share * step))
+        share = _not_too_deep(model, penalties, system, share, step)
+        foreseen = system.outlook(share * step)
         z = z + share * step
     return Found(None, settings.newton_limit, "Newton's iterations do not arrive")
+
+
+def _not_too_deep(
+    model: Model, penalties: Mapping[Pair, float], system: System, share: float, step: Array
+) -> float:
+    """So much of a step that no edge goes deeper than ``_DEEP``, or than it is: what passes through is not seen."""
+    if not penalties:
+        return share
+    allowed = max(_DEEP, max((one.penetration / one.pair.measure for one in system.touches), default=0.0))
+    for _ in range(_SHORTER):
+        if deepest(model, penalties, system.z + share * step) <= allowed:
+            break
+        share *= 0.5
+    return share

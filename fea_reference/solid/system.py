@@ -6,7 +6,7 @@ second derivative.  Forces are summed up over the mesh's displacements q, and go
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -16,13 +16,21 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from fea_reference.solid.beam_loads import AreaLoad
 from fea_reference.solid.bodies import across, turned
-from fea_reference.solid.contacts import Pair, Touch, touch
+from fea_reference.solid.contacts import Foreseen, Pair, Touch, overlap, touch
 from fea_reference.solid.elements import Strained
 from fea_reference.solid.model import DrivePart, LoadPart, Model
 from scene.answer import Array
 
 _ROUND_OFF = 8.0  # measured
 _NOTHING = 10.0  # floors: a force below this is round-off itself
+
+
+@dataclass(frozen=True, slots=True)
+class Outlook:
+    """What a step foresees: ``stress`` (e, q, 3) of the elements and the ``gaps`` of the pairs."""
+
+    stress: Array
+    gaps: Mapping[Pair, Foreseen]
 
 
 @dataclass(frozen=True)
@@ -34,7 +42,7 @@ class System:
         q: displacements of the nodes (2N,).
         residual: unbalanced generalised forces and violations of rows (size,).
         tangent: its derivative (size, size).
-        chain: ∂q/∂z.
+        carried: ∂q/∂z, and behind it the bodies' (X, Y, φ) by the unknowns, as if all moved.
         nodal: forces on the nodes that elements, contacts and loads leave (2N,): of held ones the tie's, turned round.
         strained: the elements.
         touches: the pairs.
@@ -47,7 +55,7 @@ class System:
     q: Array
     residual: Array
     tangent: csc_matrix
-    chain: csr_matrix
+    carried: csr_matrix
     nodal: Array
     strained: Strained
     touches: tuple[Touch, ...]
@@ -58,6 +66,12 @@ class System:
         """What the tangent makes ``right`` (size,) of; None where it is singular or as good as that."""
         solution = None if self.factors is None else self.factors.solve(right)
         return None if solution is None or not np.isfinite(solution).all() else solution
+
+    def outlook(self, step: Array) -> Outlook:
+        """What a ``step`` of the unknowns leads to, to first order."""
+        moved = self.carried @ step
+        stress = self.strained.foreseen(moved)
+        return Outlook(stress, {one.pair: one.foreseen(moved) for one in self.touches})
 
     @cached_property
     def factors(self) -> SuperLU | None:
@@ -74,7 +88,7 @@ def assemble(
     quadrature: int,
     values: Array,
     z: Array,
-    sigma: Array | None = None,
+    foreseen: Outlook | None = None,
 ) -> System:
     """Sum everything up.
 
@@ -84,11 +98,12 @@ def assemble(
         quadrature: Gauss points per part of a zone.
         values: of all that is stepped, in the model's order, without units.
         z: the unknowns.
-        sigma: stress (e, q, 3) that was foreseen, see :mod:`fea_reference.solid.elements`.
+        foreseen: by the last step, for the tangent's second part; without it the state's own.
     """
     q = model.displacements(z)
     elements = model.strained(q)
-    touches = tuple(touch(model, pair, factor, quadrature, q, z) for pair, factor in penalties.items())
+    touches = tuple(touch(model, pair, factor, quadrature, q, z, None if foreseen is None else foreseen.gaps[pair])
+        for pair, factor in penalties.items())
     local = elements.gradient
     m, nodes = len(model.bodies), q.size
     # the mesh's q and behind them three of every body, as if all moved
@@ -105,18 +120,15 @@ def assemble(
         if isinstance(part, AreaLoad):
             forces[2 * part.nodes] -= value * part.forces[:, 0]
             forces[2 * part.nodes + 1] -= value * part.forces[:, 1]
-    chain = model.chain(z)
-    carried = vstack([chain, _moving(model)], format="csr") if rows else chain
-    stiffness = model.elements.pattern.matrix(elements.hessian(elements.stress if sigma is None else sigma))
+    carried = vstack([model.chain(z), _moving(model)], format="csr")
+    stiffness = model.elements.pattern.matrix(
+        elements.hessian(elements.stress if foreseen is None else foreseen.stress)
+    )
+    stiffness = block_diag((stiffness, csc_matrix((3 * m, 3 * m))), format="csc")
     if rows:
-        pressed = coo_matrix(
-            (np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns))), (nodes + 3 * m,) * 2
-        )
-        stiffness = block_diag((stiffness, csc_matrix((3 * m, 3 * m))), format="csc") + pressed.tocsc()
-    residual = chain.T @ forces[:nodes]
-    for i, body in enumerate(model.bodies):
-        if body.dofs is not None:
-            residual[body.dofs] += forces[nodes + 3 * i : nodes + 3 * i + 3]
+        pressed = (np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns)))
+        stiffness = stiffness + coo_matrix(pressed, stiffness.shape).tocsc()
+    residual = carried.T @ forces
     diagonal = model.turning(forces[:nodes], z)
     more_rows, more_columns, more = [], [], []
     for part, value in zip(model.loads, values[: len(model.loads)], strict=True):
@@ -147,7 +159,13 @@ def assemble(
     stiffest = float(np.abs(stiffness.diagonal()).max())
     floor = _ROUND_OFF * stiffest * float(np.spacing(np.abs(q).max(initial=1e-3)))
     scale = largest if largest > _NOTHING * floor else 1.0
-    return System(z, q, residual, tangent, chain, forces[:nodes], elements, touches, scale, floor)
+    return System(z, q, residual, tangent, carried, forces[:nodes], elements, touches, scale, floor)
+
+
+def deepest(model: Model, pairs: Iterable[Pair], z: Array) -> float:
+    """The largest depth of overlap in a state, over the mean thickness."""
+    places = model.mesh.places + model.displacements(z).reshape(-1, 2)
+    return max((-overlap(model, pair, places, z).least / pair.measure for pair in pairs), default=0.0)
 
 
 def load_direction(model: Model, part: LoadPart | AreaLoad | DrivePart, z: Array) -> Array:
