@@ -137,6 +137,19 @@ def exact_answer(scene: Scene, choices: Choices) -> Answer:
     return exact.answer(scene, exact.Settings())
 
 
+def solid_answer(scene: Scene, choices: Choices) -> Answer:
+    """The answer of the mechanism as a plane solid.
+
+    Raises:
+        SceneError: the scene or the choices are no question that this solver can be asked.
+    """
+    from fea_reference import solid
+
+    with _named("elements"):
+        settings = solid.Settings(elements=_plain(choices.elements), across=choices.across)
+    return solid.answer(scene, settings)
+
+
 class Offsets(Protocol):
     """Offset points (k, n, 2), m, at k distances, their tangents' angles (n,), how far off they may be (k, n), m."""
 

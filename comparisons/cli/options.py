@@ -144,6 +144,8 @@ def numerical(command: Decorated) -> Decorated:
                            "every probe and station; in the place of -n and --elements.")(command)  # fmt: skip
     command = click.option("--penetration", callback=fraction, default=str(standard.penetration), show_default=True,
                            help="Overlap that the finite elements may leave, over the thickness.")(command)  # fmt: skip
+    command = click.option("--across", callback=whole, default=str(standard.across), show_default=True,
+                           help="Elements of the solid across a beam's thickness.")(command)  # fmt: skip
     command = variants(command)
     for option in (
         click.option("--elements", callback=count, metavar="COUNT", default=str(standard.elements),

@@ -36,7 +36,9 @@ class AreaLoad:
     unit: float
 
 
-def on_area(name: str, load: BeamForce | DistributedLoad, scene: Scene, mesh: Mesh, force: float, length: float) -> AreaLoad:
+def on_area(
+    name: str, load: BeamForce | DistributedLoad, scene: Scene, mesh: Mesh, force: float, length: float
+) -> AreaLoad:
     """A force, or one per length, on a beam; ``force`` (N) and ``length`` (m) are the units."""
     beam = mesh.names.index(load.beam)
     direction = np.array(load.direction) / np.hypot(*load.direction)

@@ -44,7 +44,9 @@ def certify(march: March) -> Certificate:
     if not thinnest > 0.0:
         failures.append(f"an element is turned inside out: det F is {thinnest:.1e}")
     if not penetration <= settings.penetration:
-        failures.append(f"what touches overlaps by {penetration:.1e} of the thickness; {settings.penetration:.1e} was asked")
+        failures.append(
+            f"what touches overlaps by {penetration:.1e} of the thickness; {settings.penetration:.1e} was asked"
+        )
     if not behind <= _OTHER_WAY * settings.penetration:
         failures.append(f"a beam's end presses by {behind:.1e} of the thickness into the other's side")
     if not force <= allowed:

@@ -9,10 +9,10 @@ p       pressure, ε max(−g, 0)
 w, ds   width, and length of the edge without stress
 ======  ===============================================================================
 
-The energy is ½ ∫ ε w g² ds over the places with g < 0; force and tangent are its derivatives.  A pair is every edge of the
-first beam with every one of the second, or with what is rigid.  In the course of Newton's iterations the part ε w g ∂²g of
-the tangent takes the g that the last step foresaw: where an edge has gone too deep the pressure of that state, which
-is far too large, has no say in what is stable.
+The energy is ½ ∫ ε w g² ds over the places with g < 0; force and tangent are its derivatives.  A pair is every edge
+of the first beam with every one of the second, or with what is rigid.  In the course of Newton's iterations the part
+ε w g ∂²g of the tangent takes the g that the last step foresaw: where an edge has gone too deep the pressure of that
+state, which is far too large, has no say in what is stable.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea_reference.solid import facing, rigid
-from fea_reference.solid.bodies import BodyPart
+from fea_reference.solid.bodies import BodyPart, turned
 from fea_reference.solid.model import Model
 from fea_reference.solid.rigid import Half, Round, Shape
-from fea_reference.solid.skin import Skin
+from fea_reference.solid.skin import STENCIL, Skin
 from fea_reference.solid.zones import Zones, zones
 from scene.answer import Array, Ints
 from scene.statement import BeamContact, CircleContact, HalfPlaneContact, Scene
@@ -63,10 +63,10 @@ class Touch:
         facing: ζ of the other edge's (k,); empty for what is rigid.
         points: where they are (k, 2).
         push: their forces on the first edge (k, 2).
-        dofs: numbers (k, 16 or 11) among the mesh's q and, behind them, the bodies' unknowns as if all moved.
-        gradient: forces on these, the energy's derivative (k, 16 or 11).
-        hessian: (k, 16 or 11, 16 or 11).
-        gap: g of the points (k,), and its ``slope`` by the numbers (k, 16 or 11).
+        dofs: numbers (k, 28 or 17) among the mesh's q and, behind them, the bodies' unknowns as if all moved.
+        gradient: forces on these, the energy's derivative (k, 28 or 17).
+        hessian: (k, 28 or 17, 28 or 17).
+        gap: g of the points (k,), and its ``slope`` by the numbers (k, 28 or 17).
         energy: of the penalty.
     """
 
@@ -101,9 +101,7 @@ def pairs_of(scene: Scene, model: Model) -> tuple[Pair, ...]:
         match contact:
             case BeamContact():
                 one, other = (_skins(scene, model, beam) for beam in contact.between)
-                found += [
-                    Pair(name, a, b, -1, 0.5 * (a.thickness + b.thickness)) for a in one for b in other
-                ]
+                found += [Pair(name, a, b, -1, 0.5 * (a.thickness + b.thickness)) for a in one for b in other]
             case CircleContact() | HalfPlaneContact():
                 body = model.bodies[number[contact.body]]
                 shape = _shape(contact, body, model)
@@ -142,7 +140,9 @@ def _skins(scene: Scene, model: Model, name: str) -> tuple[Skin, Skin]:
 def _shape(contact: CircleContact | HalfPlaneContact, body: BodyPart, model: Model) -> Shape:
     units = model.units
     if isinstance(contact, CircleContact):
-        return Round((np.array(contact.center) - units.origin) / units.length - body.centre, contact.radius / units.length)
+        return Round(
+            (np.array(contact.center) - units.origin) / units.length - body.centre, contact.radius / units.length
+        )
     normal = np.array(contact.normal) / np.hypot(*contact.normal)
     return Half((np.array(contact.point) - units.origin) / units.length - body.centre, normal)
 
@@ -171,14 +171,14 @@ def touch(
     _, stretch, _ = skin.curve(skin.places, zeta)
     ds = np.hypot(*stretch.T) * weights * skin.at(skin.width, zeta)
     own = skin.nodes[nodes]
-    dofs = np.stack([2 * own, 2 * own + 1], axis=2).reshape(-1, 8)
+    dofs = np.stack([2 * own, 2 * own + 1], axis=2).reshape(-1, 2 * STENCIL)
     if isinstance(other, Skin):
         there = facing.gaps(other, places[other.nodes], here, skin.outward(skin.curve(x, zeta)[1]), np.inf)
         opposite = there.zeta
         g, first, second = facing.variations(other, places[other.nodes], here, N, opposite)
         g = np.where(there.faced, g, 0.0)
         faced = other.nodes[other.shapes(opposite)[0]]
-        dofs = np.concatenate([dofs, np.stack([2 * faced, 2 * faced + 1], axis=2).reshape(-1, 8)], axis=1)
+        dofs = np.concatenate([dofs, np.stack([2 * faced, 2 * faced + 1], axis=2).reshape(-1, 2 * STENCIL)], axis=1)
         softer = np.minimum(skin.at(skin.stiffness, zeta), other.at(other.stiffness, opposite))
     else:
         opposite = np.empty(0)
@@ -193,7 +193,7 @@ def touch(
     penalty = factor * softer * ds
     gradient = (penalty * g)[:, None] * first
     hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
-    push = -gradient[:, :8].reshape(-1, 4, 2).sum(axis=1)
+    push = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
     energy = 0.5 * float((penalty * g**2).sum())
     return Touch(pair, found, zeta, opposite, here, push, dofs, gradient, hessian, g, first, energy)
 
@@ -215,7 +215,7 @@ def overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
         if isinstance(other, Skin):
             return facing.gaps(other, y, here, skin.outward(slope), reach).gap
         g, h, _ = other.measured(rigid.seen(model.bodies[pair.body], here, z))
-        h = rigid.turned(h, float(model.bodies[pair.body].state(z)[2]))
+        h = turned(h, float(model.bodies[pair.body].state(z)[2]))
         met = ((h * skin.outward(slope)).sum(axis=1) < 0.0) & (g > -skin.thickness)
         return np.asarray(np.where(met, g, np.inf))
 

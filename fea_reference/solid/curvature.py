@@ -8,26 +8,27 @@ M       share of a node in the beams' lengths, one for bodies and faces, zero fo
 λ       curvature, K v = λ M v
 ======  =======================================================================================
 
-M has nothing for multipliers, so the finite λ of the bordered system are those on the directions that the rows allow.  The
-factors' signs say by Sylvester's law whether an odd number of them is negative: with the λ nearest to zero that finds the
-one that changes its sign.
+M has nothing for multipliers, so the finite λ of the bordered system are those on the directions that the rows allow.
+The λ nearest to zero are found, of which one is the first that changes its sign on a way that begins at a minimum; and
+the sign of K's determinant says whether, beside one per row, an odd number of negative ones has been missed.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import diags_array
-from scipy.sparse.linalg import ArpackError, LinearOperator, eigsh
+from scipy.sparse import coo_matrix, diags_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import ArpackError, LinearOperator, SuperLU, eigsh
 
 from fea_reference.solid.model import Model
 from fea_reference.solid.system import System
-from scene.answer import Array
+from scene.answer import Array, Ints
 
 _MODES = 3
 
 
 def smallest_curvature(model: Model, system: System) -> float:
-    """λ nearest to zero, or the least of the few nearest where one is negative; NaN where it is not found."""
+    """λ nearest to zero, or the least of the few nearest where one is negative; NaN where one is missed."""
     mass = masses(model)
     if system.factors is None:
         return 0.0
@@ -40,7 +41,21 @@ def smallest_curvature(model: Model, system: System) -> float:
         )  # fmt: skip
     except ArpackError:
         return float("nan")
-    return float(found.min())
+    negative = int((found < 0.0).sum()) + len(model.rows)
+    return float(found.min()) if _odd(system.factors) == bool(negative % 2) else float("nan")
+
+
+def _odd(factors: SuperLU) -> bool:
+    """Whether the determinant is negative."""
+    negative = int((factors.U.diagonal() < 0.0).sum())
+    return bool((negative + _transpositions(factors.perm_r) + _transpositions(factors.perm_c)) % 2)
+
+
+def _transpositions(permutation: Ints) -> int:
+    """How many make up a permutation."""
+    n = permutation.size
+    cycles, _ = connected_components(coo_matrix((np.ones(n), (np.arange(n), permutation)), (n, n)))
+    return n - int(cycles)
 
 
 def masses(model: Model) -> Array:

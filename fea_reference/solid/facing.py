@@ -78,10 +78,9 @@ def gaps(skin: Skin, x: Array, points: Array, normals: Array, reach: float) -> G
 
 
 def variations(skin: Skin, x: Array, points: Array, shapes: Array, zeta: Array) -> tuple[Array, Array, Array]:
-    """g (k,), ∂g (k, 16) and ∂²g (k, 16, 16) at ζ.
+    """g (k,), ∂g (k, 28) and ∂²g (k, 28, 28) at ζ.
 
-    The sixteen are the four nodes of the point, whose shape functions ``shapes`` (k, 4) are, and the four of the edge,
-    (x, y) of each.
+    The 28 are (x, y) of the seven nodes of the point, whose shape functions ``shapes`` (k, 7) are, and of the edge's.
     """
     _, N, N1, _ = skin.shapes(zeta)
     y, slope, bend = skin.curve(x, zeta)
@@ -94,7 +93,7 @@ def variations(skin: Skin, x: Array, points: Array, shapes: Array, zeta: Array) 
     slopes = np.concatenate([np.zeros_like(shapes), N1], axis=1)
 
     def along(values: Array, direction: Array) -> Array:
-        return np.asarray((values[:, :, None] * direction[:, None, :]).reshape(len(values), 16))
+        return np.asarray((values[:, :, None] * direction[:, None, :]).reshape(len(values), 2 * values.shape[1]))
 
     first, beside, leaning = along(both, n), along(both, tangent), along(slopes, n)
     A = J**2 - g * k

@@ -7,9 +7,9 @@ symbol  meaning
 z(λ)    equilibrium
 ======  ==========================================
 
-A step begins at the last equilibrium, whose tangent is the first iteration's, and ends in another, or is halved; an easy
-one is doubled.  (The line through the last two equilibria is no better a beginning: along it what turns is stretched.)
-Where a contact closes on the way, the λ at which its gap vanishes is looked for between open states.
+A step begins at the last equilibrium, whose tangent is the first iteration's, and ends in another, or is halved; an
+easy one is doubled.  (The line through the last two equilibria is no better a beginning: along it what turns is
+stretched.)  Where a contact closes on the way, the λ at which its gap vanishes is looked for between open states.
 """
 
 from __future__ import annotations
@@ -84,7 +84,13 @@ def begin(model: Model, settings: Settings, pairs: tuple[Pair, ...]) -> March:
     """At rest."""
     penalties = dict.fromkeys(pairs, settings.stiffness)
     values = np.zeros(len(model.stepped))
-    return March(model, settings, penalties, values, assemble(model, penalties, settings.quadrature, values, np.zeros(model.size)))
+    return March(
+        model,
+        settings,
+        penalties,
+        values,
+        assemble(model, penalties, settings.quadrature, values, np.zeros(model.size)),
+    )
 
 
 def reach(march: March, part: int, target: float, span: float) -> None:
@@ -171,7 +177,9 @@ def _closing(march: March, part: int, name: str, here: float, goal: float, there
         values = march.values.copy()
         values[part] = c
         share = (c - here) / (goal - here)
-        found = equilibrium(march.model, without, march.settings, values, za + (zb - za) * ((c - a) / (b - a) if b != a else share))
+        found = equilibrium(
+            march.model, without, march.settings, values, za + (zb - za) * ((c - a) / (b - a) if b != a else share)
+        )
         if found.system is None:
             return c
         watching = assemble(march.model, dict.fromkeys(watched, 1.0), march.settings.quadrature, values, found.system.z)
@@ -191,6 +199,3 @@ def _least(system: System) -> dict[str, float]:
     for one in system.touches:
         found[one.pair.name] = min(found.get(one.pair.name, np.inf), one.zones.least)
     return found
-
-
-

@@ -107,7 +107,7 @@ def meshed(
     cells = np.asarray(basis.element_dofs.T, dtype=np.intp)
     gradients = np.stack([np.asarray(shape[0].grad) for shape in basis.basis])  # (9, 2, e, q)
     owners = number[cells[:, 0]]
-    values = np.stack([np.asarray(shape[0].value)[0] for shape in basis.basis])  # (9, q)
+    values = np.stack([np.asarray(shape[0])[0] for shape in basis.basis])  # (9, q)
     widest = max(float(beam.width_at(beam.knots).max()) for beam in scene.beams.values())
     width = np.empty(basis.dx.shape)
     for i, beam in enumerate(scene.beams.values()):

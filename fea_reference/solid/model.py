@@ -24,7 +24,6 @@ from scene.answer import Array, Ints
 from scene.geometry import arc_length
 from scene.statement import (
     BeamForce,
-    BodyLoad,
     DisplacementDrive,
     DistributedLoad,
     Force,
@@ -118,7 +117,9 @@ class Model:
         def enter(nodes: Ints, dof: int, slope: Array) -> None:
             rows.append(np.concatenate([2 * nodes, 2 * nodes + 1]))
             columns.append(np.full(2 * nodes.size, dof))
-            values.append(np.broadcast_to(slope.T, (2, nodes.size)).ravel() if slope.ndim == 2 else np.repeat(slope, nodes.size))
+            values.append(
+                np.broadcast_to(slope.T, (2, nodes.size)).ravel() if slope.ndim == 2 else np.repeat(slope, nodes.size)
+            )
 
         for tie in self.ties:
             dofs = self.bodies[tie.body].dofs
@@ -200,9 +201,7 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
     for (i, which, end, nodes), psi in zip(joints, psis, strict=True):
         b = number[scene.body_of(end.point)]
         middle = 0.5 * (mesh.places[nodes[0]] + mesh.places[nodes[-1]])
-        ties.append(
-            Tie(i, which, end.point, b, nodes, middle - bodies[b].centre, mesh.places[nodes] - middle, psi)
-        )
+        ties.append(Tie(i, which, end.point, b, nodes, middle - bodies[b].centre, mesh.places[nodes] - middle, psi))
     rows = rows_of(scene, tuple(bodies), size)
     return Model(
         units,

@@ -28,9 +28,7 @@ class Found:
     why: str = ""
 
 
-def equilibrium(
-    model: Model, penalties: Mapping[Pair, float], settings: Settings, values: Array, z: Array
-) -> Found:
+def equilibrium(model: Model, penalties: Mapping[Pair, float], settings: Settings, values: Array, z: Array) -> Found:
     """Iterate from ``z``; an equilibrium has no element that is turned inside out.
 
     The arguments are those of :func:`~fea_reference.solid.system.assemble`.
@@ -58,9 +56,7 @@ def equilibrium(
     return Found(None, settings.newton_limit, "Newton's iterations do not arrive")
 
 
-def _not_too_deep(
-    model: Model, penalties: Mapping[Pair, float], system: System, share: float, step: Array
-) -> float:
+def _not_too_deep(model: Model, penalties: Mapping[Pair, float], system: System, share: float, step: Array) -> float:
     """So much of a step that no edge goes deeper than ``_DEEP``, or than it is: what passes through is not seen."""
     if not penalties:
         return share

@@ -41,7 +41,10 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
         case "closing_load":
             return frozen_array(march.closing[probe.of] if _touches(march, probe.of) else [])
         case "force":
-            return frozen_array(float(np.hypot(*sum((one.push.sum(axis=0) for one in _touches(march, probe.of)), np.zeros(2)))) * units.force)
+            return frozen_array(
+                float(np.hypot(*sum((one.push.sum(axis=0) for one in _touches(march, probe.of)), np.zeros(2))))
+                * units.force
+            )
         case "centre":
             return frozen_array(_centre(scene, march, probe.of))
         case "ends":
@@ -121,9 +124,7 @@ def _holding(scene: Scene, march: March, name: str) -> list[Wrench]:
     model, system = march.model, march.system
     turning = {key for key, body in scene.bodies.items() if isinstance(body, TurningBody) and body.about == name}
     found = [
-        support(model, system, tie)
-        for tie in model.ties
-        if tie.point == name and model.bodies[tie.body].dofs is None
+        support(model, system, tie) for tie in model.ties if tie.point == name and model.bodies[tie.body].dofs is None
     ]
     for row in model.rows:
         if row.drive is not None:
@@ -139,5 +140,3 @@ def _holding(scene: Scene, march: March, name: str) -> list[Wrench]:
         elif row.name in turning or row.name == name:
             found.append(held(row, system))
     return found
-
-

@@ -28,7 +28,9 @@ def refuse(scene: Scene) -> None:
     for name, contact in scene.contacts.items():
         if not isinstance(contact, BeamContact | CircleContact | HalfPlaneContact):
             mistakes.append(
-                Mistake(f"contacts.{name}", repr(contact.kind), "for the solid, beam-beam, beam-circle, beam-half-plane")
+                Mistake(
+                    f"contacts.{name}", repr(contact.kind), "for the solid, beam-beam, beam-circle, beam-half-plane"
+                )
             )
         elif not contact.thick:
             mistakes.append(Mistake(f"contacts.{name}", "lines that touch", "for the solid, edges: thick = true"))
@@ -39,7 +41,9 @@ def refuse(scene: Scene) -> None:
     for stage in scene.stages:
         if stage.beyond is not None:
             mistakes.append(
-                Mistake(f"stages.{stage.name}.beyond", repr(stage.beyond), "for the solid, none: it follows no branches")
+                Mistake(
+                    f"stages.{stage.name}.beyond", repr(stage.beyond), "for the solid, none: it follows no branches"
+                )
             )
     for probe in scene.probes:
         if probe.quantity in _PROBES:

@@ -63,26 +63,26 @@ def seen(body: BodyPart, points: Array, z: Array) -> Array:
 
 
 def variations(shape: Shape, body: BodyPart, points: Array, shapes: Array, z: Array) -> tuple[Array, Array, Array]:
-    """g (k,), ∂g (k, 11) and ∂²g (k, 11, 11).
+    """g (k,), ∂g (k, 17) and ∂²g (k, 17, 17).
 
-    The eleven are (x, y) of the point's four nodes, whose shape functions ``shapes`` (k, 4) are, and (X, Y, φ).
+    The 17 are (x, y) of the point's seven nodes, whose shape functions ``shapes`` (k, 7) are, and (X, Y, φ).
     """
-    k = len(points)
+    k, n = len(points), 2 * shapes.shape[1]
     xi = seen(body, points, z)
     g, h, H = shape.measured(xi)
     phi = float(body.state(z)[2])
     Rt = np.array([[np.cos(phi), np.sin(phi)], [-np.sin(phi), np.cos(phi)]])
-    change = np.zeros((k, 2, 11))  # ∂ξ
-    change[:, :, :8] = (shapes[:, None, :, None] * Rt[None, :, None, :]).reshape(k, 2, 8)
-    change[:, :, 8:10] = -Rt
-    change[:, :, 10] = -xi @ _S.T
+    change = np.zeros((k, 2, n + 3))  # ∂ξ
+    change[:, :, :n] = (shapes[:, None, :, None] * Rt[None, :, None, :]).reshape(k, 2, n)
+    change[:, :, n : n + 2] = -Rt
+    change[:, :, n + 2] = -xi @ _S.T
     first = np.einsum("ki,kij->kj", h, change)
     second = change.transpose(0, 2, 1) @ H @ change
     swing = -h @ (_S @ Rt)  # h·∂²ξ/∂φ∂x
-    mixed = (shapes[:, :, None] * swing[:, None, :]).reshape(k, 8)
-    second[:, 10, :8] += mixed
-    second[:, :8, 10] += mixed
-    second[:, 10, 8:10] -= swing
-    second[:, 8:10, 10] -= swing
-    second[:, 10, 10] -= (h * xi).sum(axis=1)
+    mixed = (shapes[:, :, None] * swing[:, None, :]).reshape(k, n)
+    second[:, n + 2, :n] += mixed
+    second[:, :n, n + 2] += mixed
+    second[:, n + 2, n : n + 2] -= swing
+    second[:, n : n + 2, n + 2] -= swing
+    second[:, n + 2, n + 2] -= (h * xi).sum(axis=1)
     return g, first, second

@@ -31,7 +31,7 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One row: of what (``name``), its ``shares``, its multiplier among the unknowns, and the ``drive`` that steps it."""
+    """One row: of what (``name``), its ``shares``, its multiplier's place, and the ``drive`` that steps it."""
 
     name: str
     shares: tuple[Share, ...]
@@ -43,7 +43,11 @@ class Row:
         found = 0.0
         for share in self.shares:
             body = bodies[share.body]
-            found += float(body.state(z)[2]) if share.direction is None else float(share.direction @ body.motion(share.arm, z))
+            found += (
+                float(body.state(z)[2])
+                if share.direction is None
+                else float(share.direction @ body.motion(share.arm, z))
+            )
         return found
 
     def gradient(self, bodies: tuple[BodyPart, ...], z: Array) -> tuple[Ints, Array]:
@@ -56,7 +60,9 @@ class Row:
             d = share.direction
             dofs.append(body.dofs)
             slopes.append(
-                np.array([0.0, 0.0, 1.0]) if d is None else np.array([*d, d @ across(turned(share.arm, z[body.dofs[2]]))])
+                np.array([0.0, 0.0, 1.0])
+                if d is None
+                else np.array([*d, d @ across(turned(share.arm, z[body.dofs[2]]))])
             )
         return np.concatenate(dofs), np.concatenate(slopes)
 

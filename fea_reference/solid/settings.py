@@ -10,6 +10,8 @@ from frozendict import frozendict
 
 from scene.mistakes import Mistake, SceneError
 
+_LEAST = 3  # along a beam, so that every edge is a smooth curve, see fea_reference.solid.skin
+
 
 @dataclass(frozen=True, slots=True)
 class Settings:
@@ -53,8 +55,9 @@ class Settings:
             ("iteration_limit", self.iteration_limit),
         ]
         for key, count in counts:
-            if not isinstance(count, int) or isinstance(count, bool) or count < 1:
-                mistakes.append(Mistake(f"settings.{key}", repr(count), "a whole number of at least 1"))
+            least = _LEAST if key.startswith("elements") else 1
+            if not isinstance(count, int) or isinstance(count, bool) or count < least:
+                mistakes.append(Mistake(f"settings.{key}", repr(count), f"a whole number of at least {least}"))
         for key, value in (("penetration", self.penetration), ("residual", self.residual)):
             if not (math.isfinite(value) and 0.0 < value < 1.0):
                 mistakes.append(Mistake(f"settings.{key}", repr(value), "a number between 0 and 1"))

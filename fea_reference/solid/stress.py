@@ -45,5 +45,5 @@ def _face_strain(model: Model, q: Array, beam: int, side: float, u: Array) -> Ar
     at, strain = np.concatenate(places), np.concatenate(strains)
     order = np.argsort(at)
     if at.size < 4:
-        return np.interp(u, at[order], strain[order])
+        return np.asarray(np.interp(u, at[order], strain[order]))
     return np.asarray(CubicSpline(at[order], strain[order])(u))

@@ -1,7 +1,8 @@
 """The whole mechanism's unbalanced forces and their tangent.
 
-The residual is the derivative by all unknowns of Π(z) + Σ μ c(z), elements, contacts and loads in Π, and the tangent its
-second derivative.  Forces are summed up over the mesh's displacements q, and go from these to the unknowns by ∂q/∂z.
+The residual is the derivative by all unknowns of Π(z) + Σ μ c(z), elements, contacts and loads in Π, and the tangent
+its second derivative.  Forces are summed up over the mesh's displacements q, and go from these to the unknowns by
+∂q/∂z.
 """
 
 from __future__ import annotations
@@ -77,7 +78,9 @@ class System:
     def factors(self) -> SuperLU | None:
         """The tangent, factored."""
         try:
-            return splu(self.tangent, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01, options={"SymmetricMode": True})
+            return splu(
+                self.tangent, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01, options={"SymmetricMode": True}
+            )
         except RuntimeError:  # exactly singular
             return None
 
@@ -102,12 +105,14 @@ def assemble(
     """
     q = model.displacements(z)
     elements = model.strained(q)
-    touches = tuple(touch(model, pair, factor, quadrature, q, z, None if foreseen is None else foreseen.gaps[pair])
-        for pair, factor in penalties.items())
+    touches = tuple(
+        touch(model, pair, factor, quadrature, q, z, None if foreseen is None else foreseen.gaps[pair])
+        for pair, factor in penalties.items()
+    )
     local = elements.gradient
     m, nodes = len(model.bodies), q.size
     # the mesh's q and behind them three of every body, as if all moved
-    forces = np.bincount(model.elements.dofs.ravel(), local.ravel(), nodes + 3 * m)
+    forces: Array = np.bincount(model.elements.dofs.ravel(), local.ravel(), nodes + 3 * m).astype(float)
     rows, columns, entries = [], [], []
     for one in touches:
         if one.zeta.size:
@@ -155,7 +160,9 @@ def assemble(
     extra = coo_matrix((more, (more_rows, more_columns)), (model.size, model.size))
     tangent = (carried.T @ stiffness @ carried + extra).tocsc()
     pressing = [float(np.abs(one.gradient).max()) for one in touches if one.zeta.size]
-    largest = max(float(np.abs(local).max()), float(np.abs(values[: len(model.loads)]).max(initial=0.0)), *pressing, 0.0)
+    largest = max(
+        float(np.abs(local).max()), float(np.abs(values[: len(model.loads)]).max(initial=0.0)), *pressing, 0.0
+    )
     stiffest = float(np.abs(stiffness.diagonal()).max())
     floor = _ROUND_OFF * stiffest * float(np.spacing(np.abs(q).max(initial=1e-3)))
     scale = largest if largest > _NOTHING * floor else 1.0
