@@ -108,6 +108,18 @@ def tolerance(ctx: click.Context, param: click.Parameter, value: str | None) -> 
     return number
 
 
+def opinions(ctx: click.Context, param: click.Parameter, value: str) -> bool:
+    """Whether the solid is asked beside ``cprbm,fea``, which are always.
+
+    Raises:
+        click.BadParameter: the text names other solvers.
+    """
+    named = [part.strip() for part in value.split(",")]
+    if sorted(named) not in (["cprbm", "fea"], ["cprbm", "fea", "solid"]):
+        raise click.BadParameter(f"found {value!r}; allowed: cprbm,fea or cprbm,fea,solid")
+    return "solid" in named
+
+
 def one_of_both(found: float | None) -> None:
     """See that N was not given beside a tolerance, by which it is found.
 

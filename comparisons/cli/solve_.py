@@ -53,7 +53,7 @@ def command(
     found: tuple[Tolerance, ...] = ()
     if tol is not None and solver == "solid":
         raise click.UsageError("found --tol and --solver solid; allowed: --elements and --across for the solid.")
-    if tol is not None and solver != "exact":
+    if tol is not None and solver != "exact" and solver != "solid":
         from comparisons.tolerances import tolerated
 
         with showing.current(shown=not quiet) as say:
