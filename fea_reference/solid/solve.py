@@ -11,6 +11,7 @@ from threadpoolctl import ThreadpoolController
 from fea_reference.solid.certificates import certify
 from fea_reference.solid.contacts import pairs_of
 from fea_reference.solid.march import March, StoppedError, begin, leave_stage, reach
+from fea_reference.solid.meshing import chosen
 from fea_reference.solid.model import build
 from fea_reference.solid.probes import probed, shapes, touching
 from fea_reference.solid.refusals import refuse
@@ -89,9 +90,10 @@ def prepared(scene: Scene, settings: Settings = _DEFAULT) -> Prepared:
     """
     began = time.perf_counter()
     refuse(scene)
-    model = build(scene, settings)
+    rectangle, how = chosen()
+    model = build(scene, settings, rectangle)
     march = begin(model, settings, pairs_of(scene, model))
-    return Prepared(scene, settings, march, time.perf_counter() - began, ())
+    return Prepared(scene, settings, march, time.perf_counter() - began, (how,))
 
 
 def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:

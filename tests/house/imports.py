@@ -1,8 +1,8 @@
 """Reads a source tree's imports, at any depth and behind any name, and says which of them break the law.
 
-The law (CONTRIBUTING.md): scene imports none of our rooms; the solvers and exact import scene only, and the solid, though
-it lives with the beam elements, is a room of its own; inside comparisons one module, pairing, imports them; each heavy
-library has one door, imported there when used.
+The law (CONTRIBUTING.md): scene imports none of our rooms; the solvers and exact import scene only, and the solid,
+though it lives with the beam elements, is a room of its own; inside comparisons one module, pairing, imports them; each
+heavy library has one door, imported there when used.
 """
 
 from __future__ import annotations
