@@ -216,7 +216,7 @@ def overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
             return facing.gaps(other, y, here, skin.outward(slope), reach).gap
         g, h, _ = other.measured(rigid.seen(model.bodies[pair.body], here, z))
         h = turned(h, float(model.bodies[pair.body].state(z)[2]))
-        met = ((h * skin.outward(slope)).sum(axis=1) < 0.0) & (g > -skin.thickness)
+        met = (h * skin.outward(slope)).sum(axis=1) < 0.0
         return np.asarray(np.where(met, g, np.inf))
 
     return zones(gap, skin.nodes.size)

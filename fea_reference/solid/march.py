@@ -21,6 +21,7 @@ import numpy as np
 from fea_reference.solid.contacts import Pair
 from fea_reference.solid.model import Model
 from fea_reference.solid.newton import Found, equilibrium
+from fea_reference.solid.passing import passed
 from fea_reference.solid.settings import Settings
 from fea_reference.solid.system import System, assemble
 from scene.answer import Array, Ending
@@ -31,7 +32,8 @@ _WHOLE = 1.01  # of a step: what is left goes with it
 _STIFFER = 4.0
 _STIFFEST = 1e4  # of the factor at first
 _CLOSING = 1e-9  # gap at which a contact is found closed, of the longest beam
-_LOOKS = 40
+_SAME = 1e-12  # of a step: two values that are one
+_LOOKS = 60
 
 
 class StoppedError(Exception):
@@ -116,8 +118,9 @@ def reach(march: March, part: int, target: float, span: float) -> None:
         values = march.values.copy()
         values[part] = goal
         found = march.look(values, march.system.z, march.penalties)
-        if found.system is None:
-            why = found.why
+        through = "" if found.system is None else passed(march.model, march.penalties, march.system.z, found.system.z)
+        if found.system is None or through:
+            why = f"a beam passes through what it may touch in {through}" if through else found.why
             march.step = 0.5 * abs(step)
             continue
         _note_closings(march, part, here, goal, found.system)
@@ -159,38 +162,47 @@ def _note_closings(march: March, part: int, here: float, goal: float, there: Sys
     for name, gap in _least(there).items():
         if name in march.closing or not gap < 0.0:
             continue
-        march.closing[name] = (here if was[name] <= 0.0 else _closing(march, part, name, here, goal, there)) * unit
+        march.closing[name] = (here if was[name] <= 0.0 else _closing(march, part, name, here, goal)) * unit
 
 
-def _closing(march: March, part: int, name: str, here: float, goal: float, there: System) -> float:
+def _closing(march: March, part: int, name: str, here: float, goal: float) -> float:
     """λ at which the gap of a contact vanishes: the false position between what is open and what overlaps.
 
-    What overlaps does so with the contact taken away, so that the gap is smooth there.
+    What overlaps does so with the contact taken away, so that the gap is smooth there; such a state may lie far beyond
+    the open one, and is gone to in shorter steps where one is too long.
+
+    Raises:
+        StoppedError: it is not found.
     """
     without = {pair: rho for pair, rho in march.penalties.items() if pair.name != name}
-    watched = [pair for pair in march.penalties if pair.name == name]
-    a, fa, za = here, _least(march.system)[name], march.system.z
-    b, zb = goal, there.z
-    fb = -fa if not np.isfinite(fa) else None
+    watched = dict.fromkeys((pair for pair in march.penalties if pair.name == name), 1.0)
+    quadrature = march.settings.quadrature
+    a, fa, z = here, _least(march.system)[name], march.system.z
+    b, fb = goal, None
+    c = 0.5 * (a + b)
     for _ in range(_LOOKS):
-        c = 0.5 * (a + b) if fb is None or not np.isfinite(fa) else b - fb * (b - a) / (fb - fa)
         values = march.values.copy()
         values[part] = c
-        share = (c - here) / (goal - here)
-        found = equilibrium(
-            march.model, without, march.settings, values, za + (zb - za) * ((c - a) / (b - a) if b != a else share)
-        )
+        found = march.look(values, z, without)
         if found.system is None:
-            return c
-        watching = assemble(march.model, dict.fromkeys(watched, 1.0), march.settings.quadrature, values, found.system.z)
+            c = 0.5 * (a + c)
+            continue
+        watching = assemble(march.model, watched, quadrature, values, found.system.z)
         fc = min(one.zones.least for one in watching.touches)
-        if abs(fc) < _CLOSING or abs(b - a) < 1e-12 * abs(goal - here):
+        if abs(fc) < _CLOSING:
             return c
         if fc < 0.0:
-            b, fb, zb = c, fc, found.system.z
+            b, fb = c, fc
         else:
-            a, fa, za = c, fc, found.system.z
-    return 0.5 * (a + b)
+            a, fa, z = c, fc, found.system.z
+        secant = fb is not None and np.isfinite(fa)
+        c = a + fa * (b - a) / (fa - fb) if secant and fb is not None else 0.5 * (a + b)
+        if abs(b - a) < _SAME * abs(goal - here):
+            return c
+    unit = march.model.stepped[part].unit
+    raise StoppedError(
+        Ending.STEP_TOO_SMALL, f"where {name} closes between {here * unit:.6g} and {goal * unit:.6g} is not found"
+    )
 
 
 def _least(system: System) -> dict[str, float]:

@@ -115,3 +115,53 @@ def test_settings_out_of_bounds_are_refused():
         solid.Settings(across=0)
     with pytest.raises(SceneError, match="stiffness"):
         solid.Settings(stiffness=-1.0)
+
+
+def test_where_a_contact_closes_is_found_from_far_beyond_it():
+    # P a² (3 L − a)/(6 E I) of a beam is the gap, and the one station is fifteen times as far
+    length, thickness, a, gap = 0.1, 0.001, 0.06, 0.0015
+    rigidity = YOUNG * WIDTH * thickness**3 / 12
+    closing = 6 * rigidity * gap / (a**2 * (3 * length - a))
+    scene = bar(
+        straight(length),
+        thickness,
+        load={"kind": "force", "point": "tip", "direction": [0.0, -1.0]},
+        stations=(15 * closing,),
+        contacts={
+            "floor": {
+                "kind": "beam-circle",
+                "beam": "beam",
+                "body": "ground",
+                "center": [a, -gap - thickness / 2 - 0.002],
+                "radius": 0.002,
+            }
+        },
+        probes=(("floor", "closing_load"),),
+    )
+    found = solid.answer(scene, solid.Settings(elements=40, across=1))
+    assert found.completed, found.sentence
+    # the beam leans by 2 gap/a where it meets the circle, and meets it beside its top by that share of the radius
+    assert found.stations[0].values["floor.closing_load"][0] == pytest.approx(closing, rel=5e-3)
+
+
+def test_an_obstacle_too_small_for_the_mesh_is_never_passed_unseen():
+    # its radius is a tenth of the thickness: the beam ends up beyond it, or says that it cannot be held by it
+    scene = bar(
+        straight(0.1),
+        0.001,
+        load={"kind": "force", "point": "tip", "direction": [0.0, -1.0]},
+        stations=(0.2,),
+        contacts={
+            "floor": {
+                "kind": "beam-circle",
+                "beam": "beam",
+                "body": "ground",
+                "center": [0.06, -0.0021],
+                "radius": 1e-4,
+            }
+        },
+        probes=(("floor", "force"),),
+    )
+    found = solid.answer(scene, solid.Settings(elements=20, across=1))
+    assert found.completed == any(station.values["floor.force"][0] > 0.0 for station in found.stations)
+    assert found.completed or "passes through" in found.sentence
