@@ -7,7 +7,7 @@ symbol  meaning
 z(λ)    equilibrium
 ======  ==========================================
 
-A step begins at the last equilibrium, whose tangent is the first iteration's, and ends in another, or is halved; an
+A step begins at the last equilibrium, whose tangent is the first iteration's, and ends in another, or is cut; an
 easy one is doubled.  (The line through the last two equilibria is no better a beginning: along it what turns is
 stretched.)  Where a contact closes on the way, the λ at which its gap vanishes is looked for between open states.
 """
@@ -28,6 +28,7 @@ from scene.answer import Array, Ending
 
 _SMALLEST = 1.0 / 4096.0  # of a stage's span
 _EASY = 9  # iterations in which a step that may be doubled arrives
+_CUT = 0.3  # of a step that was too long
 _WHOLE = 1.01  # of a step: what is left goes with it
 _STIFFER = 4.0
 _STIFFEST = 1e4  # of the factor at first
@@ -121,7 +122,7 @@ def reach(march: March, part: int, target: float, span: float) -> None:
         through = "" if found.system is None else passed(march.model, march.penalties, march.system.z, found.system.z)
         if found.system is None or through:
             why = f"a beam passes through what it may touch in {through}" if through else found.why
-            march.step = 0.5 * abs(step)
+            march.step = _CUT * abs(step)
             continue
         _note_closings(march, part, here, goal, found.system)
         march.values, march.system = values, found.system

@@ -15,6 +15,8 @@ from scene.answer import Array
 
 _LONGEST = 0.5  # rad, and of the longest beam: a step that goes farther is shortened to this
 _DEEP = 0.02  # of the thickness
+_PATIENCE = 12  # iterations after which a residual that is still so far, over the scale, will not come down
+_FAR = 0.3
 _SHORTER = 5  # halvings of a step
 _WILD = 1e12  # over the scale: what diverges
 
@@ -45,6 +47,8 @@ def equilibrium(model: Model, penalties: Mapping[Pair, float], settings: Setting
             if not float(system.strained.determinants.min()) > 0.0:
                 return Found(None, iteration, "an element is turned inside out")
             return Found(system, iteration)
+        if iteration >= _PATIENCE and residual > _FAR * system.scale:
+            return Found(None, iteration, "Newton's iterations do not arrive")
         step = system.solve(-system.residual)
         if step is None:
             return Found(None, iteration, "the tangent is singular")
