@@ -26,6 +26,7 @@ class Choices:
         elements: finite elements per beam, given in the same way.
         kinematics: the finite elements' beam theory.
         penetration: the overlap that the finite elements may leave, as a fraction of the thickness.
+        across: elements of the solid across a beam's thickness; along it has as many as the beam elements.
     """
 
     links: Count = 40
@@ -33,9 +34,10 @@ class Choices:
     elements: Count = 80
     kinematics: Kinematics = "shear"
     penetration: float = 1e-4
+    across: int = 2
 
     def finer(self) -> Choices:
-        """The same with twice the links, twice the elements and a sixteenth of the penetration.
+        """The same with twice the links, twice the elements along and across, and a sixteenth of the penetration.
 
         The error that a penalty leaves is proportional to the penetration.  Were that kept, the two runs
         would share it and their change would not show it.  To fall as an error of second order it need only be
@@ -46,6 +48,7 @@ class Choices:
             links=_twice(self.links),
             elements=_twice(self.elements),
             penetration=self.penetration / 16.0,
+            across=2 * self.across,
         )
 
     def beside(self) -> Choices:

@@ -14,6 +14,7 @@ from comparisons.claims import claim_met, claim_of, claim_of_critical, claimed_d
 from comparisons.criticals import CriticalRow, released
 from comparisons.measures import Row, arc_lengths, unit_of
 from comparisons.per_branch import critical_word
+from comparisons.third import Third, thirds_of
 from comparisons.tolerances.search import Tolerance
 from comparisons.verdict import Comparison
 from comparisons.work_energy import Reaction
@@ -49,6 +50,7 @@ def comparison(compared: Comparison) -> Plain:
                 **_tolerance(compared.tolerances, "fea"),
             },
             **({} if compared.runs.exact is None else {"exact": solver(compared.runs.exact)}),
+            **({} if compared.runs.solid is None else {"solid": solver(compared.runs.solid[0])}),
         },
         "rows": [
             {**_row(compared.scene, row), "verdict": None if word is None else word.value}
@@ -68,6 +70,7 @@ def comparison(compared: Comparison) -> Plain:
             for each in compared.verdict.branches
         ],
         "work_energy": [_reaction(each) for each in compared.reactions],
+        **({} if compared.runs.solid is None else {"solid": [_third(each) for each in thirds_of(compared)]}),
     }
 
 
@@ -263,6 +266,24 @@ def _row(scene: Scene, row: Row) -> Plain:
         "scale": row.scale,
         "denominator": row.denominator,
         **_places(scene, row.probe),
+    }
+
+
+def _third(found: Third) -> Plain:
+    """A row beside the solid: its extrapolated value, and by which fractions it is uncertain and others are off."""
+    row = found.row
+    return {
+        "probe": row.probe.name,
+        "stage": row.stage,
+        "station": row.station,
+        "unit": row.unit,
+        "solid": values(row.probe, found.solid),
+        "uncertainty": row.fraction(found.uncertainty),
+        "off": {
+            "cprbm": row.fraction(found.cprbm),
+            "fea_bending": row.fraction(found.bending),
+            "fea": row.fraction(found.chosen),
+        },
     }
 
 

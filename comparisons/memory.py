@@ -61,7 +61,10 @@ class Remembering(Crew):
         if solver == self.solvers.cprbm:
             return solver, scene, replace(nothing, links=_frozen(choices.links), formulation=choices.formulation)
         elements = _frozen(choices.elements)
-        return solver, scene, replace(choices, links=nothing.links, elements=elements, formulation=nothing.formulation)
+        if solver == self.solvers.solid:
+            return solver, scene, replace(nothing, elements=elements, across=choices.across)
+        beams = replace(nothing, elements=elements, kinematics=choices.kinematics, penetration=choices.penetration)
+        return solver, scene, beams
 
     def _told(self, job: Job) -> str:
         solver, scene, choices = job
@@ -69,6 +72,8 @@ class Remembering(Crew):
             return f"{scene.name}: exact"
         if solver == self.solvers.cprbm:
             return f"{scene.name}: CPRBM {choices.formulation}, N = {choices.links}"
+        if solver == self.solvers.solid:
+            return f"{scene.name}: solid, {choices.elements} × {choices.across} elements"
         return f"{scene.name}: FEA {choices.kinematics}, {choices.elements} elements"
 
 

@@ -138,6 +138,19 @@ def exact_answer(scene: Scene, choices: Choices) -> Answer:
     return exact.answer(scene, exact.Settings())
 
 
+def solid_answer(scene: Scene, choices: Choices) -> Answer:
+    """The answer of the mechanism as a plane solid.
+
+    Raises:
+        SceneError: the scene or the choices are no question that this solver can be asked.
+    """
+    from fea_reference import solid
+
+    with _named("elements"):
+        settings = solid.Settings(elements=_plain(choices.elements), across=choices.across)
+    return solid.answer(scene, settings)
+
+
 class Offsets(Protocol):
     """Offset points (k, n, 2), m, at k distances, their tangents' angles (n,), how far off they may be (k, n), m."""
 
@@ -165,13 +178,19 @@ class Solvers:
     """The functions that are compared; others can be planted in their place.
 
     ``exact`` stands beside them where it is given: an exact answer is that of the real beams, and no measure of what
-    is planted in the place of the solvers.
+    is planted in the place of the solvers.  ``solid`` is asked as a third where it is given.
     """
 
     cprbm: Solver = cprbm_answer
     fea: Solver = fea_answer
     offset: OffsetConstruction = cprbm_offset_points
     exact: Solver | None = None
+    solid: Solver | None = None
+
+
+def with_solid(solvers: Solvers) -> Solvers:
+    """The same with the solid as a third opinion, unless there is one already."""
+    return solvers if solvers.solid is not None else replace(solvers, solid=solid_answer)
 
 
 def solvers_of(planted: object) -> Solvers:
@@ -200,6 +219,7 @@ class Runs:
             over that number.
         nearby: the CPRBM at N links, answering :func:`comparisons.nearby.nearby`; nothing rests on it.
         exact: the exact answer in ``bending``, at the stations at which one is known; None if there is no such station.
+        solid: the mechanism as a solid, at n and at 2n elements, if that was asked for; nothing rests on it.
     """
 
     kinematics: Kinematics
@@ -211,6 +231,7 @@ class Runs:
     ratio: float = 1.0
     nearby: Answer | None = None
     exact: Answer | None = None
+    solid: tuple[Answer, Answer] | None = None
 
     @property
     def reference(self) -> Answer:
@@ -355,6 +376,9 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
     behind = len(jobs)
     if solvers.exact is not None:
         jobs.append((solvers.exact, scene, choices))
+    third = len(jobs)
+    if solvers.solid is not None:
+        jobs += [(solvers.solid, scene, choices), (solvers.solid, scene, choices.finer())]
     pending = crew.begin(jobs)
 
     def ended() -> Runs:
@@ -373,6 +397,7 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
             ratio=ratio_beside(even),
             nearby=answers[first - 1] if round_each else None,
             exact=exact if exact is not None and exact.stations else None,
+            solid=(answers[third], answers[third + 1]) if solvers.solid is not None else None,
         )
 
     return ended

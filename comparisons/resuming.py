@@ -106,9 +106,9 @@ def resumed(out: Path | None, solvers: Solvers, asked: tuple[str, ...]) -> Itera
     shutil.rmtree(ended, ignore_errors=True)
     clear_partial((out, folder, *(out / name for name in asked)))
     exact = None if solvers.exact is None else Kept(solvers.exact, "exact", folder)
-    kept = replace(
-        solvers, cprbm=Kept(solvers.cprbm, "cprbm", folder), fea=Kept(solvers.fea, "fea", folder), exact=exact
-    )
+    solid = None if solvers.solid is None else Kept(solvers.solid, "solid", folder)
+    own = Kept(solvers.cprbm, "cprbm", folder), Kept(solvers.fea, "fea", folder)
+    kept = replace(solvers, cprbm=own[0], fea=own[1], exact=exact, solid=solid)
     yield Run(kept, folder, asked)
     with suppress(FileNotFoundError):  # nothing was solved
         folder.rename(ended)

@@ -18,6 +18,8 @@ from comparisons.paper_sheets import of_paper
 from comparisons.scales import norm
 from comparisons.sheet import Sheet
 from comparisons.stations import station_of
+from comparisons.third import of_thirds
+from comparisons.third import sentence as beside_the_solid
 from comparisons.tolerances.extrapolation import told
 from comparisons.tolerances.search import Tolerance
 from comparisons.verdict import Comparison
@@ -37,7 +39,7 @@ def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
     found.extend((_verdicts(compared, rows), _true_errors(compared, rows), _claims(compared)))
     found.extend(_reactions(compared))
     found.append(_stresses(compared.scene, rows))
-    found.extend((_steps(compared, rows), of_paper(compared)))
+    found.extend((_steps(compared, rows), of_paper(compared), of_thirds(compared)))
     found.append(_certificates(compared))
     return tuple(sheet for sheet in found if sheet.rows)
 
@@ -95,7 +97,7 @@ def last_rows(compared: Comparison) -> tuple[Row, ...]:
 
 
 def explanation(compared: Comparison) -> tuple[str, ...]:
-    """For each claim a sentence that says what our difference is made of, at its worst station."""
+    """For each claim a sentence that says what our difference is made of, at its worst station; what a solid says."""
     sentences = []
     for standing in standings(compared.scene, compared.rows):
         claim = standing.claim
@@ -109,7 +111,7 @@ def explanation(compared: Comparison) -> tuple[str, ...]:
             f"{_of(row, row.steps.shear)} from stretch to shear, and {_within_one_theory(compared, row, row.steps)}; "
             f"the source's figure of {percent(claim.bound)} is not ours to approach."
         )
-    return tuple(sentences)
+    return tuple(filter(None, (*sentences, beside_the_solid(compared))))
 
 
 def _within_one_theory(compared: Comparison, row: Row, steps: Steps) -> str:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from comparisons.choices import Kinematics
-from comparisons.cli.options import folder, numerical, one_of_both, output
+from comparisons.cli.options import folder, numerical, one_of_both, opinions, output
 
 if TYPE_CHECKING:
     from comparisons.documents import Plain
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 @click.command("compare")
 @click.argument("asked", nargs=-1, required=True, metavar="CASE|FILE.toml...|all")
+@click.option("--solver", "asking_solid", callback=opinions, default="cprbm,fea", show_default=True, metavar="SOLVERS",
+              help="Who answers: 'cprbm,fea', or 'cprbm,fea,solid' for a third opinion.")  # fmt: skip
 @numerical
 @output
 @folder("Folder of the report; 'report' for 'compare all', else none unless given.")
@@ -28,11 +30,13 @@ if TYPE_CHECKING:
 def command(
     planted: object,
     asked: tuple[str, ...],
+    asking_solid: bool,  # noqa: FBT001 - click hands it over by name
     links: int | Mapping[str, int],
     elements: int | Mapping[str, int],
     formulation: Literal["auto", "paper"],
     kinematics: Kinematics,
     penetration: float,
+    across: int,
     tol: float | None,
     json_file: Path | None,
     quiet: bool,  # noqa: FBT001 - click hands it over by name
@@ -44,15 +48,18 @@ def command(
     from comparisons.cli import showing
     from comparisons.cli.asking import questions
     from comparisons.offset_verdict import OffsetComparison, compared_offset
-    from comparisons.pairing import Runs, begin, crew_of, solvers_of, workers_for
+    from comparisons.pairing import Runs, begin, crew_of, solvers_of, with_solid, workers_for
     from comparisons.resuming import resumed
     from comparisons.tolerances.tolerated import paired_within
     from comparisons.verdict import compared
     from scene import OffsetQuestion, Scene
 
     one_of_both(tol)
+    taking_part = with_solid(solvers_of(planted)) if asking_solid else solvers_of(planted)
+    if asking_solid and tol is not None:
+        raise click.UsageError("found --tol and a solid; allowed: --elements and --across for the solid.")
     scenes = questions(asked)
-    choices = Choices(links, formulation, elements, kinematics, penetration)
+    choices = Choices(links, formulation, elements, kinematics, penetration, across)
     for scene in scenes:
         if not isinstance(scene, OffsetQuestion):
             check(choices, scene)
@@ -63,7 +70,7 @@ def command(
     finished: list[Comparison | OffsetComparison] = []
     chapters: tuple[report.Chapter, ...] = ()
     names = tuple(scene.name for scene in scenes)
-    with resumed(out, solvers_of(planted), names) as whole, crew_of(workers_for(planted)) as crew:
+    with resumed(out, taking_part, names) as whole, crew_of(workers_for(planted)) as crew:
         solvers = whole.solvers
 
         def begun(place: int) -> Callable[[], Runs] | None:

@@ -108,6 +108,18 @@ def tolerance(ctx: click.Context, param: click.Parameter, value: str | None) -> 
     return number
 
 
+def opinions(ctx: click.Context, param: click.Parameter, value: str) -> bool:
+    """Whether the solid is asked beside ``cprbm,fea``, which are always.
+
+    Raises:
+        click.BadParameter: the text names other solvers.
+    """
+    named = [part.strip() for part in value.split(",")]
+    if sorted(named) not in (["cprbm", "fea"], ["cprbm", "fea", "solid"]):
+        raise click.BadParameter(f"found {value!r}; allowed: cprbm,fea or cprbm,fea,solid")
+    return "solid" in named
+
+
 def one_of_both(found: float | None) -> None:
     """See that N was not given beside a tolerance, by which it is found.
 
@@ -144,6 +156,8 @@ def numerical(command: Decorated) -> Decorated:
                            "every probe and station; in the place of -n and --elements.")(command)  # fmt: skip
     command = click.option("--penetration", callback=fraction, default=str(standard.penetration), show_default=True,
                            help="Overlap that the finite elements may leave, over the thickness.")(command)  # fmt: skip
+    command = click.option("--across", callback=whole, default=str(standard.across), show_default=True,
+                           help="Elements of the solid across a beam's thickness.")(command)  # fmt: skip
     command = variants(command)
     for option in (
         click.option("--elements", callback=count, metavar="COUNT", default=str(standard.elements),

@@ -20,19 +20,20 @@ NOT_WITHIN = 3
 
 @click.command("solve")
 @click.argument("case", metavar="CASE|FILE.toml")
-@click.option("--solver", type=click.Choice(["cprbm", "fea", "exact"]), default="cprbm", show_default=True)
+@click.option("--solver", type=click.Choice(["cprbm", "fea", "exact", "solid"]), default="cprbm", show_default=True)
 @numerical
 @output
 @click.pass_obj
 def command(
     planted: object,
     case: str,
-    solver: Literal["cprbm", "fea", "exact"],
+    solver: Literal["cprbm", "fea", "exact", "solid"],
     links: int | Mapping[str, int],
     elements: int | Mapping[str, int],
     formulation: Literal["auto", "paper"],
     kinematics: Kinematics,
     penetration: float,
+    across: int,
     tol: float | None,
     json_file: Path | None,
     quiet: bool,  # noqa: FBT001 - click hands it over by name
@@ -41,23 +42,30 @@ def command(
     from comparisons import cases
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
-    from comparisons.pairing import exact_answer, solvers_of
+    from comparisons.pairing import exact_answer, solid_answer, solvers_of
 
     one_of_both(tol)
     solvers = solvers_of(planted)
     scene = cases.opened(case)
-    choices = Choices(links, formulation, elements, kinematics, penetration)
+    choices = Choices(links, formulation, elements, kinematics, penetration, across)
     check(choices, scene)
     showing.room_for(json_file)
     found: tuple[Tolerance, ...] = ()
-    if tol is not None and solver != "exact":
+    if tol is not None and solver == "solid":
+        raise click.UsageError("found --tol and --solver solid; allowed: --elements and --across for the solid.")
+    if tol is not None and solver != "exact" and solver != "solid":
         from comparisons.tolerances import tolerated
 
         with showing.current(shown=not quiet) as say:
             answer, reached = tolerated.solved(scene, solver, choices, tol, solvers, say)
         found = (reached,)
     else:
-        asked = {"cprbm": solvers.cprbm, "fea": solvers.fea, "exact": solvers.exact or exact_answer}[solver]
+        asked = {
+            "cprbm": solvers.cprbm,
+            "fea": solvers.fea,
+            "exact": solvers.exact or exact_answer,
+            "solid": solvers.solid or solid_answer,
+        }[solver]
         answer = asked(scene, choices)
     from comparisons.audit import audit
 

@@ -58,6 +58,8 @@ LIBRARIES = (
     Library("jinja2", "jinja2", "pages"),
     Library("matplotlib", "matplotlib.figure", "figures"),
     Library("casadi", "casadi", "IPOPT, one of the optimisers that 'bench' and 'study readings' compare with", "peers"),
+    Library("gmsh", "gmsh", "meshes of the solid by gmsh, in the place of plain ones", "solid"),
+    Library("meshio", "meshio", "carrying them over", "solid"),
 )
 
 

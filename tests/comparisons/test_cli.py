@@ -366,6 +366,7 @@ class Planted:
     cprbm: Waiting = Waiting()
     fea: Waiting = Waiting()
     exact: Waiting = Waiting()
+    solid: None = None
 
 
 if __name__ == "__main__":

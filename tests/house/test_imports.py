@@ -17,6 +17,8 @@ def _house(tmp_path, **files):
         "cprbm____init__": "from scene import Scene\nfrom .chain import link\n",
         "cprbm__chain": "import numpy\nfrom scene.statement import Scene\ndef link(): ...\n",
         "fea_reference____init__": "from scene import Scene\nimport skfem\n",
+        "fea_reference__solid__dot____init__": "from fea_reference.solid.mesh import quads\nfrom scene import Scene\n",
+        "fea_reference__solid__dot__mesh": "import skfem\nquads = 9\n",
         "exact____init__": "from scene import Scene\nimport scipy\n",
         "comparisons____init__": "",
         "comparisons__pairing": "import cprbm\nimport exact\nfrom fea_reference import answer\n",
@@ -45,6 +47,18 @@ def test_a_lawful_house_passes(tmp_path):
 
 PLANTED = {
     "scene imports a solver": ("scene__bad", "import cprbm.chain", "scene may not import cprbm"),
+    "the solid imports beam elements": (
+        "fea_reference__solid__dot__bad",
+        "def f():\n    from fea_reference.curves import sample",
+        "fea_reference.solid may not import fea_reference",
+    ),
+    "beam elements import the solid": (
+        "fea_reference__bad",
+        "from fea_reference.solid import answer",
+        "fea_reference may not import fea_reference.solid",
+    ),
+    "the other solver imports the solid": ("cprbm__bad", "import fea_reference.solid", "cprbm may not import"),
+    "the solid beside pairing": ("comparisons__verdict", "import fea_reference.solid", "comparisons may not import"),
     "scene imports comparisons": (
         "scene__bad",
         "from comparisons import verdict",

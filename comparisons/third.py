@@ -1,0 +1,164 @@
+"""The third opinion: what both beam theories miss together, each held against the mechanism as a solid.
+
+======  =====================================================================================================
+symbol  meaning
+======  =====================================================================================================
+v, V    the solid's value at n and at 2n elements along (and across, m and 2m)
+p       order of convergence, 2λ
+λ       exponent of the displacement at the corner where a free edge meets a face that is held, κ = (3 − ν)/(1 + ν):
+        κ sin²(λ π/2) = (κ + 1)²/4 − λ², at most 1
+x       extrapolated value, V + (V − v)/(2^p − 1)
+u       its uncertainty, S |x − V|
+======  =====================================================================================================
+
+Elements of second order would converge with the fourth power of their size, but a face that is held keeps the section
+from growing wider, and at its corners the stress has no bound: the energy, and with it every displacement, converges
+with 2λ (M. L. Williams, Stress singularities resulting from various boundary conditions in angular corners of plates in
+extension, J. Appl. Mech. 19 (1952) 526; Szabó & Babuška, Finite Element Analysis, on meshes that are even).  With the
+largest ν of the scene this is about 1.5; taken for the order of all quantities it makes u larger where they are better.
+
+The distances of the beam theories from x are their errors, as far as u and their own uncertainties allow.  Nothing of
+the verdict rests on them: a beam theory that is as far from the solid as it must be is not wrong.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from comparisons.formats import percent, scaled_unit, vector
+from comparisons.measures import SAFETY, Row
+from comparisons.scales import norm
+from comparisons.sheet import Sheet
+from comparisons.spots import clear_of_spots
+from comparisons.stations import station_of
+from comparisons.verdict import Comparison
+from scene import Scene, StationAnswer
+from scene.answer import Array, Flags
+from scene.statement import STRESSES
+
+
+@dataclass(frozen=True, slots=True)
+class Third:
+    """One row and what the solid says of it.
+
+    ``solid`` is x (k,); ``uncertainty`` u, and ``cprbm``, ``bending`` and ``chosen`` the distances from x of the CPRBM
+    and of the finite elements in ``bending`` and in the chosen theory, in the probe's unit.
+    """
+
+    row: Row
+    solid: Array
+    uncertainty: float
+    cprbm: float
+    bending: float
+    chosen: float
+
+
+def corner_order(poisson_ratio: float) -> float:
+    """p of a scene with that ratio, at most 2."""
+    from scipy.optimize import brentq  # loaded when a solid is beside, not with every table
+
+    kappa = (3.0 - poisson_ratio) / (1.0 + poisson_ratio)
+
+    def excess(exponent: float) -> float:
+        return float(kappa * np.sin(0.5 * np.pi * exponent) ** 2 - 0.25 * (kappa + 1.0) ** 2 + exponent**2)
+
+    return 2.0 * brentq(excess, 0.1, 1.0) if excess(1.0) > 0.0 else 2.0
+
+
+def thirds_of(compared: Comparison) -> tuple[Third, ...]:
+    """The rows at which all answers have a value; none where the solid was not asked or did not arrive."""
+    scene, runs = compared.scene, compared.runs
+    if runs.solid is None or not all(answer.completed for answer in runs.solid):
+        return ()
+    share = 1.0 / (2.0 ** corner_order(max(one.poisson_ratio for one in scene.materials.values())) - 1.0)
+    found = []
+    for row in compared.rows:
+        if row.bounds is None:
+            continue
+        name = row.probe.name
+        coarse, fine, bending, chosen = (
+            station_of(answer, row.stage, row.station)
+            for answer in (*runs.solid, runs.fea["bending"][0], runs.reference)
+        )
+        v, V, v_b = coarse.values[name], fine.values[name], bending.values[name]
+        if v.shape != row.fea.shape or V.shape != row.fea.shape:
+            continue
+        x = V + share * (V - v)
+        counts = _counts(scene, row, (coarse, fine, chosen))
+        if not counts.any():
+            continue
+
+        def size(difference: Array, row: Row = row, counts: Flags = counts) -> float:
+            return norm(row.probe.quantity, difference[counts])
+
+        found.append(Third(row, x, SAFETY * size(x - V), size(row.cprbm - x), size(v_b - x), size(row.fea - x)))
+    return tuple(found)
+
+
+def _counts(scene: Scene, row: Row, stations: tuple[StationAnswer, ...]) -> Flags:
+    """Which components count: of a stress those that are clear of held ends and of what presses."""
+    if row.probe.quantity not in STRESSES or row.arc_length is None:
+        return np.ones(row.fea.shape, dtype=bool)
+    return clear_of_spots(scene, row.probe.of, row.arc_length, stations)
+
+
+def of_thirds(compared: Comparison) -> Sheet:
+    """The last station's rows beside the solid."""
+    thirds = thirds_of(compared)
+    last = [one for one in thirds if (one.row.stage, one.row.station) == (thirds[-1].row.stage, thirds[-1].row.station)]
+    body = []
+    for one in last:
+        row = one.row
+        factor, unit = scaled_unit(row.unit, norm(row.probe.quantity, one.solid))
+        fractions = (one.uncertainty, one.cprbm, one.bending, one.chosen)
+        body.append(
+            (
+                row.probe.name,
+                unit,
+                *(vector(value, factor) for value in (row.cprbm, row.fea, one.solid)),
+                *(percent(row.fraction(value)) for value in fractions),
+            )
+        )
+    return Sheet(
+        "The beam theories beside a solid, at the last station",
+        (
+            "probe",
+            "unit",
+            "CPRBM",
+            "FEA",
+            "solid",
+            "u solid",
+            "CPRBM off",
+            "FEA bending off",
+            f"FEA {compared.runs.kinematics} off",
+        ),
+        tuple(body),
+        "The solid's values are extrapolated from two meshes, and what is off is measured from these, as above.",
+    )
+
+
+def sentence(compared: Comparison) -> str:
+    """What the beam theories miss together, at the last station at which all have a displacement or rotation."""
+    runs = compared.runs
+    if runs.solid is None:
+        return ""
+    for answer in runs.solid:
+        if not answer.completed:
+            return f"The solid says nothing: {answer.ending.value}. {answer.sentence}"
+    moved = [one for one in thirds_of(compared) if one.row.probe.quantity in ("displacement", "rotation")]
+    if not moved:
+        return "The solid has no displacement or rotation to hold the beam theories against."
+    last = [one for one in moved if (one.row.stage, one.row.station) == (moved[-1].row.stage, moved[-1].row.station)]
+
+    def largest(values: list[float | None]) -> str:
+        return percent(max((value for value in values if value is not None), default=None))
+
+    return (
+        f"Beside the solid, displacements and rotations at the last station are off by at most "
+        f"{largest([one.row.fraction(one.bending) for one in last])} in bending alone and "
+        f"{largest([one.row.fraction(one.chosen) for one in last])} in {runs.kinematics}: that is what the beam "
+        f"theories miss together (the solid is uncertain by "
+        f"{largest([one.row.fraction(one.uncertainty) for one in last])})."
+    )

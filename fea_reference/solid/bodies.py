@@ -1,0 +1,88 @@
+"""Rigid bodies, and the faces of beams that are tied to them.
+
+======  =====================================================================
+symbol  meaning
+======  =====================================================================
+X, φ    displacement of a body's centre and its rotation
+R(φ)    rotation by φ; S that by a right angle
+r       from the centre to what moves with the body, as drawn
+ψ       rotation of a face about its pin
+o       from a pinned face's middle to its nodes, as drawn
+u       displacement of a node
+======  =====================================================================
+
+A welded end's whole face moves with the body, u = X + (R(φ) − I) r; a pinned end's face is rigid and turns about
+its middle, which moves with the body, u = X + (R(φ) − I) a + (R(ψ) − I) o with a from the centre to the pin.  Both are
+built into the unknowns: no node of a face has one of its own, and nothing of a tie can be violated.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from scene.answer import Array, Ints
+
+
+@dataclass(frozen=True, slots=True)
+class BodyPart:
+    """A rigid body: ``centre`` (2,), ``points`` (2,) by name, and (X, Y, φ) among the unknowns if it moves."""
+
+    name: str
+    centre: Array
+    points: dict[str, Array]
+    dofs: Ints | None
+
+    def state(self, z: Array) -> Array:
+        """(X, Y, φ), zero for the ground."""
+        return np.zeros(3) if self.dofs is None else np.asarray(z[self.dofs])
+
+    def arm(self, point: str) -> Array:
+        """r (2,) of a point."""
+        return np.asarray(self.points[point] - self.centre)
+
+    def carried(self, arms: Array, z: Array) -> Array:
+        """Where what has ``arms`` (..., 2) is."""
+        X, Y, phi = self.state(z)
+        return np.asarray(self.centre + np.array([X, Y]) + turned(arms, phi))
+
+    def motion(self, arms: Array, z: Array) -> Array:
+        """Displacement of what has ``arms`` (..., 2)."""
+        X, Y, phi = self.state(z)
+        return np.asarray(np.array([X, Y]) + displaced(arms, phi))
+
+
+@dataclass(frozen=True, slots=True)
+class Tie:
+    """A beam's end face held at a body's point.
+
+    ``nodes`` (k,) from its right to its left, ``pin`` is the arm of the face's middle (2,), ``offsets`` o (k, 2);
+    ``psi`` is the unknown ψ, None of a welded face.
+    """
+
+    beam: int
+    end: str
+    point: str
+    body: int
+    nodes: Ints
+    pin: Array
+    offsets: Array
+    psi: int | None
+
+
+def turned(r: Array, phi: float) -> Array:
+    """R(φ) r for vectors (..., 2)."""
+    cos, sin = np.cos(phi), np.sin(phi)
+    return np.stack([cos * r[..., 0] - sin * r[..., 1], sin * r[..., 0] + cos * r[..., 1]], axis=-1)
+
+
+def displaced(r: Array, phi: float) -> Array:
+    """(R(φ) − I) r for vectors (..., 2), without cancellation."""
+    less, sin = -2.0 * np.sin(0.5 * phi) ** 2, np.sin(phi)
+    return np.stack([less * r[..., 0] - sin * r[..., 1], sin * r[..., 0] + less * r[..., 1]], axis=-1)
+
+
+def across(r: Array) -> Array:
+    """S r for vectors (..., 2)."""
+    return np.stack([-r[..., 1], r[..., 0]], axis=-1)

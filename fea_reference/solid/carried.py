@@ -1,0 +1,30 @@
+"""The door to meshio: what gmsh has written, as arrays."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scene.answer import Array
+
+
+def available() -> bool:
+    """Whether meshio can be imported."""
+    try:
+        import meshio  # noqa: F401 - whether it loads is the question
+    except ImportError:
+        return False
+    return True
+
+
+def read_quadrilaterals(path: Path) -> tuple[Array, NDArray[np.int64]]:
+    """Corners (2, k) and quadrilaterals (4, c) of a mesh in the plane."""
+    import meshio
+
+    mesh = meshio.read(path)
+    return (
+        np.ascontiguousarray(mesh.points[:, :2].T, dtype=np.float64),
+        np.ascontiguousarray(mesh.cells_dict["quad"].T, dtype=np.int64),
+    )

@@ -1,0 +1,78 @@
+"""What makes a station's answer believable."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea_reference.solid.contacts import Pair, touch
+from fea_reference.solid.curvature import smallest_curvature
+from fea_reference.solid.march import March
+from fea_reference.solid.skin import Skin
+from fea_reference.solid.supports import balance
+from fea_reference.solid.system import assemble
+from scene.answer import Certificate
+
+_VIOLATION = 1e-9
+_BALANCE = 1e-8
+_OTHER_WAY = 5.0  # of the penetration asked: what the other edge's own points may find
+
+
+def certify(march: March) -> Certificate:
+    """Look at the state that the march has reached, summed up anew.
+
+    Between two beams the gap is held at places of the first one's edge; the certificate looks from the second one's
+    as well, where an end's corner would show that presses on the first one's side.
+    """
+    model, settings = march.model, march.settings
+    march.system = assemble(model, march.penalties, settings.quadrature, march.values, march.system.z)
+    system = march.system
+    first_row = model.size - len(model.rows)
+    residual = float(np.abs(system.residual[:first_row]).max()) / system.scale
+    floor = system.floor / system.scale
+    violation = float(np.abs(system.residual[first_row:]).max(initial=0.0))
+    penetration = max((one.penetration / one.pair.measure for one in system.touches), default=0.0)
+    behind = max((_other_way(march, pair) for pair in march.penalties), default=0.0)
+    force, moment = balance(model, system, march.values)
+    curvature = smallest_curvature(model, system)
+    thinnest = float(system.strained.determinants.min())
+    allowed = max(_BALANCE, floor * float(np.sqrt(len(model.mesh.places))))
+    failures = []
+    if not residual <= max(settings.residual, floor):
+        failures.append(f"the unbalanced force is {residual:.1e} of the largest")
+    if not violation <= max(_VIOLATION, system.floor):
+        failures.append(f"a drive, a slide or a pin is violated by {violation:.1e} of the longest beam")
+    if not thinnest > 0.0:
+        failures.append(f"an element is turned inside out: det F is {thinnest:.1e}")
+    if not penetration <= settings.penetration:
+        failures.append(
+            f"what touches overlaps by {penetration:.1e} of the thickness; {settings.penetration:.1e} was asked"
+        )
+    if not behind <= _OTHER_WAY * settings.penetration:
+        failures.append(f"a beam's end presses by {behind:.1e} of the thickness into the other's side")
+    if not force <= allowed:
+        failures.append(f"the forces of loads and supports leave {force:.1e} of the largest")
+    if not moment <= allowed:
+        failures.append(f"the moments of loads and supports leave {moment:.1e} of the largest")
+    if not curvature > 0.0:
+        failures.append(f"the smallest curvature of the potential energy is {curvature:.1e}: no minimum")
+    return Certificate(
+        residual=residual,
+        residual_floor=floor,
+        violation=violation,
+        penetration=max(penetration, behind),
+        complementarity=penetration,
+        force_balance=force,
+        moment_balance=moment,
+        smallest_curvature=curvature,
+        iterations=march.iterations,
+        failures=tuple(failures),
+    )
+
+
+def _other_way(march: March, pair: Pair) -> float:
+    """Penetration of two edges as found from the other one, over the mean thickness."""
+    if not isinstance(pair.other, Skin):
+        return 0.0
+    turned = Pair(pair.name, pair.other, pair.skin, -1, pair.measure)
+    system = march.system
+    return touch(march.model, turned, 1.0, march.settings.quadrature, system.q, system.z).penetration / pair.measure

@@ -1,0 +1,232 @@
+"""Contacts of a scene: which edges may touch what, and what they exert in a state.
+
+======  ===============================================================================
+symbol  meaning
+======  ===============================================================================
+g       gap at a point of the edge that is integrated over
+ε       penalty, pressure per depth; ρ its factor on E/h of the softer of both sides
+p       pressure, ε max(−g, 0)
+w, ds   width, and length of the edge without stress
+======  ===============================================================================
+
+The energy is ½ ∫ ε w g² ds over the places with g < 0; force and tangent are its derivatives.  A pair is every edge
+of the first beam with every one of the second, or with what is rigid.  In the course of Newton's iterations the part
+ε w g ∂²g of the tangent takes the g that the last step foresaw: where an edge has gone too deep the pressure of that
+state, which is far too large, has no say in what is stable.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea_reference.solid import facing, rigid
+from fea_reference.solid.bodies import BodyPart, turned
+from fea_reference.solid.model import Model
+from fea_reference.solid.rigid import Half, Round, Shape
+from fea_reference.solid.skin import STENCIL, Skin
+from fea_reference.solid.zones import Zones, zones
+from scene.answer import Array, Ints
+from scene.statement import BeamContact, CircleContact, HalfPlaneContact, Scene
+
+_REACH = 1.0  # thicknesses that gaps are looked for in, and a few nodes
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pair:
+    """An edge that is integrated over, and what it may touch: another edge, or a shape on the body of a number.
+
+    ``name`` is the contact's; ``measure`` the mean thickness.
+    """
+
+    name: str
+    skin: Skin
+    other: Skin | Shape
+    body: int
+    measure: float
+
+
+Foreseen = tuple[Array, Array]
+"""Places ζ (k,), ascending, and the g ≤ 0 that is foreseen there (k,)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Touch:
+    """A pair in a state.
+
+    Attributes:
+        pair: which.
+        zones: where it overlaps.
+        zeta: ζ of the points (k,).
+        facing: ζ of the other edge's (k,); empty for what is rigid.
+        points: where they are (k, 2).
+        push: their forces on the first edge (k, 2).
+        dofs: numbers (k, 28 or 17) among the mesh's q and, behind them, the bodies' unknowns as if all moved.
+        gradient: forces on these, the energy's derivative (k, 28 or 17).
+        hessian: (k, 28 or 17, 28 or 17).
+        gap: g of the points (k,), and its ``slope`` by the numbers (k, 28 or 17).
+        energy: of the penalty.
+    """
+
+    pair: Pair
+    zones: Zones
+    zeta: Array
+    facing: Array
+    points: Array
+    push: Array
+    dofs: Ints
+    gradient: Array
+    hessian: Array
+    gap: Array
+    slope: Array
+    energy: float
+
+    def foreseen(self, step: Array) -> Foreseen:
+        """What the gap will be after a ``step`` of all that is numbered, to first order."""
+        return self.zeta, np.minimum(self.gap + (self.slope * step[self.dofs]).sum(axis=1), 0.0)
+
+    @property
+    def penetration(self) -> float:
+        """The largest depth."""
+        return max(0.0, -self.zones.least)
+
+
+def pairs_of(scene: Scene, model: Model) -> tuple[Pair, ...]:
+    """The pairs of a scene's contacts."""
+    found: list[Pair] = []
+    number = {body.name: i for i, body in enumerate(model.bodies)}
+    for name, contact in scene.contacts.items():
+        match contact:
+            case BeamContact():
+                one, other = (_skins(scene, model, beam) for beam in contact.between)
+                found += [Pair(name, a, b, -1, 0.5 * (a.thickness + b.thickness)) for a in one for b in other]
+            case CircleContact() | HalfPlaneContact():
+                body = model.bodies[number[contact.body]]
+                shape = _shape(contact, body, model)
+                found += [
+                    Pair(name, skin, shape, number[contact.body], skin.thickness)
+                    for skin in _skins(scene, model, contact.beam)
+                ]
+    return tuple(found)
+
+
+def _skins(scene: Scene, model: Model, name: str) -> tuple[Skin, Skin]:
+    beam, i, mesh = scene.beams[name], model.mesh.names.index(name), model.mesh
+    E = scene.materials[beam.material].youngs_modulus * model.units.width * model.units.length / model.units.force
+    skins = []
+    for side in (1.0, -1.0):
+        nodes = mesh.line(i, side)
+        places = mesh.places[nodes]
+        apart = np.hypot(*np.diff(places, axis=0).T)
+        h = apart[0::2] + apart[1::2]  # of elements
+        u = mesh.u[nodes]
+        skins.append(
+            Skin(
+                i,
+                side,
+                nodes,
+                places,
+                u,
+                beam.width_at(u) / model.units.width,
+                beam.thinnest / model.units.length,
+                np.concatenate([np.repeat(E / h, 2), [E / h[-1]]]),
+            )
+        )
+    return skins[0], skins[1]
+
+
+def _shape(contact: CircleContact | HalfPlaneContact, body: BodyPart, model: Model) -> Shape:
+    units = model.units
+    if isinstance(contact, CircleContact):
+        return Round(
+            (np.array(contact.center) - units.origin) / units.length - body.centre, contact.radius / units.length
+        )
+    normal = np.array(contact.normal) / np.hypot(*contact.normal)
+    return Half((np.array(contact.point) - units.origin) / units.length - body.centre, normal)
+
+
+def touch(
+    model: Model, pair: Pair, factor: float, quadrature: int, q: Array, z: Array, foreseen: Foreseen | None = None
+) -> Touch:
+    """A pair in a state.
+
+    Args:
+        model: the mechanism.
+        pair: which.
+        factor: ρ of the penalty.
+        quadrature: Gauss points on each part of a zone.
+        q: displacements (2N,).
+        z: unknowns.
+        foreseen: the gap for the tangent's second part; without it the state's own.
+    """
+    places = model.mesh.places + q.reshape(-1, 2)
+    skin, other = pair.skin, pair.other
+    x = places[skin.nodes]
+    found = overlap(model, pair, places, z)
+    zeta, weights = found.points(quadrature)
+    nodes, N, _, _ = skin.shapes(zeta)
+    here = (N[:, None] @ x[nodes])[:, 0]
+    _, stretch, _ = skin.curve(skin.places, zeta)
+    ds = np.hypot(*stretch.T) * weights * skin.at(skin.width, zeta)
+    own = skin.nodes[nodes]
+    dofs = np.stack([2 * own, 2 * own + 1], axis=2).reshape(-1, 2 * STENCIL)
+    if isinstance(other, Skin):
+        there = facing.gaps(other, places[other.nodes], here, skin.outward(skin.curve(x, zeta)[1]), np.inf)
+        opposite = there.zeta
+        g, first, second = facing.variations(other, places[other.nodes], here, N, opposite)
+        g = np.where(there.faced, g, 0.0)
+        faced = other.nodes[other.shapes(opposite)[0]]
+        dofs = np.concatenate([dofs, np.stack([2 * faced, 2 * faced + 1], axis=2).reshape(-1, 2 * STENCIL)], axis=1)
+        softer = np.minimum(skin.at(skin.stiffness, zeta), other.at(other.stiffness, opposite))
+    else:
+        opposite = np.empty(0)
+        g, first, second = rigid.variations(other, model.bodies[pair.body], here, N, z)
+        moved = 2 * len(places) + 3 * pair.body + np.arange(3)
+        dofs = np.concatenate([dofs, np.broadcast_to(moved, (len(dofs), 3))], axis=1)
+        softer = skin.at(skin.stiffness, zeta)
+    g = np.minimum(g, 0.0)
+    bent = g
+    if foreseen is not None:
+        bent = np.interp(zeta, *foreseen, left=0.0, right=0.0) if foreseen[0].size else np.zeros_like(g)
+    penalty = factor * softer * ds
+    gradient = (penalty * g)[:, None] * first
+    hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
+    push = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
+    energy = 0.5 * float((penalty * g**2).sum())
+    return Touch(pair, found, zeta, opposite, here, push, dofs, gradient, hessian, g, first, energy)
+
+
+def overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
+    """Where a pair overlaps, with the nodes at ``places`` (N, 2)."""
+    skin, other = pair.skin, pair.other
+    x = places[skin.nodes]
+    if isinstance(other, Skin):
+        y = places[other.nodes]
+        apart = max(float(np.hypot(*np.diff(one, axis=0).T).max()) for one in (x, y))
+        reach = _REACH * (skin.thickness + other.thickness) + apart
+        low, high = x.min(axis=0) - reach, x.max(axis=0) + reach
+        if np.any(y.min(axis=0) > high) or np.any(y.max(axis=0) < low):
+            return Zones(np.empty((2, 0)), np.inf, 0.0)
+
+    def gap(zeta: Array) -> Array:
+        here, slope, _ = skin.curve(x, zeta)
+        if isinstance(other, Skin):
+            return facing.gaps(other, y, here, skin.outward(slope), reach).gap
+        g, h, _ = other.measured(rigid.seen(model.bodies[pair.body], here, z))
+        h = turned(h, float(model.bodies[pair.body].state(z)[2]))
+        met = (h * skin.outward(slope)).sum(axis=1) < 0.0
+        return np.asarray(np.where(met, g, np.inf))
+
+    return zones(gap, skin.nodes.size)
+
+
+def closed(touches: tuple[Touch, ...]) -> Mapping[str, tuple[Touch, ...]]:
+    """What presses, by the name of the contact."""
+    names = dict.fromkeys(one.pair.name for one in touches)
+    return {
+        name: pressing
+        for name in names
+        if (pressing := tuple(one for one in touches if one.pair.name == name and one.zeta.size))
+    }

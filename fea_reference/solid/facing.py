@@ -1,0 +1,106 @@
+"""How far a point is from an edge of a beam, and how that varies with the nodes.
+
+======  ==================================================================
+symbol  meaning
+======  ==================================================================
+x       the point, of the edge that is integrated over
+y(ζ)    the other edge; ζ its place nearest to x
+n, τ    normal of y out of its beam, unit tangent
+g       gap, (x − y)·n: negative where x lies within
+a       δx − δy, what both sides of a place move apart by
+J, k    |y'| and n·y''
+A       J² − g k: positive at a nearest place
+======  ==================================================================
+
+δg = a·n and δζ = (J a·τ + g n·δy')/A, so
+
+    δ²g = −[k (a·τ)² + 2 J (a·τ)(n·δy') + g (n·δy')²]/A
+
+(Wriggers, Computational Contact Mechanics, 2nd ed., section 4.1, brought to one parameter).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from fea_reference.solid.skin import Skin
+from scene.answer import Array, Flags
+
+_ITERATIONS = 12
+_ARRIVED = 1e-12  # of a node's distance
+_OPPOSED = -0.2  # cosine between both outward normals: what looks another way is another side
+
+
+@dataclass(frozen=True, slots=True)
+class Gaps:
+    """Of k points: g, ζ, and whether there is a nearest place that faces the point."""
+
+    gap: Array
+    zeta: Array
+    faced: Flags
+
+
+def gaps(skin: Skin, x: Array, points: Array, normals: Array, reach: float) -> Gaps:
+    """How far ``points`` (k, 2) with outward ``normals`` (k, 2) are from an edge with nodes ``x`` (N, 2).
+
+    Farther than ``reach`` nothing is looked for, nor deeper than half of the thickness.
+    """
+    distance, node = cKDTree(x).query(points, distance_upper_bound=reach)
+    near = np.isfinite(distance)
+    gap, zeta, faced = np.full(len(points), np.inf), np.zeros(len(points)), np.zeros(len(points), dtype=bool)
+    if not near.any():
+        return Gaps(gap, zeta, faced)
+    p, last = points[near], float(skin.nodes.size - 1)
+    place = node[near].astype(float)
+    for _ in range(_ITERATIONS):
+        y, slope, bend = skin.curve(x, place)
+        d = p - y
+        square = (slope**2).sum(axis=1)
+        curvature = np.maximum(square - (d * bend).sum(axis=1), 0.2 * square)
+        step = np.clip((d * slope).sum(axis=1) / curvature, -1.0, 1.0)
+        moved = np.clip(place + step, 0.0, last)
+        done = np.abs(moved - place).max() < _ARRIVED
+        place = moved
+        if done:
+            break
+    y, slope, _ = skin.curve(x, place)
+    n = skin.outward(slope)
+    d = p - y
+    found = (d * n).sum(axis=1)
+    beside = np.abs((d * slope).sum(axis=1)) / (slope**2).sum(axis=1)
+    facing = (beside < 1e-6) & ((n * normals[near]).sum(axis=1) < _OPPOSED) & (found > -0.5 * skin.thickness)
+    gap[near] = np.where(facing, found, np.inf)
+    zeta[near], faced[near] = place, facing
+    return Gaps(gap, zeta, faced)
+
+
+def variations(skin: Skin, x: Array, points: Array, shapes: Array, zeta: Array) -> tuple[Array, Array, Array]:
+    """g (k,), ∂g (k, 28) and ∂²g (k, 28, 28) at ζ.
+
+    The 28 are (x, y) of the seven nodes of the point, whose shape functions ``shapes`` (k, 7) are, and of the edge's.
+    """
+    _, N, N1, _ = skin.shapes(zeta)
+    y, slope, bend = skin.curve(x, zeta)
+    n = skin.outward(slope)
+    J = np.hypot(*slope.T)
+    tangent = slope / J[:, None]
+    g = ((points - y) * n).sum(axis=1)
+    k = (n * bend).sum(axis=1)
+    both = np.concatenate([shapes, -N], axis=1)
+    slopes = np.concatenate([np.zeros_like(shapes), N1], axis=1)
+
+    def along(values: Array, direction: Array) -> Array:
+        return np.asarray((values[:, :, None] * direction[:, None, :]).reshape(len(values), 2 * values.shape[1]))
+
+    first, beside, leaning = along(both, n), along(both, tangent), along(slopes, n)
+    A = J**2 - g * k
+
+    def product(left: Array, right: Array, factor: Array) -> Array:
+        return np.asarray(factor[:, None, None] * left[:, :, None] * right[:, None, :])
+
+    cross = product(beside, leaning, J / A)
+    second = -(product(beside, beside, k / A) + cross + cross.transpose(0, 2, 1) + product(leaning, leaning, g / A))
+    return g, first, second

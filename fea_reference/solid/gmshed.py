@@ -1,0 +1,39 @@
+"""The door to gmsh: a rectangle cut by its transfinite mesher."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+MISSING = "gmsh cannot be imported (the extra 'solid' brings it): a plain mapped mesh, whose nodes are the same"
+
+
+def available() -> bool:
+    """Whether gmsh can be imported: its wheel needs libraries of the desktop besides."""
+    try:
+        import gmsh  # noqa: F401 - whether it loads is the question
+    except (ImportError, OSError):
+        return False
+    return True
+
+
+def write_rectangle(path: Path, n: int, across: int) -> None:
+    """Write [0, 1] × [−1, 1], in n × ``across`` even quadrilaterals, to a file of gmsh's."""
+    import gmsh
+
+    gmsh.initialize([], readConfigFiles=False, interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.model.add("rectangle")
+        geo = gmsh.model.geo
+        corners = [geo.addPoint(x, y, 0.0) for x, y in ((0.0, -1.0), (1.0, -1.0), (1.0, 1.0), (0.0, 1.0))]
+        sides = [geo.addLine(corners[i], corners[(i + 1) % 4]) for i in range(4)]
+        surface = geo.addPlaneSurface([geo.addCurveLoop(sides)])
+        for side, count in zip(sides, (n, across, n, across), strict=True):
+            geo.mesh.setTransfiniteCurve(side, count + 1)
+        geo.mesh.setTransfiniteSurface(surface)
+        geo.mesh.setRecombine(2, surface)
+        geo.synchronize()
+        gmsh.model.mesh.generate(2)
+        gmsh.write(str(path))
+    finally:
+        gmsh.finalize()

@@ -1,0 +1,214 @@
+"""From station to station by load steps that cut and grow.
+
+======  ==========================================
+symbol  meaning
+======  ==========================================
+λ       value of the stepped load or drive, no unit
+z(λ)    equilibrium
+======  ==========================================
+
+A step begins at the last equilibrium, whose tangent is the first iteration's, and ends in another, or is cut; an
+easy one is doubled.  (The line through the last two equilibria is no better a beginning: along it what turns is
+stretched.)  Where a contact closes on the way, the λ at which its gap vanishes is looked for between open states.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from fea_reference.solid.contacts import Pair
+from fea_reference.solid.model import Model
+from fea_reference.solid.newton import Found, equilibrium
+from fea_reference.solid.passing import passed
+from fea_reference.solid.settings import Settings
+from fea_reference.solid.system import System, assemble
+from scene.answer import Array, Ending
+
+_SMALLEST = 1.0 / 4096.0  # of a stage's span
+_EASY = 9  # iterations in which a step that may be doubled arrives
+_CUT = 0.3  # of a step that was too long
+_WHOLE = 1.01  # of a step: what is left goes with it
+_STIFFER = 4.0
+_STIFFEST = 1e4  # of the factor at first
+_CLOSING = 1e-9  # gap at which a contact is found closed, of the longest beam
+_SAME = 1e-12  # of a step: two values that are one
+_LOOKS = 60
+
+
+class StoppedError(Exception):
+    """The march cannot go on: with an ending and a sentence."""
+
+    def __init__(self, ending: Ending, sentence: str) -> None:
+        super().__init__(sentence)
+        self.ending = ending
+        self.sentence = sentence
+
+
+@dataclass
+class March:
+    """The state of a solve.
+
+    Attributes:
+        model: the mechanism.
+        settings: how.
+        penalties: ρ by pair.
+        values: of all that is stepped, no units.
+        system: the equilibrium reached.
+        closing: by contact, the value (SI) at which it first closed.
+        iterations: of this station.
+        step: how far the next step may go.
+    """
+
+    model: Model
+    settings: Settings
+    penalties: dict[Pair, float]
+    values: Array
+    system: System
+    closing: dict[str, float] = field(default_factory=dict)
+    iterations: int = 0
+    step: float = np.inf
+
+    def look(self, values: Array, z: Array, penalties: dict[Pair, float]) -> Found:
+        """Look for an equilibrium; its iterations count.
+
+        Raises:
+            StoppedError: the station's iterations are used up.
+        """
+        found = equilibrium(self.model, penalties, self.settings, values, z)
+        self.iterations += found.iterations
+        if self.iterations > self.settings.iteration_limit:
+            raise StoppedError(Ending.STEP_TOO_SMALL, f"{self.settings.iteration_limit} iterations were not enough")
+        return found
+
+
+def begin(model: Model, settings: Settings, pairs: tuple[Pair, ...]) -> March:
+    """At rest."""
+    penalties = dict.fromkeys(pairs, settings.stiffness)
+    values = np.zeros(len(model.stepped))
+    return March(
+        model,
+        settings,
+        penalties,
+        values,
+        assemble(model, penalties, settings.quadrature, values, np.zeros(model.size)),
+    )
+
+
+def reach(march: March, part: int, target: float, span: float) -> None:
+    """Step the value of a number ``part`` to a ``target``, both without units; a stage goes over ``span`` in all.
+
+    Raises:
+        StoppedError: no equilibrium is found.
+    """
+    march.iterations = 0
+    why = ""
+    while True:
+        here = float(march.values[part])
+        left = target - here
+        if left == 0.0:
+            break
+        step = left if abs(left) < _WHOLE * march.step else float(np.copysign(march.step, left))
+        if abs(step) < _SMALLEST * span and abs(step) < abs(left):
+            name, unit = march.model.stepped[part].name, march.model.stepped[part].unit
+            raise StoppedError(
+                Ending.STEP_TOO_SMALL, f"beyond {name} = {here * unit:.6g} no equilibrium is found: {why}"
+            )
+        goal = target if step == left else here + step
+        values = march.values.copy()
+        values[part] = goal
+        found = march.look(values, march.system.z, march.penalties)
+        through = "" if found.system is None else passed(march.model, march.penalties, march.system.z, found.system.z)
+        if found.system is None or through:
+            why = f"a beam passes through what it may touch in {through}" if through else found.why
+            march.step = _CUT * abs(step)
+            continue
+        _note_closings(march, part, here, goal, found.system)
+        march.values, march.system = values, found.system
+        march.step *= 2.0 if found.iterations <= _EASY else 1.0
+    _tighten(march)
+
+
+def leave_stage(march: March) -> None:
+    """What is stepped is another thing from now on: nothing is known of its way."""
+    march.step = np.inf
+
+
+def _tighten(march: March) -> None:
+    """Stiffen penalties until what they leave is no deeper than asked.
+
+    Raises:
+        StoppedError: that leads to no equilibrium.
+    """
+    while True:
+        deep = [
+            one.pair for one in march.system.touches if one.penetration > march.settings.penetration * one.pair.measure
+        ]
+        if not deep:
+            return
+        penalties = march.penalties | {pair: _STIFFER * march.penalties[pair] for pair in deep}
+        if max(penalties.values()) > _STIFFEST * march.settings.stiffness:
+            return  # the certificate will say so
+        found = march.look(march.values, march.system.z, penalties)
+        if found.system is None:
+            raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact cannot be made as stiff as asked: {found.why}")
+        march.penalties, march.system = penalties, found.system
+
+
+def _note_closings(march: March, part: int, here: float, goal: float, there: System) -> None:
+    """Find where between two equilibria the contacts close that are closed in the second for the first time."""
+    unit = march.model.stepped[part].unit
+    was = _least(march.system)
+    for name, gap in _least(there).items():
+        if name in march.closing or not gap < 0.0:
+            continue
+        march.closing[name] = (here if was[name] <= 0.0 else _closing(march, part, name, here, goal)) * unit
+
+
+def _closing(march: March, part: int, name: str, here: float, goal: float) -> float:
+    """λ at which the gap of a contact vanishes: the false position between what is open and what overlaps.
+
+    What overlaps does so with the contact taken away, so that the gap is smooth there; such a state may lie far beyond
+    the open one, and is gone to in shorter steps where one is too long.
+
+    Raises:
+        StoppedError: it is not found.
+    """
+    without = {pair: rho for pair, rho in march.penalties.items() if pair.name != name}
+    watched = dict.fromkeys((pair for pair in march.penalties if pair.name == name), 1.0)
+    quadrature = march.settings.quadrature
+    a, fa, z = here, _least(march.system)[name], march.system.z
+    b, fb = goal, None
+    c = 0.5 * (a + b)
+    for _ in range(_LOOKS):
+        values = march.values.copy()
+        values[part] = c
+        found = march.look(values, z, without)
+        if found.system is None:
+            c = 0.5 * (a + c)
+            continue
+        watching = assemble(march.model, watched, quadrature, values, found.system.z)
+        fc = min(one.zones.least for one in watching.touches)
+        if abs(fc) < _CLOSING:
+            return c
+        if fc < 0.0:
+            b, fb = c, fc
+        else:
+            a, fa, z = c, fc, found.system.z
+        secant = fb is not None and np.isfinite(fa)
+        c = a + fa * (b - a) / (fa - fb) if secant and fb is not None else 0.5 * (a + b)
+        if abs(b - a) < _SAME * abs(goal - here):
+            return c
+    unit = march.model.stepped[part].unit
+    raise StoppedError(
+        Ending.STEP_TOO_SMALL, f"where {name} closes between {here * unit:.6g} and {goal * unit:.6g} is not found"
+    )
+
+
+def _least(system: System) -> dict[str, float]:
+    """The least gap of every contact."""
+    found: dict[str, float] = {}
+    for one in system.touches:
+        found[one.pair.name] = min(found.get(one.pair.name, np.inf), one.zones.least)
+    return found

@@ -1,0 +1,127 @@
+"""All beams' areas in quadrilaterals of second order, mapped from rectangles.
+
+======  ================================================================
+symbol  meaning
+======  ================================================================
+u, η    fraction of a beam's arc length, and place across in [−1, 1]
+X       a node's place without stress, over the longest beam
+N_a     shape function of an element's node a, biquadratic
+======  ================================================================
+
+The rectangle of beam b is [2b, 2b + 1] × [−1, 1], n elements along and m across with nine nodes each; every node is
+moved to where the area has its u and η, and scikit-fem gives ∂N_a/∂X and the weights at 3 × 3 Gauss points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from skfem import CellBasis, ElementQuad2, MeshQuad, MeshQuad2
+
+from fea_reference.solid.areas import fractions, points
+from scene.answer import Array, Ints
+from scene.statement import Scene
+
+_ON = 1e-9  # of η or u: on an edge
+
+Rectangle = Callable[[Array, int], tuple[Array, NDArray[np.int64]]]
+"""Corners (2, k) and quadrilaterals (4, c) of a rectangle [0, 1] × [−1, 1], of places along and a number across."""
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """Nodes and elements of all beams.
+
+    Attributes:
+        names: of the beams, by number.
+        places: X (N, 2).
+        u: fractions of the arc length (N,).
+        eta: places across (N,).
+        beams: number of each node's beam (N,).
+        cells: numbers of each element's nodes (e, 9).
+        gradients: ∂N_a/∂X (e, 9 Gauss points, 9 nodes, 2).
+        weights: areas of the Gauss points (e, 9), with the width there over the largest.
+        owners: number of each element's beam (e,).
+        origin: what places are counted from (2,), m.
+    """
+
+    names: tuple[str, ...]
+    places: Array
+    u: Array
+    eta: Array
+    beams: Ints
+    cells: Ints
+    gradients: Array
+    weights: Array
+    owners: Ints
+    origin: Array
+
+    def line(self, beam: int, eta: float) -> Ints:
+        """The nodes of a beam at a place across, from its start to its end."""
+        found = np.flatnonzero((self.beams == beam) & (np.abs(self.eta - eta) < _ON))
+        return np.asarray(found[np.argsort(self.u[found])])
+
+    def face(self, beam: int, u: float) -> Ints:
+        """The nodes of a section of a beam's, from its right to its left."""
+        found = np.flatnonzero((self.beams == beam) & (np.abs(self.u - u) < _ON))
+        return np.asarray(found[np.argsort(self.eta[found])])
+
+
+def plain_rectangle(along: Array, across: int) -> tuple[Array, NDArray[np.int64]]:
+    """A rectangle by NumPy alone, see :data:`Rectangle`."""
+    mesh = MeshQuad.init_tensor(along, np.linspace(-1.0, 1.0, across + 1))
+    return np.ascontiguousarray(mesh.p), np.ascontiguousarray(mesh.t)
+
+
+def meshed(
+    scene: Scene, counts: Mapping[str, int], across: int, length: float, rectangle: Rectangle = plain_rectangle
+) -> Mesh:
+    """Mesh a scene's beams.
+
+    Args:
+        scene: whose beams they are.
+        counts: elements along each.
+        across: elements across all.
+        length: of the longest beam, m.
+        rectangle: how a rectangle is cut.
+    """
+    corners, quadrilaterals, first = [], [], 0
+    for number, (name, beam) in enumerate(scene.beams.items()):
+        p, t = rectangle(fractions(beam, counts[name]), across)
+        corners.append(p + np.array([[2.0 * number], [0.0]]))
+        quadrilaterals.append(t + first)
+        first += p.shape[1]
+    flat = MeshQuad2.from_mesh(MeshQuad(np.ascontiguousarray(np.hstack(corners)), np.hstack(quadrilaterals)))
+    number = np.minimum((flat.doflocs[0] // 2.0).astype(np.intp), len(scene.beams) - 1)
+    u, eta = np.clip(flat.doflocs[0] - 2.0 * number, 0.0, 1.0), np.asarray(flat.doflocs[1])
+    places = np.empty((u.size, 2))
+    for i, beam in enumerate(scene.beams.values()):
+        own = number == i
+        places[own] = points(beam, u[own], eta[own]) / length
+    origin = places[0].copy()
+    places -= origin  # so that places far from the scene's origin are not rounded
+    basis = CellBasis(MeshQuad2(np.ascontiguousarray(places.T), flat.t), ElementQuad2(), intorder=5)
+    cells = np.asarray(basis.element_dofs.T, dtype=np.intp)
+    gradients = np.stack([np.asarray(shape[0].grad) for shape in basis.basis])  # (9, 2, e, q)
+    owners = number[cells[:, 0]]
+    values = np.stack([np.asarray(shape[0])[0] for shape in basis.basis])  # (9, q)
+    widest = max(float(beam.width_at(beam.knots).max()) for beam in scene.beams.values())
+    width = np.empty(basis.dx.shape)
+    for i, beam in enumerate(scene.beams.values()):
+        own = owners == i
+        width[own] = beam.width_at(u[cells[own]] @ values) / widest
+    return Mesh(
+        tuple(scene.beams),
+        places,
+        u,
+        eta,
+        number,
+        cells,
+        np.ascontiguousarray(gradients.transpose(2, 3, 0, 1)),
+        np.asarray(basis.dx) * width,
+        owners,
+        origin * length,
+    )

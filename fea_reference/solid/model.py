@@ -1,0 +1,238 @@
+"""A scene made discrete as a solid, without units.
+
+Lengths are over the longest beam's L, forces over the largest E w t³/12 over L², so moments and energies over the same
+over L.  The mesh has displacements q (2N,), node by node.  The unknowns z are, in this order: the q of all nodes that
+no tie holds; ψ of every pinned face; (X, Y, φ) of every body that moves; a multiplier per row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from fea_reference.solid.areas import longest
+from fea_reference.solid.beam_loads import AreaLoad, on_area
+from fea_reference.solid.bodies import BodyPart, Tie, across, displaced, turned
+from fea_reference.solid.elements import Elements, Strained, built, plane_stress, strained
+from fea_reference.solid.mesh import Mesh, Rectangle, meshed, plain_rectangle
+from fea_reference.solid.rows import Row, rows_of
+from fea_reference.solid.settings import Settings
+from scene.answer import Array, Ints
+from scene.geometry import arc_length
+from scene.statement import (
+    BeamForce,
+    DisplacementDrive,
+    DistributedLoad,
+    Force,
+    FreeEnd,
+    Moment,
+    PinnedEnd,
+    Scene,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Units:
+    """The scene's own: ``length`` (m), ``bending`` stiffness (N·m²), ``origin`` (2,) (m), ``width`` (m)."""
+
+    length: float
+    bending: float
+    origin: Array
+    width: float
+
+    @property
+    def force(self) -> float:
+        """N."""
+        return self.bending / self.length**2
+
+    @property
+    def moment(self) -> float:
+        """N·m, and J."""
+        return self.bending / self.length
+
+
+@dataclass(frozen=True, slots=True)
+class LoadPart:
+    """A moment on a body (``direction`` is None), or a force along ``direction`` (2,) at its ``arm`` (2,)."""
+
+    name: str
+    body: int
+    arm: Array
+    direction: Array | None
+    unit: float
+
+
+@dataclass(frozen=True, slots=True)
+class DrivePart:
+    """What steps a drive's row; ``unit`` is its value's (m or rad)."""
+
+    name: str
+    unit: float
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """Everything the mechanics needs to know of a scene.
+
+    ``free`` are the q (f,) that are unknowns, in the order of these; ``lengths`` the beams' arc lengths.
+    """
+
+    units: Units
+    mesh: Mesh
+    elements: Elements
+    lengths: tuple[float, ...]
+    bodies: tuple[BodyPart, ...]
+    ties: tuple[Tie, ...]
+    rows: tuple[Row, ...]
+    loads: tuple[LoadPart | AreaLoad, ...]
+    drives: tuple[DrivePart, ...]
+    free: Ints
+    size: int
+
+    @property
+    def stepped(self) -> tuple[LoadPart | AreaLoad | DrivePart, ...]:
+        """What has a value that is stepped, in the order of the values: loads, drives."""
+        return (*self.loads, *self.drives)
+
+    def displacements(self, z: Array) -> Array:
+        """q (2N,) of all nodes."""
+        q = np.empty(2 * len(self.mesh.places))
+        q[self.free] = z[: self.free.size]
+        u = q.reshape(-1, 2)
+        for tie in self.ties:
+            body = self.bodies[tie.body]
+            if tie.psi is None:
+                u[tie.nodes] = body.motion(tie.pin + tie.offsets, z)
+            else:
+                u[tie.nodes] = body.motion(tie.pin, z) + displaced(tie.offsets, z[tie.psi])
+        return q
+
+    def chain(self, z: Array) -> csr_matrix:
+        """∂q/∂z (2N, size), by which forces and stiffnesses go from nodes to unknowns."""
+        rows, columns, values = [self.free], [np.arange(self.free.size)], [np.ones(self.free.size)]
+
+        def enter(nodes: Ints, dof: int, slope: Array) -> None:
+            rows.append(np.concatenate([2 * nodes, 2 * nodes + 1]))
+            columns.append(np.full(2 * nodes.size, dof))
+            values.append(
+                np.broadcast_to(slope.T, (2, nodes.size)).ravel() if slope.ndim == 2 else np.repeat(slope, nodes.size)
+            )
+
+        for tie in self.ties:
+            dofs = self.bodies[tie.body].dofs
+            arms = tie.pin + (tie.offsets if tie.psi is None else np.zeros_like(tie.offsets))
+            if dofs is not None:
+                enter(tie.nodes, int(dofs[0]), np.array([1.0, 0.0]))
+                enter(tie.nodes, int(dofs[1]), np.array([0.0, 1.0]))
+                enter(tie.nodes, int(dofs[2]), across(turned(arms, z[dofs[2]])))
+            if tie.psi is not None:
+                enter(tie.nodes, tie.psi, across(turned(tie.offsets, z[tie.psi])))
+        entries = (np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))
+        return csr_matrix(entries, (2 * len(self.mesh.places), self.size))
+
+    def turning(self, forces: Array, z: Array) -> list[tuple[int, float]]:
+        """Unknowns and Σ f·∂²q for ``forces`` (2N,): what ties that turn add to the tangent, all on its diagonal."""
+        found = []
+        f = forces.reshape(-1, 2)
+        for tie in self.ties:
+            dofs = self.bodies[tie.body].dofs
+            arms = tie.pin + (tie.offsets if tie.psi is None else np.zeros_like(tie.offsets))
+            if dofs is not None:
+                found.append((int(dofs[2]), -float((f[tie.nodes] * turned(arms, z[dofs[2]])).sum())))
+            if tie.psi is not None:
+                found.append((tie.psi, -float((f[tie.nodes] * turned(tie.offsets, z[tie.psi])).sum())))
+        return found
+
+    def strained(self, q: Array) -> Strained:
+        """The elements under displacements (2N,)."""
+        return strained(self.elements, q)
+
+
+def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectangle) -> Model:
+    """Discretise a scene.
+
+    Raises:
+        SceneError: the settings do not fit the scene.
+    """
+    counts = settings.elements_of(scene.beams)
+    length = longest(scene)
+    mesh = meshed(scene, counts, settings.across, length, rectangle)
+    beams = list(scene.beams.values())
+    widest = max(float(beam.width_at(beam.knots).max()) for beam in beams)
+    stiffest = max(
+        scene.materials[beam.material].youngs_modulus
+        * float((beam.width_at(beam.knots) * beam.thickness_at(beam.knots) ** 3).max())
+        / 12.0
+        for beam in beams
+    )
+    units = Units(length, stiffest, mesh.origin, widest)
+    materials = [scene.materials[beam.material] for beam in beams]
+    elasticity = np.stack([plane_stress(one.youngs_modulus, one.poisson_ratio) for one in materials])
+    # E w per length of the mesh, whose weights have w over the widest
+    elements = built(mesh, elasticity * widest * units.length / units.force)
+
+    number = {name: i for i, name in enumerate(scene.bodies)}
+    held = np.zeros(len(mesh.places), dtype=bool)
+    joints = []
+    for i, beam in enumerate(beams):
+        for which, end, u in (("start", beam.start, 0.0), ("end", beam.end, 1.0)):
+            if not isinstance(end, FreeEnd):
+                nodes = mesh.face(i, u)
+                held[nodes] = True
+                joints.append((i, which, end, nodes))
+    free = np.flatnonzero(~np.repeat(held, 2))
+    size = free.size
+    psis: list[int | None] = []
+    for _, _, end, _ in joints:
+        psis.append(size if isinstance(end, PinnedEnd) else None)
+        size += isinstance(end, PinnedEnd)
+    bodies = []
+    for name, body in scene.bodies.items():
+        points = {key: (np.array(at) - units.origin) / length for key, at in body.points.items()}
+        moves = body.motion != "fixed"
+        bodies.append(
+            BodyPart(name, np.mean(list(points.values()), axis=0), points, np.arange(size, size + 3) if moves else None)
+        )
+        size += 3 * moves
+    ties = []
+    for (i, which, end, nodes), psi in zip(joints, psis, strict=True):
+        b = number[scene.body_of(end.point)]
+        middle = 0.5 * (mesh.places[nodes[0]] + mesh.places[nodes[-1]])
+        ties.append(Tie(i, which, end.point, b, nodes, middle - bodies[b].centre, mesh.places[nodes] - middle, psi))
+    rows = rows_of(scene, tuple(bodies), size)
+    return Model(
+        units,
+        mesh,
+        elements,
+        tuple(arc_length(beam.curve) / length for beam in beams),
+        tuple(bodies),
+        tuple(ties),
+        rows,
+        tuple(_loads(scene, mesh, bodies, number, units)),
+        tuple(
+            DrivePart(name, units.length if isinstance(drive, DisplacementDrive) else 1.0)
+            for name, drive in scene.drives.items()
+        ),
+        free,
+        size + len(rows),
+    )
+
+
+def _loads(
+    scene: Scene, mesh: Mesh, bodies: Sequence[BodyPart], number: dict[str, int], units: Units
+) -> list[LoadPart | AreaLoad]:
+    found: list[LoadPart | AreaLoad] = []
+    for name, load in scene.loads.items():
+        match load:
+            case Moment():
+                found.append(LoadPart(name, number[load.body], np.zeros(2), None, units.moment))
+            case Force():
+                b = number[scene.body_of(load.point)]
+                direction = np.array(load.direction) / np.hypot(*load.direction)
+                found.append(LoadPart(name, b, bodies[b].arm(load.point), direction, units.force))
+            case BeamForce() | DistributedLoad():
+                found.append(on_area(name, load, scene, mesh, units.force, units.length))
+    return found

@@ -1,0 +1,61 @@
+"""Whether a beam has passed through what it may touch between two equilibria.
+
+A step may be so long that neither of its ends overlaps.  Of a circle it is looked at whether the neutral line has gone
+over its centre, as the circle's body sees it; of two beams whether their neutral lines cross.  Behind the edge of a
+half-plane everything is within it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from fea_reference.solid.contacts import Pair
+from fea_reference.solid.model import Model
+from fea_reference.solid.rigid import Round, seen
+from fea_reference.solid.skin import Skin
+from scene.answer import Array
+
+
+def passed(model: Model, pairs: Iterable[Pair], before: Array, after: Array) -> str:
+    """The contact through which a beam has passed between unknowns ``before`` and ``after``; empty if none."""
+    places = [model.mesh.places + model.displacements(z).reshape(-1, 2) for z in (before, after)]
+    for pair in pairs:
+        own = model.mesh.line(pair.skin.beam, 0.0)
+        if isinstance(pair.other, Skin):
+            other = model.mesh.line(pair.other.beam, 0.0)
+            if cross(places[1][own], places[1][other]):
+                return pair.name
+        elif isinstance(pair.other, Round):
+            body = model.bodies[pair.body]
+            a, b = (seen(body, x[own], z) for x, z in zip(places, (before, after), strict=True))
+            if swept(a, b, pair.other.centre):
+                return pair.name
+    return ""
+
+
+def swept(a: Array, b: Array, point: Array) -> bool:
+    """Whether a line through points (n, 2) has gone over a point (2,) as they went straight from ``a`` to ``b``."""
+    return bool(_within(a[:-1], a[1:], b[:-1], point).any() or _within(a[1:], b[1:], b[:-1], point).any())
+
+
+def _within(p: Array, q: Array, r: Array, point: Array) -> Array:
+    """Whether triangles (k, 2) hold a point, (k,)."""
+    sides = np.stack([_side(p, q, point), _side(q, r, point), _side(r, p, point)])
+    return np.asarray((sides > 0.0).all(axis=0) | (sides < 0.0).all(axis=0))
+
+
+def _side(p: Array, q: Array, r: Array) -> Array:
+    """Positive where ``r`` is on the left of the way from ``p`` to ``q``, all (..., 2)."""
+    return np.asarray(
+        (q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1]) - (q[..., 1] - p[..., 1]) * (r[..., 0] - p[..., 0])
+    )
+
+
+def cross(one: Array, other: Array) -> bool:
+    """Whether two lines through points (n, 2) and (m, 2) cross."""
+    a, b = one[:-1, None], one[1:, None]
+    c, d = other[None, :-1], other[None, 1:]
+    apart = (_side(a, b, c) * _side(a, b, d) < 0.0) & (_side(c, d, a) * _side(c, d, b) < 0.0)
+    return bool(apart.any())

@@ -1,0 +1,142 @@
+"""What is asked at a station, in SI units, as :mod:`scene.answer` defines it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea_reference.solid.beam_loads import AreaLoad
+from fea_reference.solid.contacts import Touch, closed
+from fea_reference.solid.march import March
+from fea_reference.solid.stress import bending_and_membrane
+from fea_reference.solid.supports import Wrench, grounded, held, support
+from scene.answer import Array, Shape, frozen_array
+from scene.statement import DisplacementDrive, Probe, Scene, TurningBody
+
+_NOTHING = 1e-9  # of the largest force
+
+
+def probed(scene: Scene, march: March, probe: Probe) -> Array:
+    """One probe's value; the potential energy leaves out what the contact's penalty stores."""
+    model, system = march.model, march.system
+    units, z = model.units, system.z
+    match probe.quantity:
+        case "displacement":
+            body = next(body for body in model.bodies if probe.of in body.points)
+            return frozen_array(body.motion(body.arm(probe.of), z) * units.length)
+        case "rotation":
+            body = next(body for body in model.bodies if body.name == probe.of)
+            return frozen_array(body.state(z)[2])
+        case "reaction":
+            forces = [force for force, _ in _holding(scene, march, probe.of)]
+            return frozen_array(sum(forces, np.zeros(2)) * units.force)
+        case "reaction_moment":
+            return frozen_array(sum(moment for _, moment in _holding(scene, march, probe.of)) * units.moment)
+        case "bending_stress" | "combined_stress":
+            E = scene.materials[scene.beams[probe.of].material].youngs_modulus
+            u = np.linspace(0.0, 1.0, probe.points)
+            bending, membrane = bending_and_membrane(model, system.q, model.mesh.names.index(probe.of), E, u)
+            return frozen_array(bending if probe.quantity == "bending_stress" else np.abs(bending) + np.abs(membrane))
+        case "potential_energy":
+            return frozen_array(_potential_energy(march) * units.moment)
+        case "closing_load":
+            return frozen_array(march.closing[probe.of] if _touches(march, probe.of) else [])
+        case "force":
+            return frozen_array(
+                float(np.hypot(*sum((one.push.sum(axis=0) for one in _touches(march, probe.of)), np.zeros(2))))
+                * units.force
+            )
+        case "centre":
+            return frozen_array(_centre(scene, march, probe.of))
+        case "ends":
+            return frozen_array(_ends(scene, march, probe.of))
+        case "angle" | "moment":
+            raise AssertionError(f"{probe.name} has been refused")
+
+
+def shapes(march: March) -> dict[str, Shape]:
+    """The beams' neutral lines as they lie, SI."""
+    model, drawn = march.model, {}
+    places = model.mesh.places + march.system.q.reshape(-1, 2)
+    for i, name in enumerate(model.mesh.names):
+        nodes = model.mesh.line(i, 0.0)
+        x, y = places[nodes].T * model.units.length + model.units.origin[:, None]
+        s = model.mesh.u[nodes] * model.lengths[i] * model.units.length
+        drawn[name] = Shape(frozen_array(s), frozen_array(x), frozen_array(y))
+    return drawn
+
+
+def touching(march: March) -> dict[str, Array]:
+    """Places of the closed contacts' points on the first edge, (k, 2) in metres."""
+    units = march.model.units
+    return {
+        name: frozen_array(np.concatenate([one.points for one in found]) * units.length + units.origin)
+        for name in dict.fromkeys(pair.name for pair in march.penalties)
+        if (found := _touches(march, name))
+    }
+
+
+def _touches(march: March, name: str) -> tuple[Touch, ...]:
+    """What presses of a contact; nothing where it is open, or overlaps by round-off and presses by no more."""
+    found = closed(march.system.touches).get(name, ())
+    force = sum(float(np.hypot(*one.push.T).sum()) for one in found)
+    return found if force > _NOTHING * march.system.scale else ()
+
+
+def _arc_lengths(march: March, one: Touch, zeta: Array) -> Array:
+    """Arc lengths (k,), m, on the neutral line of the edge that is integrated over."""
+    skin = one.pair.skin
+    return skin.at(skin.u, zeta) * march.model.lengths[skin.beam] * march.model.units.length
+
+
+def _centre(scene: Scene, march: March, name: str) -> Array:
+    found = _touches(march, name)
+    if not found:
+        return np.empty(0)
+    weights = np.concatenate([np.hypot(*one.push.T) for one in found])
+    places = np.concatenate([_arc_lengths(march, one, one.zeta) for one in found])
+    return np.array([weights @ places / weights.sum()])
+
+
+def _ends(scene: Scene, march: March, name: str) -> Array:
+    found = _touches(march, name)
+    if not found:
+        return np.empty(0)
+    places = np.concatenate([_arc_lengths(march, one, one.zones.zones.ravel()) for one in found])
+    return np.array([places.min(), places.max()])
+
+
+def _potential_energy(march: March) -> float:
+    model, system = march.model, march.system
+    energy = system.strained.energy
+    for part, value in zip(model.loads, march.values[: len(model.loads)], strict=True):
+        if isinstance(part, AreaLoad):
+            moved = (part.forces * system.q.reshape(-1, 2)[part.nodes]).sum()
+        elif part.direction is None:
+            moved = model.bodies[part.body].state(system.z)[2]
+        else:
+            moved = part.direction @ model.bodies[part.body].motion(part.arm, system.z)
+        energy -= float(value * moved)
+    return energy
+
+
+def _holding(scene: Scene, march: March, name: str) -> list[Wrench]:
+    """Forces and moments of the ground at a point, with pivots, or of slide and drives of a point or body."""
+    model, system = march.model, march.system
+    turning = {key for key, body in scene.bodies.items() if isinstance(body, TurningBody) and body.about == name}
+    found = [
+        support(model, system, tie) for tie in model.ties if tie.point == name and model.bodies[tie.body].dofs is None
+    ]
+    for row in model.rows:
+        if row.drive is not None:
+            drive = scene.drives[row.drive]
+            if name == (drive.point if isinstance(drive, DisplacementDrive) else drive.body):
+                found.append(held(row, system))
+        elif row.name in scene.pins:
+            i = grounded(model, row)
+            if i is not None and scene.pins[row.name].points[1 - i] == name:
+                direction = row.shares[i].direction
+                assert direction is not None
+                found.append((-float(system.z[row.multiplier]) * direction, 0.0))
+        elif row.name in turning or row.name == name:
+            found.append(held(row, system))
+    return found

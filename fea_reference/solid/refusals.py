@@ -1,0 +1,52 @@
+"""What a scene may ask of the solid: the rest is refused before anything is solved."""
+
+from __future__ import annotations
+
+from fea_reference.solid.areas import too_curved
+from scene.mistakes import Mistake, SceneError
+from scene.statement import (
+    BeamContact,
+    BeamMoment,
+    CircleContact,
+    HalfPlaneContact,
+    Scene,
+)
+
+_PROBES = frozenset({"angle", "moment"})
+
+
+def refuse(scene: Scene) -> None:
+    """See that the solid offers all that a scene asks.
+
+    Raises:
+        SceneError: it does not.
+    """
+    mistakes = too_curved(scene)
+    for name, load in scene.loads.items():
+        if isinstance(load, BeamMoment):
+            mistakes.append(Mistake(f"loads.{name}", "a moment on a beam", "for the solid, forces on beams"))
+    for name, contact in scene.contacts.items():
+        if not isinstance(contact, BeamContact | CircleContact | HalfPlaneContact):
+            mistakes.append(
+                Mistake(
+                    f"contacts.{name}", repr(contact.kind), "for the solid, beam-beam, beam-circle, beam-half-plane"
+                )
+            )
+        elif not contact.thick:
+            mistakes.append(Mistake(f"contacts.{name}", "lines that touch", "for the solid, edges: thick = true"))
+    for name in scene.stops:
+        mistakes.append(Mistake(f"stops.{name}", "a stop", "for the solid, pins without limits"))
+    if scene.assembly is not None:
+        mistakes.append(Mistake("assembly", "ends drawn apart", "for the solid, beams drawn as they are joined"))
+    for stage in scene.stages:
+        if stage.beyond is not None:
+            mistakes.append(
+                Mistake(
+                    f"stages.{stage.name}.beyond", repr(stage.beyond), "for the solid, none: it follows no branches"
+                )
+            )
+    for probe in scene.probes:
+        if probe.quantity in _PROBES:
+            mistakes.append(Mistake(f"probes.{probe.name}", repr(probe.quantity), "for the solid, another quantity"))
+    if mistakes:
+        raise SceneError(mistakes)

@@ -1,0 +1,110 @@
+"""What bodies must do beside: pins between them, slides, pivots and drives, each a row with a multiplier.
+
+======  ===================================================================
+symbol  meaning
+======  ===================================================================
+d, r    direction and arm of a part on one body; without d it is φ
+c       Σ d·(X + (R(φ) − I) r) − value, or Σ φ − value
+μ       multiplier, added to the energy as μ c
+======  ===================================================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea_reference.solid.bodies import BodyPart, across, turned
+from scene.answer import Array, Ints
+from scene.statement import BodyPin, DisplacementDrive, Drive, Scene, SlidingBody, TurningBody
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """A body's part in a row: ``direction`` d (2,) or None, ``arm`` r (2,)."""
+
+    body: int
+    direction: Array | None
+    arm: Array
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row: of what (``name``), its ``shares``, its multiplier's place, and the ``drive`` that steps it."""
+
+    name: str
+    shares: tuple[Share, ...]
+    multiplier: int
+    drive: str | None = None
+
+    def violation(self, bodies: tuple[BodyPart, ...], z: Array) -> float:
+        """c for the value zero."""
+        found = 0.0
+        for share in self.shares:
+            body = bodies[share.body]
+            found += (
+                float(body.state(z)[2])
+                if share.direction is None
+                else float(share.direction @ body.motion(share.arm, z))
+            )
+        return found
+
+    def gradient(self, bodies: tuple[BodyPart, ...], z: Array) -> tuple[Ints, Array]:
+        """Unknowns (k,) and ∂c by them (k,)."""
+        dofs, slopes = [np.empty(0, dtype=np.intp)], [np.empty(0)]
+        for share in self.shares:
+            body = bodies[share.body]
+            if body.dofs is None:
+                continue
+            d = share.direction
+            dofs.append(body.dofs)
+            slopes.append(
+                np.array([0.0, 0.0, 1.0])
+                if d is None
+                else np.array([*d, d @ across(turned(share.arm, z[body.dofs[2]]))])
+            )
+        return np.concatenate(dofs), np.concatenate(slopes)
+
+    def second(self, bodies: tuple[BodyPart, ...], z: Array) -> list[tuple[int, float]]:
+        """Unknowns φ and ∂²c/∂φ², the only second derivatives."""
+        return [
+            (int(dofs[2]), -float(share.direction @ turned(share.arm, z[dofs[2]])))
+            for share in self.shares
+            if share.direction is not None and (dofs := bodies[share.body].dofs) is not None
+        ]
+
+
+def rows_of(scene: Scene, bodies: tuple[BodyPart, ...], first: int) -> tuple[Row, ...]:
+    """A scene's rows, whose multipliers begin at the unknown ``first``."""
+    number = {body.name: i for i, body in enumerate(bodies)}
+    found: list[tuple[str, tuple[Share, ...], str | None]] = []
+    for name, both in scene.pins.items():
+        found += _pinned(name, both, scene, bodies, number)
+    for name, body in scene.bodies.items():
+        i = number[name]
+        if isinstance(body, SlidingBody):
+            along = np.array(body.along) / np.hypot(*body.along)
+            pin = np.zeros(2) if body.pin is None else bodies[i].arm(body.pin)
+            found.append((name, (Share(i, across(along), pin),), None))
+            if body.pin is None:
+                found.append((name, (Share(i, None, pin),), None))
+        elif isinstance(body, TurningBody):
+            found += [(name, (Share(i, direction, bodies[i].arm(body.about)),), None) for direction in np.eye(2)]
+    found += [(name, (_driven(drive, scene, bodies, number),), name) for name, drive in scene.drives.items()]
+    return tuple(Row(name, shares, first + i, drive) for i, (name, shares, drive) in enumerate(found))
+
+
+def _pinned(
+    name: str, both: BodyPin, scene: Scene, bodies: tuple[BodyPart, ...], number: dict[str, int]
+) -> list[tuple[str, tuple[Share, ...], str | None]]:
+    one, other = (number[scene.body_of(point)] for point in both.points)
+    arms = bodies[one].arm(both.points[0]), bodies[other].arm(both.points[1])
+    return [(name, (Share(one, e, arms[0]), Share(other, -e, arms[1])), None) for e in np.eye(2)]
+
+
+def _driven(drive: Drive, scene: Scene, bodies: tuple[BodyPart, ...], number: dict[str, int]) -> Share:
+    if isinstance(drive, DisplacementDrive):
+        i = number[scene.body_of(drive.point)]
+        return Share(i, np.array(drive.direction) / np.hypot(*drive.direction), bodies[i].arm(drive.point))
+    return Share(number[drive.body], None, np.zeros(2))

@@ -1,0 +1,130 @@
+"""A scene in, an answer out."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from threadpoolctl import ThreadpoolController
+
+from fea_reference.solid.certificates import certify
+from fea_reference.solid.contacts import pairs_of
+from fea_reference.solid.march import March, StoppedError, begin, leave_stage, reach
+from fea_reference.solid.meshing import chosen
+from fea_reference.solid.model import build
+from fea_reference.solid.probes import probed, shapes, touching
+from fea_reference.solid.refusals import refuse
+from fea_reference.solid.settings import Settings
+from scene.answer import Answer, Ending, Event, StationAnswer
+from scene.statement import Scene, Stage
+
+_LIBRARIES = ThreadpoolController()
+
+_DEFAULT = Settings()
+
+
+@dataclass(frozen=True, slots=True)
+class Prepared:
+    """A scene made ready: the ``march`` stands at the undeformed state, and goes its way once.
+
+    ``seconds`` is how long that took; ``notes`` say how it is meshed.
+    """
+
+    scene: Scene
+    settings: Settings
+    march: March
+    seconds: float
+    notes: tuple[str, ...]
+
+    def answer(self) -> Answer:
+        """March, and hand back what :func:`answer` does."""
+        began = time.perf_counter()
+        scene, march, model = self.scene, self.march, self.march.model
+        stations: list[StationAnswer] = []
+        events: list[Event] = []
+        ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
+        with _LIBRARIES.limit(limits=1, user_api="blas"):  # small blocks: threads cost more than they bring
+            try:
+                known: set[str] = set()
+                for stage in scene.stages:
+                    leave_stage(march)
+                    part = [one.name for one in model.stepped].index(stage.steps)
+                    unit = model.stepped[part].unit
+                    span = float(np.ptp([march.values[part], *(station / unit for station in stage.stations)])) or 1.0
+                    for station in stage.stations:
+                        reach(march, part, station / unit, span)
+                        events += [
+                            Event(stage.name, name, "closes", closing)
+                            for name, closing in march.closing.items()
+                            if name not in known
+                        ]
+                        known = set(march.closing)
+                        stations.append(_certified(scene, march, stage, station))
+            except StoppedError as stopped:
+                ending, sentence = stopped.ending, stopped.sentence
+        tested = tuple(
+            f"{name}: " + (f"closed at {march.closing[name]:.6g}" if name in march.closing else "stayed open")
+            for name in scene.contacts
+        )
+        return Answer(
+            solver="solid",
+            scene=scene.name,
+            settings=self.settings.plain(),
+            ending=ending,
+            sentence=sentence,
+            stations=tuple(stations),
+            events=tuple(events),
+            seconds=self.seconds + time.perf_counter() - began,
+            notes=(*self.notes, *tested),
+        )
+
+
+def prepared(scene: Scene, settings: Settings = _DEFAULT) -> Prepared:
+    """Make a scene ready without solving anything.
+
+    The arguments are those of :func:`answer`.
+
+    Raises:
+        SceneError: the settings do not fit the scene, or the solid does not offer what it asks.
+    """
+    began = time.perf_counter()
+    refuse(scene)
+    rectangle, how = chosen()
+    model = build(scene, settings, rectangle)
+    march = begin(model, settings, pairs_of(scene, model))
+    return Prepared(scene, settings, march, time.perf_counter() - began, (how,))
+
+
+def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
+    """Solve a scene as a solid.
+
+    An answer that ends early holds the stations reached before.
+
+    Raises:
+        SceneError: the settings do not fit the scene, or the solid does not offer what it asks.
+    """
+    return prepared(scene, settings).answer()
+
+
+def _certified(scene: Scene, march: March, stage: Stage, station: float) -> StationAnswer:
+    """The station's answer, if its certificate holds.
+
+    Raises:
+        StoppedError: it does not.
+    """
+    certificate = certify(march)
+    if not certificate.holds:
+        minimum = certificate.smallest_curvature > 0.0
+        raise StoppedError(
+            Ending.NOT_CERTIFIED if minimum else Ending.NOT_A_MINIMUM,
+            f"at {stage.steps} = {station:g}: " + "; ".join(certificate.failures),
+        )
+    return StationAnswer(
+        stage=stage.name,
+        value=station,
+        values={probe.name: probed(scene, march, probe) for probe in scene.probes},
+        shapes=shapes(march),
+        touching=touching(march),
+        certificate=certificate,
+    )

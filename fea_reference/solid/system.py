@@ -1,0 +1,203 @@
+"""The whole mechanism's unbalanced forces and their tangent.
+
+The residual is the derivative by all unknowns of Π(z) + Σ μ c(z), elements, contacts and loads in Π, and the tangent
+its second derivative.  Forces are summed up over the mesh's displacements q, and go from these to the unknowns by
+∂q/∂z.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import block_diag, coo_matrix, csc_matrix, csr_matrix, vstack
+from scipy.sparse.linalg import SuperLU, splu
+
+from fea_reference.solid.beam_loads import AreaLoad
+from fea_reference.solid.bodies import across, turned
+from fea_reference.solid.contacts import Foreseen, Pair, Touch, overlap, touch
+from fea_reference.solid.elements import Strained
+from fea_reference.solid.model import DrivePart, LoadPart, Model
+from scene.answer import Array
+
+_ROUND_OFF = 8.0  # measured
+_NOTHING = 10.0  # floors: a force below this is round-off itself
+
+
+@dataclass(frozen=True, slots=True)
+class Outlook:
+    """What a step foresees: ``stress`` (e, q, 3) of the elements and the ``gaps`` of the pairs."""
+
+    stress: Array
+    gaps: Mapping[Pair, Foreseen]
+
+
+@dataclass(frozen=True)
+class System:
+    """A state ``z`` and what follows from it.
+
+    Attributes:
+        z: the unknowns.
+        q: displacements of the nodes (2N,).
+        residual: unbalanced generalised forces and violations of rows (size,).
+        tangent: its derivative (size, size).
+        carried: ∂q/∂z, and behind it the bodies' (X, Y, φ) by the unknowns, as if all moved.
+        nodal: forces on the nodes that elements, contacts and loads leave (2N,): of held ones the tie's, turned round.
+        strained: the elements.
+        touches: the pairs.
+        scale: the largest force that balances; where there is none but round-off, one.
+        floor: round-off of the residual: the largest stiffness of a node times the spacing of numbers at the largest
+            displacement.
+    """
+
+    z: Array
+    q: Array
+    residual: Array
+    tangent: csc_matrix
+    carried: csr_matrix
+    nodal: Array
+    strained: Strained
+    touches: tuple[Touch, ...]
+    scale: float
+    floor: float
+
+    def solve(self, right: Array) -> Array | None:
+        """What the tangent makes ``right`` (size,) of; None where it is singular or as good as that."""
+        solution = None if self.factors is None else self.factors.solve(right)
+        return None if solution is None or not np.isfinite(solution).all() else solution
+
+    def outlook(self, step: Array) -> Outlook:
+        """What a ``step`` of the unknowns leads to, to first order."""
+        moved = self.carried @ step
+        stress = self.strained.foreseen(moved)
+        return Outlook(stress, {one.pair: one.foreseen(moved) for one in self.touches})
+
+    @cached_property
+    def factors(self) -> SuperLU | None:
+        """The tangent, factored."""
+        try:
+            return splu(
+                self.tangent, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.01, options={"SymmetricMode": True}
+            )
+        except RuntimeError:  # exactly singular
+            return None
+
+
+def assemble(
+    model: Model,
+    penalties: Mapping[Pair, float],
+    quadrature: int,
+    values: Array,
+    z: Array,
+    foreseen: Outlook | None = None,
+) -> System:
+    """Sum everything up.
+
+    Args:
+        model: the mechanism.
+        penalties: the pairs that may touch, and each one's factor ρ.
+        quadrature: Gauss points per part of a zone.
+        values: of all that is stepped, in the model's order, without units.
+        z: the unknowns.
+        foreseen: by the last step, for the tangent's second part; without it the state's own.
+    """
+    q = model.displacements(z)
+    elements = model.strained(q)
+    touches = tuple(
+        touch(model, pair, factor, quadrature, q, z, None if foreseen is None else foreseen.gaps[pair])
+        for pair, factor in penalties.items()
+    )
+    local = elements.gradient
+    m, nodes = len(model.bodies), q.size
+    # the mesh's q and behind them three of every body, as if all moved
+    forces: Array = np.bincount(model.elements.dofs.ravel(), local.ravel(), nodes + 3 * m).astype(float)
+    rows, columns, entries = [], [], []
+    for one in touches:
+        if one.zeta.size:
+            forces += np.bincount(one.dofs.ravel(), one.gradient.ravel(), nodes + 3 * m)
+            wide = np.broadcast_to(one.dofs[:, :, None], one.hessian.shape)
+            rows.append(wide.ravel())
+            columns.append(wide.transpose(0, 2, 1).ravel())
+            entries.append(one.hessian.ravel())
+    for part, value in zip(model.loads, values[: len(model.loads)], strict=True):
+        if isinstance(part, AreaLoad):
+            forces[2 * part.nodes] -= value * part.forces[:, 0]
+            forces[2 * part.nodes + 1] -= value * part.forces[:, 1]
+    carried = vstack([model.chain(z), _moving(model)], format="csr")
+    stiffness = model.elements.pattern.matrix(
+        elements.hessian(elements.stress if foreseen is None else foreseen.stress)
+    )
+    stiffness = block_diag((stiffness, csc_matrix((3 * m, 3 * m))), format="csc")
+    if rows:
+        pressed = (np.concatenate(entries), (np.concatenate(rows), np.concatenate(columns)))
+        stiffness = stiffness + coo_matrix(pressed, stiffness.shape).tocsc()
+    residual = carried.T @ forces
+    diagonal = model.turning(forces[:nodes], z)
+    more_rows, more_columns, more = [], [], []
+    for part, value in zip(model.loads, values[: len(model.loads)], strict=True):
+        if isinstance(part, LoadPart):
+            residual -= value * load_direction(model, part, z)
+            dofs = model.bodies[part.body].dofs
+            if part.direction is not None and dofs is not None:
+                diagonal.append((int(dofs[2]), value * float(turned(part.arm, z[dofs[2]]) @ part.direction)))
+    prescribed = dict(zip((part.name for part in model.drives), values[len(model.loads) :], strict=True))
+    for row in model.rows:
+        dofs, slopes = row.gradient(model.bodies, z)
+        mu = float(z[row.multiplier])
+        residual[row.multiplier] += row.violation(model.bodies, z) - (prescribed[row.drive] if row.drive else 0.0)
+        np.add.at(residual, dofs, mu * slopes)
+        for dof, slope in zip(dofs, slopes, strict=True):
+            more_rows += [row.multiplier, int(dof)]
+            more_columns += [int(dof), row.multiplier]
+            more += [float(slope)] * 2
+        diagonal += [(dof, mu * second) for dof, second in row.second(model.bodies, z)]
+    for dof, value in diagonal:
+        more_rows.append(dof)
+        more_columns.append(dof)
+        more.append(value)
+    extra = coo_matrix((more, (more_rows, more_columns)), (model.size, model.size))
+    tangent = (carried.T @ stiffness @ carried + extra).tocsc()
+    pressing = [float(np.abs(one.gradient).max()) for one in touches if one.zeta.size]
+    largest = max(
+        float(np.abs(local).max()), float(np.abs(values[: len(model.loads)]).max(initial=0.0)), *pressing, 0.0
+    )
+    stiffest = float(np.abs(stiffness.diagonal()).max())
+    floor = _ROUND_OFF * stiffest * float(np.spacing(np.abs(q).max(initial=1e-3)))
+    scale = largest if largest > _NOTHING * floor else 1.0
+    return System(z, q, residual, tangent, carried, forces[:nodes], elements, touches, scale, floor)
+
+
+def deepest(model: Model, pairs: Iterable[Pair], z: Array) -> float:
+    """The largest depth of overlap in a state, over the mean thickness."""
+    places = model.mesh.places + model.displacements(z).reshape(-1, 2)
+    return max((-overlap(model, pair, places, z).least / pair.measure for pair in pairs), default=0.0)
+
+
+def load_direction(model: Model, part: LoadPart | AreaLoad | DrivePart, z: Array) -> Array:
+    """What a load or drive of value one adds to the right-hand side (size,): of a drive one in its row."""
+    f = np.zeros(model.size)
+    if isinstance(part, DrivePart):
+        f[next(row.multiplier for row in model.rows if row.drive == part.name)] = 1.0
+        return f
+    if isinstance(part, AreaLoad):
+        q = np.zeros(2 * len(model.mesh.places))
+        q[2 * part.nodes], q[2 * part.nodes + 1] = part.forces.T
+        return np.asarray(model.chain(z).T @ q)
+    dofs = model.bodies[part.body].dofs
+    if dofs is None:
+        return f
+    if part.direction is None:
+        f[dofs[2]] = 1.0
+    else:
+        f[dofs] = [*part.direction, part.direction @ across(turned(part.arm, z[dofs[2]]))]
+    return f
+
+
+def _moving(model: Model) -> csr_matrix:
+    """From bodies' three unknowns, as if all moved, to those that are unknowns (3m, size)."""
+    every = [np.full(3, -1) if body.dofs is None else body.dofs for body in model.bodies]
+    columns = np.concatenate(every)
+    rows = np.flatnonzero(columns >= 0)
+    return csr_matrix((np.ones(rows.size), (rows, columns[rows])), (columns.size, model.size))

@@ -1,0 +1,105 @@
+"""Where along an edge it lies beyond what it touches, and Gauss points there.
+
+======  =======================================
+symbol  meaning
+======  =======================================
+ζ       place along the edge, in nodes
+g(ζ)    gap, infinite where there is nothing
+======  =======================================
+
+The gap is sampled; where its sign changes the end of a zone is found, and a minimum between samples is looked at.  The
+points move with the zone's ends, and since the pressure vanishes there the energy's derivatives do not feel it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from scene.answer import Array
+
+SAMPLES = 6  # between two nodes
+_SECANTS = 12
+
+Gap = Callable[[Array], Array]
+
+
+@dataclass(frozen=True, slots=True)
+class Zones:
+    """Zones (2, z) where g < 0, ascending, and the ``least`` gap anywhere with its ``place``."""
+
+    zones: Array
+    least: float
+    place: float
+
+    def points(self, quadrature: int) -> tuple[Array, Array]:
+        """Gauss points ζ (k,) and weights (k,), so many on each part of a zone between two nodes."""
+        nodes, weights = np.polynomial.legendre.leggauss(quadrature)
+        places, shares = [np.empty(0)], [np.empty(0)]
+        for begin, end in self.zones.T:
+            inner = np.arange(np.floor(begin) + 1.0, np.ceil(end))
+            fence = np.concatenate([[begin], inner[(inner > begin) & (inner < end)], [end]])
+            half = 0.5 * np.diff(fence)
+            places.append((fence[:-1] + half + half * nodes[:, None]).T.ravel())
+            shares.append((half * weights[:, None]).T.ravel())
+        return np.concatenate(places), np.concatenate(shares)
+
+
+def zones(gap: Gap, nodes: int) -> Zones:
+    """Find the zones of an edge of so many nodes."""
+    zeta = np.linspace(0.0, nodes - 1.0, SAMPLES * (nodes - 1) + 1)
+    g = gap(zeta)
+    zeta, g = _with_minima(gap, zeta, g)
+    least = int(np.argmin(g))
+    if not g[least] < 0.0:
+        return Zones(np.empty((2, 0)), float(g[least]), float(zeta[least]))
+    within = g < 0.0
+    steps = np.diff(np.concatenate([[False], within, [False]]).astype(int))
+    begins, ends = np.flatnonzero(steps == 1), np.flatnonzero(steps == -1) - 1
+    lower, upper = zeta[begins].copy(), zeta[ends].copy()
+    for edge, index, beside in ((lower, begins, -1), (upper, ends, 1)):
+        other = index + beside
+        inside = (other >= 0) & (other < zeta.size)
+        inside[inside] &= np.isfinite(g[other[inside]])
+        if inside.any():
+            i, o = index[inside], other[inside]
+            edge[inside] = _roots(gap, zeta[i], zeta[o], g[i], g[o])
+    return Zones(np.stack([lower, upper]), float(g[least]), float(zeta[least]))
+
+
+def _with_minima(gap: Gap, zeta: Array, g: Array) -> tuple[Array, Array]:
+    """The samples, and the vertex of the parabola through every three of them of which the middle is the least."""
+    with np.errstate(invalid="ignore"):
+        middle = (g[1:-1] <= g[:-2]) & (g[1:-1] < g[2:]) & np.isfinite(g[:-2]) & np.isfinite(g[2:])
+    i = np.flatnonzero(middle) + 1
+    if not i.size:
+        return zeta, g
+    left, right = g[i - 1] - g[i], g[i + 1] - g[i]
+    vertex = zeta[i] + 0.5 * (left - right) / (left + right) * (zeta[i] - zeta[i - 1])
+    new = vertex[np.abs(vertex - zeta[i]) > 1e-9]
+    if not new.size:
+        return zeta, g
+    all_places = np.concatenate([zeta, new])
+    order = np.argsort(all_places, kind="stable")
+    return all_places[order], np.concatenate([g, gap(new)])[order]
+
+
+def _roots(gap: Gap, inner: Array, outer: Array, g_inner: Array, g_outer: Array) -> Array:
+    """Where g vanishes between places within (g < 0) and without, by the Illinois form of the false position."""
+    a, b, fa, fb = inner.copy(), outer.copy(), g_inner.copy(), g_outer.copy()
+    side = np.zeros(a.size)
+    for _ in range(_SECANTS):
+        c = b - fb * (b - a) / np.where(fb == fa, 1.0, fb - fa)
+        fc = gap(c)
+        fc = np.where(np.isfinite(fc), fc, np.abs(fb))
+        negative = fc < 0.0
+        fb = np.where(negative & (side == -1), 0.5 * fb, fb)
+        fa = np.where(~negative & (side == 1), 0.5 * fa, fa)
+        a, fa = np.where(negative, c, a), np.where(negative, fc, fa)
+        b, fb = np.where(negative, b, c), np.where(negative, fb, fc)
+        side = np.where(negative, -1.0, 1.0)
+        if np.abs(b - a).max() < 1e-13 or np.abs(fc).max() < 1e-16:
+            break
+    return np.asarray(np.where(np.abs(fa) < np.abs(fb), a, b))

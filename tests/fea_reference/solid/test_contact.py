@@ -1,0 +1,167 @@
+"""Contact of a solid's edges, and what is refused."""
+
+import numpy as np
+import pytest
+
+from fea_reference import solid
+from scene import SceneError
+from scene.reading import scene_from
+from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
+
+FLOOR = {"kind": "beam-half-plane", "beam": "beam", "body": "ground"}
+PROBES = (("floor", "force"), ("floor", "centre"), ("floor", "ends"), ("tip", "displacement"), ("root", "reaction"))
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.35])
+def test_a_beam_pressed_flat_on_a_wall(poisson):
+    # An even load q on a bar whose whole edge lies on the wall: away from its end that is clamped the pressure is q
+    length, thickness, q = 0.13, 0.011, 410.0
+    scene = bar(
+        straight(length),
+        thickness,
+        poisson=poisson,
+        load={"kind": "distributed", "beam": "beam", "direction": [0.0, -1.0]},
+        stations=(q,),
+        contacts={"floor": {**FLOOR, "point": [0.0, -thickness / 2], "normal": [0.0, 1.0]}},
+        probes=(*PROBES[:3], PROBES[4]),
+        end={"joint": "free"},
+    )
+    ready = solid.prepared(scene, solid.Settings(elements=30))
+    found = ready.answer()
+    assert found.completed, found.sentence
+    values = found.stations[0].values
+    assert values["floor.force"][0] + values["root.reaction"][1] == pytest.approx(q * length, rel=1e-9)
+    assert values["floor.ends"][1] == pytest.approx(length, rel=1e-6)
+    (touch,) = (one for one in ready.march.system.touches if one.zeta.size)
+    pressure = -touch.gap * touch.pair.skin.at(touch.pair.skin.stiffness, touch.zeta)
+    at = touch.pair.skin.at(touch.pair.skin.u, touch.zeta)
+    away = (at > 0.4) & (at < 0.6)  # of what holds it, and of the end, whose lower half is pressed wider
+    even = q * ready.march.model.units.length / ready.march.model.units.force / ready.settings.stiffness
+    assert pressure[away] == pytest.approx(even, rel=2e-4)
+
+
+def test_a_cantilever_that_leans_on_a_round_support():
+    # a stiff, narrow circle under a slender cantilever at a: the force of a point support (beam tables),
+    # R = P (3 L − a)/(2 a), for a load that moves nothing by more than 1e-3 of the length
+    length, thickness, a, force = 0.41, 0.006, 0.27, 2.3e-4
+    scene = bar(
+        straight(length),
+        thickness,
+        load={"kind": "force", "point": "tip", "direction": [0.0, -1.0]},
+        stations=(force,),
+        contacts={
+            "floor": {"kind": "beam-circle", "beam": "beam", "body": "ground", "center": [a, -0.023], "radius": 0.02}
+        },
+        probes=PROBES,
+    )
+    found = solid.answer(scene, solid.Settings(elements=41, across=1))
+    assert found.completed, found.sentence
+    values = found.stations[0].values
+    assert values["floor.force"][0] == pytest.approx(force * (3 * length - a) / (2 * a), rel=2e-3)
+    assert values["floor.centre"][0] == pytest.approx(a, rel=1e-3)
+    # what the support leaves free bends as two spans: δ = P (L − a)² (4 L − a)/(12 E I)
+    rigidity = YOUNG * WIDTH * thickness**3 / 12
+    down = force * (length - a) ** 2 * (4 * length - a) / (12 * rigidity)
+    assert values["tip.displacement"][1] == pytest.approx(-down, rel=4e-3)
+
+
+def test_two_bars_press_each_other_with_opposite_forces():
+    # symmetric about the x-axis: both tips come together, and nothing moves along the normal's mirror
+    data = bar(straight(0.3), 0.005, probes=PROBES[3:]).model_dump(mode="json", exclude={"file"}, exclude_none=True)
+    gap = 0.0051
+    for name, y in (("low", -gap / 2), ("high", gap / 2)):
+        data["bodies"][f"{name}_block"] = {"motion": "free", "points": {f"{name}_tip": [0.3, y]}}
+        data["bodies"]["ground"]["points"][f"{name}_root"] = [0.0, y]
+        data["beams"][name] = {
+            **data["beams"]["beam"],
+            "curve": {"kind": "line", "start": [0.0, y], "end": [0.3, y]},
+            "start": {"joint": "weld", "point": f"{name}_root"},
+            "end": {"joint": "weld", "point": f"{name}_tip"},
+        }
+    del data["beams"]["beam"], data["bodies"]["block"], data["bodies"]["ground"]["points"]["root"]
+    data["loads"] = {
+        "P": {"kind": "distributed", "beam": "low", "direction": [0.0, 1.0], "along": [0.4, 0.9]},
+    }
+    data["stages"][0]["stations"] = [0.31]
+    data["contacts"] = {"both": {"kind": "beam-beam", "between": ["low", "high"]}}
+    data["probes"] = [{"of": of, "quantity": "displacement"} for of in ("low_tip", "high_tip")]
+    data["probes"] += [{"of": of, "quantity": "reaction"} for of in ("low_root", "high_root")]
+    data["probes"] += [{"of": "both", "quantity": "force"}]
+    found = solid.answer(scene_from(data), solid.Settings(elements=12, across=1))
+    assert found.completed, found.sentence
+    values = found.stations[0].values
+    # the upper bar is loaded by nothing but the contact, and lies on the lower one
+    assert values["both.force"][0] == pytest.approx(-values["high_root.reaction"][1], rel=1e-2)
+    assert np.abs(values["low_tip.displacement"][1]) > np.abs(values["high_tip.displacement"][1]) > 0.0
+    total = values["low_root.reaction"][1] + values["high_root.reaction"][1]
+    assert total == pytest.approx(-0.31 * 0.5 * 0.3, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"contacts": {"own": {"kind": "beam-self", "beam": "beam"}}}, "beam-self"),
+        ({"contacts": {"floor": {**FLOOR, "point": [0.0, -0.1], "normal": [0.0, 1.0], "thick": False}}}, "lines"),
+        ({"load": {"kind": "beam_moment", "beam": "beam", "at": 0.5}}, "a moment on a beam"),
+    ],
+)
+def test_what_the_solid_does_not_offer_is_refused_by_name(change, words):
+    with pytest.raises(SceneError, match=words):
+        solid.prepared(bar(straight(0.3), 0.005, probes=(("tip", "displacement"),), **change))
+
+
+def test_settings_out_of_bounds_are_refused():
+    with pytest.raises(SceneError, match="across"):
+        solid.Settings(across=0)
+    with pytest.raises(SceneError, match="stiffness"):
+        solid.Settings(stiffness=-1.0)
+
+
+def test_where_a_contact_closes_is_found_from_far_beyond_it():
+    # P a² (3 L − a)/(6 E I) of a beam is the gap, and the one station is fifteen times as far
+    length, thickness, a, gap = 0.1, 0.001, 0.06, 0.0015
+    rigidity = YOUNG * WIDTH * thickness**3 / 12
+    closing = 6 * rigidity * gap / (a**2 * (3 * length - a))
+    scene = bar(
+        straight(length),
+        thickness,
+        load={"kind": "force", "point": "tip", "direction": [0.0, -1.0]},
+        stations=(15 * closing,),
+        contacts={
+            "floor": {
+                "kind": "beam-circle",
+                "beam": "beam",
+                "body": "ground",
+                "center": [a, -gap - thickness / 2 - 0.002],
+                "radius": 0.002,
+            }
+        },
+        probes=(("floor", "closing_load"),),
+    )
+    found = solid.answer(scene, solid.Settings(elements=40, across=1))
+    assert found.completed, found.sentence
+    # the beam leans by 2 gap/a where it meets the circle, and meets it beside its top by that share of the radius
+    assert found.stations[0].values["floor.closing_load"][0] == pytest.approx(closing, rel=5e-3)
+
+
+def test_an_obstacle_too_small_for_the_mesh_is_never_passed_unseen():
+    # its radius is a tenth of the thickness: the beam ends up beyond it, or says that it cannot be held by it
+    scene = bar(
+        straight(0.1),
+        0.001,
+        load={"kind": "force", "point": "tip", "direction": [0.0, -1.0]},
+        stations=(0.2,),
+        contacts={
+            "floor": {
+                "kind": "beam-circle",
+                "beam": "beam",
+                "body": "ground",
+                "center": [0.06, -0.0021],
+                "radius": 1e-4,
+            }
+        },
+        probes=(("floor", "force"),),
+    )
+    found = solid.answer(scene, solid.Settings(elements=20, across=1))
+    assert found.completed == any(station.values["floor.force"][0] > 0.0 for station in found.stations)
+    assert found.completed or "passes through" in found.sentence

@@ -1,0 +1,52 @@
+"""The solid beside both solvers."""
+
+import numpy as np
+import pytest
+
+from comparisons.choices import Choices
+from comparisons.documents import comparison
+from comparisons.pairing import Solvers, paired, with_solid
+from comparisons.third import corner_order, of_thirds, sentence, thirds_of
+from comparisons.verdict import compared
+from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
+
+
+@pytest.fixture(scope="module")
+def thick():
+    """A cantilever nine times as long as thick under a small force, by all three."""
+    scene = bar(straight(0.31), 0.034, stations=(0.011,), probes=(("tip", "displacement"), ("beam", "bending_stress")))
+    return compared(scene, paired(scene, Choices(links=8, elements=16), with_solid(Solvers())))
+
+
+def test_what_bending_alone_misses_is_timoshenkos_shear(thick):
+    # 6 P L/(5 G A), less what the held ends keep from warping
+    (one,) = (found for found in thirds_of(thick) if found.row.probe.quantity == "displacement")
+    shear = 1.2 * 0.011 * 0.31 / (0.5 * YOUNG * WIDTH * 0.034)
+    assert 0.8 * shear < one.bending < shear + one.uncertainty
+    assert one.chosen < 0.2 * shear
+    assert one.uncertainty < 0.02 * shear
+
+
+def test_the_stress_of_a_straight_cantilever_is_the_beams(thick):
+    # M t/(2 I) away from its ends, linear elasticity's own (Timoshenko & Goodier, section 21)
+    (one,) = (found for found in thirds_of(thick) if found.row.probe.quantity == "bending_stress")
+    s = np.linspace(0.0, 0.31, 81)
+    inner = (s > 0.034) & (s < 0.31 - 0.034)
+    exact = 0.011 * (0.31 - s) * 6 / (WIDTH * 0.034**2)
+    assert np.abs(one.solid - exact)[inner].max() < 2e-3 * exact.max()
+
+
+def test_three_columns_are_told(thick):
+    sheet = of_thirds(thick)
+    assert {"CPRBM", "FEA", "solid"} <= set(sheet.headers)
+    assert len(sheet.rows) == 2
+    assert "bending alone" in sentence(thick)
+    document = comparison(thick)
+    assert document["solvers"]["solid"]["ending"] == "COMPLETED"
+    assert {row["probe"] for row in document["solid"]} == {"tip.displacement", "beam.bending_stress"}
+
+
+def test_the_order_is_that_of_a_corner_held_on_one_side():
+    # λ = 0.7112 where κ = 1.8, plane strain with ν = 0.3 (Williams 1952), which is ν = 3/7 in plane stress
+    assert corner_order(3 / 7) == pytest.approx(2 * 0.7112, abs=2e-4)
+    assert corner_order(0.0) == pytest.approx(2.0)
