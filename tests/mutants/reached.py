@@ -31,7 +31,7 @@ def pytest_addoption(parser):
     parser.addoption("--reached", type=Path, required=True)
 
 
-def _too_slow(number, frame):  # noqa: ARG001
+def _too_slow(number, frame):
     raise TooSlow
 
 
