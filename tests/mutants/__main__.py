@@ -57,7 +57,9 @@ def main() -> None:
     asked.add_argument("--seed", type=int, default=905)
     asked.add_argument("--seconds", type=float, default=20.0, help="of the processor, at most, of a mutant's tests")
     asked.add_argument("--minutes", type=float, default=600.0, help="after which no other mutant is tried")
-    asked.add_argument("--tests", nargs="*", default=["tests/cprbm", "tests/fea_reference"])
+    asked.add_argument(
+        "--tests", nargs="*", default=["tests/cprbm", "tests/fea_reference", "tests/together/test_derivations.py"]
+    )
     asked.add_argument("--only", nargs="*", default=[], help="files of the solvers to draw from, all unless given")
     options, begun = asked.parse_args(), time.monotonic()
     warm()

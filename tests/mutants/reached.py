@@ -20,7 +20,7 @@ ROOT = Path(__file__).parents[2]
 ROOMS = tuple(f"{ROOT / room}/" for room in ("cprbm", "fea_reference"))
 AT_MOST = 1.2
 """Seconds of the processor of one test, the noting of its lines included."""
-TOGETHER = 9.0
+TOGETHER = 4.0
 
 
 class TooSlow(BaseException):
