@@ -16,7 +16,8 @@ STEP = 2e-6
 @pytest.fixture(scope="module", params=["as it is", "mirrored at the diagonal"])
 def boundary_and_numbers(request):
     """The boundary and its local numbers (x of joints, y of joints, θ of links), none of them at rest."""
-    mechanism = mechanism_of(hinge(), cprbm.Settings(links=23, formulation="paper"))
+    # more points than coefficients: where the fit goes through all of them, much of the second derivative cancels
+    mechanism = mechanism_of(hinge(), cprbm.Settings(links=71, formulation="paper"))
     boundary, model = mechanism.boundaries["contact"], mechanism.problem.model
     state, random = rest_state(model), np.random.default_rng(19)
     at = positions(model, state)
@@ -43,7 +44,8 @@ def group_at(boundary, z, state, at):
 def test_slopes_and_second_derivatives(boundary_and_numbers):
     boundary, z, *rest = boundary_and_numbers
     here, random = group_at(boundary, z, *rest), np.random.default_rng(29)
-    lam = random.random(len(here.values)) * (random.random(len(here.values)) < 0.7)  # some of them do not press
+    lam = 0.3 + random.random(len(here.values))
+    lam[1] = 0.0  # does not press
     (second,) = here.factors(lam).blocks().matrices
     pressing = np.flatnonzero(lam)
     m, n = len(boundary.joints), len(boundary.points)
