@@ -74,3 +74,11 @@ def test_what_is_given_is_what_the_closures_are_less():
     told[:2] = np.array([-0.0017, 0.0023]) / LENGTH
     told[closure.first_hold : closure.first_hold + 2] = -0.0137 / LENGTH, -0.31
     assert less == pytest.approx(told, rel=1e-12)
+
+
+def test_what_is_fixed_does_not_turn():
+    data = cantilever_data(force(0.0, 1.0), [0.7 * UNIT_FORCE])
+    data["probes"] = [{"of": "wall", "quantity": "rotation"}, {"of": "R", "quantity": "displacement"}]
+    (station,) = cprbm.answer(scene_from(data), SETTINGS).stations
+    assert station.values["wall.rotation"] == pytest.approx([0.0], abs=0.0)
+    assert station.values["R.displacement"] == pytest.approx([0.0, 0.0], abs=0.0)
