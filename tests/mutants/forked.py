@@ -17,8 +17,6 @@ OTHERS = (
     *("numpy", "pytest", "hypothesis", "pydantic", "skfem", "scipy.linalg", "scipy.optimize", "scipy.integrate"),
     *("scipy.sparse.linalg", "scipy.interpolate", "scipy.special"),
 )
-
-
 KNOWN = ("-W", "ignore::pytest.PytestAssertRewriteWarning")  # of plugins that are imported already
 
 
@@ -38,7 +36,7 @@ def forked_pytest(tree: Path, arguments: list[str], seconds: float, report: Path
         try:
             code = _there(tree, arguments, seconds, report)
         except BaseException:
-            traceback.print_exc()
+            traceback.print_exc()  # into the report
         finally:
             os._exit(code)
     _, status = os.waitpid(child, 0)
