@@ -72,9 +72,9 @@ def main() -> None:
             key = f"{mutant.name} {source_digest(mutant.file)}"  # of a file that has changed all are tried again
             tests = planned(mutant, mapped, options.seconds)
             with_tests = sha256(repr(sorted(tests)).encode()).hexdigest()[:12]
-            if key not in results or (results[key]["fate"] not in CAUGHT and results[key]["with"] != with_tests):
-                if time.monotonic() - begun > 60.0 * options.minutes:
-                    continue
+            in_time = time.monotonic() - begun < 60.0 * options.minutes
+            known = results.get(key)
+            if in_time and (known is None or (known["fate"] not in CAUGHT and known["with"] != with_tests)):
                 fate, by = tried(mutant, tests, mapped, tree)
                 line = (ROOT / mutant.file).read_text("utf-8").splitlines()[mutant.line - 1].strip()
                 results[key] = {
@@ -89,7 +89,8 @@ def main() -> None:
                 write(RESULTS, json.dumps(results, indent=1, ensure_ascii=False) + "\n")
                 sys.stdout.write(f"{fate:10s} {mutant.name}  {by}\n")
                 sys.stdout.flush()
-            mine.append(key)
+            if key in results:
+                mine.append(key)
     asked_for = f"{len(mine)} of the {options.mutants} mutants that seed {options.seed} draws from"
     quick = f"Each was given at most {options.seconds:g} s of the processor of {len(mapped)} quick tests, those that"
     how = (
