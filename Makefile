@@ -4,7 +4,7 @@
 #   make test      set up where that is missing, run the whole test suite
 #   make check     the rules of style and the types
 #   make fuzz      alter scene files at places drawn from SEED, RUNS times, and see that the reader takes them
-#   make mutants   put MUTANTS small faults, drawn from SEED, into the solvers, and see which the tests catch; hours
+#   make mutants   put MUTANTS small faults, drawn from SEED, into the solvers, and see which the quick tests catch; an hour
 #   make setup     only the set-up
 #   make lock      renew requirements.lock (needs uv)
 

@@ -20,19 +20,22 @@ LOADS = {
     "within": {"kind": "beam_force", "beam": "bow", "at": 0.6421, "direction": [3.0, 2.0]},
     "end": {"kind": "beam_force", "beam": "bow", "at": 1.0, "direction": [0.0, 2.0]},
     "all": {"kind": "distributed", "beam": "beam1", "direction": [0.3, -1.0]},
+    "apart": {"kind": "beam_force", "beam": "further", "at": 0.37, "direction": [1.0, -0.7]},
     "part": {"kind": "distributed", "beam": "bow", "direction": [-0.7, -1.0], "along": [0.137, 0.731]},
 }
 
 
 @pytest.fixture(scope="module")
 def scene():
-    """The hinge with a further beam, a spline that begins on the body that moves."""
+    """The hinge with two further beams that begin on the body that moves, a spline and one away from its reference."""
     data = hinge_data()
     points = [[0.051, 0.02625], [0.07, 0.02], [0.08, 0.04], [0.07, 0.06]]
     curve = {"kind": "spline", "points": points}
     weld = {"joint": "weld", "point": "B"}
     data["beams"]["bow"] = {**data["beams"]["beam1"], "curve": curve, "start": weld, "end": {"joint": "free"}}
     data["beams"]["bow"].pop("paper", None)
+    straight = {"kind": "line", "start": [0.051, -0.02625], "end": [0.083, -0.031]}
+    data["beams"]["further"] = {**data["beams"]["bow"], "curve": straight, "start": {"joint": "weld", "point": "D"}}
     data["loads"] |= LOADS
     return scene_from({**data, "claims": []})
 

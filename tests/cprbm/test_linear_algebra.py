@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cprbm.bordered import bordered, factorised
+from cprbm.bordered import SINGULAR, anchored, bordered, factorised, generic
 from cprbm.complementarity import pressing
 
 
@@ -61,3 +61,35 @@ def test_complementarity_holds_for_any_compliance(m, seed, lost):
     assert np.all(w >= -1e-6 * scale)
     assert np.max(np.abs(lam * w)) < 1e-5 * scale * (1.0 + np.max(lam))
     assert np.all(lam[~active] == 0.0)
+
+
+def all_but_singular(n, mode, smallest):
+    """Second differences of n values with one eigenvalue, of a certain ``mode``, shifted to ``smallest``."""
+    closed_form = 2.0 - 2.0 * np.cos(mode * np.pi / (n + 1))
+    return np.full(n, 2.0 - closed_form + smallest), np.full(n - 1, -1.0)
+
+
+NONE = np.zeros(0, dtype=np.intp)
+
+
+@pytest.mark.parametrize("mode", [1, 6, 11])
+@pytest.mark.parametrize(("smallest", "few"), [(0.37, False), (-0.83, False), (1.7, True), (-2.3, True)])
+def test_what_is_nearly_singular_is_anchored(mode, smallest, few):
+    # reference: the eigenvalues by LAPACK; of a vector that often changes its sign there is little in a smooth one
+    n = 23
+    diagonal, off = all_but_singular(n, mode, smallest * SINGULAR)
+    metric = np.ones(n)
+    anchors = anchored(diagonal, off, metric, NONE, NONE)
+    assert (len(anchors) == 0) is few
+    kept = np.setdiff1d(np.arange(n), anchors)
+    Q = (np.diag(diagonal) + np.diag(off, 1) + np.diag(off, -1))[np.ix_(kept, kept)]
+    assert np.min(np.abs(np.linalg.eigvalsh(Q))) > SINGULAR
+
+
+@pytest.mark.parametrize(("smallest", "suspect"), [(0.37 * SINGULAR, True), (-0.61 * SINGULAR, True), (0.0043, False)])
+def test_what_is_nearly_singular_is_suspect(smallest, suspect):
+    # SUSPECT is thirty times SINGULAR: 0.003
+    n = 23
+    diagonal, off = all_but_singular(n, 1, smallest)
+    metric = np.ones(n)
+    assert factorised(diagonal, off).nearly_singular(generic(metric, NONE), metric) is suspect

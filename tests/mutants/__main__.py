@@ -1,9 +1,9 @@
 """How many small faults in the mechanics the tests catch: ``python -m tests.mutants --mutants 200 --seed 905``.
 
-First every file of the solvers' own tests runs once and notes what it reaches (``.mutants/map``).  Then mutants are
-drawn, kind by kind; each is put into a copy of the tree, and those tests run that reach its function, the quickest
-first, until one fails; then, within ``--seconds`` of the processor, whole files in which one does.  Whatever is there
-already, the map of an unchanged test file or the fate of a mutant, is not done again: a run may be ended at any time.
+First every file of the solvers' own tests runs once and notes which lines its quick tests reach (``.mutants/map``).
+Then mutants are drawn, kind by kind; each is put into a copy of the tree, and those tests run that reach its
+statement, the quickest first and ``--seconds`` of the processor at most, until one fails.  Whatever is there already,
+the map of an unchanged test file or the fate of a mutant, is not done again: a run may be ended at any time.
 
 The fates: ``caught`` by a test; ``endless``, which took several times the seconds of its tests; ``survived`` all; and
 ``unreached`` by any.  Survivors of which it was understood why nothing can catch them stand in ``equivalent.json``.
@@ -12,19 +12,20 @@ The fates: ``caught`` by a test; ``endless``, which took several times the secon
 from __future__ import annotations
 
 import argparse
+import compileall
 import json
-import os
+import py_compile
 import random
-import resource
 import shutil
-import subprocess
 import sys
 import tempfile
+import time
 from hashlib import sha256
 from pathlib import Path
 
 from comparisons.writing import write
-from tests.mutants.kinds import KINDS, Mutant, mutants_of
+from tests.mutants.forked import forked_pytest, warm
+from tests.mutants.kinds import KINDS, Mutant, mutants_of, reads, statement_at
 
 ROOT = Path(__file__).parents[2]
 WORK = ROOT / ".mutants"
@@ -45,7 +46,8 @@ HEAD = (
     "",
 )
 ENDLESS = 6.0
-"""A mutant's tests may take so many times their seconds, and a minute more."""
+"""A mutant's tests may take so many times their seconds, and ten seconds more."""
+SOME_FAILED, NO_TESTS = 1, 5
 
 
 def main() -> None:
@@ -53,36 +55,49 @@ def main() -> None:
     asked = argparse.ArgumentParser(description=__doc__)
     asked.add_argument("--mutants", type=int, default=200)
     asked.add_argument("--seed", type=int, default=905)
-    asked.add_argument("--seconds", type=float, default=120.0)
-    asked.add_argument("--tests", nargs="*", default=["tests/cprbm", "tests/fea_reference"])
+    asked.add_argument("--seconds", type=float, default=20.0, help="of the processor, at most, of a mutant's tests")
+    asked.add_argument("--minutes", type=float, default=600.0, help="after which no other mutant is tried")
+    asked.add_argument(
+        "--tests", nargs="*", default=["tests/cprbm", "tests/fea_reference", "tests/together/test_derivations.py"]
+    )
     asked.add_argument("--only", nargs="*", default=[], help="files of the solvers to draw from, all unless given")
-    options = asked.parse_args()
+    options, begun = asked.parse_args(), time.monotonic()
+    warm()
     mapped = reached(options.tests)
     results = json.loads(RESULTS.read_text("utf-8")) if RESULTS.exists() else {}
-    with_tests = sha256(repr((sorted(mapped), options.seconds)).encode()).hexdigest()[:12]
     mine = []
-    for mutant in sample(options.mutants, options.seed, options.only):
-        key = f"{mutant.name} {source_digest(mutant.file)}"  # of a file that has changed all are tried again
-        mine.append(key)
-        if key in results and (results[key]["fate"] in CAUGHT or results[key]["with"] == with_tests):
-            continue
-        fate, by = tried(mutant, mapped, options.seconds)
-        line = (ROOT / mutant.file).read_text("utf-8").splitlines()[mutant.line - 1].strip()
-        results[key] = {
-            "fate": fate,
-            "by": by,
-            "kind": mutant.kind,
-            "file": mutant.file,
-            "line": line,
-            "new": mutant.new,
-            "with": with_tests,
-        }
-        write(RESULTS, json.dumps(results, indent=1, ensure_ascii=False) + "\n")
-        sys.stdout.write(f"{fate:10s} {mutant.name}  {by}\n")
-        sys.stdout.flush()
-    drawn = f"Drawn by seed {options.seed} from {', '.join(options.only) or ' and '.join(ROOMS)}; at most"
-    tests = f"{options.seconds:g} s of the processor of the {len(mapped)} tests in {', '.join(options.tests)}."
-    told({key: results[key] for key in mine}, (f"{drawn} {tests}", ""))
+    with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
+        copy_of_sources(tree := Path(folder))
+        for mutant in sample(options.mutants, options.seed, options.only):
+            key = f"{mutant.name} {source_digest(mutant.file)}"  # of a file that has changed all are tried again
+            tests = planned(mutant, mapped, options.seconds)
+            with_tests = sha256(repr(sorted(tests)).encode()).hexdigest()[:12]
+            in_time = time.monotonic() - begun < 60.0 * options.minutes
+            known = results.get(key)
+            if in_time and (known is None or (known["fate"] not in CAUGHT and known["with"] != with_tests)):
+                fate, by = tried(mutant, tests, mapped, tree)
+                line = (ROOT / mutant.file).read_text("utf-8").splitlines()[mutant.line - 1].strip()
+                results[key] = {
+                    "fate": fate,
+                    "by": by,
+                    "kind": mutant.kind,
+                    "file": mutant.file,
+                    "line": line,
+                    "new": mutant.new,
+                    "with": with_tests,
+                }
+                write(RESULTS, json.dumps(results, indent=1, ensure_ascii=False) + "\n")
+                sys.stdout.write(f"{fate:10s} {mutant.name}  {by}\n")
+                sys.stdout.flush()
+            if key in results:
+                mine.append(key)
+    asked_for = f"{len(mine)} of the {options.mutants} mutants that seed {options.seed} draws from"
+    quick = f"Each was given at most {options.seconds:g} s of the processor of {len(mapped)} quick tests, those that"
+    how = (
+        f"{asked_for} {', '.join(options.only) or ' and '.join(ROOMS)}.",
+        f"{quick} reach its statement, in {', '.join(options.tests)}.",
+    )
+    told({key: results[key] for key in mine}, (*how, ""))
 
 
 def source_digest(file: str) -> str:
@@ -110,12 +125,13 @@ def sample(number: int, seed: int, only: list[str]) -> list[Mutant]:
         drawn.shuffle(mutants)
     found: list[Mutant] = []
     while len(found) < number and any(by_kind.values()):
-        found.extend(mutants.pop() for mutants in by_kind.values() if mutants)
+        popped = [mutants.pop() for mutants in by_kind.values() if mutants]
+        found.extend(each for each in popped if reads(each.applied((ROOT / each.file).read_bytes())))
     return found[:number]
 
 
 def reached(folders: list[str]) -> dict[str, dict]:
-    """By test, seconds and functions; test files that have not changed are not run again."""
+    """By test, seconds and lines; test files that have not changed are not run again."""
     found: dict[str, dict] = {}
     named = [ROOT / folder for folder in folders]
     files = [path for one in named for path in ([one] if one.is_file() else one.glob("**/test_*.py"))]
@@ -124,74 +140,65 @@ def reached(folders: list[str]) -> dict[str, dict]:
         kept = WORK / "map" / f"{name.stem}-{name.parent.name}-{sha256(file.read_bytes()).hexdigest()[:12]}.json"
         if not kept.exists():
             kept.parent.mkdir(parents=True, exist_ok=True)
-            arguments = ["-p", "tests.mutants.reached", "--reached", str(kept), str(name)]
-            done = _pytest(ROOT, arguments, 3600.0)
-            if done != 0:
-                kept.unlink(missing_ok=True)
-                sys.exit(f"{name} fails as it is: pytest ended with {done}")
+            part = kept.with_suffix(".part")
+            done = forked_pytest(ROOT, ["-p", "tests.mutants.reached", "--reached", str(part), str(name)], 600.0)
+            if done not in (0, SOME_FAILED, NO_TESTS):
+                sys.exit(f"{name} cannot be mapped: pytest ended with {done}")
+            part.rename(kept)  # without those that failed, most of them broken off
         found.update(json.loads(kept.read_text("utf-8")))
-    return found
+    return {test: each for test, each in found.items() if each["lines"]}
 
 
-def tried(mutant: Mutant, mapped: dict[str, dict], seconds: float) -> tuple[str, str]:
-    """A mutant's fate, and the test that caught it."""
-    place = [mutant.file, mutant.function]
+def planned(mutant: Mutant, mapped: dict[str, dict], seconds: float) -> list[str]:
+    """The tests that reach a mutant's statement, the quickest first, as many as fit into ``seconds``."""
+    first, last = statement_at((ROOT / mutant.file).read_bytes(), mutant.line)
     reach = {
         test: each["seconds"]
         for test, each in mapped.items()
-        if (
-            place in each["functions"] if mutant.function else any(file == mutant.file for file, _ in each["functions"])
-        )
+        if any(not mutant.function or first <= line <= last for line in each["lines"].get(mutant.file, ()))
     }
-    if not reach:
-        return "unreached", ""
-    first = sorted(reach, key=lambda test: reach[test])
-    files = {test.partition("::")[0] for test in first}
-    beside = sorted(
-        (t for t in mapped if t.partition("::")[0] in files and t not in reach), key=lambda t: mapped[t]["seconds"]
-    )
     tests, total = [], 0.0
-    for test in [*first, *beside]:
-        total += mapped[test]["seconds"]
+    for test in sorted(reach, key=lambda test: reach[test]):
+        total += reach[test]
         if total > seconds and tests:
             break
         tests.append(test)
-    with tempfile.TemporaryDirectory(prefix="mutant-") as folder:
-        tree = Path(folder)
-        for name in COPIED:
-            if (ROOT / name).is_dir():
-                shutil.copytree(ROOT / name, tree / name, ignore=shutil.ignore_patterns("__pycache__"))
-            else:
-                shutil.copy(ROOT / name, tree / name)
-        source = tree / mutant.file
-        source.write_bytes(mutant.applied(source.read_bytes()))
+    return tests
+
+
+def tried(mutant: Mutant, tests: list[str], mapped: dict[str, dict], tree: Path) -> tuple[str, str]:
+    """A mutant's fate in a copy of the sources, and the test that caught it."""
+    if not tests:
+        return "unreached", ""
+    source, report = tree / mutant.file, tree / "report.txt"
+    whole = source.read_bytes()
+    try:
+        source.write_bytes(mutant.applied(whole))
         # a few first: most mutants fall there, and every further test is a file to be collected
         for some in (tests[:12], tests[12:]):
             if not some:
                 continue
-            limit = 60.0 + ENDLESS * sum(mapped[test]["seconds"] for test in some)
-            (tree / "tests.txt").write_text("\n".join(some), "utf-8")
-            report = tree / "report.txt"
-            code = _pytest(tree, ["-x", "@tests.txt"], limit, report)
-            if code < 0 or code > 128:
+            limit = 10.0 + ENDLESS * sum(mapped[test]["seconds"] for test in some)
+            code = forked_pytest(tree, ["-x", *some], limit, report)
+            if code < 0:
                 return "endless", f"{limit:.0f} s"
             if code != 0:
-                failed = [
-                    line for line in report.read_text("utf-8").splitlines() if line.startswith(("FAILED", "ERROR"))
-                ]
+                lines = report.read_text("utf-8").splitlines()
+                failed = [line for line in lines if line.startswith(("FAILED", "ERROR"))]
                 return "caught", failed[0].split(" - ")[0].split(" ", 1)[1] if failed else f"pytest {code}"
+    finally:
+        source.write_bytes(whole)
     return "survived", f"{len(tests)} tests"
 
 
-def _pytest(tree: Path, arguments: list[str], seconds: float, report: Path | None = None) -> int:
-    def limited() -> None:
-        resource.setrlimit(resource.RLIMIT_CPU, (int(seconds), int(seconds) + 5))
-
-    command = [sys.executable, "-B", "-m", "pytest", "-q", "-p", "no:cacheprovider", "--tb=no", *arguments]
-    with (report or Path(os.devnull)).open("w") as stream:
-        return subprocess.run(
-            command, cwd=tree, stdout=stream, stderr=stream, preexec_fn=limited, check=False
-        ).returncode
+def copy_of_sources(tree: Path) -> None:
+    """A tree to be altered; what is compiled in it is known by its sources' contents, not by their dates."""
+    for name in COPIED:
+        if (ROOT / name).is_dir():
+            shutil.copytree(ROOT / name, tree / name, ignore=shutil.ignore_patterns("__pycache__"))
+            compileall.compile_dir(tree / name, quiet=2, invalidation_mode=py_compile.PycInvalidationMode.CHECKED_HASH)
+        else:
+            shutil.copy(ROOT / name, tree / name)
 
 
 def told(results: dict[str, dict], how: tuple[str, ...]) -> None:
