@@ -177,12 +177,8 @@ def _finer(scene: Scene, finding: _Finding) -> Choices:
     """
     choices, finer = finding.choices, finding.choices.finer()
     found = [(row.bounds, scene.limit(row.probe) * row.scale) for row in finding.rows if row.bounds is not None]
-    vague = [
-        (bounds, allowed) for bounds, allowed in found if max(bounds.total, bounds.same_theory) > allowed > 0.0
-    ]
-    cprbm, fea = (
-        sum(getattr(bounds, solver) / allowed for bounds, allowed in vague) for solver in ("cprbm", "fea")
-    )
+    vague = [(bounds, allowed) for bounds, allowed in found if max(bounds.total, bounds.same_theory) > allowed > 0.0]
+    cprbm, fea = (sum(getattr(bounds, solver) / allowed for bounds, allowed in vague) for solver in ("cprbm", "fea"))
     if finding.early == {"cprbm"} or (not finding.early and cprbm > DOMINANT * fea):
         return replace(choices, links=finer.links)
     if finding.early == {"fea"} or (not finding.early and fea > DOMINANT * cprbm):

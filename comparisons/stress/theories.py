@@ -37,11 +37,7 @@ def share_of(model: Estimate, states: Sequence[State], barriers: Sequence[Barrie
     """The largest U_t / U_b of some states, those left out that hardly bend."""
     bent = [0.5 * float(state.q @ model.stiffness @ state.q) for state in states]
     return max(
-        (
-            _yielding(model, state, barriers) / U
-            for state, U in zip(states, bent, strict=True)
-            if U > LEAST * max(bent)
-        ),
+        (_yielding(model, state, barriers) / U for state, U in zip(states, bent, strict=True) if LEAST * max(bent) < U),
         default=0.0,
     )
 
@@ -86,9 +82,7 @@ def _forces(model: Estimate, state: State, barriers: Sequence[Barrier]) -> dict[
         found[barrier.beam] += pushes
     rows = [model.held.slopes(q), *(model.acted(drive).slopes(q) for drive in scene.drives.values())]
     mu = np.linalg.lstsq(np.vstack(rows).T, -left, rcond=None)[0]
-    closed = [
-        name for name, beam in scene.beams.items() if not {FreeEnd} & {type(beam.start), type(beam.end)}
-    ]
+    closed = [name for name, beam in scene.beams.items() if not {FreeEnd} & {type(beam.start), type(beam.end)}]
     for i, name in enumerate(closed):  # in the order of the rows that hold their ends
         found[name][-1] -= mu[2 * i : 2 * i + 2]
     return found

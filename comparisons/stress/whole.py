@@ -16,7 +16,9 @@ import numpy as np
 from comparisons.stress.actions import force_of
 from comparisons.stress.chance import between, happens, rounded, sign, spread, weighted
 from comparisons.stress.curves import arc_of_turn
-from comparisons.stress.draft import Data, Draft
+from comparisons.stress.draft import THINNEST, Data, Draft
+
+STOUTEST_COLUMN = 120.0  # times as long as thick
 
 
 def rolled(draft: Draft) -> None:
@@ -101,6 +103,8 @@ def lying(draft: Draft) -> None:
 def column(draft: Draft) -> None:
     """A column that is pressed far past its buckling load, with something that says to which side it goes."""
     rng, size = draft.rng, draft.frame.size
+    # so near to its critical load what shear takes of that decides how far it bends
+    draft.slenderness = spread(rng, STOUTEST_COLUMN, 1.0 / THINNEST)
     draft.body("wall", "fixed", {"R": (0.0, 0.0)})
     ends, critical = weighted(
         rng,
