@@ -239,9 +239,12 @@ def _surface(contact: CircleContact | LineContact | HalfPlaneContact | FunctionC
     share, held, away = share[rows, piece], held[rows, piece], away[rows, piece]
     closed = bool(abs(corners[0] - corners[-1]) == 0.0)
     ended = ((piece == 0) & (share < 0.0)) | ((piece == len(steps) - 1) & (share > 1.0))
-    # of a corner that is nearest the pieces beside say on which side; one is behind if it is behind either
-    sign = np.where(across >= 0.0, 1.0, -1.0)
     corner = (held != share) & (np.abs(away) > 0.0)
+    # where a corner is nearest, the mean of the pieces' normals beside it says on which side
+    beside = np.where(share < 0.0, piece - 1, piece + 1)
+    beside = beside % len(steps) if closed else np.clip(beside, 0, len(steps) - 1)
+    across = np.where(corner, (away * np.conj(side[piece] + side[beside])).real, across)
+    sign = np.where(across >= 0.0, 1.0, -1.0)
     size = np.abs(away)
     lying = size <= 1e-12 * np.abs(steps).max()
     normal = np.where(
