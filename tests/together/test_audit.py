@@ -116,7 +116,7 @@ def test_in_front_of_a_sharp_corner_is_not_behind_it():
 def test_a_graph_over_y_is_looked_at_from_its_side(side, ahead):
     # x = 0.3: what is above lies at larger x
     contact = FunctionContact(
-        kind="beam-function", beam="b", body="w", axis="y", coefficients=(0.3,), range=(-1.0, 0.7), side=side
+        kind="beam-function", beam="b", body="w", axis="y", coefficients=(0.3, 0.0), range=(-1.0, 0.7), side=side
     )
     assert _surface(contact, np.array([0.41 + 0.2j])).distance == pytest.approx([0.11 * ahead])
 
