@@ -51,6 +51,7 @@ def statics(scene: Scene, mechanism: Mechanism, point: Point) -> Statics | None:
     bodies = {
         name: frozen_array((u * model.unit_length, v * model.unit_length, phi))
         for name, (u, v, phi) in zip(model.free_bodies, point.state.bodies, strict=True)
+        if name in scene.bodies  # a start that nothing holds is a body of the chain's own
     }
     return Statics(
         by=tuple(part.by for part in parts for _ in part.s),

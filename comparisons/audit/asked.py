@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from comparisons.audit.balance import moments_beyond, near
+from comparisons.audit.balance import between_nodes, moments_beyond, near
 from comparisons.audit.seen import Seen
 from scene import Probe
 from scene.answer import Array
@@ -62,7 +62,8 @@ def _value(seen: Seen, probe: Probe) -> tuple[Array, Array | float] | None:
                 for load in scene.loads.values()
             )
             share = WITHIN if loaded else SAME
-            return np.array([strain - work]), share * (abs(strain) + abs(work)) + 1e-12 * _rounded(seen)
+            given = sum(between_nodes(seen, name)[0] for name in seen.beams)
+            return np.array([strain - work]), share * (abs(strain) + abs(work)) + given + 1e-12 * _rounded(seen)
         case "bending_stress":
             return _stress(seen, probe)
         case _:

@@ -26,7 +26,8 @@ def sums(seen: Seen) -> Iterator[str]:
     """What is left over of ΣF and ΣM of beams, bodies, contacts and joints."""
     floor = _floor(seen)
     for name, acting in seen.acting.items():
-        yield from _unbalanced(name, acting, floor)
+        given = between_nodes(seen, name)[1] if name in seen.beams else 0.0
+        yield from _unbalanced(name, acting, (floor[0], floor[1] + given))
     for name in {*seen.scene.contacts, *seen.scene.pins, *(p for b in seen.scene.bodies.values() for p in b.points)}:
         if _is_between(seen, name):
             yield from _unbalanced(f"{name}, action and reaction,", _only(seen, name), floor)
@@ -47,7 +48,8 @@ def cuts(seen: Seen) -> Iterator[str]:
     floor = _floor(seen)[1]
     for name, beam in seen.beams.items():
         arc, _, inside = beam.cuts
-        beyond, allowed = moments_beyond(seen, name, arc), floor + near(seen, name, arc)
+        allowed = floor + between_nodes(seen, name)[1] + near(seen, name, arc)
+        beyond = moments_beyond(seen, name, arc)
         off = np.abs(inside - beyond) - allowed
         worst = int(np.argmax(off))
         if not off[worst] <= 0.0:
@@ -55,6 +57,24 @@ def cuts(seen: Seen) -> Iterator[str]:
                 f"{name} at {arc[worst]:.4g} m bears {inside[worst]:.6g} N·m by its shape and {beyond[worst]:.6g} N·m "
                 f"by all that acts beyond"
             )
+
+
+def between_nodes(seen: Seen, name: str) -> tuple[float, float]:
+    """What loads on a beam do between its nodes, of which an answer says nothing: energy, J, and moment, N·m, at most.
+
+    A force F yields by F h³/(192 E·I) at most where it acts, a moment M turns by M h/(3 E·I).  So much work is done
+    there, and so far from the line drawn here may the force act.
+    """
+    beam, acting, rest = seen.beams[name], seen.acting[name], seen.rests[name]
+    e = beam.inside.borders
+    loads = np.array([by in seen.scene.loads for by in acting.by], dtype=bool)
+    at = np.clip(np.searchsorted(e, acting.s[loads], side="right") - 1, 0, len(e) - 2)
+    forces, moments = np.zeros(len(e) - 1), np.zeros(len(e) - 1)
+    np.add.at(forces, at, np.abs(acting.forces[loads]))
+    np.add.at(moments, at, np.abs(acting.moments[loads]))
+    h, EI = np.diff(e), np.minimum(rest.rigidity(e[:-1]), rest.rigidity(e[1:]))
+    given = float(np.sum(forces**2 * h**3 / (192.0 * EI)))
+    return given + float(np.sum(moments**2 * h / (3.0 * EI))), given
 
 
 def unbalance(seen: Seen) -> tuple[float, float]:

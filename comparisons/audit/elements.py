@@ -125,13 +125,13 @@ class ElementsOfBeam:
         return float(0.5 * np.sum(delta * bent) + 0.5 * np.sum(axial * N**2))
 
     @property
-    def stretching(self) -> float:
-        """By how much an element's length is wrong under its axial force at most, m; of those that nothing presses."""
+    def stretching(self) -> Array:
+        """By how much elements' lengths are wrong under their axial forces, m (n,)."""
         (_, axial, _), (slope, shortening) = self._flexible, self._slopes
         delta = self._turned
         longer = np.abs(self._chords) - np.abs(self._at_rest[0])
         longer += ((slope + 0.5 * np.einsum("ijn,jn->in", shortening, delta)) * delta).sum(axis=0)
-        return float(np.max(np.abs(longer - axial * self.inside.pulls)))
+        return np.asarray(longer - axial * self.inside.pulls)
 
     @property
     def rounding(self) -> float:
@@ -175,9 +175,16 @@ class ElementsOfBeam:
         parts = e[:-1, None] + self._sizes[:, None] * (np.arange(PER_ELEMENT) / PER_ELEMENT)
         return np.append(parts.ravel(), e[-1])
 
-    def misplaced(self) -> float:
-        """By how much lengths are wrong, m."""
-        return self.stretching
+    def misplaced(self, acting: Array) -> float:
+        """By how much lengths are wrong, m; of elements that shear only where nothing is ``acting`` on them, (k,) m.
+
+        A force between nodes bows what shears by more than its ends tell.
+        """
+        off = self.stretching
+        if self.kinematics == "shear":
+            e = self.inside.borders
+            off[np.unique(np.clip(np.searchsorted(e, acting, side="right") - 1, 0, len(e) - 2))] = 0.0
+        return float(np.max(np.abs(off)))
 
 
 def _parabola(ratio: Array, L: Array) -> Array:

@@ -17,7 +17,15 @@ from scipy.spatial import cKDTree
 from comparisons.audit.rest import Complex
 from comparisons.audit.seen import AnyBeam, Seen
 from scene.answer import Array, Flags
-from scene.statement import BeamContact, CircleContact, FunctionContact, HalfPlaneContact, LineContact, SelfContact
+from scene.statement import (
+    BeamContact,
+    CircleContact,
+    FunctionContact,
+    HalfPlaneContact,
+    LineContact,
+    RigidContact,
+    SelfContact,
+)
 
 DEEP = 0.05  # of the mean thickness: as deep as beams of any certificate may overlap
 SUNK = 2e-3  # of the longest beam: the same of lines without thickness
@@ -92,8 +100,11 @@ def _of_rigid(
     first, moved, phi = seen.motion(contact.body)
     turn = complex(np.exp(1j * phi))
 
+    def still(places: Complex) -> Complex:
+        return np.asarray(first + (places - first - moved) / turn)
+
     def surface(places: Complex) -> Feet:
-        feet = _surface(contact, first + (places - first - moved) / turn)
+        feet = _surface(contact, still(places))
         return Feet(feet.distance, feet.normal * turn, feet.s, feet.at_end)
 
     s = A.fine
@@ -101,6 +112,7 @@ def _of_rigid(
     half = 0.5 * A.rest.thickness(s) if contact.thick else np.zeros(len(s))
     overlapping = rest.distance < half * (1.0 - 1e-9) - 1e-12 * seen.longest
     counted = ~feet.at_end & ~_spread(s, overlapping, BESIDE * float(A.rest.thickness(s).max()))
+    counted &= ~_round_an_end(contact, still(A.line(s)[0]), feet)
     allowed = DEEP * 2.0 * float(half.mean()) if contact.thick else SUNK * seen.longest
     yield from _deepest(f"{a} and what is rigid in {name}", s, feet.distance - half, counted, allowed)
     yield from _pressing(seen, name, a, surface(_pressed(seen, name, a)[1]), None, thick=contact.thick)
@@ -210,15 +222,12 @@ def _surface(contact: CircleContact | LineContact | HalfPlaneContact | FunctionC
         normal = complex(*contact.normal) / abs(complex(*contact.normal))
         distance = ((places - complex(*contact.point)) * np.conj(normal)).real
         return Feet(distance, np.full(len(places), normal), 0.0 * distance, nowhere)
+    corners = _corners(contact)
     if isinstance(contact, LineContact):
-        corners = np.array([complex(*point) for point in contact.points])
         left = contact.side == "left"
     else:
-        v = np.linspace(*contact.range, 4001)
-        f = np.polynomial.polynomial.polyval(v, contact.coefficients)
-        corners = v + 1j * f if contact.axis == "x" else f + 1j * v
         # along growing x what is above lies to the left; along growing y what is at larger x to the right
-        left = (contact.side == "above") == (contact.axis == "x") == (contact.range[1] > contact.range[0])
+        left = ((contact.side == "above") == (contact.axis == "x")) == (contact.range[1] > contact.range[0])
     steps = np.diff(corners)
     share = ((places[:, None] - corners[:-1]) * np.conj(steps)).real / np.abs(steps) ** 2
     held = np.clip(share, 0.0, 1.0)
@@ -230,15 +239,37 @@ def _surface(contact: CircleContact | LineContact | HalfPlaneContact | FunctionC
     share, held, away = share[rows, piece], held[rows, piece], away[rows, piece]
     closed = bool(abs(corners[0] - corners[-1]) == 0.0)
     ended = ((piece == 0) & (share < 0.0)) | ((piece == len(steps) - 1) & (share > 1.0))
-    # of a corner that is nearest the pieces beside say on which side; one is behind if it is behind either
-    sign = np.where(across >= 0.0, 1.0, -1.0)
     corner = (held != share) & (np.abs(away) > 0.0)
+    # where a corner is nearest, the mean of the pieces' normals beside it says on which side
+    beside = np.where(share < 0.0, piece - 1, piece + 1)
+    beside = beside % len(steps) if closed else np.clip(beside, 0, len(steps) - 1)
+    across = np.where(corner, (away * np.conj(side[piece] + side[beside])).real, across)
+    sign = np.where(across >= 0.0, 1.0, -1.0)
     size = np.abs(away)
     lying = size <= 1e-12 * np.abs(steps).max()
     normal = np.where(
         lying | ~corner & (size < 1e-9), side[piece], sign * away / np.maximum(size, np.finfo(float).tiny)
     )
     return Feet(sign * size, normal, 0.0 * size, ended & ~closed)
+
+
+def _corners(contact: LineContact | FunctionContact) -> Complex:
+    """Of a line, or of a graph drawn as one."""
+    if isinstance(contact, LineContact):
+        return np.array([complex(*point) for point in contact.points])
+    v = np.linspace(*contact.range, 4001)
+    f = np.polynomial.polynomial.polyval(v, contact.coefficients)
+    return np.asarray(v + 1j * f if contact.axis == "x" else f + 1j * v)
+
+
+def _round_an_end(contact: RigidContact, places: Complex, feet: Feet) -> Flags:
+    """Places (k,) of a beam's line that are behind an open line without having gone through it."""
+    behind = feet.distance < 0.0
+    if not isinstance(contact, LineContact | FunctionContact) or not behind.any():
+        return np.zeros(len(places), dtype=bool)
+    corners = _corners(contact)
+    through = corners[0] == corners[-1] or len(_intersections(places, corners)[0]) > 0
+    return np.zeros(len(places), dtype=bool) if through else behind
 
 
 def _beside_joint(seen: Seen, a: str, b: str, s: Array) -> Flags:

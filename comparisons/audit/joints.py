@@ -16,7 +16,8 @@ def held(seen: Seen) -> Iterator[str]:
     """What is not where it should be."""
     scene, close = seen.scene, APART * seen.longest
     for name, beam in seen.beams.items():
-        off = beam.misplaced()
+        acting = seen.acting[name]
+        off = beam.misplaced(acting.s[(acting.s > 0.0) & (acting.s < beam.rest.length)])
         if not off <= max(100.0 * close, 1e-6 * beam.rest.length):
             yield f"the shape of {name} is {off:.2g} m from the line that its angles make, or stretched by that"
         for end, (place, turned) in zip((beam.rest.beam.start, beam.rest.beam.end), beam.ends, strict=True):

@@ -121,7 +121,7 @@ class Links:
         parts = [np.linspace(a, b, PER_HALF, endpoint=False) for a, b in pairwise(knots)]
         return np.concatenate([*parts, knots[-1:]])
 
-    def misplaced(self) -> float:
+    def misplaced(self, acting: Array) -> float:
         """How far the places of the shape are from the line that the angles make, m."""
         places, _ = self.line(self.shape.s)
         return float(np.max(np.abs(places - (self.shape.x + 1j * self.shape.y))))

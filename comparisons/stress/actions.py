@@ -24,6 +24,7 @@ from comparisons.stress.estimate import Estimate, State, followed
 GROWTH = 1.3  # of a load from one state to the next
 MOST_STATES = 34
 ENERGY = [{"of": "scene", "quantity": "potential_energy"}]
+LEAST_SOFTNESS = 0.02
 STEP, FARTHEST = 0.03, 0.7  # of a driven displacement, in sizes
 
 
@@ -100,8 +101,10 @@ def led(model: Estimate, state: State, action: Action, turn: float) -> list[Stat
     """The states that an action leads through from a ``state`` on, until something has turned by ψ.
 
     Raises:
-        RedrawError: it leads nowhere, or to where the mechanism snaps.
+        RedrawError: it leads nowhere, to where the mechanism snaps, or presses a perfect column.
     """
+    if model.softness(state.q, action.name) < LEAST_SOFTNESS:
+        raise RedrawError
     first = state.values.get(action.name, 0.0)
     growing = _of_drive(action, model.size) if action.group == "drives" else _of_load(action)
     states: list[State] = []

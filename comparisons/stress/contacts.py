@@ -19,8 +19,10 @@ _AWAY = 0.85  # of the states before one that was not found
 _REACHED = 0.55  # of the way: a mechanism that a barrier ends before is left without it
 
 
-def put_in_the_way(draft: Draft, model: Estimate, states: Sequence[State], acting: Sequence[str]) -> list[State]:
-    """Put none to four things in the way of some beams; the states with them, as far as they go.
+def put_in_the_way(
+    draft: Draft, model: Estimate, states: Sequence[State], acting: Sequence[str]
+) -> tuple[list[State], list[Barrier]]:
+    """Put none to four things in the way of some beams; the states with them, as far as they go, and what they are.
 
     The stages' loads and drives are ``acting`` one after the other.
     """
@@ -52,7 +54,7 @@ def put_in_the_way(draft: Draft, model: Estimate, states: Sequence[State], actin
             break
     if contacts:
         draft.data["contacts"] = contacts
-    return way
+    return way, barriers
 
 
 def _obstacle(draft: Draft, spot: Spot) -> Obstacle:

@@ -20,6 +20,7 @@ from comparisons.stress.estimate import Estimate, State
 from comparisons.stress.mechanisms import MECHANISMS
 from comparisons.stress.pushers import push
 from comparisons.stress.stopping import put_stops
+from comparisons.stress.theories import made_thin, share_of
 from comparisons.stress.toml import toml_of
 from comparisons.stress.whole import WHOLE
 from scene.mistakes import SceneError
@@ -88,7 +89,7 @@ def _act(draft: Draft) -> None:
         states += led(model, state, action, drawn_turn(rng))
         state = states[-1]
     put_stops(draft, model, states)
-    way = put_in_the_way(draft, model, states, [action.name for action in actions])
+    way, barriers = put_in_the_way(draft, model, states, [action.name for action in actions])
     last = {name: value for name, value in way[-1].values.items() if value}
     for stage in stages:
         stage["stations"] = stations_to(rng, last.get(stage["steps"], 0.0))
@@ -97,6 +98,7 @@ def _act(draft: Draft) -> None:
         acting = begun[-1]["steps"]
         begun.append({"name": "back", "steps": acting, "stations": [rounded(between(rng, 0.2, 0.7) * last[acting])]})
     draft.data["stages"] = begun
+    made_thin(draft, share_of(model, way, barriers))
 
 
 _ORDER = (

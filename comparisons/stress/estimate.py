@@ -134,6 +134,29 @@ class Estimate:
         """Nodes (bars + 1, 2) of a beam, m."""
         return self.lines[beam].at(q).reshape(-1, 2)
 
+    def pushed(self, q: Array, barrier: Barrier) -> Array:
+        """Forces (bars + 1, 2) of a barrier on the nodes of its beam."""
+        p = self.lines[barrier.beam].at(q).reshape(-1, 2)
+        d, rises = _distances(self, p, barrier)
+        k = _STIFF * float(np.abs(self.stiffness).max()) / self.size**2
+        return np.asarray(-k * np.minimum(d - barrier.apart, 0.0)[:, None] * rises.T)
+
+    def softness(self, q: Array, name: str) -> float:
+        """By how much what ``name`` does can yield to it at once, of what it would without joints.
+
+        Nothing where a load only pulls or presses what is straight, or a drive would have to shorten it: what follows
+        then is a bifurcation.
+        """
+        acting = self.scene.loads.get(name) or self.scene.drives[name]
+        others = [drive for each, drive in self.scene.drives.items() if each != name]
+        scale = np.ones(self.unknowns)
+        scale[[j for i in self.bodies.values() for j in (i, i + 1)]] = self.size
+        A = np.vstack([self.held.slopes(q), *(self.acted(drive).slopes(q) for drive in others)]) * scale
+        g = self.acted(acting).slopes(q)[0] * scale
+        _, values, motions = np.linalg.svd(A)
+        free = motions[int(np.count_nonzero(values > 1e-9 * values[0])) :] if len(values) else motions
+        return float(np.linalg.norm(free @ g) / max(float(np.linalg.norm(g)), 1e-300))
+
     def largest_turn(self, q: Array) -> float:
         """The largest turn of a bar or a body, rad."""
         bars = max(float(np.abs(q[part]).max()) for part in self.turns.values())
@@ -319,20 +342,24 @@ def _equilibrium(
 def _held_off(model: Estimate, q: Array, barrier: Barrier) -> tuple[Array, Array]:
     """Derivatives (unknowns,) and (unknowns, unknowns) of a barrier's energy: springs at nodes that are too near."""
     nodes = model.lines[barrier.beam]
-    p = nodes.at(q).reshape(-1, 2)
-    step = 1e-6 * model.size
-    # all that is asked of the distance at once: it is the dearest part of an estimate
-    beside = step * np.array([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
-    d = barrier.distance((p + beside[:, None]).reshape(-1, 2)).reshape(5, -1)
-    gap = np.minimum(d[0] - barrier.apart, 0.0)
+    d, rises = _distances(model, nodes.at(q).reshape(-1, 2), barrier)
+    gap = np.minimum(d - barrier.apart, 0.0)
     near = np.flatnonzero(gap < 0.0)
     if not near.size:
         return np.zeros(model.unknowns), np.zeros((model.unknowns, model.unknowns))
     J = nodes.slopes(q).reshape(-1, 2, model.unknowns)[near]
-    rises = (d[1::2] - d[2::2])[:, near] / (2.0 * step)
-    rows = np.einsum("ik,kij->kj", rises, J)
+    rows = np.einsum("ik,kij->kj", rises[:, near], J)
     k = _STIFF * float(np.abs(model.stiffness).max()) / model.size**2
     return k * gap[near] @ rows, k * rows.T @ rows
+
+
+def _distances(model: Estimate, p: Array, barrier: Barrier) -> tuple[Array, Array]:
+    """A barrier's distance from places (k, 2), (k,), and its derivatives (2, k)."""
+    step = 1e-6 * model.size
+    # all that is asked of the distance at once: it is the dearest part of an estimate
+    beside = step * np.array([[0.0, 0.0], [1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
+    d = barrier.distance((p + beside[:, None]).reshape(-1, 2)).reshape(5, -1)
+    return d[0], (d[1::2] - d[2::2]) / (2.0 * step)
 
 
 def _stable(H: Array, A: Array) -> bool:

@@ -9,6 +9,7 @@ from comparisons.stress.chance import RedrawError, any_of, between, happens, rou
 from comparisons.stress.draft import Data, Draft
 from comparisons.stress.estimate import BARS, Estimate, State
 from comparisons.stress.obstacles import Obstacle, Spot, is_clear, rigid
+from comparisons.stress.theories import made_thin, share_of
 from scene.reading import scene_from
 
 CLEAR = 0.02  # of the size, between the beam and what is driven against it
@@ -48,6 +49,7 @@ def push(draft: Draft) -> None:
         obstacle = rigid(rng, spot)
         if is_clear(model, obstacle, list(model.scene.beams), spot):
             _drive(draft, spot, obstacle, depth + CLEAR * size)
+            made_thin(draft, share_of(model, states, []))
             return
     raise RedrawError
 

@@ -16,7 +16,9 @@ import numpy as np
 from comparisons.stress.actions import force_of
 from comparisons.stress.chance import between, happens, rounded, sign, spread, weighted
 from comparisons.stress.curves import arc_of_turn
-from comparisons.stress.draft import Data, Draft
+from comparisons.stress.draft import THINNEST, Data, Draft
+
+STOUTEST_COLUMN = 120.0  # times as long as thick
 
 
 def rolled(draft: Draft) -> None:
@@ -101,6 +103,8 @@ def lying(draft: Draft) -> None:
 def column(draft: Draft) -> None:
     """A column that is pressed far past its buckling load, with something that says to which side it goes."""
     rng, size = draft.rng, draft.frame.size
+    # so near to its critical load what shear takes of that decides how far it bends
+    draft.slenderness = spread(rng, STOUTEST_COLUMN, 1.0 / THINNEST)
     draft.body("wall", "fixed", {"R": (0.0, 0.0)})
     ends, critical = weighted(
         rng,
@@ -128,15 +132,17 @@ def column(draft: Draft) -> None:
         side = draft.frame.direction((0.0, sign(rng)))
         loads["nudge"] = {"kind": "distributed", "beam": "beam1", "direction": [round(c, 3) for c in side]}
         stages.append({"name": "aside", "steps": "nudge", "stations": [rounded(spread(rng, 0.3, 1.5) * force / size)]})
+    walled = happens(rng, 0.8)
     if happens(rng, 0.5) and ends != ("free",):
         draft.data["drives"] = {"press": {"kind": "displacement", "point": "T", "direction": back}}
-        last = size * between(rng, 0.05, 0.45)
+        # pressed further a column between walls snaps into waves, where its branch ends
+        last = size * between(rng, 0.05, 0.15 if walled else 0.45)
     else:
         loads["press"] = {"kind": "force", "point": "T", "direction": back}
         last = force * critical * between(rng, 1.12, 1.6 if ends == ("free",) else 1.15)
     stages.append({"name": "press", "steps": "press", "stations": [rounded(share * last) for share in (0.6, 0.9, 1.0)]})
     draft.data |= {"loads": loads, "stages": stages}
-    if happens(rng, 0.8):
+    if walled:
         _walls(draft, between(rng, 0.06, 0.3), start, end)
 
 

@@ -258,16 +258,39 @@ class Drifting:
     """A CPRBM whose error does not fall as it says: at four times the links its value is another."""
 
     def __call__(self, scene, choices):
-        stiffness = 1.2 if choices.links >= 160 else 1.0
-        return MadeUp("cprbm", 0.06, stiffness=stiffness, contact=False)(scene, choices)
+        stiffness = 1.2 if choices.links >= 320 else 1.0
+        return MadeUp("cprbm", 0.24, stiffness=stiffness, contact=False)(scene, choices)
 
 
 def test_a_value_that_leaves_its_refinement_is_wrong():
     scene = scene_from(fated(1, 0).data)
     drifting = Solvers(Drifting(), MadeUp("fea", 2e-3, contact=False))
-    steady = Solvers(MadeUp("cprbm", 0.06, contact=False), drifting.fea)
+    steady = Solvers(MadeUp("cprbm", 0.24, contact=False), drifting.fea)
     assert judged(scene, steady, Effort()).way is Way.UNDECIDED
     assert judged(scene, drifting, Effort()).way is Way.WRONG
+
+
+def test_only_the_solver_that_states_too_much_is_asked_once_more():
+    scene = scene_from(fated(1, 0).data)
+    asked = {"cprbm": set(), "fea": set()}
+
+    def noting(name, error):
+        right = MadeUp(name, error, contact=False)
+
+        def answer(scene, choices):
+            asked[name].add(choices.links if name == "cprbm" else choices.elements)
+            return right(scene, choices)
+
+        return answer
+
+    for errors, expected in (
+        ((0.4, -5e-4), {"cprbm": {80, 160, 320}, "fea": {40, 80}}),
+        ((2e-3, -0.4), {"cprbm": {80, 160}, "fea": {40, 80, 160}}),
+        ((2e-3, -5e-4), {"cprbm": {80, 160}, "fea": {40, 80}}),
+    ):
+        asked = {"cprbm": set(), "fea": set()}
+        judged(scene, Solvers(noting("cprbm", errors[0]), noting("fea", errors[1])), Effort())
+        assert asked == expected
 
 
 def test_an_exact_answer_that_is_far_is_wrong():

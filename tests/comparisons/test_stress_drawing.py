@@ -2,15 +2,22 @@
 
 import tomllib
 from collections import Counter
+from dataclasses import replace
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from numpy.random import Generator, Philox
 
 from comparisons.stress import strata
+from comparisons.stress.draft import started
 from comparisons.stress.drawing import drawn
+from comparisons.stress.estimate import Estimate, State, followed
+from comparisons.stress.theories import LARGEST_SHARE, made_thin, share_of
 from comparisons.stress.toml import toml_of
 from scene.reading import read, scene_from
+from tests.cprbm.scenes import LENGTH, THICKNESS, cantilever_data, force
 
 COUNTERS = st.integers(0, 2**64 - 1)
 
@@ -50,6 +57,39 @@ def test_every_kind_stands_in_some_scenes():
     assert rare == {}
     assert all(counted[f"beams: {n}"] for n in (1, 2, 3, 4))
     assert all(counted[f"contacts: {n}"] for n in (1, 2, 3, 4))
+
+
+def tip_loaded(x, y):
+    data = cantilever_data(force(x, y), [1e-3])
+    model = Estimate(scene_from(data))
+    return model, list(followed(model, State(np.zeros(model.unknowns), {}), "P", iter([1e-3])))
+
+
+def test_the_share_of_stretch_and_shear_is_timoshenkos():
+    # F across the tip: U_b = F²L³/(6 E·I), U_t = 3/5 F²L/(G·A), their ratio 0.6 (1 + ν) (t/L)²; of F along the beam
+    # the same energy is F²L/(2 E·A), and of a slanting force what is across bends alone.  Ten bars are 1 % too stiff
+    def expected(x, y):
+        return (0.6 * 1.31 * y**2 + 0.25 * x**2) * (THICKNESS / LENGTH) ** 2 / y**2
+
+    for x, y in ((0.0, -1.0), (0.83, 0.56)):
+        assert share_of(*tip_loaded(x, y), []) == pytest.approx(expected(x, y), rel=0.02)
+
+
+def test_what_presses_a_straight_column_bends_nothing_at_first():
+    model, _ = tip_loaded(-1.0, 0.0)
+    across, _ = tip_loaded(0.0, 1.0)
+    rest = np.zeros(model.unknowns)
+    assert model.softness(rest, "P") < 1e-12
+    assert across.softness(rest, "P") > 0.1
+
+
+def test_thinner_beams_carry_weaker_loads():
+    draft = started(Generator(Philox(key=np.array([3, 5], dtype=np.uint64))))
+    draft.data = cantilever_data(force(0.0, -1.0), [0.47])
+    draft.frame = replace(draft.frame, size=LENGTH)
+    made_thin(draft, 2.89 * LARGEST_SHARE)
+    assert draft.data["beams"]["beam"]["thickness"] == pytest.approx(THICKNESS / 1.7, rel=5e-3)
+    assert draft.data["stages"][0]["stations"] == pytest.approx([0.47 / 1.7**3], rel=1e-3)
 
 
 def test_text_of_what_no_scene_is_written_with_is_refused():

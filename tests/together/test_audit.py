@@ -14,10 +14,13 @@ import pytest
 import cprbm
 import fea_reference
 from comparisons.audit import audit, audited
+from comparisons.audit.gaps import _surface
 from comparisons.cases import opened
 from scene import Ending
 from scene.answer import frozen_array
 from scene.reading import scene_from
+from scene.statement import FunctionContact, LineContact
+from tests.cprbm.scenes import LENGTH, MODULUS, THICKNESS, WIDTH, cantilever_data
 from tests.references import columns
 from tests.together import branches
 from tests.together.branches import PINNED_ARCH
@@ -73,6 +76,49 @@ def test_last_stations_of_cases_pass(case, solve):
     found = solve(scene)
     assert found.completed, found.sentence
     assert audited(scene, found) == ()
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_what_loads_do_between_nodes_is_no_fault(solver):
+    # neither 13 links nor 12 elements have a border at 0.37 or 0.71 of the length, and a force or a moment yields there
+    # by what an answer does not say; the beam begins where nothing holds it
+    data = cantilever_data({"kind": "beam_moment", "beam": "beam", "at": 0.37}, [2.3])
+    beam, size = data["beams"]["beam"], MODULUS * WIDTH * THICKNESS**3 / 12.0 / LENGTH
+    beam |= {"start": {"joint": "free"}, "end": {"joint": "weld", "point": "R"}}
+    data["bodies"] = {"wall": {"motion": "fixed", "points": {"R": [LENGTH, 0.0]}}}
+    data["loads"]["Q"] = {"kind": "beam_force", "beam": "beam", "at": 0.71, "direction": [0.31, 0.95]}
+    data["stages"] = [
+        {"name": "turn", "steps": "P", "stations": [0.9 * size]},
+        {"name": "push", "steps": "Q", "stations": [1.7 * size / LENGTH]},
+    ]
+    data["probes"] = [{"of": "scene", "quantity": "potential_energy"}]
+    scene = scene_from(data)
+    found = SOLVERS[solver](scene)
+    assert found.completed, found.sentence
+    assert audited(scene, found) == ()
+    other = 1.5 * found.stations[-1].values["scene.potential_energy"]
+    last = replace(found.stations[-1], values={"scene.potential_energy": frozen_array(other)})
+    assert audited(scene, replace(found, stations=(*found.stations[:-1], last))) != ()
+
+
+def test_in_front_of_a_sharp_corner_is_not_behind_it():
+    # the triangle of a drawn scene; distances of places beyond its corners, and of one inside, by hand
+    corners = ((-0.3, -0.2), (0.5, 0.1), (-0.4, 0.9), (-0.3, -0.2))
+    contact = LineContact(kind="beam-line", beam="b", body="w", points=corners, side="right")
+    places = np.array([-0.35 - 0.9j, 1.3 + 0.15j, -0.45 + 1.7j, 0.0 + 0.2j])
+    distance = _surface(contact, places).distance
+    expected = [np.hypot(0.05, 0.7), np.hypot(0.8, 0.05), np.hypot(0.05, 0.8)]
+    assert distance[:3] == pytest.approx(expected, rel=1e-12)
+    assert distance[3] < 0.0
+
+
+@pytest.mark.parametrize(("side", "ahead"), [("above", 1.0), ("below", -1.0)])
+def test_a_graph_over_y_is_looked_at_from_its_side(side, ahead):
+    # x = 0.3: what is above lies at larger x
+    contact = FunctionContact(
+        kind="beam-function", beam="b", body="w", axis="y", coefficients=(0.3, 0.0), range=(-1.0, 0.7), side=side
+    )
+    assert _surface(contact, np.array([0.41 + 0.2j])).distance == pytest.approx([0.11 * ahead])
 
 
 # ------------------------------------------------------------------------------------------- planted faults
