@@ -39,9 +39,10 @@ _LOST = 3  # corrections longer than that: an equilibrium so far off would belon
 _NEAR = 3.0  # factor between penetrations that Newton's method bridges by itself
 _NOTHING = 1e-2  # of the correction and the unbalanced force asked: what need not be corrected any more
 _SETTLED = 1e-4  # correction after which holding has done what it can
+_SMALL = 1e-4  # of the longest correction, or of a length: loads of any size begin their search alike
 _FALLING = 0.1  # of the unbalanced force before: who has come so far needs a few iterations more
 _TOUCHING = 1e-9  # of the thickness: an overlap that is none
-_STALLED = 6  # corrections in a row, below that at which a contact's zone has settled, none of them half the first
+_STALLED = 6  # corrections in a row, each small beside the longest of the search, none of them half the first
 _HELD = 6  # iterations for which a contact is held at most
 
 
@@ -70,10 +71,12 @@ def equilibrium(
     ``depths`` are the penetrations of the contacts that were closed in the equilibrium before: where they are not near
     that, or open before they pull, these are held until they are again, or until they pull.  ``before`` is what the
     points of the contacts pushed with there, (k,) each.  A ``drag`` resists the motions.  A search whose corrections
-    stay as small as they are without arriving is given up.
+    stay as small as they are without arriving is given up: small beside what it began with, for a contact's zone may be
+    sought by steps as small as the load.
     """
     moving = model.moving
     correction, last, iteration, far = np.inf, np.inf, 0, 0
+    longest = 0.0
     small: list[float] = []
     foreseen = dict(before)
     system = assemble(model, penalties, settings.quadrature, values, z, acting, {}, foreseen, drag)
@@ -100,7 +103,8 @@ def equilibrium(
         if not held and correction <= _NOTHING * settings.correction and unbalanced <= _NOTHING * accepted:
             return Solved(system, converged=True, iterations=iteration)  # this step need not be made
         far += correction > _TURN
-        small = [*small[1 - _STALLED :], correction] if correction < _SETTLED else []
+        longest = max(longest, correction)
+        small = [*small[1 - _STALLED :], correction] if correction < _SMALL * min(1.0, longest) else []
         stalled = not held and len(small) == _STALLED and min(small) > 0.5 * small[0]
         if far >= _LOST or stalled:
             return Solved(system, converged=False, iterations=iteration + 1)

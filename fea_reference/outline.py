@@ -21,10 +21,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import Polynomial
+from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from scene.answer import Array
@@ -34,8 +35,7 @@ _SAME = 1e-6  # as near as a scene's places have to be
 _SAMPLES = 257  # of a graph, from which the nearest place is sought
 _PIECES = 64  # of a graph, as what a beam goes through
 _NEWTON_STEPS = 30
-_GRAPHS = 1024  # of which derivatives are known
-_ARRIVED = 1e-15
+_ARRIVED = 1e-9  # of the span: the error that the last step leaves is its square
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,7 +185,7 @@ class Broken:
         return np.asarray(along / np.hypot(along[0], along[1]))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Graph:
     """An edge y₂ = f(y₁), or y₁ = f(y₂) if ``across``, with y₁ in the ``span``; free where ``sign`` (y₂ − f) > 0."""
 
@@ -194,11 +194,11 @@ class Graph:
     across: bool
     sign: float
 
-    @property
+    @cached_property
     def corners(self) -> Corners:
         """Those at its ends."""
         ends = np.array(self.span if self._forwards else self.span[::-1])
-        points, tau = self._at(ends)
+        points, tau, _ = self._at(ends)
         before = np.column_stack([_left(tau[:, :1]), tau[:, 1:]])
         behind = np.column_stack([tau[:, :1], -_left(tau[:, 1:])])
         return Corners(points, (before, behind), (_left(before), _left(behind)))
@@ -217,28 +217,12 @@ class Graph:
 
     def near(self, y: Array) -> Near:
         """Distance and so on of places (2, k)."""
-        v, w = y[::-1] if self.across else y
-        low, high = self.span
-        f1, f2 = _derivatives(self)
-        samples = np.linspace(low, high, _SAMPLES)
-        at = samples[((samples - v[:, None]) ** 2 + (self.f(samples) - w[:, None]) ** 2).argmin(axis=1)]
-        for _ in range(_NEWTON_STEPS):
-            slope, rest = f1(at), self.f(at) - w
-            bent = 1.0 + slope**2 + rest * f2(at)
-            # beyond the centre of curvature a place of the edge is farthest: it stays where it is
-            step = np.where(bent > 0.0, (at - v + rest * slope) / np.where(bent > 0.0, bent, 1.0), 0.0)
-            moved = np.clip(at - step, low, high)
-            done = float(np.abs(moved - at).max(initial=0.0)) <= _ARRIVED * (high - low)
-            at = moved
-            if done:
-                break
-        point, tau = self._at(at)
+        at = self._nearest(y)
+        point, tau, kappa = self._at(at)
         away = y - point
         side = _left(tau)
         d, beyond = (side * away).sum(axis=0), (tau * away).sum(axis=0)
-        slope = f1(at)
-        kappa = -self.sign * f2(at) / (1.0 + slope**2) ** 1.5  # juts out where it bends away from the free side
-        first, last = (low, high) if self._forwards else (high, low)
+        first, last = self.span if self._forwards else self.span[::-1]
         past = ((at == first) & (beyond < 0.0)) | ((at == last) & (beyond > 0.0))
         r = np.hypot(away[0], away[1])
         past &= r > 0.0
@@ -246,32 +230,61 @@ class Graph:
         distance, normal = np.where(past, r, d), np.where(past, unit, side)
         bend = np.where(past, 1.0 / np.where(past, r, 1.0), kappa / (1.0 + kappa * d))
         # behind the edge the sides straight back may be nearer
-        corners = self.corners
-        for i, back in ((0, corners.normals[0]), (1, corners.normals[1])):
-            beside = back[:, i] @ (y - corners.points[:, i, None])
-            nearer = ~past & (d < 0.0) & (beside > d) & (beside <= 0.0)
-            distance = np.where(nearer, beside, distance)
-            normal = np.where(nearer, back[:, i, None], normal)
-            bend = np.where(nearer, 0.0, bend)
+        if (behind := ~past & (d < 0.0)).any():
+            corners = self.corners
+            for i, back in ((0, corners.normals[0]), (1, corners.normals[1])):
+                beside = back[:, i] @ (y - corners.points[:, i, None])
+                nearer = behind & (beside > d) & (beside <= 0.0)
+                distance = np.where(nearer, beside, distance)
+                normal = np.where(nearer, back[:, i, None], normal)
+                bend = np.where(nearer, 0.0, bend)
         return Near(distance, normal, bend, past)
+
+    def _nearest(self, y: Array) -> Array:
+        """Where along the axis that place of the edge is, (k,), which is nearest to places (2, k)."""
+        low, high = self.span
+        v, w = y[::-1] if self.across else y
+        samples, nearness = self._samples
+        at = samples[(np.column_stack([v, w, np.ones_like(v)]) @ nearness).argmax(axis=1)]
+        for _ in range(_NEWTON_STEPS):
+            f, slope, second = polyval(at, self._derivatives)
+            rest = f - w
+            bent = 1.0 + slope**2 + rest * second
+            # beyond the centre of curvature a place of the edge is farthest: it stays where it is
+            step = np.where(bent > 0.0, (at - v + rest * slope) / np.where(bent > 0.0, bent, 1.0), 0.0)
+            moved = np.minimum(np.maximum(at - step, low), high)
+            done = float(np.abs(moved - at).max(initial=0.0)) <= _ARRIVED * (high - low)
+            at = moved
+            if done:
+                break
+        return np.asarray(at)
+
+    @cached_property
+    def _samples(self) -> tuple[Array, Array]:
+        """Places along the axis (n,), and what makes of (y, 1) the part of −|s − y|² that tells the points s apart."""
+        v = np.linspace(*self.span, _SAMPLES)
+        s = np.stack([v, self.f(v)])
+        return v, np.concatenate([2.0 * s, -(s**2).sum(axis=0, keepdims=True)])
+
+    @cached_property
+    def _derivatives(self) -> Array:
+        """Coefficients of f and its first two derivatives, a column each."""
+        columns = [self.f.deriv(order).coef if order else self.f.coef for order in range(3)]
+        return np.stack([np.pad(one, (0, self.f.coef.size - one.size)) for one in columns], axis=1)
 
     @property
     def _forwards(self) -> bool:
         """Whether the free side lies to the left of what runs along the axis."""
         return (self.sign > 0.0) != self.across
 
-    def _at(self, v: Array) -> tuple[Array, Array]:
-        """Points and unit tangents (2, k) at ``v`` (k,), the free side to the left."""
-        slope = _derivatives(self)[0](v)
-        tau = np.stack([np.ones_like(v), slope]) / np.hypot(1.0, slope) * (1.0 if self._forwards else -1.0)
-        point = np.stack([v, self.f(v)])
-        return (point[::-1], tau[::-1]) if self.across else (point, tau)
-
-
-@lru_cache(maxsize=_GRAPHS)
-def _derivatives(graph: Graph) -> tuple[Polynomial, Polynomial]:
-    """The first and the second of a graph's f."""
-    return graph.f.deriv(), graph.f.deriv(2)
+    def _at(self, v: Array) -> tuple[Array, Array, Array]:
+        """Points and unit tangents (2, k) at ``v`` (k,), the free side to the left, and κ (k,)."""
+        f, slope, second = polyval(v, self._derivatives)
+        long = np.hypot(1.0, slope)
+        tau = np.stack([np.ones_like(v), slope]) / long * (1.0 if self._forwards else -1.0)
+        point = np.stack([v, f])
+        kappa = -self.sign * second / long**3  # juts out where it bends away from the free side
+        return (point[::-1], tau[::-1], kappa) if self.across else (point, tau, kappa)
 
 
 Outline = HalfPlane | Broken | Graph

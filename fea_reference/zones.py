@@ -284,6 +284,8 @@ def survey(
         return one.slope, one.curvature, one.zeta_m
 
     turning = np.flatnonzero(neighbours & (slope[:-1] * slope[1:] < 0.0))
+    if turning.size and kinks:
+        turning = turning[~_at_kinks(slope_at, zeta, slope, zeta_m, turning, kinks)]
     if turning.size:
         share = _turning(zeta, slope, there.curvature, turning)
         where, guess = _roots(slope_at, zeta, slope, zeta_m, turning, share, floor)
@@ -433,6 +435,29 @@ def _roots(
             sought = sought[going]
             low, high, x, guess, rising, pace = (one[going] for one in (low, high, x, guess, rising, pace))
     return places, closest_there
+
+
+def _at_kinks(
+    slope_at: Callable[[Array, Array], tuple[Array, Array, Array]],
+    zeta: Array,
+    slope: Array,
+    zeta_m: Array,
+    left: NDArray[np.int64],
+    kinks: tuple[float, ...],
+) -> NDArray[np.bool_]:
+    """Whether the slope changes its sign at a kink, which is a place already, and not between the places, (k,).
+
+    At a kink it is that of one side; a root sought from there would be found by halving, and is the kink.
+    """
+    right = left + 1
+    at_kink = np.zeros(left.size, dtype=bool)
+    wide = zeta[right] - zeta[left] > 2.0 * _ARRIVED
+    for end, other, inwards in ((left, right, _ARRIVED), (right, left, -_ARRIVED)):
+        beside = np.flatnonzero(wide & np.isin(zeta[end], kinks))
+        if beside.size:
+            there, _, _ = slope_at(zeta[end[beside]] + inwards, zeta_m[end[beside]])
+            at_kink[beside] |= there * slope[other[beside]] > 0.0
+    return at_kink
 
 
 def _turning(zeta: Array, slope: Array, curvature: Array, left: NDArray[np.int64]) -> Array:

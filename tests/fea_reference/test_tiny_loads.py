@@ -1,0 +1,53 @@
+"""A beam that lies along a floor, pressed at its tip: what presses goes straight through it, however little it is."""
+
+import pytest
+
+from fea_reference import Settings, answer
+from scene import Ending
+from scene.reading import scene_from
+
+YOUNG, WIDTH, THICK, LENGTH = 7.13e9, 0.0087, 0.00113, 0.0731
+UNIT = YOUNG * WIDTH * THICK**3 / 12.0 / LENGTH**2
+
+
+def pressed(share):
+    wall = {"motion": "fixed", "points": {"R": (0.0, 0.0)}}
+    tip = {"motion": "free", "points": {"P": (LENGTH, 0.0)}}
+    beam = {
+        "curve": {"kind": "line", "start": (0.0, 0.0), "end": (LENGTH, 0.0)},
+        "thickness": THICK,
+        "width": WIDTH,
+        "material": "m",
+        "start": {"joint": "weld", "point": "R"},
+        "end": {"joint": "weld", "point": "P"},
+    }
+    floor = {
+        "kind": "beam-half-plane",
+        "beam": "b",
+        "body": "wall",
+        "point": (0.01, -0.5 * THICK),
+        "normal": (0.0, 1.0),
+    }
+    return scene_from(
+        {
+            "name": "pressed",
+            "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.31}},
+            "bodies": {"wall": wall, "tip": tip},
+            "beams": {"b": beam},
+            "loads": {"F": {"kind": "force", "point": "P", "direction": (0.0, -1.0)}},
+            "contacts": {"k": floor},
+            "stages": [{"name": "press", "steps": "F", "stations": [share * UNIT]}],
+            "probes": [{"of": "k", "quantity": "force"}, {"of": "tip", "quantity": "rotation"}],
+        }
+    )
+
+
+@pytest.mark.parametrize("share", [1e-6, 1.7e-3, 0.043])
+@pytest.mark.parametrize("kinematics", ["bending", "shear"])
+def test_what_presses_goes_through(share, kinematics):
+    """The contact's zone is sought alike under any load, for nothing about a light beam on a floor has a scale."""
+    found = answer(pressed(share), Settings(elements=80, kinematics=kinematics))
+    assert found.ending is Ending.COMPLETED, found.sentence
+    values = found.stations[0].values
+    assert values["k.force"][0] == pytest.approx(share * UNIT, rel=1e-2)
+    assert abs(values["tip.rotation"][0]) < 1e-2 * share
