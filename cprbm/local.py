@@ -32,7 +32,7 @@ from scene.answer import Array, Flags, Ints
 if TYPE_CHECKING:
     from scipy.sparse.linalg import SuperLU
 
-GIVING = 1e-12  # ℓ³/EI: compliance of the equalities' rows in a Newton step; see :mod:`cprbm.newton`
+GIVING = 1e-14  # ℓ³/EI: compliance of the equalities' rows in a Newton step; see :mod:`cprbm.newton`
 CHANGES = 12  # of the set that presses, in one Newton step; the next step goes on from the best set
 
 
