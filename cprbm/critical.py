@@ -103,6 +103,12 @@ def branch_end(mechanism: Mechanism, trail: list[Minimum], beyond: float) -> Bra
     return _let_go(mechanism, last, before, width, [frozenset({key}) for key in last.point.rows.keys])
 
 
+def at_rest(mechanism: Mechanism, point: Point, value: float) -> BranchEnd:
+    """The end where a beam is straight and is asked to become shorter, :mod:`cprbm.locking`: in this state itself."""
+    soft = softest(mechanism.problem, point)
+    return BranchEnd(value, 0.0, Loss.BIFURCATION, "", soft.curvature, soft.curvature, soft.direction)
+
+
 def _let_go(
     mechanism: Mechanism, last: Minimum, before: Minimum, width: float, holders: Iterable[frozenset[Key]]
 ) -> BranchEnd | None:

@@ -100,14 +100,15 @@ def equilibrium(
         grown, last = grown + 1 if longest > last else 0, longest
         if grown == AWAY and np.isfinite(farthest):
             return Equilibrium(point, now, iteration, converged=False)
-        returns = _returns(seen, now.residual)
+        left = _left(now, tolerance)
+        returns = _returns(seen, left)
         part = 0.5 * part if returns else min(1.0, 2.0 * part)
         circles += returns
         if circles == CIRCLES and not settle:
             return Equilibrium(point, now, iteration, converged=False)
         if circles == CIRCLES:
             problem = replace(problem, formulation=problem.steady)
-        seen.append(now.residual)
+        seen.append(left)
         scale = min(part, LONGEST_TURN / longest) if longest > 0.0 else part
         state = point.state.moved(scale * change, model.n_links)
         before, point = point, point_at(problem, values, state, mu, lam, point.rows)
@@ -131,9 +132,15 @@ def _serves(problem: Problem, before: Point, point: Point, left: float, toleranc
     return known is not None and known.convex
 
 
-def _returns(seen: list[float], residual: float) -> bool:
+def _left(now: Measure, tolerance: float) -> float:
+    """What is left to be put right: the residual, and once there is none, what is violated; nought below all limits."""
+    parts = (now.residual, max(tolerance, now.floor)), (max(now.violation, now.overlap), max(tolerance, 100.0 * EPS))
+    return next((left for left, allowed in parts if left > allowed), 0.0)
+
+
+def _returns(seen: list[float], left: float) -> bool:
     """Whether an iteration is back where it was two or three before: each state denies the other's rows."""
-    return any(abs(residual - before) < SAME * before for before in seen[-3:-1])
+    return left > 0.0 and any(abs(left - before) < SAME * before for before in seen[-3:-1])
 
 
 def _settled(now: Measure, longest: float, tolerance: float) -> bool:

@@ -19,9 +19,10 @@ from cprbm.critical import Minimum, foreseen
 from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import KEPT, continued
 from cprbm.kinematics import most_turned
+from cprbm.locking import Locked, between_ends, locked_on, pressed_on
 from cprbm.mechanism import Mechanism
 from cprbm.point import Point
-from cprbm.rate import rate, strayed
+from cprbm.rate import carried_by_others, rate, strayed
 from cprbm.settings import Settings
 from scene import Certificate, Ending
 from scene.answer import Array
@@ -33,6 +34,7 @@ SOON = 6  # iterations to a state that is nearly known
 SHORT = 0.2  # rad: the most that a link may turn in a step that hides no end of a branch
 FAR = 10.0  # times the way that the rates make: up to a fold it is twice that
 ISOLATED = 0.01  # rad: the most in which a contact or stop may close or open: what it catches did not fall far
+ROUNDED = 1e-12  # of the way: less than this is left of it by round-off
 JUST = 2.0  # smallest steps, to see that there is nothing beyond
 TRAIL = 30  # minima that are kept
 
@@ -92,8 +94,9 @@ class Follower:
         mechanism, settings: what is followed.
         point, values: the state, and the values (SI) of all loads and drives.
         trail: minima since it was cleared, the last ones.
-        refused: the value at which the last step was refused.
+        reached, refused: the values up to which the last way was gone, and at which its last step was refused.
         careful: whether no end of a branch may be passed.
+        locked: the straight beam that the last way asked to change its length, where it could not be gone.
     """
 
     mechanism: Mechanism
@@ -101,18 +104,20 @@ class Follower:
     point: Point
     values: dict[str, float]
     trail: list[Minimum]
+    reached: float = 0.0
     refused: float = 0.0
     careful: bool = False
+    locked: Locked | None = None
 
     def go(self, way: Way, accept: Callable[[Point, dict[str, float]], None]) -> Reached:
         """Go all the way, directly or in steps; ``accept`` sees every next minimum before it is the present one."""
         done, step, iterations, refused = 0.0, 1.0, 0, False
-        self.values = dict(way.begin)
+        self.values, self.reached, self.locked = dict(way.begin), way.value(0.0), None
         problem = self.mechanism.problem
         here = there = rate(problem, self.point, way.change)
         while True:
             step = min(step, 1.0 - done, self._longest(here))
-            fraction = 1.0 if done + step >= 1.0 else done + step
+            fraction = 1.0 if done + step >= 1.0 - ROUNDED else done + step
             values = way.at(fraction)
             ahead = None if refused else continued(problem, values, self._known, way.value(fraction))
             for start in [self.point] if ahead is None else [ahead, self.point]:
@@ -132,12 +137,22 @@ class Follower:
             if ending is Ending.COMPLETED:
                 accept(found.point, values)
                 self.point, self.values, done, here = found.point, values, fraction, there
+                self.reached = way.value(fraction)
                 self.trail = [*self.trail[-TRAIL:], Minimum(way.value(fraction), self.point.bare, certificate)]
                 if fraction == 1.0:
                     return Reached(ending, "", replace(certificate, iterations=iterations))
                 step = self._cut(way, done, GROWTH * step) if refused else GROWTH * step
                 continue
+            if done == 0.0 and not refused:
+                self.refused = way.value(fraction)
+                self.locked = locked_on(problem, self.point, way.change)
+                if self.locked is not None:
+                    return Reached(Ending.STEP_TOO_SMALL, self.locked.told, certificate=None)
             step, refused, self.refused = self._cut(way, done, 0.5 * step), True, way.value(fraction)
+            if iterations > self.settings.iteration_limit or step < self.settings.smallest_step:
+                beam = pressed_on(problem, self.point, found.point, values)
+                if beam:
+                    return Reached(Ending.STEP_TOO_SMALL, between_ends(beam), certificate=None)
             if iterations > self.settings.iteration_limit:
                 return Reached(
                     Ending.STEP_TOO_SMALL, f"{iterations} iterations did not lead to {way.aim}", certificate=None
@@ -181,7 +196,8 @@ class Follower:
         if self.careful and turned > ISOLATED and pressing(found) != pressing(self.point):
             return Ending.STEP_TOO_SMALL, "a contact or stop closes or opens on the way"
         change = found.state.theta - self.point.state.theta
-        if strayed(self.mechanism.problem.model.lengths, change, start, end):
+        model = self.mechanism.problem.model
+        if strayed(model.lengths, change, start, end, carried_by_others(model, self.point, found)):
             return Ending.STEP_TOO_SMALL, "the links went another way than their rates say, to another branch"
         return Ending.COMPLETED, ""
 

@@ -32,6 +32,7 @@ from scene.answer import Array, Flags, Ints
 if TYPE_CHECKING:
     from scipy.sparse.linalg import SuperLU
 
+GIVING = 1e-14  # ℓ³/EI: compliance of the equalities' rows in a Newton step; see :mod:`cprbm.newton`
 CHANGES = 12  # of the set that presses, in one Newton step; the next step goes on from the best set
 
 
@@ -195,9 +196,11 @@ def local_system(
             blocks = group.curvature(share)
             local = _numbers(model, blocks.joints, blocks.angles)
             entries.add(local[:, :, None], local[:, None, :], blocks.matrices)
+    last = np.arange(first_mu, size)
+    entries.add(last, last, np.array(-GIVING))
     right = np.zeros(size)
     right[:n], right[first_body:first_rho] = -gradient[:n], -gradient[n:]
-    right[first_mu:] = -Z
+    right[first_mu:] = -Z - GIVING * mu
     right[closure.fixed] = 0.0
     return LocalSystem(
         entries=(np.concatenate(entries.rows), np.concatenate(entries.columns), np.concatenate(entries.values)),

@@ -16,7 +16,7 @@ from cprbm.assembling import brought, formulated, freed, released
 from cprbm.certifying import certify
 from cprbm.closing import Closings, Stood
 from cprbm.contact import NO_ROWS
-from cprbm.critical import BranchEnd, Minimum, branch_end, told
+from cprbm.critical import BranchEnd, Minimum, at_rest, branch_end, told
 from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import FITTED, KEPT, alike, continued, led
 from cprbm.following import Follower, Reached, Way, pressing, to
@@ -136,6 +136,8 @@ class March:
     def _end(self, reached: Reached) -> BranchEnd | None:
         """Where the branch ends, if that is why a way has no certificate at its end."""
         on = self.on
+        if on.locked is not None:
+            return at_rest(on.mechanism, on.point, on.reached) if on.locked.buckles else None
         return branch_end(on.mechanism, on.trail, on.refused) if reached.certificate is None else None
 
     def _finer(self, load: str, end: BranchEnd) -> Follower | None:
@@ -146,7 +148,7 @@ class March:
         on = self.on
         if on.mechanism is not self.whole:
             return None
-        width = abs(on.refused - on.trail[-1].value) + abs(end.value - on.trail[-1].value)
+        width = abs(on.refused - on.reached) + abs(end.value - on.reached)
         for start in reversed(on.trail):
             if abs(end.value - start.value) < FURTHER * width:
                 continue
@@ -170,8 +172,8 @@ class March:
         landed, reached = None, Reached(Ending.BRANCH_ENDS, of, certificate=None)
         if stage.beyond == "jump":
             ends = (end.value, on.refused)
-            furthest = max(ends) if target > on.trail[-1].value else min(ends)
-            step = max(BEYOND * abs(on.refused - on.trail[-1].value), ONWARD * abs(target - furthest))
+            furthest = max(ends) if target > on.reached else min(ends)
+            step = max(BEYOND * abs(on.refused - on.reached), ONWARD * abs(target - furthest))
             value = furthest + np.copysign(min(step, abs(target - furthest)), target - furthest)
             values = {**on.values, stage.steps: value}
             landed = leap(on.mechanism, on.settings, values, on.point, end.direction)

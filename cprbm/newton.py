@@ -11,8 +11,14 @@ G           compliance of the gaps: what Δλ opens them by
 ==========  =================================================================================
 
 The step is sought in differences, so that what round-off leaves of one is the right-hand side of the next.  Which
-contacts press is a small complementarity problem in G.  H is made positive definite on the feasible directions where it
-is not, first by the stiffness of the contacts that press, then by a shift.
+contacts press is a small complementarity problem in G.
+
+A_E has dependent rows where a beam is straight between ends that do not move: turning its links by a little does not
+bring them closer, and no equation says what it pulls by.  So in a step Z may stay behind by a very little (``GIVING``)
+times Δμ, which is nothing once there is no more step: such a beam keeps the pull that it had.
+
+H is made positive definite on the feasible directions where it is not, first by the stiffness of the contacts that
+press, then by a shift.
 """
 
 from __future__ import annotations
@@ -27,7 +33,7 @@ from cprbm.closure import closure_forces, closure_second
 from cprbm.complementarity import pressing
 from cprbm.contact import Factored, Rows, over_unknowns
 from cprbm.kinematics import pulled_back
-from cprbm.local import LocalSystem, local_step, local_system
+from cprbm.local import GIVING, LocalSystem, local_step, local_system
 from cprbm.point import Point, Problem
 from scene.answer import Array, Flags, Ints
 
@@ -169,6 +175,8 @@ def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System
     corner[body, body] = over_phi
     i = np.arange(first, inner)
     corner[i, i] = -1.0 / sigma
+    i = np.arange(inner, inner + len(point.A_E))
+    corner[i, i] = -GIVING
     for place, link in enumerate(anchors.tolist(), start=n_bodies):
         corner[place, place] = diagonal[link]
         corner[place, first:] = border[link, first:]

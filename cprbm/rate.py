@@ -21,55 +21,78 @@ import numpy as np
 
 from cprbm.closure import apart_by
 from cprbm.energy import load_work
+from cprbm.model import Model
 from cprbm.newton import local_system_at, many, own_system
 from cprbm.point import Point, Problem
 from scene.answer import Array
 
 APART = 0.5  # of the mean way that the rates make: curvature of the way, and more than one contact
 SHIFTED = 0.002  # rad: links turn by less where contact only comes to be carried by other rows
+OTHERS = 0.1  # of what one element bends by: the same where a place of its own becomes joints, or joints a place
 
 
 def rate(problem: Problem, point: Point, change: Mapping[str, float]) -> Array:
     """r (n_links,), rad per unit of a way on which named values (SI) ``change``; nought in a singular system."""
-    model, closure = problem.model, problem.closure
+    model = problem.model
     moved = {name: load for name, load in problem.loads.items() if change.get(name, 0.0)}
     f = load_work(model, moved, dict(change), point.state, point.at).gradient
-    f[closure.fixed] = 0.0
-    driven = [
-        change.get(name, 0.0) / model.unit_length for c in closure.ends for name in apart_by(model.chains[c].name)
-    ]
-    driven += [0.0] * (closure.first_hold - len(driven))
-    driven += [hold.unit * change.get(hold.drive, 0.0) for hold in closure.holds]
+    f[problem.closure.fixed] = 0.0
     try:
         if many(point.rows):
-            return _local(problem, point, f, np.array(driven))
-        return own_system(problem, point).solved(f, np.array(driven))[: model.n_links]
+            return _local(problem, point, f, driven(problem, change))
+        return own_system(problem, point).solved(f, driven(problem, change))[: model.n_links]
     except (np.linalg.LinAlgError, RuntimeError):
         return np.zeros(model.n_links)
 
 
-def _local(problem: Problem, point: Point, f: Array, driven: Array) -> Array:
+def driven(problem: Problem, change: Mapping[str, float]) -> Array:
+    """What Z must be changed by on a way on which named values (SI) ``change``, −∂Z/∂v (rows,)."""
+    model, closure = problem.model, problem.closure
+    asked = [change.get(name, 0.0) / model.unit_length for c in closure.ends for name in apart_by(model.chains[c].name)]
+    asked += [0.0] * (closure.first_hold - len(asked))
+    asked += [hold.unit * change.get(hold.drive, 0.0) for hold in closure.holds]
+    return np.array(asked)
+
+
+def _local(problem: Problem, point: Point, f: Array, asked: Array) -> Array:
     found, active = local_system_at(problem, point), point.lam > 0.0
     n, first = problem.model.n_links, found.n_links + 2 * found.n_joints
     right = np.zeros(found.size + int(np.sum(active)))
     right[:n], right[first : first + found.n_bodies] = f[:n], f[n:]
-    right[found.first_mu : found.size] = driven
+    right[found.first_mu : found.size] = asked
     return np.asarray(found.factorised(active).solve(right)[:n])
 
 
-def strayed(lengths: Array, change: Array, start: Array, end: Array) -> bool:
+def carried_by_others(model: Model, before: Point, after: Point) -> float:
+    """By how much (rad) links may turn as what the same contacts carry goes over to other rows of theirs.
+
+    A contact in a place of its own becomes two joints, or these three: the discretisation is another, and the angles
+    with it, by a part of what one element bends by there.
+    """
+    if before.rows.pressing(before.lam) != after.rows.pressing(after.lam) or _keys(before) == _keys(after):
+        return SHIFTED
+    bent = max(float(np.max(np.abs(np.diff(after.state.theta[chain.links])))) for chain in model.chains)
+    return max(SHIFTED, OTHERS * bent)
+
+
+def _keys(point: Point) -> set[tuple[str, int]]:
+    return {key for key, force in zip(point.rows.keys, point.lam, strict=True) if force > 0.0}
+
+
+def strayed(lengths: Array, change: Array, start: Array, end: Array, shifted: float = SHIFTED) -> bool:
     """Whether a ``change`` of the angles is not made of the ways that the rates at its ``start`` and ``end`` make.
 
     Args:
         lengths: of the links, the metric; (n_links,) as all others.
         change: θ_1 − θ_0.
         start, end: r_0 (v_1 − v_0) and r_1 (v_1 − v_0).
+        shifted: rad, by which links may turn besides.
     """
-    if float(np.max(np.abs(change))) <= SHIFTED:
+    if float(np.max(np.abs(change))) <= shifted:
         return False
     turn = start - end
     size = float(lengths @ turn**2)
     f = min(max(float(lengths @ (turn * (change - end))) / size, 0.0), 1.0) if size > 0.0 else 0.0
     left = change - end - f * turn
     ways = [float(np.sqrt(lengths @ way**2)) for way in (start, end)]
-    return float(np.sqrt(lengths @ left**2)) > max(APART * 0.5 * sum(ways), SHIFTED * float(np.sqrt(np.sum(lengths))))
+    return float(np.sqrt(lengths @ left**2)) > max(APART * 0.5 * sum(ways), shifted * float(np.sqrt(np.sum(lengths))))
