@@ -275,14 +275,14 @@ def test_a_slow_cell_is_not_repeated():
 def test_study_without_a_name_lists_the_studies(capsys):
     assert run(["study"]) == 0
     names = [line.split()[0] for line in capsys.readouterr().out.splitlines()]
-    assert names == ["calibration", "materials", "readings", "table1"]
+    assert names == ["calibration", "materials", "readings", "relations", "table1"]
 
 
 def test_an_unknown_study_is_refused_with_those_that_there_are(capsys):
     assert run(["study", "material"]) == 2
     said = capsys.readouterr().err
     assert "'material'" in said
-    assert "materials, readings, table1" in said
+    assert "materials, readings, relations, table1" in said
 
 
 def test_table1_writes_a_page_numbers_and_a_figure(capsys, tmp_path):
