@@ -191,7 +191,7 @@ class Follower:
         turned = most_turned(self.point.state, found.state)
         if turned > self.settings.largest_turn:
             return Ending.STEP_TOO_SMALL, f"a link turned by {turned:.2f} rad in one load step"
-        if crossed := self.mechanism.passed(self.point, found):
+        if crossed := self.mechanism.passed(self.point, found, (start, end)):
             return Ending.BEAMS_CROSSED, f"in contact '{crossed}' the beam went across what it may touch"
         if self.careful and turned > ISOLATED and pressing(found) != pressing(self.point):
             return Ending.STEP_TOO_SMALL, "a contact or stop closes or opens on the way"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
@@ -23,7 +23,7 @@ from cprbm.itself import Itself, itself_of
 from cprbm.kinematics import Positions, State, most_turned, positions
 from cprbm.made import Made
 from cprbm.model import EVEN, Fit, Model, build
-from cprbm.nearest import Pair, pair_of
+from cprbm.nearest import Pair, distance_along, pair_of
 from cprbm.overlap import may_be_beyond
 from cprbm.point import Point, Problem
 from cprbm.related import related_joints
@@ -42,10 +42,13 @@ from scene import (
     SceneError,
     SelfContact,
 )
+from scene.answer import Array
 
 NARROWED = 4  # contacts that may have been passed, from which on their clearances between two states are asked for
 BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle or another
 SHALLOW = 0.05  # of the radius: an overlap between rows of a coarse mesh
+PASSING = 0.2  # rad: a beam that goes through another in a step that turns its links by less is in it at a step's end
+STEEP = 3.0  # a cubic whose ends are no steeper than so many times its chord goes one way only
 WAY = 0.02  # of the longest beam, by which a way of one radian may differ from the unknowns' even one
 EDGE_WAY = 0.2  # the same of an edge, behind which what is rigid never ends: pinned ends leave their points meanwhile
 DIP = 1e-3  # of the longest beam, by which a line may dip into an edge on the way, that goes round it or along it
@@ -56,6 +59,7 @@ Boundary = FittedBoundary | RigidCircle | RigidEdge
 Groups = Callable[[State, Positions], tuple[Group, ...]]
 AnyPair = Pair | Circle | Edge | Itself
 Way = Callable[[], list[tuple[State, Positions]]]
+Rates = tuple[Array, Array]
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,14 +106,17 @@ class Mechanism:
         groups = _groups(contact, {contact: self.seen(contact, point.rows)}, self.boundaries)(point.state, point.at)
         return max((float(group.values.max()) for group in groups), default=float("-inf"))
 
-    def passed(self, before: Point, after: Point) -> str:
-        """Name of a contact whose beam went across the circle or the other beam between two states; empty if none."""
+    def passed(self, before: Point, after: Point, rates: Rates | None = None) -> str:
+        """Name of a contact whose beam went across the circle or the other beam between two states; empty if none.
+
+        ``rates`` are the ways (n_links,) that those at both states make of the step, where they are known.
+        """
         start, end = (before.state, before.at), (after.state, after.at)
         names = self.clearances.may_pass(start, end)
 
         @cache
         def way() -> list[tuple[State, Positions]]:
-            between = _between(before.state, after.state)
+            between = _between(before.state, after.state, rates)
             return [(state, positions(self.problem.model, state)) for state in between]
 
         if len(names) > NARROWED:
@@ -129,6 +136,9 @@ class Mechanism:
                 # without having been there a beam comes to lie beyond another by its end or through it
                 gone = may_be_beyond(pair, *end) and pair.gone_round(*end)
                 across = gone and self._crossed_between(pair, before, after, way, WAY)
+                if not across and most_turned(before.state, after.state) > PASSING:
+                    # or aside of where it would be beyond
+                    across = _gone_through(pair, [start, *way(), end], self._allowed(pair, before, after, WAY))
             if across:
                 return pair.name
         return ""
@@ -158,6 +168,11 @@ class Mechanism:
 
         return any(across(state, at) for state, at in way())
 
+    def _allowed(self, pair: Pair | Edge, before: Point, after: Point, uneven: float) -> float:
+        """By how much a beam may seem to lie across on a way that is known by ``uneven`` times the turn's square."""
+        slack = max(pair.offset, DIP) if isinstance(pair, Edge) else pair.offset
+        return slack + self._sag(pair, after.state) + uneven * _turned(before.state, after.state) ** 2
+
     def _sag(self, pair: Pair | Edge, state: State) -> float:
         """By how much beams may sag between their joints, which are all that ``paper`` holds; units of length."""
         if not self.boundaries:
@@ -171,12 +186,35 @@ def _turned(before: State, after: State) -> float:
     return max(most_turned(before, after), float(bodies))
 
 
-def _between(before: State, after: State) -> Iterator[State]:
-    """States on the way from one to another, the unknowns going evenly."""
+def _between(before: State, after: State, rates: Rates | None) -> Iterator[State]:
+    """States on the way from one to another: the bodies going evenly, the links by cubics if ``rates`` are known.
+
+    These are no longer than STEEP times what the links turn by: a cubic would swing out.
+    """
+    turned = after.theta - before.theta
+    most = STEEP * float(np.max(np.abs(turned), initial=0.0))
+    first, last = (turned, turned) if rates is None else (_shortened(rate, most) for rate in rates)
     for part in BETWEEN:
-        yield State(
-            before.theta + part * (after.theta - before.theta), before.bodies + part * (after.bodies - before.bodies)
-        )
+        rest = 1.0 - part
+        swing = part * rest * (rest * (first - turned) - part * (last - turned))
+        yield State(before.theta + part * turned + swing, before.bodies + part * (after.bodies - before.bodies))
+
+
+def _shortened(rate: Array, most: float) -> Array:
+    largest = float(np.max(np.abs(rate), initial=0.0))
+    return rate if largest <= most else (most / largest) * rate
+
+
+def _gone_through(pair: Pair, way: Iterable[tuple[State, Positions]], allowed: float) -> bool:
+    """Whether a joint that sees a beam on its free side lies beyond it by more than ``allowed`` in the next state."""
+    before = np.full(pair.a.n + 2, np.nan)
+    for state, at in way:
+        D, _, foot = distance_along(pair, pair.lines(state, at), pair.a.s)
+        D = np.where(foot, D, np.nan)
+        if np.any((before > 0.0) & (-allowed > D)):
+            return True
+        before = D
+    return False
 
 
 def _groups(contact: str, pairs: Mapping[str, AnyPair], boundaries: Mapping[str, Boundary]) -> Groups:

@@ -53,3 +53,54 @@ def test_a_tip_does_not_pass_another_in_one_long_step():
     assert one.values["S.displacement"][1] < -0.005
     assert one.values["contact.force"] == pytest.approx(other.values["contact.force"], rel=2e-3)
     assert one.values["S.displacement"] == pytest.approx(other.values["S.displacement"], rel=2e-3, abs=1e-5)
+
+
+def test_a_soft_beam_does_not_go_through_another_to_beside_where_that_begins():
+    """Seventeen times EI/L² at once: Newton's method lands where the beam would be had it gone through the other.
+
+    Nothing of it lies beyond the other then; it is past the clamp that holds that.  Reference: the finite elements.
+    """
+    root, tip = [0.0294887, -0.0130437], [0.0368612, -0.002734]
+    shape = {"width": 0.0034, "material": "m"}
+    scene = scene_from(
+        {
+            "name": "soft",
+            "materials": {"m": {"youngs_modulus": 1.37e9, "poisson_ratio": 0.42}},
+            "bodies": {
+                "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0], "Q": root}},
+                "tip": {"motion": "free", "points": {"T": tip}},
+            },
+            "beams": {
+                "one": {
+                    **shape,
+                    "curve": {
+                        "kind": "polynomial",
+                        "axis": "x",
+                        "coefficients": [0.0, -2.155541588403783, 84.0664856012103, -748.7922938972431],
+                        "range": [0.0, 0.0368612],
+                    },
+                    "thickness": {"at": [0.0, 0.33, 1.0], "values": [0.00026, 0.000318, 0.000228]},
+                    "start": {"joint": "weld", "point": "R"},
+                    "end": {"joint": "weld", "point": "T"},
+                },
+                "two": {
+                    **shape,
+                    "curve": {"kind": "line", "start": root, "end": [0.0553077, 0.0066208]},
+                    "thickness": 0.000259,
+                    "start": {"joint": "weld", "point": "Q"},
+                    "end": {"joint": "free"},
+                },
+            },
+            "loads": {"F": {"kind": "force", "point": "T", "direction": [0.462, -0.887]}},
+            "contacts": {"contact": {"kind": "beam-beam", "between": ["one", "two"]}},
+            "stages": [{"name": "load", "steps": "F", "stations": [0.09]}],
+            "probes": [{"of": "T", "quantity": "displacement"}, {"of": "contact", "quantity": "force"}],
+        }
+    )
+    links = cprbm.answer(scene, cprbm.Settings(links=40))
+    fea = fea_reference.answer(scene, fea_reference.Settings(elements=40, kinematics="bending"))
+    assert links.completed, links.sentence
+    assert fea.completed, fea.sentence
+    one, other = links.stations[0].values, fea.stations[0].values
+    assert one["contact.force"] == pytest.approx(other["contact.force"], rel=2e-3)
+    assert one["T.displacement"] == pytest.approx(other["T.displacement"], rel=1e-2)
