@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from comparisons.branches import begins_at, span_of
+from comparisons.measures import COMPONENTS
 from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, StationAnswer
 from scene.statement import STRESSES
 
-_COMPONENTS = {"displacement": 2, "reaction": 2, "ends": 2}
 ABSENT_WHILE_OPEN = frozenset({"centre", "ends", "closing_load"})
 """Quantities of a contact that have no value while it is open."""
 
@@ -109,5 +109,5 @@ def _station_complaints(scene: Scene, station: StationAnswer) -> list[str]:
 def _shapes(probe: Probe) -> tuple[tuple[int, ...], ...]:
     if probe.quantity in STRESSES:
         return ((probe.points,),)
-    closed = (_COMPONENTS.get(probe.quantity, 1),)
+    closed = (len(COMPONENTS.get(probe.quantity, ("",))),)
     return (closed, (0,)) if probe.quantity in ABSENT_WHILE_OPEN else (closed,)
