@@ -312,9 +312,7 @@ def test_round_off_is_read_off_the_certificates(hinge, right):
 def test_what_is_left_open_of_a_place_is_so_at_its_own_station_alone(hinge, right):
     # at a load that nearly vanishes a residual of 3 % of it is no force to speak of; the contact is closed there
     # in this scene's eyes, and the place of it may be off by 3 % of the beam: there, and at no other station
-    centred = (Probe(of="contact", quantity="centre"),)
-    asked = hinge.model_copy(update={"probes": (*hinge.probes, *centred), "claims": ()})
-    runs = paired(asked, Choices(), right)
+    runs = paired(hinge, Choices(), right)
 
     def with_place(answer):
         found = []
@@ -330,7 +328,7 @@ def test_what_is_left_open_of_a_place_is_so_at_its_own_station_alone(hinge, righ
         (with_place(runs.cprbm[0]), with_place(runs.cprbm[1])),
         {name: tuple(with_place(one) for one in answers) for name, answers in runs.fea.items()},
     )
-    rows = [row for row in rows_of(asked, spoilt) if row.probe.name == "contact.centre"]
+    rows = [row for row in rows_of(hinge, spoilt) if row.probe.name == "contact.centre"]
     length = math.pi * 0.025
     assert rows[0].bounds is not None
     assert rows[0].bounds.round_off == pytest.approx(0.03 * length, rel=1e-6)
