@@ -54,7 +54,9 @@ Round-off: a certificate states the relative residual that is left and the floor
 asked.
 The larger of the two, times the largest value of the probe's family at that station, is a force (or what a
 force does) that the solver has left open.  It hardly depends on the load, so the largest over all stations
-counts at each; it is at least 1e-12 of the family's natural scale, for what round-off does to the numbers
+counts at each.  Where a contact presses is no force: at a load that nearly vanishes a residual of any share of it
+may move the place along the whole beam, and says nothing of other stations. Of places each station's own counts.
+It is at least 1e-12 of the family's natural scale, for what round-off does to the numbers
 themselves.  A contact that is open in every run has no force, and nothing is left open there.
 """
 
@@ -87,6 +89,9 @@ EXACT_TO = 1e-9
 
 OPEN_AT_ZERO: frozenset[Quantity] = frozenset({"force", "moment"})
 """Quantities that are exactly zero while a contact is open, or no limit of a stop is reached."""
+
+PLACES: frozenset[Quantity] = frozenset({"centre", "ends"})
+"""Quantities whose family does not vanish with the load."""
 
 UNITS: Mapping[Quantity, str] = {
     "displacement": "m",
@@ -237,11 +242,19 @@ def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
     everyone = dict(runs.everything())
     compared = (runs.cprbm[0], runs.reference)
     scales = probe_scales(scene, compared)
-    unsettled = {probe.name: round_off(scene, probe, tuple(everyone.values()), compared) for probe in scene.probes}
+    unsettled = {probe.name: round_offs(scene, probe, tuple(everyone.values()), compared) for probe in scene.probes}
     stages = {stage.name: stage for stage in scene.stages}
     return _none_small_by_accident(
         tuple(
-            _row(scene, runs, probe, stages[spot.stage], spot, unsettled[probe.name], scales[spot.stage, probe.name])
+            _row(
+                scene,
+                runs,
+                probe,
+                stages[spot.stage],
+                spot,
+                unsettled[probe.name][spot.stage, spot.value],
+                scales[spot.stage, probe.name],
+            )
             for spot in spots_of(scene, everyone, compared)
             for probe in scene.probes
         )
@@ -257,8 +270,10 @@ def probe_scales(scene: Scene, answers: tuple[Answer, ...]) -> dict[tuple[str, s
     }
 
 
-def round_off(scene: Scene, probe: Probe, everyone: tuple[Answer, ...], compared: tuple[Answer, ...]) -> float:
-    """What the certificates of all stations leave unsettled of a probe, in its unit.
+def round_offs(
+    scene: Scene, probe: Probe, everyone: tuple[Answer, ...], compared: tuple[Answer, ...]
+) -> dict[tuple[str, float], float]:
+    """What the certificates leave unsettled of a probe, in its unit, by stage and station.
 
     Args:
         scene: the question.
@@ -269,14 +284,16 @@ def round_off(scene: Scene, probe: Probe, everyone: tuple[Answer, ...], compared
     Raises:
         KeyError: an answer lacks a station.
     """
-    largest = 0.0
+    own = {}
     for stage in scene.stages:
-        largest = max(largest, ROUND_OFF * natural_scale(scene, probe.quantity, stage, contact=probe.of))
+        least = ROUND_OFF * natural_scale(scene, probe.quantity, stage, contact=probe.of)
         for value in stage.stations:
             stations = [station_of(answer, stage.name, value) for answer in everyone]
             floor = max(max(s.certificate.residual, s.certificate.residual_floor) for s in stations)
-            largest = max(largest, floor * _family_size(scene, probe, stage, value, compared))
-    return largest
+            own[stage.name, value] = max(least, floor * _family_size(scene, probe, stage, value, compared))
+    if probe.quantity in PLACES:
+        return own
+    return dict.fromkeys(own, max(own.values(), default=0.0))
 
 
 def _family_size(scene: Scene, probe: Probe, stage: Stage, value: float, answers: tuple[Answer, ...]) -> float:

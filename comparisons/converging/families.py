@@ -27,7 +27,7 @@ import numpy as np
 
 from comparisons.choices import Choices, Kinematics
 from comparisons.converging.limits import COMMON, Limit, limit, observed, orders
-from comparisons.measures import COMPONENTS, OPEN_AT_ZERO, arc_lengths, probe_scales, round_off, unit_of
+from comparisons.measures import COMPONENTS, OPEN_AT_ZERO, arc_lengths, probe_scales, round_offs, unit_of
 from comparisons.order import OWN, order_of
 from comparisons.pairing import Crew, Job, Solvers
 from comparisons.scales import norm
@@ -226,7 +226,7 @@ def _families(scene: Scene, series: Sequence[Series], exact: Answer | None) -> t
     sizes = sorted({n for one in present for n in one.whole})
     finest = tuple(one.whole[max(one.whole)] for one in present)
     floors = {
-        (id(one), probe.name): round_off(scene, probe, tuple(one.whole.values()), (best,))
+        (id(one), probe.name): round_offs(scene, probe, tuple(one.whole.values()), (best,))
         for one, best in zip(present, finest, strict=True)
         for probe in scene.probes
     }
@@ -239,7 +239,7 @@ def _families(scene: Scene, series: Sequence[Series], exact: Answer | None) -> t
             stage,
             value,
             places,
-            floors[id(one), probe.name],
+            floors[id(one), probe.name][stage.name, value],
             scales[stage.name, probe.name],
             exact,
         )

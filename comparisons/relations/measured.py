@@ -25,7 +25,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.measures import arc_lengths, probe_scales, round_off
+from comparisons.measures import arc_lengths, probe_scales, round_offs
 from comparisons.pairing import Solver
 from comparisons.relations.image import Data, Image, plain
 from comparisons.relations.relations import RELATIONS, Relation
@@ -127,7 +127,7 @@ def _departures(first: Solved, image: Image, other: Solved) -> Iterator[Departur
     closed_in = _closing_stages(first.answer)
     scales = probe_scales(other.scene, (other.answer,))
     unsettled = {
-        name: round_off(_as_far_as(other), probe, (other.answer,), (other.answer,)) for name, probe in probes.items()
+        name: round_offs(_as_far_as(other), probe, (other.answer,), (other.answer,)) for name, probe in probes.items()
     }
     mine, theirs = ({}, {}) if not image.discretised_anew else (uncertainties(first), uncertainties(other))
     for station in first.answer.stations:
@@ -152,7 +152,7 @@ def _departures(first: Solved, image: Image, other: Solved) -> Iterator[Departur
             scale, w = scales[in_stage, probe.name], its.values[probe.name]
             uncertain = mine.get((probe.name, stage.name, station.value), 0.0)
             uncertain += theirs.get((probe.name, stage.name, value), 0.0)
-            allowed = max(TARGET, unsettled[probe.name] / scale, uncertain)
+            allowed = max(TARGET, unsettled[probe.name][stage.name, value] / scale, uncertain)
             if w.shape != expected.shape:
                 why = f"{expected.size} numbers became {w.size}"
                 yield Departure(probe.name, stage.name, station.value, math.inf, allowed, why)
