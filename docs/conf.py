@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,6 +23,7 @@ copyright = "the cprbm contributors, MIT licence"  # noqa: A001 - Sphinx asks fo
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_click"]
 exclude_patterns = ["made", "README.md"]
 highlight_language = "text"
+smartquotes = False
 html_theme = "furo"
 html_title = "cprbm"
 html_copy_source = False
@@ -46,6 +48,7 @@ def setup(app: Sphinx) -> None:
 
 
 def _make(app: Sphinx) -> None:
+    logging.getLogger("skfem").setLevel(logging.WARNING)  # it tells of every basis
     for name in drawn.make_all():
         print(f"figures of {name}")
     for name in ran.make_all():

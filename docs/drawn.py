@@ -42,6 +42,7 @@ ACCEPTED = ROOT / "tests" / "together" / "regression"
 LONGEST = ("prestressed", "five-bar", "rolled")  # begun first, so that no process waits at the end
 LINKS, ELEMENTS = 20, 20
 MOST_STATIONS = 41  # of a stage that is drawn; of more every so-many-th is solved, the shown ones and the last
+NOTHING = 1e-15  # m, rad, N, N·m or J: round-off of what is zero
 CURVES = ("rotation", "force", "moment", "reaction", "reaction_moment", "potential_energy")
 TITLES = {
     "rotation": "rotation",
@@ -94,14 +95,19 @@ def shapes(scene: Scene, answers: tuple[Answer, Answer]) -> Picture:
             _as_drawn(axes, scene)
             _loaded(axes, scene, chain, elements)
             factor, unit = along_axis(load_unit(scene, stage), value)
-            axes.set_title(f"{stage.steps} = {number(value / factor, 4)} {unit}", loc="left", fontsize=10)
+            axes.set_title(f"{stage.steps} = {_told(value / factor, unit)}", loc="left", fontsize=10)
             axes.set_aspect("equal", adjustable="datalim")
             axes.margins(0.08)
             if place == 0:
                 draw_names(axes, scene)
         handles, labels = figure.axes[0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=4)
+        figure.legend(handles, labels, loc="outside lower center", ncols=2 * columns)
         return picture(figure, "shapes", "Neutral lines in mm, as drawn and under load, with the places of contact.")
+
+
+def _told(value: float, unit: str) -> str:
+    """A load or drive in few digits."""
+    return f"{value:.4g}{'' if unit == '°' else ' '}{unit}"
 
 
 def _has(answer: Answer, stage: Stage, value: float) -> bool:
@@ -144,7 +150,9 @@ def curves(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
     panels = {quantity: probes for quantity, probes in asked.items() if probes}
     if not panels or sum(len(stage.stations) for stage in stages) < 2:
         return None
-    step, step_unit = along_axis(load_unit(scene, last), max(abs(value) for stage in stages for value in stage.stations))
+    step, step_unit = along_axis(
+        load_unit(scene, last), max(abs(value) for stage in stages for value in stage.stations)
+    )
     with canvas(7.0, 0.4 + 2.5 * len(panels)) as figure:
         for axes, (quantity, probes) in zip(
             np.atleast_1d(figure.subplots(len(panels), 1, sharex=True)), panels.items(), strict=True
@@ -229,7 +237,7 @@ def numbers(scene: Scene) -> str:
     factor, unit = along_axis(load_unit(scene, last), last.stations[-1])
     settings = accepted["settings"]
     lines = [
-        f"The accepted numbers at {last.steps} = {number(last.stations[-1] / factor, 4)} {unit} "
+        f"The accepted numbers at {last.steps} = {_told(last.stations[-1] / factor, unit)} "
         f"({settings['cprbm']['links']} links and {settings['fea']['elements']} finite elements per beam, theory "
         f"`{settings['fea']['kinematics']}`; `cprbm regress {scene.name}` holds them against what comes out today):",
         "",
@@ -241,7 +249,9 @@ def numbers(scene: Scene) -> str:
         if probe.quantity in STRESSES or not all(found):  # of a stress, and of what has no value there
             continue
         factor, unit = scaled_unit(unit_of(scene, probe, last), max(abs(each) for values in found for each in values))
-        cells = [", ".join(number(each / factor, 5) for each in values) for values in found]
+        cells = [
+            ", ".join(number(each / factor if abs(each) > NOTHING else 0.0, 5) for each in values) for values in found
+        ]
         lines.append(f"| `{probe.name}` | {unit} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from docutils import nodes
@@ -10,6 +11,8 @@ from latex2mathml.converter import convert
 if TYPE_CHECKING:
     from sphinx.application import Sphinx
     from sphinx.writers.html5 import HTML5Translator
+
+_TAG = re.compile(r"\\tag\{([^}]*)\}")
 
 
 def install(app: Sphinx) -> None:
@@ -23,5 +26,8 @@ def _inline(page: HTML5Translator, formula: nodes.math) -> None:
 
 
 def _block(page: HTML5Translator, formula: nodes.math_block) -> None:
-    page.body.append(f'<div class="math">{convert(formula.astext(), display="block")}</div>')
+    text = formula.astext()
+    number = _TAG.search(text)
+    told = f'<span class="eqno">({number[1]})</span>' if number else ""
+    page.body.append(f'<div class="math">{convert(_TAG.sub("", text), display="block")}{told}</div>')
     raise nodes.SkipNode

@@ -1,7 +1,7 @@
 """The scripts of the gallery run, and shown with what they print and draw.
 
-    python docs/ran.py              every script, into docs/made/gallery
-    python docs/ran.py sweep        one of them
+python docs/ran.py              every script, into docs/made/gallery
+python docs/ran.py sweep        one of them
 """
 
 from __future__ import annotations
@@ -49,7 +49,9 @@ def part(name: str, printed: str, drawn: Sequence[str]) -> str:
     scenes = [path.name for path in sorted(SCRIPTS.glob("*.toml")) if path.name in source]
     lines = [f"## {title}\n", f"`docs/gallery/{name}.py`\n"]
     lines.append(f"```{{literalinclude}} /gallery/{name}.py\n:language: python\n```\n")
-    lines += [f"The scene, `{each}`:\n\n```{{literalinclude}} /gallery/{each}\n:language: toml\n```\n" for each in scenes]
+    lines += [
+        f"The scene, `{each}`:\n\n```{{literalinclude}} /gallery/{each}\n:language: toml\n```\n" for each in scenes
+    ]
     lines.append(f"It prints\n\n```text\n{printed.rstrip()}\n```\n")
     for each in drawn:
         lines.append(f"```{{figure}} /made/gallery/{name}/{each}\n:alt: {title}, as the script draws it\n```\n")
