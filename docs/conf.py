@@ -5,23 +5,16 @@ from __future__ import annotations
 import logging
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
-
-import drawn
-import ran
-import mathematics
-
-if TYPE_CHECKING:
-    from sphinx.application import Sphinx
+logging.getLogger("skfem").setLevel(logging.WARNING)  # it tells of every basis
 
 project = "cprbm"
 author = "the cprbm contributors"
 copyright = "the cprbm contributors, MIT licence"  # noqa: A001 - Sphinx asks for this name
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_click"]
-exclude_patterns = ["made", "README.md"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_click", "drawn", "ran", "mathematics"]
+exclude_patterns = ["made"]
 highlight_language = "text"
 smartquotes = False
 html_theme = "furo"
@@ -39,17 +32,3 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_preserve_defaults = True
 napoleon_use_rtype = False
-
-
-def setup(app: Sphinx) -> None:
-    """Have figures made before pages are read, and formulas as MathML."""
-    app.connect("builder-inited", _make)
-    mathematics.install(app)
-
-
-def _make(app: Sphinx) -> None:
-    logging.getLogger("skfem").setLevel(logging.WARNING)  # it tells of every basis
-    for name in drawn.make_all():
-        print(f"figures of {name}")
-    for name in ran.make_all():
-        print(f"output of {name}")

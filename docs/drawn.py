@@ -3,8 +3,8 @@
     python docs/drawn.py                    every case, into docs/made
     python docs/drawn.py hinge wrapped      some of them
 
-Of each case both solvers' answers are drawn, coarser than at the standard settings (``LINKS`` and ``ELEMENTS``), so that
-all is made in a minute; the numbers of the tables are the accepted ones, which ``cprbm regress`` holds against
+Of each case both solvers' answers are drawn, coarser than at the standard settings (``LINKS`` and ``ELEMENTS``), so
+that all is made in a minute; the numbers of the tables are the accepted ones, which ``cprbm regress`` holds against
 what comes out at the standard settings.  What is there and was made by the same code is not made again.
 """
 
@@ -17,9 +17,9 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import get_context
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 
 import cprbm
 import fea_reference
@@ -34,6 +34,10 @@ from comparisons.stations import station_of
 from comparisons.writing import write
 from scene import Answer, CircleContact, OffsetQuestion, Scene, Stage, StationAnswer
 from scene.statement import STRESSES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from sphinx.application import Sphinx
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
@@ -309,6 +313,17 @@ def make_all(names: Sequence[str] = (), workers: int = 2) -> Iterator[str]:
     todo = sorted(names or cases.names(), key=lambda name: name not in LONGEST)
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
         yield from pool.map(make, todo)
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Have Sphinx the figures made before the pages are read."""
+    app.connect("builder-inited", _inited)
+    return {"parallel_read_safe": True}
+
+
+def _inited(app: Sphinx) -> None:
+    for name in make_all():
+        print(f"figures of {name}")
 
 
 if __name__ == "__main__":

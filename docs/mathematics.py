@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _TAG = re.compile(r"\\tag\{([^}]*)\}")
 
 
-def install(app: Sphinx) -> None:
+def setup(app: Sphinx) -> None:
     """Make known to Sphinx how formulas are drawn, under the name ``mathml``."""
     app.add_html_math_renderer("mathml", inline_renderers=(_inline, None), block_renderers=(_block, None))
 

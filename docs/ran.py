@@ -14,8 +14,12 @@ import runpy
 import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from comparisons.writing import write
+
+if TYPE_CHECKING:
+    from sphinx.application import Sphinx
 
 HERE = Path(__file__).resolve().parent
 SCRIPTS = HERE / "gallery"
@@ -81,6 +85,17 @@ def _digest() -> str:
 def make_all(chosen: Sequence[str] = ()) -> Iterator[str]:
     """Run what is missing of these scripts, or of all; each name when it is done."""
     yield from map(make, chosen or names())
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Have Sphinx the scripts run before the pages are read."""
+    app.connect("builder-inited", _inited)
+    return {"parallel_read_safe": True}
+
+
+def _inited(app: Sphinx) -> None:
+    for name in make_all():
+        print(f"output of {name}")
 
 
 if __name__ == "__main__":
