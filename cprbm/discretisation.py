@@ -149,6 +149,13 @@ class Discretised:
 def discretised(scene: Scene, settings: Settings) -> Discretised:
     """The scene's last state as the formulation ``paper`` would have it found.
 
+    Args:
+        scene: the problem statement.
+        settings: numerical choices, of which the links, the degree and the formulation count.
+
+    Returns:
+        The minimum over links and bodies as plain numbers, for other optimisers.
+
     Raises:
         SceneError: the settings do not fit the scene, the formulation does not offer what the scene asks, or the state
             is not a minimum over links and bodies alone (an assembly, whose way says which one is meant; stops; rigid

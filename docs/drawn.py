@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.patches import Circle
 
 import cprbm
 import fea_reference
@@ -125,9 +126,9 @@ def _as_drawn(axes: Axes, scene: Scene) -> None:
     draw_bodies(axes, scene, {end.point: scene.place_of(end.point) for _, end, _ in joined_ends(scene)}, "--", GREY)
     for contact in scene.contacts.values():
         if isinstance(contact, CircleContact):
-            turn = np.linspace(0.0, 2.0 * np.pi, 181)
-            x, y = (1e3 * (c + contact.radius * f(turn)) for c, f in zip(contact.center, (np.cos, np.sin), strict=True))
-            axes.plot(x, y, "-", color=GREY, linewidth=0.9, scalex=False, scaley=False)
+            x, y = contact.center
+            # an artist, no patch: a large circle must not make the beams small
+            axes.add_artist(Circle((1e3 * x, 1e3 * y), 1e3 * contact.radius, fill=False, edgecolor=GREY))
 
 
 def _loaded(axes: Axes, scene: Scene, chain: StationAnswer, elements: StationAnswer) -> None:
