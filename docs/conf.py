@@ -9,6 +9,7 @@ from pathlib import Path
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
 logging.getLogger("skfem").setLevel(logging.WARNING)  # it tells of every basis
 
+python_use_unqualified_type_names = True
 project = "cprbm"
 author = "the cprbm contributors"
 copyright = "the cprbm contributors, MIT licence"  # noqa: A001 - Sphinx asks for this name
@@ -29,6 +30,7 @@ myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
 myst_heading_anchors = 3
 
 autodoc_member_order = "bysource"
+autodoc_type_aliases = {"Array": "Array", "Ints": "Ints", "Flags": "Flags"}
 autodoc_typehints = "signature"
 autodoc_preserve_defaults = True
 napoleon_use_ivar = True

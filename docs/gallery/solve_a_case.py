@@ -15,7 +15,8 @@ for answer in (chain, elements):
     last = answer.stations[-1]  # at 0.67 N·m; values are arrays in SI
     turned = last.values["BD.rotation"][0]
     force = last.values["contact.force"][0]
-    print(f"{answer.solver:6}  {answer.ending.name}: BD turns by {turned:.4f} rad, the beams press with {force:.3f} N")
+    print(f"{answer.solver}: {answer.ending.name}")
+    print(f"  BD turns by {turned:.4f} rad, the beams press with {force:.3f} N")
 
 certificate = chain.stations[-1].certificate
 print("holds:", certificate.holds)
