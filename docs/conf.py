@@ -33,5 +33,6 @@ autodoc_member_order = "bysource"
 autodoc_type_aliases = {"Array": "Array", "Ints": "Ints", "Flags": "Flags"}
 autodoc_typehints = "signature"
 autodoc_preserve_defaults = True
+napoleon_custom_sections = ["Source"]
 napoleon_use_ivar = True
 napoleon_use_rtype = False
