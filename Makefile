@@ -3,13 +3,14 @@
 #   make compare   set up where that is missing, run the comparison of all cases, write report/
 #   make test      set up where that is missing, run the whole test suite
 #   make check     the rules of style and the types
+#   make docs      the documentation in build/docs, with figures made by the code; warnings are errors
 #   make fuzz      alter scene files at places drawn from SEED, RUNS times, and see that the reader takes them
 #   make mutants   put MUTANTS small faults, drawn from SEED, into the solvers, and see which the quick tests catch; an hour
 #   make setup     only the set-up
 #   make lock      renew requirements.lock (needs uv)
 
 .POSIX:
-.PHONY: setup compare test check fuzz mutants lock clean
+.PHONY: setup compare test check docs fuzz mutants lock clean
 
 PYTHON = python3
 SEED = 905
@@ -29,6 +30,10 @@ check: $(READY)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+docs: $(READY)
+	$(ENVIRONMENT) OMP_NUM_THREADS=1 $(BIN)/python -m sphinx --builder html --fail-on-warning --keep-going --quiet \
+	  --doctree-dir build/doctrees docs build/docs
 
 fuzz: $(READY)
 	OMP_NUM_THREADS=1 $(BIN)/python -m tests.scene.fuzzing --runs $(RUNS) --seed $(SEED)
@@ -56,4 +61,4 @@ lock:
 	mv requirements.new requirements.lock
 
 clean:
-	rm -rf .venv report build *.egg-info
+	rm -rf .venv report build docs/made *.egg-info

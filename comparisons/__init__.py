@@ -52,7 +52,13 @@ def compare(scene: Scene, choices: Choices | None = None) -> Comparison:
 def records(scene: Scene, answer: Answer) -> list[Number]:
     """Every number of an answer with what it is of: ``pandas.DataFrame(records(scene, answer))`` is one table.
 
-    As :func:`comparisons.tidy.numbers` has them.
+    Args:
+        scene: the question.
+        answer: a solver's to it.
+
+    Returns:
+        A dictionary of each number: ``scene``, ``solver``, ``stage``, ``station``, ``branch``, ``probe``,
+        ``component``, ``arc_length`` (m, along a beam), ``unit`` (SI) and ``value``.
     """
     from comparisons.tidy import numbers
 
@@ -61,6 +67,11 @@ def records(scene: Scene, answer: Answer) -> list[Number]:
 
 def write_csv(path: str | Path, scene: Scene, *answers: Answer) -> None:
     """The same of one answer or several as a file of comma-separated values with a line of headers.
+
+    Args:
+        path: where the file goes; its folder is made where it is missing.
+        scene: the question.
+        answers: of one solver or several to it, one below the other.
 
     Raises:
         OSError: the file cannot be written.

@@ -395,7 +395,7 @@ def _certificates(compared: Comparison) -> Sheet:
         "Certificates",
         ("worst of all stations", *names),
         tuple(body),
-        "All numbers but iterations and seconds are relative to a scale of the problem; see the README.",
+        "All numbers but iterations and seconds are relative to a scale of the problem; see docs/certificate.md.",
     )
 
 

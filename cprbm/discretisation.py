@@ -111,9 +111,12 @@ class Discretised:
     """Everything that the minimum depends on, at one value of loads and drives.
 
     Attributes:
-        unit_length, unit_moment: ℓ, m, and S, N·m.
-        lengths, rest: L_i and stress-free angles of the links (n,).
-        couplings, rest_turns: k_i and δ_i⁰ of the springs between link i and i + 1 (n−1,); k_i is zero between beams.
+        unit_length: ℓ, m.
+        unit_moment: S, N·m.
+        lengths: L_i of the links (n,), in ℓ.
+        rest: stress-free angles of the links (n,), rad.
+        couplings: k_i of the springs between link i and i + 1 (n−1,), in S; zero between beams.
+        rest_turns: δ_i⁰ of these springs (n−1,), rad.
         fixed: links that keep their stress-free angle.
         references: reference places of the bodies that move at rest (B, 2).
         beams: in the scene's order.
@@ -122,8 +125,10 @@ class Discretised:
         pins: spots that stay together, at the same place at rest.
         held: slides, pivots and drives.
         loads: at their values.
-        fitted, circles: contacts.
-        points: the scene's, by name; bodies: numbers of those that move, by name.
+        fitted: contacts of two beams.
+        circles: contacts of a beam and a circle.
+        points: the scene's, by name.
+        bodies: numbers of those that move, by name.
     """
 
     unit_length: float
@@ -148,6 +153,13 @@ class Discretised:
 
 def discretised(scene: Scene, settings: Settings) -> Discretised:
     """The scene's last state as the formulation ``paper`` would have it found.
+
+    Args:
+        scene: the problem statement.
+        settings: numerical choices, of which the links, the degree and the formulation count.
+
+    Returns:
+        The minimum over links and bodies as plain numbers, for other optimisers.
 
     Raises:
         SceneError: the settings do not fit the scene, the formulation does not offer what the scene asks, or the state

@@ -86,7 +86,31 @@ def joints_on(curve: Curve, places: Array) -> Array:
 
 
 def offset_points(curve: Curve, spacing: Spacing, n: int, distances: Array) -> OffsetPoints:
-    """b_1..b_N of a chain of ``n`` springs on a curve, at the signed ``distances`` t (k,), m."""
+    """b_1..b_N of a chain of ``n`` springs on a curve.
+
+    Args:
+        curve: the neutral line.
+        spacing: by which law springs, or the elements in whose middles they are, stand along it.
+        n: number of springs.
+        distances: t (k,), m, positive to the left of the curve as it runs.
+
+    Returns:
+        Points (k, n, 2), m, tangents (n,), rad, and how far each point may be off the exact offset curve (k, n), m.
+
+    Source:
+        Jin et al., Mechanism and Machine Theory 145 (2020) 103700, eqs. (9) and (10).
+
+    Example:
+        Of an even chain on a circle the points lie on the circle of the larger radius.
+
+        >>> import numpy as np
+        >>> from cprbm import offset_points
+        >>> from scene import Arc, Spacing
+        >>> arc = Arc(kind="arc", center=(0, 0), start=(0.07, 0), end=(0, 0.07), direction="counterclockwise")
+        >>> found = offset_points(arc, Spacing(law="even", of="joints"), 5, np.array([-0.013]))
+        >>> np.hypot(*found.points[0].T).round(6)
+        array([0.083, 0.083, 0.083, 0.083, 0.083])
+    """
     p = joints_on(curve, joint_places(spacing, n))
     dx, dy = np.diff(p, axis=0).T
     lengths, theta = np.hypot(dx, dy), np.unwrap(np.arctan2(dy, dx))

@@ -56,7 +56,12 @@ class Prepared:
 def prepared(scene: Scene, settings: Settings | None = None) -> Prepared:
     """Make a scene ready without solving anything: the set-up of an answer, for those who time it by itself.
 
-    The arguments, and what is raised, are those of :func:`answer`.
+    Args:
+        scene: as of :func:`answer`.
+        settings: as of :func:`answer`.
+
+    Returns:
+        The march at the stress-free state; its ``answer`` goes the way once.
 
     Raises:
         SceneError: the settings do not fit the scene.
@@ -76,8 +81,20 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
 
     Returns:
         Certified answers at the scene's stations, or those reached before the solver's Ending says why it stopped.
+        Their values are read-only arrays in SI, of the shapes in :mod:`scene.answer`.
 
     Raises:
         SceneError: the settings do not fit the scene.
+
+    Source:
+        Jin et al., Mechanism and Machine Theory 145 (2020) 103700: eq. (1) by Newton's method; ``auto`` contact is not
+        the paper's.
+
+    Example:
+        >>> import cprbm
+        >>> from scene import read
+        >>> answer = cprbm.answer(read("comparisons/cases/tapered.toml"), cprbm.Settings(links=12))
+        >>> answer.completed, answer.stations[-1].values["T.displacement"].shape
+        (True, (2,))
     """
     return prepared(scene, settings).answer()

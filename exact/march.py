@@ -43,7 +43,18 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
         settings: numerical choices.
 
     Returns:
-        The stations up to where the solution holds; its ending is NOT_COVERED where one is missing.
+        The stations up to where the solution holds; its ending is NOT_COVERED where one is missing. Values are
+        read-only arrays in SI, of the shapes in :mod:`scene.answer`.
+
+    Source:
+        Euler's elastica with contact, by Gauss's collocation; nothing is discretised but the integration.
+
+    Example:
+        >>> import exact
+        >>> from scene import read
+        >>> answer = exact.answer(read("comparisons/cases/tapered.toml"))
+        >>> answer.completed, answer.stations[-1].certificate.residual < 1e-10
+        (True, True)
     """
     chosen = settings or Settings()
     began = time.perf_counter()

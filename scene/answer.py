@@ -226,7 +226,9 @@ class Answer:
     """A solver's whole answer to a scene.
 
     ``stations`` are those reached with a certificate that holds, in order; ``sentence`` says more about the
-    ending; ``settings`` are the solver's numerical choices as plain values.
+    ending; ``settings`` are the solver's numerical choices as plain values.  ``events`` are contacts that closed
+    between stations, ``critical`` the ends of branches that were met, ``seconds`` what all of it took, and ``notes``
+    what the solver has to say besides.
     """
 
     solver: str

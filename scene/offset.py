@@ -51,7 +51,7 @@ class OffsetQuestion(Record):
 
     ``side`` is that of the curve as it runs.  The error is taken along ``axis``, at the offset point's place on the
     other axis, relative to the exact curve's ``ordinate`` (its coordinate along ``axis``) or to the ``offset``.
-    ``numbers`` are springs N; ``offsets`` distances t, m.
+    ``numbers`` are springs N; ``offsets`` distances t, m.  ``verdict_limit`` is as of a scene.
     """
 
     question: Literal["offset"]

@@ -60,6 +60,12 @@ def read(path: str | Path) -> Scene:
     Raises:
         SceneError: the file cannot be read, anything in it is wrong (all mistakes are named), or it asks
             something else than a scene does.
+
+    Example:
+        >>> from scene import read
+        >>> hinge = read("comparisons/cases/hinge.toml")
+        >>> hinge.beams["beam1"].thickness, hinge.place_of("B")
+        (0.002, (0.051, 0.02625))
     """
     found = read_question(path)
     if isinstance(found, OffsetQuestion):
@@ -70,6 +76,12 @@ def read(path: str | Path) -> Scene:
 
 def read_question(path: str | Path) -> Question:
     """Read a file of any question: of a scene, or, where it says ``question = "offset"``, of an offset curve.
+
+    Args:
+        path: a TOML file, a scene's in SI units or in those that it states.
+
+    Returns:
+        The scene or the offset question, with ``file`` set to ``path``.
 
     Raises:
         SceneError: as :func:`read`.

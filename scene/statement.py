@@ -102,8 +102,9 @@ class Spline(Record):
 
     x and y are cubic splines of t, which is zero at the first point and grows from each to the next by their distance:
     cubic in between, with two continuous derivatives, so that tangent and curvature have no jumps.  At an end that has
-    a direction the derivative is its unit vector (in the sense in which the beam runs); at one that has none the
-    outer two pieces are one cubic.  Of three points without directions it is the parabola through them.
+    a ``start_direction`` or ``end_direction`` the derivative is its unit vector (in the sense in which the beam runs);
+    at one that has none the outer two pieces are one cubic.  Of three points without directions it is the parabola
+    through them.
     """
 
     kind: Literal["spline"]
@@ -281,7 +282,7 @@ class BodyPin(Record):
 
 
 class Stop(Record):
-    """Limits the angle at which a pinned ``beam`` stands at its pin, rad.
+    """Limits the angle at which a pinned ``beam`` stands at its pin, rad: ``least`` and ``most``, or one of them.
 
     The angle runs counter-clockwise from the line that leads from the pin to ``towards``, another point of the same
     body, to the direction in which the beam leaves the pin.  As drawn it lies in (−π, π], and it is counted on from

@@ -1,7 +1,6 @@
 """From Python: a verdict, an answer as a table of numbers, and the same as a file, each in one call."""
 
 import csv
-import doctest
 
 import numpy as np
 import pytest
@@ -61,10 +60,3 @@ def test_a_verdict_is_one_call():
     found = comparisons.compare(scene, Choices(links=23, elements=23))
     assert found.verdict.word.value == "AGREE"
     assert {row.probe.name for row in found.rows} == {probe.name for probe in scene.probes}
-
-
-def test_the_examples_in_the_documentation_are_so(monkeypatch):
-    monkeypatch.chdir(cases.__path__[0] + "/../..")
-    found = doctest.testmod(comparisons)
-    assert found.attempted
-    assert not found.failed

@@ -220,7 +220,7 @@ SHARES = st.floats(min_value=0.0, max_value=0.1)
 @settings(max_examples=300)
 @given(SHARES, SHARES, SHARES, SHARES, SHARES, SHARES, SHARES)
 def test_a_word_follows_its_definition(difference, same_theory, c, f, b, theory, round_off):
-    """The definition once more, written as in the README."""
+    """The definition once more, written as in docs/verdict.md."""
     from comparisons import cases
 
     scene = cases.opened("hinge")

@@ -1,0 +1,332 @@
+"""The figures and tables of the pages on the built-in cases, made by the code as the pages are built.
+
+    python docs/drawn.py                    every case, into docs/made
+    python docs/drawn.py hinge wrapped      some of them
+
+Of each case both solvers' answers are drawn, coarser than at the standard settings (``LINKS`` and ``ELEMENTS``), so
+that all is made in a minute; the numbers of the tables are the accepted ones, which ``cprbm regress`` holds against
+what comes out at the standard settings.  What is there and was made by the same code is not made again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import sys
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.patches import Circle
+
+import cprbm
+import fea_reference
+from comparisons import cases, offset_drawn
+from comparisons.bodies_drawn import draw_bodies, draw_edges, draw_names, draw_stops, joined_ends, places_at
+from comparisons.figures import BLUE, GREY, RED, Picture, along_axis, canvas, picture
+from comparisons.formats import number, scaled_unit
+from comparisons.geometry import length, points
+from comparisons.measures import COMPONENTS, arc_lengths, load_unit, unit_of
+from comparisons.offset_verdict import compared_offset
+from comparisons.stations import station_of
+from comparisons.writing import write
+from scene import Answer, CircleContact, OffsetQuestion, Scene, Stage, StationAnswer
+from scene.statement import STRESSES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from sphinx.application import Sphinx
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+MADE = HERE / "made"
+ACCEPTED = ROOT / "tests" / "together" / "regression"
+LONGEST = ("prestressed", "five-bar", "rolled")  # begun first, so that no process waits at the end
+LINKS, ELEMENTS = 20, 20
+MOST_STATIONS = 41  # of a stage that is drawn; of more every so-many-th is solved, the shown ones and the last
+NOTHING = 1e-15  # m, rad, N, N·m or J: round-off of what is zero
+CURVES = ("rotation", "force", "moment", "reaction", "reaction_moment", "potential_energy")
+TITLES = {
+    "rotation": "rotation",
+    "force": "contact force",
+    "moment": "moment of a contact or stop",
+    "reaction": "reaction",
+    "reaction_moment": "reaction moment",
+    "potential_energy": "potential energy",
+}
+
+
+def thinned(scene: Scene) -> Scene:
+    """The scene with no more stations than a picture needs."""
+    stages = []
+    for stage in scene.stages:
+        every = -(-len(stage.stations) // MOST_STATIONS)
+        kept = set(stage.stations[::every]) | set(stage.shown) | {stage.stations[-1]}
+        stations = tuple(value for value in stage.stations if value in kept)
+        stages.append(stage.model_copy(update={"stations": stations}))
+    return scene.model_copy(update={"stages": tuple(stages)})
+
+
+def shown(scene: Scene) -> list[tuple[Stage, float]]:
+    """Stages and stations that are drawn: those that the scene names, the last of every stage, four at most."""
+    found = [
+        (stage, value)
+        for stage in scene.stages
+        for value in stage.stations
+        if value in stage.shown or value == stage.stations[-1]
+    ]
+    return found[-4:]
+
+
+def solved(scene: Scene) -> tuple[Answer, Answer]:
+    """Both solvers' answers, as coarse as the figures show them."""
+    return (
+        cprbm.answer(scene, cprbm.Settings(links=LINKS)),
+        fea_reference.answer(scene, fea_reference.Settings(elements=ELEMENTS)),
+    )
+
+
+def shapes(scene: Scene, answers: tuple[Answer, Answer]) -> Picture:
+    """The mechanism as drawn, dashed, and at the shown stations: finite elements as lines, joints of links as dots."""
+    reached = [(stage, value) for stage, value in shown(scene) if all(_has(each, stage, value) for each in answers)]
+    columns = min(2, len(reached))
+    with canvas(4.4 * columns, 4.2 * -(-len(reached) // columns) + 0.4) as figure:
+        for place, (stage, value) in enumerate(reached):
+            axes = figure.add_subplot(-(-len(reached) // columns), columns, place + 1)
+            chain, elements = (station_of(answer, stage.name, value) for answer in answers)
+            _as_drawn(axes, scene)
+            _loaded(axes, scene, chain, elements)
+            factor, unit = along_axis(load_unit(scene, stage), value)
+            axes.set_title(f"{stage.steps} = {_told(value / factor, unit)}", loc="left", fontsize=10)
+            axes.set_aspect("equal", adjustable="datalim")
+            axes.margins(0.08)
+            if place == 0:
+                draw_names(axes, scene)
+        handles, labels = figure.axes[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=2 * columns)
+        return picture(figure, "shapes", "Neutral lines in mm, as drawn and under load, with the places of contact.")
+
+
+def _told(value: float, unit: str) -> str:
+    """A load or drive in few digits."""
+    return f"{value:.4g}{'' if unit == '°' else ' '}{unit}"
+
+
+def _has(answer: Answer, stage: Stage, value: float) -> bool:
+    return any(each.stage == stage.name and each.value == value for each in answer.stations)
+
+
+def _as_drawn(axes: Axes, scene: Scene) -> None:
+    for place, beam in enumerate(scene.beams.values()):
+        x, y = 1e3 * points(beam.curve, np.linspace(0.0, length(beam.curve), 120)).T
+        axes.plot(x, y, "--", color=GREY, linewidth=1.0, label="as drawn" if place == 0 else None)
+    draw_bodies(axes, scene, {end.point: scene.place_of(end.point) for _, end, _ in joined_ends(scene)}, "--", GREY)
+    for contact in scene.contacts.values():
+        if isinstance(contact, CircleContact):
+            x, y = contact.center
+            # an artist, no patch: a large circle must not make the beams small
+            axes.add_artist(Circle((1e3 * x, 1e3 * y), 1e3 * contact.radius, fill=False, edgecolor=GREY))
+
+
+def _loaded(axes: Axes, scene: Scene, chain: StationAnswer, elements: StationAnswer) -> None:
+    places = places_at(scene, elements)
+    draw_edges(axes, scene, places, GREY)
+    draw_bodies(axes, scene, places, "-", "black")
+    draw_stops(axes, scene, places)
+    for place, beam in enumerate(scene.beams):
+        one, other = elements.shapes[beam], chain.shapes[beam]
+        label = ("finite elements", "CPRBM") if place == 0 else (None, None)
+        axes.plot(1e3 * one.x, 1e3 * one.y, "-", color=RED, linewidth=2.0, label=label[0])
+        axes.plot(1e3 * other.x, 1e3 * other.y, ".", color=BLUE, markersize=4.0, label=label[1])
+    touching = [spots for spots in chain.touching.values() if len(spots)]
+    if touching:
+        x, y = 1e3 * np.concatenate(touching).T
+        axes.plot(x, y, "o", color=BLUE, markersize=7.0, markerfacecolor="none", linestyle="", label="contact")
+
+
+def curves(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
+    """Rotations, forces, moments and energy against what the last stage steps."""
+    last = scene.stages[-1]
+    stages = [stage for stage in scene.stages if stage.steps == last.steps]
+    asked = {quantity: [each for each in scene.probes if each.quantity == quantity] for quantity in CURVES}
+    panels = {quantity: probes for quantity, probes in asked.items() if probes}
+    if not panels or sum(len(stage.stations) for stage in stages) < 2:
+        return None
+    step, step_unit = along_axis(
+        load_unit(scene, last), max(abs(value) for stage in stages for value in stage.stations)
+    )
+    with canvas(7.0, 0.4 + 2.5 * len(panels)) as figure:
+        for axes, (quantity, probes) in zip(
+            np.atleast_1d(figure.subplots(len(panels), 1, sharex=True)), panels.items(), strict=True
+        ):
+            sizes = [
+                abs(float(each)) for answer in answers for at in answer.stations for probe in probes
+                for each in at.values[probe.name]
+            ]  # fmt: skip
+            factor, unit = scaled_unit(unit_of(scene, probes[0], last), max(sizes, default=1.0))
+            for place, probe in enumerate(probes):
+                for component, name in enumerate(COMPONENTS.get(quantity, ("",))):
+                    look = ("-", "--", ":", "-.")[(2 * place + component) % 4]
+                    label = f"{probe.of} {name}".strip()
+                    _curve(axes, stages, answers, probe.name, component, look, label, (step, factor))
+            axes.set_ylabel(f"{TITLES[quantity]}, {unit}")
+            axes.legend(loc="best", fontsize=8)
+        axes.set_xlabel(f"{last.steps}, {step_unit}")
+        what = ", ".join(TITLES[quantity] for quantity in panels)
+        return picture(
+            figure, "curves", f"Against {last.steps}: {what}. Lines: finite elements; dots: CPRBM. Gaps are jumps."
+        )
+
+
+def _curve(
+    axes: Axes,
+    stages: Sequence[Stage],
+    answers: tuple[Answer, Answer],
+    probe: str,
+    component: int,
+    look: str,
+    label: str,
+    scales: tuple[float, float],
+) -> None:
+    step, factor = scales
+    chain, elements = answers
+    names = {stage.name for stage in stages}
+    for answer, style in ((elements, {"linestyle": look, "color": RED}), (chain, {"marker": ".", "color": BLUE})):
+        runs = dict.fromkeys((each.stage, each.branch) for each in answer.stations if each.stage in names)
+        for place, (stage, branch) in enumerate(runs):
+            mine = [
+                (each.value / step, float(each.values[probe][component]) / factor)
+                for each in answer.stations
+                if (each.stage, each.branch) == (stage, branch) and len(each.values[probe]) > component
+            ]
+            if mine:
+                told = label if answer is elements and place == 0 else None
+                axes.plot(*zip(*mine, strict=True), label=told, **{"linestyle": "none", **style})
+
+
+def stress(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
+    """Bending stress along the beams at the last station."""
+    probes = [probe for probe in scene.probes if probe.quantity == "bending_stress"]
+    reached = [answer.stations[-1] for answer in answers if answer.stations]
+    if not probes or len(reached) < len(answers):
+        return None
+    with canvas(7.0, 0.4 + 2.2 * len(probes)) as figure:
+        largest = max(float(np.max(np.abs(at.values[probe.name]))) for at in reached for probe in probes)
+        factor, unit = scaled_unit("Pa", largest)
+        for axes, probe in zip(np.atleast_1d(figure.subplots(len(probes), 1)), probes, strict=True):
+            s = 1e3 * arc_lengths(scene, probe)
+            chain, elements = (at.values[probe.name] / factor for at in reached)
+            axes.axhline(0.0, color=GREY, linewidth=0.6)
+            axes.plot(s, elements, "-", color=RED, linewidth=1.6, label="finite elements")
+            axes.plot(s, chain, ".", color=BLUE, markersize=4.0, label="CPRBM")
+            axes.set_title(probe.of, loc="left", fontsize=10)
+            axes.set_ylabel(f"stress, {unit}")
+        axes.set_xlabel("arc length as drawn, mm")
+        figure.axes[0].legend(loc="best", fontsize=8)
+        return picture(
+            figure,
+            "stress",
+            "Bending stress along the beams at the last station, positive where the load turns the tangent "
+            "counter-clockwise along the beam.",
+        )
+
+
+def numbers(scene: Scene) -> str:
+    """The accepted numbers at the last station as a table, without the stresses along beams."""
+    accepted = json.loads((ACCEPTED / f"{scene.name}.json").read_text(encoding="utf-8"))
+    last = scene.stages[-1]
+    station = f"{last.name} {last.stations[-1]:g}"
+    factor, unit = along_axis(load_unit(scene, last), last.stations[-1])
+    settings = accepted["settings"]
+    lines = [
+        f"The accepted numbers at {last.steps} = {_told(last.stations[-1] / factor, unit)} "
+        f"({settings['cprbm']['links']} links and {settings['fea']['elements']} finite elements per beam, theory "
+        f"`{settings['fea']['kinematics']}`; `cprbm regress {scene.name}` holds them against what comes out today):",
+        "",
+        "| probe | unit | CPRBM | FEA |",
+        "|---|---|---:|---:|",
+    ]
+    for probe in scene.probes:
+        found = [accepted["values"][solver].get(probe.name, {}).get(station) for solver in ("cprbm", "fea")]
+        if probe.quantity in STRESSES or not all(found):  # of a stress, and of what has no value there
+            continue
+        factor, unit = scaled_unit(unit_of(scene, probe, last), max(abs(each) for values in found for each in values))
+        cells = [
+            ", ".join(number(each / factor if abs(each) > NOTHING else 0.0, 5) for each in values) for values in found
+        ]
+        lines.append(f"| `{probe.name}` | {unit} | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def pictures_of(name: str) -> tuple[str, tuple[Picture, ...]]:
+    """What is said before the figures of a case, and these."""
+    question = cases.asked(name)
+    if isinstance(question, OffsetQuestion):
+        return "", offset_drawn.of_comparison(compared_offset(question))
+    scene = thinned(question)
+    answers = solved(scene)
+    drawn = (shapes(scene, answers), curves(scene, answers), stress(scene, answers))
+    said = "".join(
+        f"The {who} end before the last station: {answer.sentence}.\n\n"
+        for who, answer in zip(("links", "elements"), answers, strict=True)
+        if not answer.completed
+    )
+    return numbers(question) + "\n" + said, tuple(each for each in drawn if each is not None)
+
+
+def make(name: str) -> str:
+    """Make the figures and the page's part of a case, unless they are there from the same code; the case's name."""
+    folder = MADE / name
+    stamp, now = folder / "made-by", _digest()
+    if stamp.is_file() and stamp.read_text(encoding="utf-8") == now:
+        return name
+    said, drawn = pictures_of(name)
+    parts = [said]
+    for each in drawn:
+        write(folder / f"{each.name}.svg", each.svg)
+        parts.append(f"```{{figure}} /made/{name}/{each.name}.svg\n:alt: {each.caption}\n\n{each.caption}\n```\n")
+    coarse = f"{LINKS} links and {ELEMENTS} elements per beam"
+    if not isinstance(cases.asked(name), OffsetQuestion):
+        parts.append(f"The figures are made as this page is built, with {coarse}; the numbers above are finer.\n")
+    write(folder / "part.md", "\n".join(parts))
+    write(stamp, now)
+    return name
+
+
+def _digest() -> str:
+    """Of the sources that make the figures."""
+    found = hashlib.sha256(Path(__file__).read_bytes())
+    for room in ("scene", "cprbm", "fea_reference", "comparisons"):
+        for path in sorted((ROOT / room).rglob("*")):
+            if path.suffix in {".py", ".toml"}:
+                found.update(str(path.relative_to(ROOT)).encode())
+                found.update(path.read_bytes())
+    for path in sorted(ACCEPTED.glob("*.json")):
+        found.update(path.read_bytes())
+    return found.hexdigest()
+
+
+def make_all(names: Sequence[str] = (), workers: int = 2) -> Iterator[str]:
+    """Make what is missing of the cases of these names, or of all; each name when it is done."""
+    todo = sorted(names or cases.names(), key=lambda name: name not in LONGEST)
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        yield from pool.map(make, todo)
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Have Sphinx the figures made before the pages are read."""
+    app.connect("builder-inited", _inited)
+    return {"parallel_read_safe": True}
+
+
+def _inited(app: Sphinx) -> None:
+    for name in make_all():
+        print(f"figures of {name}")
+
+
+if __name__ == "__main__":
+    for done in make_all(sys.argv[1:]):
+        print(done)
