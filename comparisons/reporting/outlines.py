@@ -19,14 +19,14 @@ import numpy as np
 from scene.answer import Array
 
 WIDE = 1000.0
-_EPSILON = 0.12
+_EPSILON = 0.3
 _HEAD = 11.0
 """Length of an arrow's head."""
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """Which part of the plane a picture shows: from its ``corner`` at the upper left, m, with ``scale`` units to 1 m."""
+    """Which part of the plane a picture shows: its ``corner`` at the upper left, m, and ``scale`` units to 1 m."""
 
     corner: tuple[float, float]
     scale: float

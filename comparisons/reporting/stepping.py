@@ -7,6 +7,7 @@ Arrows of one kind (contacts, loads and drives) have one scale for all stations.
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -49,6 +50,7 @@ _THINNEST = 2.5
 _LONGEST = 110.0
 _SHORTEST = 0.03  # of the largest force of its kind, below which none is drawn
 _ROUND = 26.0
+_CLOSE = 45.0  # in the picture's units: contacts that are nearer to each other have one arrow
 _ALONG_BEAM = 121
 
 Kind = Literal["rest", "edge", "body", "pin", "fea", "outline", "cprbm", "zone", "push", "load"]
@@ -71,10 +73,11 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Station:
-    """One step: its label, the data of every part that moves, and the texts of every line of the table."""
+    """One step: its label, the data of every part that moves, where each name stands, and the table's texts."""
 
     label: str
     paths: tuple[str, ...]
+    places: tuple[tuple[float, float], ...]
     cells: tuple[tuple[str, ...], ...]
 
 
@@ -86,7 +89,8 @@ class Stepper:
         width, height: of the picture.
         still: parts that do not move.
         moving: parts that do, in the order of :attr:`Station.paths`.
-        headers, names: of the table, whose cells are those of the last station.
+        points: names beside points, in the order of :attr:`Station.places`.
+        headers, names: of the table; of each of its lines what is asked, and the unit.
         stations: in order.
         thinner: beams that are drawn thicker than they are, so that they can be seen.
     """
@@ -95,10 +99,20 @@ class Stepper:
     height: float
     still: tuple[Part, ...]
     moving: tuple[Part, ...]
+    points: tuple[str, ...]
     headers: tuple[str, ...]
     names: tuple[tuple[str, str], ...]
     stations: tuple[Station, ...]
     thinner: tuple[str, ...]
+
+    @property
+    def told(self) -> str:
+        """The stations as JSON that may stand in a page: label, paths, places, and the table's texts in one list."""
+        every = [
+            (each.label, each.paths, each.places, [text for row in each.cells for text in row])
+            for each in self.stations
+        ]
+        return json.dumps(every, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,8 +135,8 @@ def stepper(compared: Comparison) -> Stepper | None:
     reached = list(_reached(compared))
     if not reached:
         return None
-    acting = [list(_arrows(scene, stage, fea)) for stage, _, fea in reached]
     seen = _frame(scene, reached)
+    acting = [list(_gathered(list(_arrows(scene, stage, fea)), seen)) for stage, _, fea in reached]
     largest = {
         kind: max((float(np.hypot(*each.force)) for all_ in acting for each in all_ if each.kind == kind), default=0.0)
         for kind in ("push", "load")
@@ -130,10 +144,12 @@ def stepper(compared: Comparison) -> Stepper | None:
     shown = [probe for probe in scene.probes if probe.quantity not in STRESSES]
     units = {probe.name: _unit(scene, probe, reached) for probe in shown}
     words = _words(compared)
+    named = _named(scene, seen, reached[-1][-1])
     stations = tuple(
         Station(
             _label(scene, stage, fea.value),
             tuple(_moving(scene, seen, cprbm, fea, arrow, largest)),
+            tuple(_beside(seen, place, fea, scene) for place in named.values()),
             tuple(_cells(scene, probe, stage, cprbm, fea, units[probe.name][0], words) for probe in shown),
         )
         for (stage, cprbm, fea), arrow in zip(reached, acting, strict=True)
@@ -149,6 +165,7 @@ def stepper(compared: Comparison) -> Stepper | None:
         round(seen.height),
         tuple(Part("rest", 0.0, line(seen.of(_at_rest(beam)))) for beam in scene.beams.values()),
         tuple(Part(*kind, path) for kind, path in zip(kinds, stations[-1].paths, strict=True)),
+        tuple(named),
         ("probe", "unit", "CPRBM", "FEA", "difference", "says"),
         tuple((probe.name, units[probe.name][1]) for probe in shown),
         stations,
@@ -207,6 +224,33 @@ def _moving(
             for each in mine
             if each.moment != 0.0
         )
+
+
+def _named(scene: Scene, seen: Frame, last: StationAnswer) -> dict[str, str]:
+    """By names as they are written the point that they stand beside; points in one place at the end share them."""
+    found: dict[tuple[float, float], list[str]] = {}
+    for body in scene.bodies.values():
+        for point in body.points:
+            found.setdefault(_beside(seen, point, last, scene), []).append(point)
+    return {", ".join(names): names[0] for names in found.values()}
+
+
+def _beside(seen: Frame, point: str, station: StationAnswer, scene: Scene) -> tuple[float, float]:
+    x, y = seen.of(_point(scene, point, station))[0]
+    return float(round(x)), float(round(y))
+
+
+def _gathered(acting: list[_Arrow], seen: Frame) -> Iterator[_Arrow]:
+    """Forces of contacts, of which those that follow each other closely are one at their middle."""
+    pushes = [each for each in acting if each.kind == "push"]
+    while pushes:
+        near = [each for each in pushes if np.hypot(*(each.place - pushes[0].place)) * seen.scale < _CLOSE]
+        force = np.sum([each.force for each in near], axis=0)
+        sizes = np.array([np.hypot(*each.force) for each in near])
+        if sizes.sum() > 0.0:
+            yield _Arrow("push", sizes @ np.array([each.place for each in near]) / sizes.sum(), force)
+        pushes = [each for each in pushes if not any(each is one for one in near)]
+    yield from (each for each in acting if each.kind != "push")
 
 
 def _ends(seen: Frame, each: _Arrow, largest: float) -> tuple[Array, Array]:
