@@ -118,12 +118,14 @@ def _drawn(compared: Comparison, stepped: str, stages: list[Stage]) -> Picture |
         order = sorted(range(len(labels)), key=lambda place: (labels[place] != "FEA", labels[place]))
         figure.legend([handles[i] for i in order], [labels[i] for i in order], loc="outside lower center", ncols=3)
         titles = " and ".join(each.title for each in shown)
+        jumps = any(station.branch > 0 for station in mine)
+        ends = any(critical.stage in names for answer in answers.values() for critical in answer.critical)
         return picture(
             figure,
             f"path-{stepped}",
-            f"{titles[:1].upper()}{titles[1:]} against {stepped}: triangles point the way of the stage. Dashed: jumps, "
-            "from the last station before to the first behind. Dotted: critical values of either solver, those of the "
-            "CPRBM named above.",
+            f"{titles[:1].upper()}{titles[1:]} against {stepped}: triangles point the way of the stage."
+            + (" Dashed: jumps, from the last station before to the first behind." if jumps else "")
+            + (" Dotted: critical values of either solver, those of the CPRBM named above." if ends else ""),
         )
 
 

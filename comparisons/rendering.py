@@ -43,6 +43,7 @@ def rendered(template: str, context: Mapping[str, object]) -> str:
     )
     environment.filters["cells"] = cells_of
     environment.filters["words"] = words_in
+    environment.filters["joined"] = lambda text: text.replace(" %", "\u00a0%")  # on one line with its number
     style = _beside("style.css")
     return environment.get_template(template).render({**context, "style": style, "marked": _MARKED}) + "\n"
 

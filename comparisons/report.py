@@ -51,11 +51,7 @@ def added(folder: Path, compared: Comparison | OffsetComparison) -> Chapter:
     """
     pictures = drawn(compared)
     put_files(folder, compared, pictures)
-    return (
-        offset_chapter(compared, pictures)
-        if isinstance(compared, OffsetComparison)
-        else chapter(compared, pictures)
-    )
+    return offset_chapter(compared, pictures) if isinstance(compared, OffsetComparison) else chapter(compared, pictures)
 
 
 def drawn(compared: Comparison | OffsetComparison) -> tuple[figures.Picture, ...]:
@@ -65,9 +61,7 @@ def drawn(compared: Comparison | OffsetComparison) -> tuple[figures.Picture, ...
     return tuple(picture for module in _DRAWN for picture in module.of_comparison(compared))
 
 
-def put_files(
-    folder: Path, compared: Comparison | OffsetComparison, pictures: tuple[figures.Picture, ...]
-) -> None:
+def put_files(folder: Path, compared: Comparison | OffsetComparison, pictures: tuple[figures.Picture, ...]) -> None:
     """Write a finished case's numbers and figures into its folder in a report.
 
     Raises:

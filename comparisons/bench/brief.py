@@ -5,8 +5,6 @@ Seconds are the processor's, since a report is made on machines that have other 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-
 from frozendict import frozendict
 
 from comparisons import machine
@@ -22,15 +20,8 @@ AT_MOST = 4.0
 """Seconds after which a size is not repeated and no larger one is begun."""
 
 
-def measured(
-    scene: Scene, solvers: Solvers, each: Callable[[tuple[running.Job, ...]], Iterable[running.Job]]
-) -> running.Benchmark:
+def measured(scene: Scene, solvers: Solvers) -> running.Benchmark:
     """Time the solvers on a scene's last load.
-
-    Args:
-        scene: the question.
-        solvers: who is timed.
-        each: hands the jobs over one by one, as they are to be done.
 
     Raises:
         SceneError: every method refuses the question.
@@ -39,6 +30,6 @@ def measured(
     plan = running.Plan(frozendict(dict.fromkeys(METHODS, SIZES)), repeat=REPEAT, at_most=AT_MOST, clock="cpu")
     taking_part = contenders.contenders(METHODS, solvers, Choices(kinematics=plan.kinematics))
     session = running.Session(asked, plan, taking_part, machine.described(), running.CLOCKS[plan.clock])
-    for job in each(session.jobs()):
+    for job in session.jobs():
         session.do(job)
     return session.done(errors.reference(asked, solvers))

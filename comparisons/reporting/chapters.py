@@ -97,16 +97,18 @@ class Found:
     Attributes:
         compared: both answers and the verdict.
         pictures: of these.
-        convergence: at a family of sizes; None where that is left out.
-        benchmark: run times; None where they are left out or nobody was asked.
-        missing: why something that was wanted is not there, in sentences.
+        convergence: at a family of sizes; None where that is left out, or where a solver refuses it.
+        unconverged: a sentence on why it refuses; empty if it does not.
+        benchmark: run times; None likewise.
+        untimed: likewise.
     """
 
     compared: Comparison | OffsetComparison
     pictures: tuple[Picture, ...]
-    convergence: Told | None
-    benchmark: Benchmark | None
-    missing: tuple[str, ...] = ()
+    convergence: Told | None = None
+    unconverged: str = ""
+    benchmark: Benchmark | None = None
+    untimed: str = ""
 
 
 _SHAPES = ("stations",)
@@ -204,20 +206,24 @@ def _section(subject: Subject, tables: dict[Subject, tuple[Sheet, ...]], figures
 
 
 def _convergence(found: Found) -> tuple[Section, ...]:
-    told = found.convergence
+    told, heading = found.convergence, "Error against N, and the error budget"
     if told is None:
-        return ()
+        return (Section(heading, _sentences(found.unconverged), (), ()),)
     figures = tuple(inlined(picture, told.asked.name) for picture in told.pictures)
-    return (Section("Error against N, and the error budget", told.sentences, figures, told.sheets),)
+    return (Section(heading, told.sentences, figures, told.sheets),)
 
 
 def _times(found: Found, seconds: tuple[Sheet, ...]) -> tuple[Section, ...]:
     """Whatever is another number with every run stands here, and nowhere else."""
     measured = found.benchmark
     if measured is None:
-        return (Section(Subject.SECONDS.value, found.missing, (), seconds),)
+        return (Section(Subject.SECONDS.value, _sentences(found.untimed), (), seconds),)
     figures = tuple(inlined(picture, measured.scene.name) for picture in bench_drawn.pictures(measured))
-    return (Section("Run time against error", found.missing, figures, (*bench_told.sheets(measured), *seconds)),)
+    return (Section("Run time against error", (), figures, (*bench_told.sheets(measured), *seconds)),)
+
+
+def _sentences(text: str) -> tuple[str, ...]:
+    return (text,) if text else ()
 
 
 def _glance(compared: Comparison, claims: tuple[Claimed, ...]) -> Glance:

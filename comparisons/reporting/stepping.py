@@ -15,6 +15,7 @@ from typing import Literal
 
 import numpy as np
 
+from comparisons.cells import signed
 from comparisons.figures import along_axis
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.geometry import length, points
@@ -166,7 +167,7 @@ def stepper(compared: Comparison) -> Stepper | None:
         tuple(Part("rest", 0.0, line(seen.of(_at_rest(beam)))) for beam in scene.beams.values()),
         tuple(Part(*kind, path) for kind, path in zip(kinds, stations[-1].paths, strict=True)),
         tuple(named),
-        ("probe", "unit", "CPRBM", "FEA", "difference", "says"),
+        ("probe", "CPRBM", "FEA", "difference", "says"),
         tuple((probe.name, units[probe.name][1]) for probe in shown),
         stations,
         tuple(name for name, beam in scene.beams.items() if beam.thinnest * seen.scale < _THINNEST),
@@ -322,7 +323,7 @@ def _carried(body: Body, places: Array, name: str, station: StationAnswer) -> Ar
 
 def _point(scene: Scene, point: str, station: StationAnswer) -> Array:
     name = scene.body_of(point)
-    return _carried(scene.bodies[name], np.array([scene.place_of(point)]), name, station)[0]
+    return np.asarray(_carried(scene.bodies[name], np.array([scene.place_of(point)]), name, station)[0])
 
 
 def _along(station: StationAnswer, beam: str, share: float) -> Array:
@@ -407,4 +408,5 @@ def _cells(
     words: Mapping[tuple[str, str, float], tuple[str, str]],
 ) -> tuple[str, ...]:
     said = words.get((probe.name, stage.name, fea.value), ("–", "–"))
-    return (vector(cprbm.values[probe.name], factor), vector(fea.values[probe.name], factor), *said)
+    both = (signed(vector(each.values[probe.name], factor)) for each in (cprbm, fea))
+    return (*both, *said)
