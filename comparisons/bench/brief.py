@@ -20,16 +20,21 @@ AT_MOST = 4.0
 """Seconds after which a size is not repeated and no larger one is begun."""
 
 
-def measured(scene: Scene, solvers: Solvers) -> running.Benchmark:
+def measured(scene: Scene, timed: Solvers, knowing: Solvers) -> running.Benchmark:
     """Time the solvers on a scene's last load.
+
+    Args:
+        scene: the question.
+        timed: the solvers themselves, which solve whenever they are asked.
+        knowing: who answers for the reference of the errors, and may have kept its answers.
 
     Raises:
         SceneError: every method refuses the question.
     """
     asked = question.asked(scene)
     plan = running.Plan(frozendict(dict.fromkeys(METHODS, SIZES)), repeat=REPEAT, at_most=AT_MOST, clock="cpu")
-    taking_part = contenders.contenders(METHODS, solvers, Choices(kinematics=plan.kinematics))
+    taking_part = contenders.contenders(METHODS, timed, Choices(kinematics=plan.kinematics))
     session = running.Session(asked, plan, taking_part, machine.described(), running.CLOCKS[plan.clock])
     for job in session.jobs():
         session.do(job)
-    return session.done(errors.reference(asked, solvers))
+    return session.done(errors.reference(asked, knowing))

@@ -78,7 +78,8 @@ def command(
     def so_far() -> list[Chapter]:
         return [chapters[name] for name in ordered if name in chapters]
 
-    with resumed(out, solvers_of(planted), ordered) as whole, crew_of(workers_for(planted)) as crew:
+    solvers = solvers_of(planted)
+    with resumed(out, solvers, ordered) as whole, crew_of(workers_for(planted)) as crew:
 
         def begun(place: int) -> Callable[[], Runs] | None:
             question = missing[place] if place < len(missing) else None
@@ -88,7 +89,7 @@ def command(
 
         pending = begun(0)
         for place, question in enumerate(showing.progress(missing, shown=not quiet)):
-            found = gathered(question, pending, parts, whole.solvers, crew)
+            found = gathered(question, pending, parts, whole.solvers, solvers, crew)
             # the next case is solved while this one is drawn, and not while run times are measured
             pending = begun(place + 1)
             chapters[question.name] = put.added(out, question, repr(parts), found)

@@ -35,7 +35,12 @@ class Wanted:
 
 
 def gathered(
-    question: Question, pending: Callable[[], Runs] | None, wanted: Wanted, solvers: Solvers, crew: Crew
+    question: Question,
+    pending: Callable[[], Runs] | None,
+    wanted: Wanted,
+    solvers: Solvers,
+    timed: Solvers,
+    crew: Crew,
 ) -> Found:
     """All that is wanted of a question; run times come last, when nothing else is solved.
 
@@ -43,7 +48,8 @@ def gathered(
         question: a scene or an offset question.
         pending: the runs of the comparison, where they were begun before.
         wanted: which parts, and how finely.
-        solvers: who answers.
+        solvers: who answers, and may have kept answers.
+        timed: the solvers themselves, for run times.
         crew: processes to share the runs.
 
     Raises:
@@ -56,7 +62,7 @@ def gathered(
         runs = paired(question, wanted.choices, solvers, crew) if pending is None else pending()
         found = compared(question, runs)
     told, unconverged = _converged(question, wanted, solvers, crew)
-    measured, untimed = _timed(question, wanted, solvers)
+    measured, untimed = _timed(question, wanted, timed, solvers)
     return Found(found, _drawn(found), told, unconverged, measured, untimed)
 
 
@@ -69,11 +75,11 @@ def _converged(question: Question, wanted: Wanted, solvers: Solvers, crew: Crew)
         return None, f"There is no error against N: {_why(error)}."
 
 
-def _timed(question: Question, wanted: Wanted, solvers: Solvers) -> tuple[Benchmark | None, str]:
+def _timed(question: Question, wanted: Wanted, timed: Solvers, knowing: Solvers) -> tuple[Benchmark | None, str]:
     if not wanted.times or isinstance(question, OffsetQuestion):
         return None, ""
     try:
-        return brief.measured(question, solvers), ""
+        return brief.measured(question, timed, knowing), ""
     except SceneError as error:
         return None, f"There are no run times: {_why(error)}."
 

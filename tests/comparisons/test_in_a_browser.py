@@ -122,8 +122,9 @@ def test_it_prints_on_a4_and_nothing_is_cut(tab):
     tab.call("Emulation.setEmulatedMedia", media="print")
     inside = round((210.0 - 28.0) / 25.4 * 96.0)
     tab.call("Emulation.setDeviceMetricsOverride", width=inside, height=1000, deviceScaleFactor=1, mobile=False)
-    wide = """[...document.querySelectorAll("table, figure")].filter((each) =>
-        each.getBoundingClientRect().right > innerWidth + 1).map((each) => [each.textContent.trim().slice(0, 70), each.getBoundingClientRect().right - innerWidth])"""
+    wide = """[...document.querySelectorAll("table, figure")]
+        .map((each) => [each.textContent.trim().slice(0, 70), each.getBoundingClientRect().right - innerWidth])
+        .filter(([, beyond]) => beyond > 1)"""
     assert tab.run(wide) == []
     tab.call("Emulation.setEmulatedMedia", media="")
 

@@ -168,6 +168,16 @@ def test_what_is_there_is_not_solved_again_and_keeps_its_run_times(written):
     assert json.loads(file.read_text("utf-8")) == data
 
 
+def test_run_times_are_of_solves_and_not_of_what_was_kept(tmp_path, files):
+    asked = []
+    for name, left_out in (("with", SHORT[2:]), ("without", SHORT)):
+        solvers, so_far = counting()
+        assert reported(tmp_path / name, solvers, *left_out, asked=files[:1])[0] == 0
+        asked.append(so_far())
+    # auto and fea at five sizes, three times and once to load them; paper refuses nothing here; three for the reference
+    assert asked[0] - asked[1] == 3 * (3 * 5 + 1) + 3
+
+
 def test_other_choices_are_another_report(tmp_path, files):
     for place, arguments in enumerate((("-n", "40"), ("-n", "40"), ("-n", "30"))):
         solvers, asked = counting()
