@@ -12,10 +12,14 @@ import sys
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import count
+from select import select
 from tempfile import TemporaryDirectory
 
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 WANTED = "no Chromium on this machine; on Debian or Ubuntu: apt-get install chromium"
+PATIENCE = 60.0
+"""Seconds of silence after which it is given up."""
+
 _FLAGS = (
     "--headless",
     "--no-sandbox",
@@ -109,6 +113,7 @@ class Browser:
 
     def _next(self):
         while b"\0" not in self.rest:
+            assert select([self.from_it], [], [], PATIENCE)[0], "the browser says nothing"
             more = os.read(self.from_it, 1 << 20)
             assert more, "the browser has ended"
             self.rest += more

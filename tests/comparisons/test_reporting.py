@@ -174,7 +174,7 @@ def test_run_times_are_of_solves_and_not_of_what_was_kept(tmp_path, files):
         solvers, so_far = counting()
         assert reported(tmp_path / name, solvers, *left_out, asked=files[:1])[0] == 0
         asked.append(so_far())
-    # auto and fea at five sizes, three times and once to load them; paper refuses nothing here; three for the reference
+    # three methods at five sizes three times, and once before anything counts; three answers for the reference
     assert asked[0] - asked[1] == 3 * (3 * 5 + 1) + 3
 
 
@@ -213,7 +213,7 @@ def test_a_report_is_written_whatever_its_verdict(tmp_path, files, fea, word):
     assert code == 0
     text = page.decode()
     assert text.count(f'class="badge {word}"') == 3  # of all, in the table, at the chapter
-    assert f"load, F = {'700.0 mN' if word == 'UNDECIDED' else '1.300 N'}" in text  # the last that both have reached
+    assert f"load, F = {'0.7000 N' if word == 'UNDECIDED' else '1.300 N'}" in text  # the last that both have reached
 
 
 def test_what_a_solver_refuses_beside_the_comparison_is_told(tmp_path, files):
