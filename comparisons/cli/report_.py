@@ -13,7 +13,7 @@ from comparisons.cli.options import family_sizes, folder, output, sized, variant
 
 if TYPE_CHECKING:
     from comparisons.pairing import Runs
-    from comparisons.reporting.chapters import Chapter
+    from comparisons.reporting.chapters import Chapter, Section
 
 PARTS = ("convergence", "times")
 
@@ -26,7 +26,7 @@ PARTS = ("convergence", "times")
               help="Links and elements per beam of the error against N, two or more.")  # fmt: skip
 @click.option("--without", multiple=True, type=click.Choice(PARTS),
               help="Leave out a longer part; may be repeated. 'convergence': error against N and the error budget. "
-              "'times': run time against error.")  # fmt: skip
+              "'times': run time against error, and the paper's Table 1.")  # fmt: skip
 @output
 @folder("Folder of the report; 'report' unless given.")
 @click.pass_obj
@@ -54,7 +54,7 @@ def command(
     from comparisons.cli.asking import questions
     from comparisons.pairing import begin, crew_of, solvers_of, workers_for
     from comparisons.reporting import folder as put
-    from comparisons.reporting.gathering import Wanted, gathered
+    from comparisons.reporting.gathering import Wanted, gathered, has_table, table
     from comparisons.resuming import resumed
     from scene import OffsetQuestion
 
@@ -93,8 +93,11 @@ def command(
             # the next case is solved while this one is drawn, and not while run times are measured
             pending = begun(place + 1)
             chapters[question.name] = put.added(out, question, repr(parts), found)
-            put.put_page(out, so_far(), made_on)
-    put.put_page(out, so_far(), made_on)
+            put.put_page(out, so_far(), (), made_on)
+        further: tuple[Section, ...] = ()
+        if parts.times and has_table(wanted):
+            further = (put.kept_table(out, made_on) or put.added_table(out, table(solvers, made_on), made_on),)
+    put.put_page(out, so_far(), further, made_on)
     if json_file is not None:
         showing.json(json_file, put.document(out, so_far(), made_on))
     if str(json_file) != "-":

@@ -18,6 +18,7 @@ from comparisons.reporting.inlined import Inline, inlined
 from comparisons.reporting.stepping import Stepper, stepper
 from comparisons.sheet import Sheet
 from comparisons.sheets import Subject
+from comparisons.studies.told import Told as Study
 from comparisons.verdict import Comparison
 from scene import Answer, Question
 
@@ -115,6 +116,12 @@ _SHAPES = ("stations",)
 _STRESS = ("stress",)
 _SOLVED = ("shapes",)
 """Figures by their names: what the stepper shows as well is left to the files beside the page."""
+
+
+def section_of(study: Study) -> Section:
+    """What is told of a study as a section of its own."""
+    figures = tuple(inlined(picture, study.name) for picture in study.pictures)
+    return Section(study.title, study.words, figures, study.sheets)
 
 
 def chapter(found: Found) -> Chapter:

@@ -22,13 +22,15 @@ from comparisons.bench import told as bench_told
 from comparisons.converging.report import written as put_convergence
 from comparisons.documents import Plain
 from comparisons.rendering import rendered, script
-from comparisons.reporting.chapters import Chapter, Found, chapter
+from comparisons.reporting.chapters import Chapter, Found, Section, chapter, section_of
 from comparisons.reporting.inlined import letters_of
 from comparisons.sources import program
+from comparisons.studies.told import Told
 from comparisons.writing import write
 from scene import Question
 
 _CHAPTER = "chapter.json"
+_TABLE = "table1-told.json"
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,30 +77,69 @@ def added(folder: Path, question: Question, wanted: str, found: Found) -> Chapte
     return made
 
 
-def put_page(folder: Path, chapters: Sequence[Chapter], made_on: Mapping[str, str | int]) -> None:
+@dataclass(frozen=True, slots=True)
+class _KeptTable:
+    """What is told of the paper's Table 1, and the digest of what it hangs on."""
+
+    key: str
+    section: Section
+
+
+def kept_table(folder: Path, made_on: Mapping[str, str | int]) -> Section | None:
+    """The paper's Table 1 beside ours, if the folder has it and the program and the machine are the same."""
+    with suppress(FileNotFoundError, ValidationError):
+        found = TypeAdapter(_KeptTable).validate_json((folder / _TABLE).read_bytes())
+        if found.key == _of_machine(made_on):
+            return found.section
+    return None
+
+
+def added_table(folder: Path, told: Told, made_on: Mapping[str, str | int]) -> Section:
+    """Write the paper's Table 1 beside ours into a folder; its section of the page.
+
+    Raises:
+        OSError: the folder cannot be written to.
+    """
+    write(folder / "table1.json", documents.text(told.data))
+    for picture in told.pictures:
+        report.put_picture(folder, picture)
+    made = section_of(told)
+    write(folder / _TABLE, TypeAdapter(_KeptTable).dump_json(_KeptTable(_of_machine(made_on), made)))
+    return made
+
+
+def _of_machine(made_on: Mapping[str, str | int]) -> str:
+    return sha256(f"{sorted(made_on.items())} {program()}".encode()).hexdigest()
+
+
+def put_page(
+    folder: Path, chapters: Sequence[Chapter], further: Sequence[Section], made_on: Mapping[str, str | int]
+) -> None:
     """Write the page of some chapters.
 
     Args:
         folder: the report's.
         chapters: in the order of the page.
+        further: what stands behind them, and is of no one question.
         made_on: the machine and the versions, as they are shown.
 
     Raises:
         OSError: the folder cannot be written to.
     """
-    write(folder / "index.html", page(chapters, made_on))
+    write(folder / "index.html", page(chapters, further, made_on))
 
 
-def page(chapters: Sequence[Chapter], made_on: Mapping[str, str | int]) -> str:
-    """The page of some chapters as HTML."""
+def page(chapters: Sequence[Chapter], further: Sequence[Section], made_on: Mapping[str, str | int]) -> str:
+    """The page of some chapters, and of further sections, as HTML."""
     words = [each.word for each in chapters]
-    figures = (figure for each in chapters for section in each.sections for figure in section.figures)
+    sections = (*(section for each in chapters for section in each.sections), *further)
+    figures = (figure for section in sections for figure in section.figures)
     return rendered(
         "report.html",
         {
             "chapters": chapters,
             "tally": {word: words.count(word) for word in ("AGREE", "UNDECIDED", "DIFFER") if word in words},
-            "further": (),
+            "further": further,
             "letters": letters_of(figures),
             "made_on": made_on,
             "script": script("report.js"),

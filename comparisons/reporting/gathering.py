@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from comparisons import paths_drawn, report
+from comparisons import cases, paths_drawn, report
 from comparisons.bench import brief
 from comparisons.bench.running import Benchmark
 from comparisons.choices import Choices
@@ -15,6 +15,8 @@ from comparisons.figures import Picture
 from comparisons.offset_verdict import OffsetComparison, compared_offset
 from comparisons.pairing import Crew, Runs, Solvers, paired
 from comparisons.reporting.chapters import Found
+from comparisons.studies import table1, table1_told
+from comparisons.studies.told import Told as Study
 from comparisons.verdict import Comparison, compared
 from scene import OffsetQuestion, Question, SceneError
 
@@ -64,6 +66,24 @@ def gathered(
     told, unconverged = _converged(question, wanted, solvers, crew)
     measured, untimed = _timed(question, wanted, timed, solvers)
     return Found(found, _drawn(found), told, unconverged, measured, untimed)
+
+
+def has_table(questions: Sequence[Question]) -> bool:
+    """Whether the questions are those of the paper's Table 1, as they are built in, and more."""
+    return all(cases.asked(name) in questions for name in {cell.case for cell in table1.CELLS})
+
+
+def table(timed: Solvers, made_on: Mapping[str, str | int]) -> Study:
+    """The paper's Table 1 beside our run times.
+
+    Args:
+        timed: the solvers themselves.
+        made_on: the machine and the versions.
+    """
+    found = table1.begun(timed, made_on)
+    for cell in table1.runs(brief.REPEAT):
+        found = table1.solved(found, cell, timed, brief.AT_MOST)
+    return table1_told.told(found)
 
 
 def _converged(question: Question, wanted: Wanted, solvers: Solvers, crew: Crew) -> tuple[Told | None, str]:
