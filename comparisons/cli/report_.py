@@ -72,6 +72,9 @@ def command(
         there = put.kept(out, question, repr(parts))
         if there is not None:
             chapters[question.name] = there
+    with_table = parts.times and has_table(wanted)
+    there_too = put.kept_table(out, made_on) if with_table else None
+    further: tuple[Section, ...] = () if there_too is None else (there_too,)
     missing = [question for question in wanted if question.name not in chapters]
     ordered = tuple(question.name for question in wanted)
 
@@ -93,10 +96,9 @@ def command(
             # the next case is solved while this one is drawn, and not while run times are measured
             pending = begun(place + 1)
             chapters[question.name] = put.added(out, question, repr(parts), found)
-            put.put_page(out, so_far(), (), made_on)
-        further: tuple[Section, ...] = ()
-        if parts.times and has_table(wanted):
-            further = (put.kept_table(out, made_on) or put.added_table(out, table(solvers, made_on), made_on),)
+            put.put_page(out, so_far(), further, made_on)
+        if with_table and not further:
+            further = (put.added_table(out, table(solvers, made_on), made_on),)
     put.put_page(out, so_far(), further, made_on)
     if json_file is not None:
         showing.json(json_file, put.document(out, so_far(), made_on))
