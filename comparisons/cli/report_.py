@@ -66,7 +66,7 @@ def command(
     out = out or Path("report")
     showing.room_for(json_file, out)
     parts = Wanted(choices, () if "convergence" in without else sizes, times="times" not in without)
-    made_on = machine.described()
+    made_on = machine.made_on()
     chapters: dict[str, Chapter] = {}
     for question in wanted:
         there = put.kept(out, question, repr(parts))
