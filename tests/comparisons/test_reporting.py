@@ -14,7 +14,7 @@ from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.figures import canvas, picture
 from comparisons.pairing import Runs, Solvers, cprbm_answer, fea_answer
-from comparisons.reporting import outlines
+from comparisons.reporting import gathering, outlines
 from comparisons.reporting.inlined import inlined
 from comparisons.reporting.stepping import stepper
 from comparisons.verdict import Comparison, Verdict
@@ -85,6 +85,12 @@ def files(tmp_path):
         found.append(tmp_path / f"{name}.toml")
         found[-1].write_text(QUESTION.format(name=name, length=length), "utf-8")
     return tuple(map(str, found))
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Reports without figures, which take longest of all that is no solve."""
+    monkeypatch.setattr(gathering, "_drawn", lambda found: ())
 
 
 @pytest.fixture(scope="module")
@@ -168,6 +174,7 @@ def test_what_is_there_is_not_solved_again_and_keeps_its_run_times(written):
     assert json.loads(file.read_text("utf-8")) == data
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_run_times_are_of_solves_and_not_of_what_was_kept(tmp_path, files):
     asked = []
     for name, left_out in (("with", SHORT[2:]), ("without", SHORT)):
@@ -178,6 +185,7 @@ def test_run_times_are_of_solves_and_not_of_what_was_kept(tmp_path, files):
     assert asked[0] - asked[1] == 3 * (3 * 5 + 1) + 3
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_other_choices_are_another_report(tmp_path, files):
     for place, arguments in enumerate((("-n", "40"), ("-n", "40"), ("-n", "30"))):
         solvers, asked = counting()
@@ -188,6 +196,7 @@ def test_other_choices_are_another_report(tmp_path, files):
         assert b"Seconds" in page
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_run_that_was_ended_goes_on_with_what_was_not_there(tmp_path, files):
     whole, of_both = counting()
     assert reported(tmp_path / "whole", whole, *SHORT, asked=files)[0] == 0
@@ -208,6 +217,7 @@ def test_a_run_that_was_ended_goes_on_with_what_was_not_there(tmp_path, files):
     ("fea", "word"),
     [(MadeUp("fea", -5e-4, stiffness=1.05), "DIFFER"), (MadeUp("fea", -5e-4, until=1), "UNDECIDED")],
 )
+@pytest.mark.usefixtures("undrawn")
 def test_a_report_is_written_whatever_its_verdict(tmp_path, files, fea, word):
     code, page = reported(tmp_path / "out", Solvers(MadeUp("cprbm", 2e-3), fea), *SHORT, asked=files[:1])
     assert code == 0
@@ -216,6 +226,7 @@ def test_a_report_is_written_whatever_its_verdict(tmp_path, files, fea, word):
     assert f"load, F = {'0.7000 N' if word == 'UNDECIDED' else '1.300 N'}" in text  # the last that both have reached
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_what_a_solver_refuses_beside_the_comparison_is_told(tmp_path, files):
     @dataclass(frozen=True)
     class Coarse:
@@ -234,6 +245,7 @@ def test_what_a_solver_refuses_beside_the_comparison_is_told(tmp_path, files):
     assert "There is no error against N: settings.links: found 10; allowed: at least 15." in page.decode()
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_names_from_a_scene_are_only_text(tmp_path):
     file, sly = tmp_path / "sly.toml", "</script><script>alert(1)</script>"
     file.write_text(f"# {sly}\ntitle = '{sly}'\n" + QUESTION.format(name="sly", length=0.113), "utf-8")
