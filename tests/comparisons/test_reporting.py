@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from comparisons import cases
+from comparisons.bench import brief
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.figures import canvas, picture
@@ -98,7 +99,9 @@ def written(tmp_path_factory):
     """A folder with all parts of one case."""
     out = tmp_path_factory.mktemp("reporting") / "of" / "hinge"
     file = out.parent.parent / "numbers.json"
-    code, page = reported(out, counting()[0], "--json", str(file))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(brief, "SIZES", (20, 40))
+        code, page = reported(out, counting()[0], "--json", str(file))
     assert code == 0
     return out, page.decode(), json.loads(file.read_text("utf-8"))
 
@@ -175,14 +178,15 @@ def test_what_is_there_is_not_solved_again_and_keeps_its_run_times(written):
 
 
 @pytest.mark.usefixtures("undrawn")
-def test_run_times_are_of_solves_and_not_of_what_was_kept(tmp_path, files):
+def test_run_times_are_of_solves_and_not_of_what_was_kept(tmp_path, files, monkeypatch):
+    monkeypatch.setattr(brief, "SIZES", (20, 40))
     asked = []
     for name, left_out in (("with", SHORT[2:]), ("without", SHORT)):
         solvers, so_far = counting()
         assert reported(tmp_path / name, solvers, *left_out, asked=files[:1])[0] == 0
         asked.append(so_far())
-    # three methods at five sizes three times, and once before anything counts; three answers for the reference
-    assert asked[0] - asked[1] == 3 * (3 * 5 + 1) + 3
+    # three methods at two sizes three times, and once before anything counts; three answers for the reference
+    assert asked[0] - asked[1] == 3 * (3 * 2 + 1) + 3
 
 
 @pytest.mark.usefixtures("undrawn")
