@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import platform
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -23,6 +23,15 @@ def described() -> dict[str, str | int]:
         **{name: version(name) for name in _LIBRARIES},
         **{name: version(name) for name in _OPTIONAL if find_spec(name) is not None},
     }
+
+
+def made_on() -> dict[str, str | int]:
+    """The same with this program itself and what draws its figures, for a page that says what has made it."""
+    try:
+        own = version("cprbm")
+    except PackageNotFoundError:
+        own = "from its sources"
+    return {"cprbm": own, **described(), "matplotlib": version("matplotlib")}
 
 
 def _processor() -> str:

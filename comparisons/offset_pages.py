@@ -38,7 +38,7 @@ def document(compared: OffsetComparison) -> Plain:
 
 def sheets_of(compared: OffsetComparison) -> tuple[Sheet, ...]:
     """The largest relative errors of the first spacing in short, and the claims for every spacing."""
-    return (_errors(compared), _claims(compared))
+    return (errors(compared), claims(compared))
 
 
 def _row(compared: OffsetComparison, row: OffsetRow) -> Plain:
@@ -58,7 +58,8 @@ def _row(compared: OffsetComparison, row: OffsetRow) -> Plain:
     }
 
 
-def _errors(compared: OffsetComparison) -> Sheet:
+def errors(compared: OffsetComparison) -> Sheet:
+    """The largest relative errors of the first spacing, at some N and t."""
     question = compared.question
     spacing = next(iter(question.spacings))
     numbers, offsets = _some(sorted(question.numbers)), _some(sorted(question.offsets))
@@ -71,7 +72,8 @@ def _errors(compared: OffsetComparison) -> Sheet:
     )
 
 
-def _claims(compared: OffsetComparison) -> Sheet:
+def claims(compared: OffsetComparison) -> Sheet:
+    """What the source claims, beside what comes out here."""
     body = []
     for claim in compared.question.claims:
         for spacing in compared.question.spacings:

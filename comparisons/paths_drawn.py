@@ -41,16 +41,27 @@ class _Ordinate:
 
 def of_comparison(compared: Comparison) -> tuple[Picture, ...]:
     """The figures; none where a run gave no whole answer."""
-    if not compared.rows:
-        return ()
-    found = []
-    for stepped in dict.fromkeys(stage.steps for stage in compared.scene.stages):
-        stages = [stage for stage in compared.scene.stages if stage.steps == stepped]
-        ends = any(row.stage == stage.name for row in compared.criticals for stage in stages)
-        shown = list(_ordinates(compared.scene, stages[0]))
-        if shown and (len(stages) > 1 or ends):
-            found.append(_drawn(compared, stepped, stages, shown))
-    return tuple(found)
+    return tuple(
+        found
+        for stepped, stages in _ways(compared).items()
+        if len(stages) > 1 or any(row.stage == stage.name for row in compared.criticals for stage in stages)
+        if (found := _drawn(compared, stepped, stages)) is not None
+    )
+
+
+def of_every_way(compared: Comparison) -> tuple[Picture, ...]:
+    """The same also of a drive or load that is stepped once, and on whose way no branch ends."""
+    drawn = (_drawn(compared, stepped, stages) for stepped, stages in _ways(compared).items())
+    return tuple(found for found in drawn if found is not None)
+
+
+def _ways(compared: Comparison) -> dict[str, list[Stage]]:
+    """By drive or load the stages that step it; none where a run gave no whole answer."""
+    stages = compared.scene.stages if compared.rows else ()
+    found: dict[str, list[Stage]] = {}
+    for stage in stages:
+        found.setdefault(stage.steps, []).append(stage)
+    return found
 
 
 def _ordinates(scene: Scene, stage: Stage) -> Iterator[_Ordinate]:
@@ -77,8 +88,11 @@ def _ordinates(scene: Scene, stage: Stage) -> Iterator[_Ordinate]:
         yield _Ordinate("potential energy", "J", value(ENERGY))
 
 
-def _drawn(compared: Comparison, stepped: str, stages: list[Stage], shown: list[_Ordinate]) -> Picture:
+def _drawn(compared: Comparison, stepped: str, stages: list[Stage]) -> Picture | None:
     scene, runs = compared.scene, compared.runs
+    shown = list(_ordinates(scene, stages[0]))
+    if not shown:
+        return None
     axis = load_unit(scene, stages[0])
     largest = max(abs(value) for stage in stages for value in stage.stations)
     step, step_unit = along_axis(axis, largest)
@@ -104,12 +118,14 @@ def _drawn(compared: Comparison, stepped: str, stages: list[Stage], shown: list[
         order = sorted(range(len(labels)), key=lambda place: (labels[place] != "FEA", labels[place]))
         figure.legend([handles[i] for i in order], [labels[i] for i in order], loc="outside lower center", ncols=3)
         titles = " and ".join(each.title for each in shown)
+        jumps = any(station.branch > 0 for station in mine)
+        ends = any(critical.stage in names for answer in answers.values() for critical in answer.critical)
         return picture(
             figure,
             f"path-{stepped}",
-            f"{titles[:1].upper()}{titles[1:]} against {stepped}: triangles point the way of the stage. Dashed: jumps, "
-            "from the last station before to the first behind. Dotted: critical values of either solver, those of the "
-            "CPRBM named above.",
+            f"{titles[:1].upper()}{titles[1:]} against {stepped}: triangles point the way of the stage."
+            + (" Dashed: jumps, from the last station before to the first behind." if jumps else "")
+            + (" Dotted: critical values of either solver, those of the CPRBM named above." if ends else ""),
         )
 
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 
+from comparisons.cells import cells_of, words_in
 from comparisons.figures import Picture
 
 _MARKED = ("AGREE", "DIFFER", "UNDECIDED", "met", "not met", "within", "beyond", "far beyond")
@@ -40,5 +41,17 @@ def rendered(template: str, context: Mapping[str, object]) -> str:
         undefined=jinja2.StrictUndefined,
         loader=jinja2.PackageLoader("comparisons", "pages"),
     )
-    style = (files("comparisons.pages") / "style.css").read_text("utf-8")
+    environment.filters["cells"] = cells_of
+    environment.filters["words"] = words_in
+    environment.filters["joined"] = lambda text: text.replace(" %", "\u00a0%")  # on one line with its number
+    style = _beside("style.css")
     return environment.get_template(template).render({**context, "style": style, "marked": _MARKED}) + "\n"
+
+
+def script(name: str) -> str:
+    """The text of a script that stands among the templates."""
+    return _beside(name)
+
+
+def _beside(name: str) -> str:
+    return (files("comparisons.pages") / name).read_text("utf-8")

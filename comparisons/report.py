@@ -49,19 +49,42 @@ def added(folder: Path, compared: Comparison | OffsetComparison) -> Chapter:
     Raises:
         OSError: the folder cannot be written to.
     """
+    pictures = drawn(compared)
+    put_files(folder, compared, pictures)
+    return offset_chapter(compared, pictures) if isinstance(compared, OffsetComparison) else chapter(compared, pictures)
+
+
+def drawn(compared: Comparison | OffsetComparison) -> tuple[figures.Picture, ...]:
+    """All figures of a case."""
     if isinstance(compared, OffsetComparison):
-        own, pictures = folder / compared.question.name, offset_drawn.of_comparison(compared)
+        return offset_drawn.of_comparison(compared)
+    return tuple(picture for module in _DRAWN for picture in module.of_comparison(compared))
+
+
+def put_files(folder: Path, compared: Comparison | OffsetComparison, pictures: tuple[figures.Picture, ...]) -> None:
+    """Write a finished case's numbers and figures into its folder in a report.
+
+    Raises:
+        OSError: the folder cannot be written to.
+    """
+    if isinstance(compared, OffsetComparison):
+        own = folder / compared.question.name
         write(own / "comparison.json", documents.text({"cases": [offset_pages.document(compared)]}))
-        found = offset_chapter(compared, pictures)
     else:
         own = folder / compared.scene.name
-        pictures = tuple(picture for drawn in _DRAWN for picture in drawn.of_comparison(compared))
         _archive(own, compared)
-        found = chapter(compared, pictures)
     for picture in pictures:
-        write(own / f"{picture.name}.svg", picture.svg)
-        write(own / f"{picture.name}.png", picture.png)
-    return found
+        put_picture(own, picture)
+
+
+def put_picture(folder: Path, picture: figures.Picture) -> None:
+    """Write a figure into a folder.
+
+    Raises:
+        OSError: the folder cannot be written to.
+    """
+    write(folder / f"{picture.name}.svg", picture.svg)
+    write(folder / f"{picture.name}.png", picture.png)
 
 
 def put_page(folder: Path, chapters: tuple[Chapter, ...]) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from enum import Enum
 
 from comparisons.audit import Audit
 from comparisons.branch_sheets import of_branches, of_criticals, of_ends
@@ -31,17 +32,43 @@ MANY = 40
 """Most stations of a drive that a table has a line for."""
 
 
+class Subject(Enum):
+    """What a table is about; the value is its heading."""
+
+    VALUES = "What both answer"
+    VERDICT = "What the verdict rests on"
+    CLAIMS = "What the source claims"
+    REACTIONS = "Reactions of the drives"
+    STRESS = "Stress along the beams"
+    DIFFERENCE = "What the difference is made of"
+    CERTIFICATES = "Certificates and audit"
+    SECONDS = "Run time"
+
+
 def of_comparison(compared: Comparison) -> tuple[Sheet, ...]:
     """All tables of a comparison: values at every station that is shown, all else at the last one."""
+    return tuple(sheet for sheets in by_subject(compared).values() for sheet in sheets)
+
+
+def by_subject(compared: Comparison) -> dict[Subject, tuple[Sheet, ...]]:
+    """The same, each by what it is about; in the order in which they are read."""
     rows = last_rows(compared)
-    found = [of_tolerances(compared.tolerances), of_criticals(compared), of_branches(compared)]
-    found.extend(_values(compared, each) for each in shown_rows(compared))
-    found.extend((_verdicts(compared, rows), _true_errors(compared, rows), _claims(compared)))
-    found.extend(_reactions(compared))
-    found.append(_stresses(compared.scene, rows))
-    found.extend((_steps(compared, rows), of_paper(compared), of_thirds(compared)))
-    found.append(_certificates(compared))
-    return tuple(sheet for sheet in found if sheet.rows)
+    found = {
+        Subject.VALUES: (
+            of_tolerances(compared.tolerances),
+            of_criticals(compared),
+            of_branches(compared),
+            *(_values(compared, each) for each in shown_rows(compared)),
+        ),
+        Subject.VERDICT: (_verdicts(compared, rows), _true_errors(compared, rows)),
+        Subject.CLAIMS: (claims(compared),),
+        Subject.REACTIONS: _reactions(compared),
+        Subject.STRESS: (_stresses(compared.scene, rows),),
+        Subject.DIFFERENCE: (_steps(compared, rows), of_paper(compared), of_thirds(compared)),
+        Subject.CERTIFICATES: (_certificates(compared),),
+        Subject.SECONDS: (_seconds(compared),),
+    }
+    return {subject: tuple(sheet for sheet in sheets if sheet.rows) for subject, sheets in found.items()}
 
 
 def of_answer(scene: Scene, answer: Answer, tolerances: tuple[Tolerance, ...] = ()) -> tuple[Sheet, ...]:
@@ -233,7 +260,8 @@ def _over_all(found: tuple[Held, ...]) -> str:
     return f"Over all stations: {'; '.join(said)}."
 
 
-def _claims(compared: Comparison) -> Sheet:
+def claims(compared: Comparison) -> Sheet:
+    """What the source claims, beside what comes out here."""
     body = tuple(
         (
             standing.claim.text or standing.claim.probe,
@@ -390,12 +418,27 @@ def _certificates(compared: Comparison) -> Sheet:
         )
     )
     body.append(("iterations", *("–" if cert is None else str(cert["iterations"]) for cert in found)))
-    body.append(("seconds", *(number(answer.seconds, 2) for answer in answers)))
     return Sheet(
         "Certificates",
         ("worst of all stations", *names),
         tuple(body),
-        "All numbers but iterations and seconds are relative to a scale of the problem; see docs/certificate.md.",
+        "All numbers but iterations are relative to a scale of the problem; see docs/certificate.md.",
+    )
+
+
+def _seconds(compared: Comparison) -> Sheet:
+    """By themselves, since they are others with every run."""
+    runs = compared.runs
+    answers = (runs.cprbm[0], runs.reference, *(() if runs.exact is None else (runs.exact,)))
+    names = ("CPRBM", f"FEA ({runs.kinematics})", "exact (bending)")
+    return Sheet(
+        "Seconds",
+        ("answer", "stations", "seconds"),
+        tuple(
+            (name, str(len(answer.stations)), number(answer.seconds))
+            for name, answer in zip(names, answers, strict=False)
+        ),
+        "From the scene to certified answers, by each solver's own clock.",
     )
 
 

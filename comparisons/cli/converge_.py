@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -13,10 +12,8 @@ from comparisons.choices import Kinematics
 from comparisons.cli.options import family_sizes, folder, output, variants
 
 if TYPE_CHECKING:
-    from comparisons.choices import Choices
     from comparisons.converging.report import Told
     from comparisons.documents import Plain
-    from comparisons.pairing import Crew, Solvers
     from scene import Question
 
 NOT_COMPLETED = 1
@@ -51,6 +48,7 @@ def command(
     from comparisons.cli import showing
     from comparisons.cli.asking import questions
     from comparisons.converging import report
+    from comparisons.converging.telling import all_told
     from comparisons.pairing import crew_of, solvers_of, workers_for
     from comparisons.resuming import resumed
 
@@ -65,7 +63,7 @@ def command(
     names = tuple(question.name for question in wanted)
     with resumed(out, solvers_of(planted), names) as whole, crew_of(workers_for(planted)) as crew:
         for place, question in enumerate(showing.progress(wanted, shown=not quiet)):
-            told = _told(question, sizes, choices, whole.solvers, crew)
+            told = all_told(question, sizes, choices, whole.solvers, crew)
             finished.append(told)
             if out is not None:
                 chapters = (*chapters, report.added(out, told))
@@ -90,33 +88,3 @@ def command(
 def _document(finished: Sequence[Told], wanted: Sequence[Question]) -> Plain:
     """Of one question its own document, of several theirs as ``cases``."""
     return finished[0].data if len(wanted) == 1 else {"cases": [told.data for told in finished]}
-
-
-def _told(question: Question, sizes: tuple[int, ...], choices: Choices, solvers: Solvers, crew: Crew) -> Told:
-    """Everything that there is to tell of one question."""
-    from comparisons.budgets import drawn as budget_drawn
-    from comparisons.budgets import told as budget_told
-    from comparisons.budgets.accounts import accounted
-    from comparisons.converging import drawn, offset
-    from comparisons.converging import told as numbers
-    from comparisons.converging.families import converged
-    from comparisons.converging.report import Told
-    from comparisons.memory import Remembering
-    from comparisons.thinning import at_shown
-    from scene import OffsetQuestion
-
-    if isinstance(question, OffsetQuestion):
-        return offset.told(question, sizes, solvers.offset)
-    question = at_shown(question)
-    memory = Remembering(pool=crew.pool, solvers=solvers)
-    found = converged(question, sizes, choices, solvers, memory)
-    n = numbers.shown_size(found)
-    account = accounted(question, replace(choices, links=n, elements=2 * n), memory)
-    return Told(
-        question,
-        (*numbers.sheets_of(found), *budget_told.sheets_of(account)),
-        (*numbers.sentences_of(found), *budget_told.sentences_of(account)),
-        (*drawn.of_convergence(found), *budget_drawn.of_account(account)),
-        {**numbers.document(found), **budget_told.data_of(account)},
-        found.completed and not account.missing,
-    )

@@ -29,6 +29,7 @@ _COMMANDS = (
     "bench",
     "study",
     "stress",
+    "report",
     "regress",
     "new",
     "schema",
@@ -62,6 +63,8 @@ class _SubCommands(Commands):
                 from comparisons.cli.study_ import command
             case "stress":
                 from comparisons.cli.stress_ import command
+            case "report":
+                from comparisons.cli.report_ import command
             case "regress":
                 from comparisons.cli.regress_ import command
             case "new":

@@ -158,7 +158,12 @@ def numerical(command: Decorated) -> Decorated:
                            help="Overlap that the finite elements may leave, over the thickness.")(command)  # fmt: skip
     command = click.option("--across", callback=whole, default=str(standard.across), show_default=True,
                            help="Elements of the solid across a beam's thickness.")(command)  # fmt: skip
-    command = variants(command)
+    return sized(variants(command))
+
+
+def sized(command: Decorated) -> Decorated:
+    """``-n`` and ``--elements``."""
+    standard = Choices()
     for option in (
         click.option("--elements", callback=count, metavar="COUNT", default=str(standard.elements),
                      show_default=True, help="Finite elements per beam: one number or beam1=60,beam2=80."),

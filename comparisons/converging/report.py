@@ -44,14 +44,22 @@ def added(folder: Path, told: Told) -> Chapter:
     Raises:
         OSError: the folder cannot be written to.
     """
-    asked = told.asked
-    own = folder / asked.name
+    written(folder, told)
+    asked, pictures = told.asked, tuple(embedded(picture) for picture in told.pictures)
+    return Chapter(asked.name, asked.title or asked.name, asked.source, told.sentences, told.sheets, pictures)
+
+
+def written(folder: Path, told: Told) -> None:
+    """Write a finished case's numbers and figures into its folder.
+
+    Raises:
+        OSError: the folder cannot be written to.
+    """
+    own = folder / told.asked.name
     write(own / "convergence.json", documents.text(told.data))
     for picture in told.pictures:
         write(own / f"{picture.name}.svg", picture.svg)
         write(own / f"{picture.name}.png", picture.png)
-    pictures = tuple(embedded(picture) for picture in told.pictures)
-    return Chapter(asked.name, asked.title or asked.name, asked.source, told.sentences, told.sheets, pictures)
 
 
 def put_page(folder: Path, chapters: tuple[Chapter, ...]) -> None:

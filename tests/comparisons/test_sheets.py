@@ -27,7 +27,7 @@ def cell(sheet, row, header):
 
 def test_every_row_has_a_cell_for_every_header(comparison):
     found = sheets.of_comparison(comparison)
-    assert len(found) == 7
+    assert len(found) == 8
     for sheet in found:
         assert {len(row) for row in sheet.rows} == {len(sheet.headers)}
 

@@ -12,7 +12,7 @@ FILES = sorted(
     path
     for part in ("scene", "cprbm", "fea_reference", "exact", "comparisons", "tests")
     for path in (ROOT / part).rglob("*")
-    if path.suffix in {".py", ".toml", ".html", ".css", ".md"} and path.resolve() != HERE
+    if path.suffix in {".py", ".toml", ".html", ".css", ".js", ".md"} and path.resolve() != HERE
 )
 # a folder below the root that only one machine has, or a Windows drive
 MACHINE_PATH = re.compile(r"""(?<![\w.)\]}/-])/(?:home|root|tmp|work|opt|mnt|srv|Users)/\w|\b[A-Z]:\\\\?Users""")

@@ -1,0 +1,110 @@
+"""``cprbm report``: all that is known of some questions, as one folder with one page to send to a colleague."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from comparisons.choices import Kinematics
+from comparisons.cli.options import family_sizes, folder, output, sized, variants
+
+if TYPE_CHECKING:
+    from comparisons.pairing import Runs
+    from comparisons.reporting.chapters import Chapter, Section
+
+PARTS = ("convergence", "times")
+
+
+@click.command("report")
+@click.argument("asked", nargs=-1, metavar="[CASE|FILE.toml...|all]")
+@sized
+@variants
+@click.option("--sizes", callback=family_sizes, metavar="N,N,...", default="10,20,40,80", show_default=True,
+              help="Links and elements per beam of the error against N, two or more.")  # fmt: skip
+@click.option("--without", multiple=True, type=click.Choice(PARTS),
+              help="Leave out a longer part; may be repeated. 'convergence': error against N and the error budget. "
+              "'times': run time against error, and the paper's Table 1.")  # fmt: skip
+@output
+@folder("Folder of the report; 'report' unless given.")
+@click.pass_obj
+def command(
+    planted: object,
+    asked: tuple[str, ...],
+    links: int | Mapping[str, int],
+    elements: int | Mapping[str, int],
+    formulation: Literal["auto", "paper"],
+    kinematics: Kinematics,
+    sizes: tuple[int, ...],
+    without: tuple[str, ...],
+    json_file: Path | None,
+    quiet: bool,  # noqa: FBT001 - click hands it over by name
+    out: Path | None,
+) -> int:
+    """Put all that is known of scenes into one folder with one page, which opens without a network.
+
+    Without a scene it is of all built-in cases. What the folder has already is taken from there; a run that was ended
+    goes on where it was. Exit code 0 says that the report is written, whatever its verdicts.
+    """
+    from comparisons import machine
+    from comparisons.choices import Choices, check
+    from comparisons.cli import showing
+    from comparisons.cli.asking import questions
+    from comparisons.pairing import begin, crew_of, solvers_of, workers_for
+    from comparisons.reporting import folder as put
+    from comparisons.reporting.gathering import Wanted, gathered, has_table, table
+    from comparisons.resuming import resumed
+    from scene import OffsetQuestion
+
+    wanted = questions(asked or ("all",))
+    choices = Choices(links, formulation, elements, kinematics)
+    for question in wanted:
+        if not isinstance(question, OffsetQuestion):
+            check(choices, question)
+    out = out or Path("report")
+    showing.room_for(json_file, out)
+    parts = Wanted(choices, () if "convergence" in without else sizes, times="times" not in without)
+    made_on = machine.made_on()
+    chapters: dict[str, Chapter] = {}
+    for question in wanted:
+        there = put.kept(out, question, repr(parts))
+        if there is not None:
+            chapters[question.name] = there
+    with_table = parts.times and has_table(wanted)
+    there_too = put.kept_table(out, made_on) if with_table else None
+    further: tuple[Section, ...] = () if there_too is None else (there_too,)
+    missing = [question for question in wanted if question.name not in chapters]
+    ordered = tuple(question.name for question in wanted)
+
+    def so_far() -> list[Chapter]:
+        return [chapters[name] for name in ordered if name in chapters]
+
+    solvers = solvers_of(planted)
+    with resumed(out, solvers, ordered) as whole, crew_of(workers_for(planted)) as crew:
+
+        def begun(place: int) -> Callable[[], Runs] | None:
+            question = missing[place] if place < len(missing) else None
+            if question is None or isinstance(question, OffsetQuestion):
+                return None
+            return begin(question, choices, whole.solvers, crew)
+
+        pending = begun(0)
+        for place, question in enumerate(showing.progress(missing, shown=not quiet)):
+            found = gathered(question, pending, parts, whole.solvers, solvers, crew)
+            # the next case is solved while this one is drawn, and not while run times are measured
+            pending = begun(place + 1)
+            chapters[question.name] = put.added(out, question, repr(parts), found)
+            put.put_page(out, so_far(), further, made_on)
+        if with_table and not further:
+            further = (put.added_table(out, table(solvers, made_on), made_on),)
+    put.put_page(out, so_far(), further, made_on)
+    if json_file is not None:
+        showing.json(json_file, put.document(out, so_far(), made_on))
+    if str(json_file) != "-":
+        for chapter in so_far():
+            click.echo(f"{chapter.name}: {chapter.word}. {chapter.sentence}")
+        if not quiet:
+            click.echo(f"report: {out / 'index.html'}")
+    return 0
