@@ -31,13 +31,13 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Protocol
 
-from frozendict import frozendict
 from pydantic import ValidationError
 
 from comparisons.choices import KINEMATICS, Choices, Count, Kinematics, check
 from comparisons.nearby import nearby
 from scene import Answer, Mistake, RigidContact, Scene, SceneError, Spacing
 from scene.answer import Array
+from scene.frozendict import frozendict
 from scene.statement import Curve
 
 if TYPE_CHECKING:  # for the peers, which know the record of the problem and nothing of the solver

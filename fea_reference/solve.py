@@ -6,7 +6,6 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from fea_reference.assembly import assemble_ends
 from fea_reference.certificates import certify
@@ -19,8 +18,7 @@ from fea_reference.statics import statics
 from fea_reference.travel import Course, reach
 from scene.answer import Answer, Ending, Event, StationAnswer
 from scene.statement import Scene, Stage
-
-_LIBRARIES = ThreadpoolController()  # looks for those that are loaded, once: that takes a millisecond
+from scene.threads import one_thread
 
 _DEFAULT = Settings()
 
@@ -48,8 +46,7 @@ class Prepared:
         stations: list[StationAnswer] = []
         events: list[Event] = []
         ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
-        # small blocks: more than one thread of BLAS costs more than it brings
-        with _LIBRARIES.limit(limits=1, user_api="blas"):
+        with one_thread():
             try:
                 known: set[str] = set()
                 assemble_ends(scene, march)

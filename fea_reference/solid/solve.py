@@ -6,7 +6,6 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from fea_reference.solid.certificates import certify
 from fea_reference.solid.contacts import pairs_of
@@ -18,8 +17,7 @@ from fea_reference.solid.refusals import refuse
 from fea_reference.solid.settings import Settings
 from scene.answer import Answer, Ending, Event, StationAnswer
 from scene.statement import Scene, Stage
-
-_LIBRARIES = ThreadpoolController()
+from scene.threads import one_thread
 
 _DEFAULT = Settings()
 
@@ -44,7 +42,7 @@ class Prepared:
         stations: list[StationAnswer] = []
         events: list[Event] = []
         ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
-        with _LIBRARIES.limit(limits=1, user_api="blas"):  # small blocks: threads cost more than they bring
+        with one_thread():
             try:
                 known: set[str] = set()
                 for stage in scene.stages:
