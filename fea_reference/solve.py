@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from dataclasses import dataclass
 
@@ -19,6 +20,9 @@ from fea_reference.travel import Course, reach
 from scene.answer import Answer, Ending, Event, StationAnswer
 from scene.statement import Scene, Stage
 from scene.threads import one_thread
+from scene.told import station_reached
+
+_SAYS = logging.getLogger(__name__)
 
 _DEFAULT = Settings()
 
@@ -61,6 +65,7 @@ class Prepared:
                         ]
                         known = set(march.closing)
                         stations.append(_certified(scene, march, stage, station))
+                        station_reached(_SAYS, scene, len(stations), stations[-1])
             except StoppedError as stopped:
                 ending, sentence = stopped.ending, stopped.sentence
         closed = {name: f"closed at {value:.6g}" for name, value in march.closing.items()}

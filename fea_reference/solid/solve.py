@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from dataclasses import dataclass
 
@@ -18,6 +19,9 @@ from fea_reference.solid.settings import Settings
 from scene.answer import Answer, Ending, Event, StationAnswer
 from scene.statement import Scene, Stage
 from scene.threads import one_thread
+from scene.told import station_reached
+
+_SAYS = logging.getLogger(__name__)
 
 _DEFAULT = Settings()
 
@@ -59,6 +63,7 @@ class Prepared:
                         ]
                         known = set(march.closing)
                         stations.append(_certified(scene, march, stage, station))
+                        station_reached(_SAYS, scene, len(stations), stations[-1])
             except StoppedError as stopped:
                 ending, sentence = stopped.ending, stopped.sentence
         tested = tuple(
