@@ -52,7 +52,7 @@ def test_the_schema_is_one_and_stands_beside_the_scene(tmp_path, capsys):
     said = json.loads(capsys.readouterr().out)
     jsonschema.Draft7Validator.check_schema(said)
     assert json.loads((tmp_path / SCHEMA).read_text(encoding="utf-8")) == said
-    assert f"#:schema {SCHEMA}" in (tmp_path / "one.toml").read_text(encoding="utf-8").splitlines()[0]
+    assert f"#:schema ./{SCHEMA}" in (tmp_path / "one.toml").read_text(encoding="utf-8").splitlines()[0]
 
 
 @pytest.mark.parametrize("name", cases.scenes())
