@@ -79,10 +79,6 @@ def test_sentences_fold_between_words():
     assert tables(lines) == 1
     told = " ".join(line for line in lines[3:] if "─" not in line and "theirs" not in line)
     told = told.replace("0.620 %", "").replace("0.718 %", "")
-        " ".join(line for line in lines[3:] if "─" not in line and "theirs" not in line)
-        .replace("0.620 %", "")
-        .replace("0.718 %", "")
-    )
     assert " ".join(told.split()) == claim
 
 
