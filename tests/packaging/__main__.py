@@ -6,13 +6,13 @@ fails under any of them.  ``--lowest`` installs, under the oldest one, the lowes
 """
 
 import argparse
-import json
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -80,38 +80,34 @@ def _is(python: Path, minor: int) -> bool:
     return done.returncode == 0 and done.stdout.strip() == str(minor).encode()
 
 
-def tried(python: Path, made: Path, folder: Path, *, lowest: bool) -> list[Tried]:
+def tried(python: Path, made: Path, folder: Path, *, lowest: bool) -> Iterator[Tried]:
     """The wheel under one interpreter, in a folder of its own."""
     aside = folder / "aside"
     aside.mkdir(parents=True)
     environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
     environment |= {"MPLBACKEND": "Agg", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     binaries = folder / "venv" / "bin"
-    done: list[Tried] = []
 
-    def do(*command: str | Path, cwd: Path = aside) -> bool:
-        if done and done[-1].code and "install" in done[-1].what:
-            return False
+    def do(*command: str | Path, cwd: Path = aside) -> Tried:
         began = time.monotonic()
         run = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, check=False)
         what = " ".join(Path(part).name if isinstance(part, Path) else part for part in command)
-        done.append(Tried(what, run.returncode, time.monotonic() - began, run.stdout + run.stderr))
-        return not run.returncode
+        return Tried(what, run.returncode, time.monotonic() - began, run.stdout + run.stderr)
 
-    do(python, "-m", "venv", folder / "venv")
+    yield do(python, "-m", "venv", folder / "venv")
     if lowest:
-        uv = ("uv", "pip", "install", "--quiet", "--python", str(binaries / "python"))
-        do(*uv, "--resolution", "lowest-direct", str(made))
-        do(*uv, *TEST_LIBRARIES)
+        install: tuple[str | Path, ...] = ("uv", "pip", "install", "--quiet", "--python", binaries / "python")
+        how: tuple[str, ...] = ("--resolution", "lowest-direct")
     else:
-        do(binaries / "python", "-m", "pip", "install", "--quiet", str(made))
-        do(binaries / "python", "-m", "pip", "install", "--quiet", *TEST_LIBRARIES)
+        install, how = (binaries / "python", "-m", "pip", "install", "--quiet"), ()
+    for wanted in ((*how, str(made)), TEST_LIBRARIES):
+        installed = do(*install, *wanted)
+        yield installed
+        if installed.code:
+            return
     for command in COMMANDS:
-        do(binaries / "cprbm", *command)
-    if (aside / "mine.json").exists():
-        assert json.loads((aside / "mine.json").read_text(encoding="utf-8"))["cases"][0]["case"] == "mine"
-    do(binaries / "python", "-m", "pytest", "-q", "-p", "no:cacheprovider", *QUICK, cwd=ROOT)
-    return done
+        yield do(binaries / "cprbm", *command)
+    yield do(binaries / "python", "-m", "pytest", "-q", "-p", "no:cacheprovider", *QUICK, cwd=ROOT)
 
 
 def main() -> int:
