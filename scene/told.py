@@ -21,7 +21,7 @@ def station_reached(logger: logging.Logger, scene: Scene, reached: int, station:
     logger.info(
         "%s: %s, stage %s: station %d of %d, %s = %.6g, %d iteration%s",
         scene.name,
-        logger.name.partition(".")[0],
+        logger.name.rpartition(".")[0],
         stage.name,
         reached,
         whole,
