@@ -64,7 +64,7 @@ def command(
     chapters: tuple[report.Chapter, ...] = ()
     names = tuple(question.name for question in wanted)
     with resumed(out, solvers_of(planted), names) as whole, crew_of(workers_for(planted)) as crew:
-        steps = showing.progress(wanted, shown=not quiet)
+        steps = showing.progress(wanted, shown=not quiet, share=0.8)
         for place, question in enumerate(steps):
             told = _told(question, sizes, choices, whole.solvers, crew)
             finished.append(told)

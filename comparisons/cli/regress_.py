@@ -49,7 +49,7 @@ def command(
     solvers = solvers_of(planted)
     code = 0
     scenes = [cases.opened(name) for name in (cases.scenes() if asked == "all" else (asked,))]
-    steps = showing.progress(scenes, shown=not quiet, within=SOLVERS)
+    steps = showing.progress(scenes, shown=not quiet, within=SOLVERS, share=0.5)
     for scene in steps:
         file = folder / f"{scene.name}.json"
         try:

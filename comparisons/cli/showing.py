@@ -61,11 +61,12 @@ def room_for(file: Path | None, out: Path | None = None) -> None:
 class Steps(Generic[T]):
     """The items one after the other, with a bar on standard error if that is a terminal and the bar is wanted.
 
-    Between one item and the next the bar goes on as those ``within`` it say how much of their own is done.
+    Between one item and the next the bar goes on as those ``within`` it say how much of their own is done.  They may
+    do so in several rounds, each from the beginning: a round takes ``share`` of what was left of the item.
     """
 
-    def __init__(self, items: Sequence[T], within: tuple[str, ...], *, shown: bool) -> None:
-        self.items, self.within, self.shown = items, within, shown
+    def __init__(self, items: Sequence[T], within: tuple[str, ...], share: float, *, shown: bool) -> None:
+        self.items, self.within, self.share, self.shown = items, within, share, shown
         self._bar: Bar | None = None
 
     def __iter__(self) -> Iterator[T]:
@@ -74,10 +75,11 @@ class Steps(Generic[T]):
             if bar is None:
                 yield from self.items
                 return
-            self._bar, begun = bar, 0
-            with steps_of(self.within, lambda done, whole: bar.move(begun + done / whole)):
-                for begun, item in enumerate(self.items):
-                    bar.move(begun)
+            self._bar = bar
+            rounds = Rounds(self.share)
+            with steps_of(self.within, lambda done, whole: bar.move(rounds.at(done, whole))):
+                for item in self.items:
+                    bar.move(rounds.next_item())
                     yield item
 
     def clear(self) -> None:
@@ -86,9 +88,34 @@ class Steps(Generic[T]):
             self._bar.clear()
 
 
-def progress(items: Sequence[T], *, shown: bool, within: tuple[str, ...] = (RUNS,)) -> Steps[T]:
-    """Some items as :class:`Steps`, of a comparison's runs unless others are ``within`` them."""
-    return Steps(items, within, shown=shown)
+@dataclass(slots=True)
+class Rounds:
+    """How far an item is whose steps come in rounds, of which each takes a ``share`` of what is left of it.
+
+    ``begun`` is the item's number, ``left`` the fraction of it that the round before has left, ``done`` the last step.
+    """
+
+    share: float
+    begun: int = -1
+    left: float = 1.0
+    done: int = 0
+
+    def next_item(self) -> int:
+        """The next item's number."""
+        self.begun, self.left, self.done = self.begun + 1, 1.0, 0
+        return self.begun
+
+    def at(self, done: int, whole: int) -> float:
+        """The items done, and the part of the one that is not, after a step of a round; never less than before."""
+        if done <= self.done:
+            self.left *= 1.0 - self.share
+        self.done = done
+        return self.begun + 1.0 - self.left * (1.0 - self.share * done / whole)
+
+
+def progress(items: Sequence[T], *, shown: bool, within: tuple[str, ...] = (RUNS,), share: float = 1.0) -> Steps[T]:
+    """Some items as :class:`Steps`, of a comparison's runs, in one round, unless told otherwise."""
+    return Steps(items, within, share, shown=shown)
 
 
 @contextmanager

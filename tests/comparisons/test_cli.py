@@ -168,15 +168,19 @@ def test_a_wrong_question_is_a_paragraph_and_2(right, capsys, arguments, said):
     assert captured.err.count("\n") == 1
 
 
-def test_every_mistake_of_a_scene_is_in_the_paragraph(right, capsys, tmp_path):
+def test_every_mistake_of_a_scene_is_told_in_a_line_of_its_own(right, capsys, tmp_path):
     text = HINGE.read_text("utf-8")
     file = tmp_path / "bad.toml"
     file.write_text(text.replace("poisson_ratio", "poison_ratio").replace("width = 0.008", "width = -1.0"), "utf-8")
     assert run(["compare", str(file)], right) == 2
     said = capsys.readouterr().err
-    assert said.count("\n") == 1
-    for part in (str(file), "poison_ratio", "beams.beam1.width", "beams.beam2.width", "-1.0"):
-        assert part in said
+    first, *lines = said.splitlines()
+    assert first == "cprbm: The question is wrong."
+    # the misspelt key, the one that is missing by it, and the width of either beam
+    assert len(lines) == 4
+    assert all(line.startswith(f"  {file}: ") for line in lines)
+    for part in ("poison_ratio", "beams.beam1.width: found -1.0", "beams.beam2.width: found -1.0"):
+        assert sum(part in line for line in lines) == 1
 
 
 @pytest.mark.parametrize(

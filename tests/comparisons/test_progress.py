@@ -9,9 +9,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from comparisons.cli.main import run
-from comparisons.cli.showing import progress
+from comparisons.cli.showing import Rounds, progress
 from comparisons.listening import RUNS, SPEAKERS, heard_from, steps_of
 
 ROOT = Path(__file__).parents[2]
@@ -102,6 +104,28 @@ def test_steps_are_heard_from_those_alone_who_are_listened_to():
         logging.getLogger("cprbm.march").info("x", extra={"done": 5, "whole": 7})
     logging.getLogger(RUNS).info("x", extra={"done": 4, "whole": 7})
     assert heard == [(3, 7)]
+
+
+@given(
+    st.lists(st.lists(st.integers(1, 9), min_size=1, max_size=4), min_size=1, max_size=4),
+    st.floats(min_value=0.1, max_value=1.0),
+)
+def test_through_rounds_of_any_length_a_bar_never_goes_back_nor_beyond_its_item(items, share):
+    rounds, before = Rounds(share), 0.0
+    for place, each in enumerate(items):
+        assert rounds.next_item() == place
+        for whole in each:
+            for done in range(1, whole + 1):
+                now = rounds.at(done, whole)
+                assert before - 1e-12 <= now <= place + 1.0
+                before = now
+    assert share < 1.0 or before == len(items)
+
+
+def test_one_round_goes_evenly_to_the_end():
+    rounds = Rounds(1.0)
+    rounds.next_item()
+    assert [rounds.at(done, 4) for done in (1, 2, 3, 4)] == [0.25, 0.5, 0.75, 1.0]
 
 
 @pytest.mark.parametrize("shown", [True, False])
