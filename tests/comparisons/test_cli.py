@@ -223,7 +223,7 @@ def test_every_mistake_of_a_scene_is_told_in_a_line_of_its_own(right, capsys, tm
         "a circle inside a beam",
     ],
 )
-def test_every_kind_of_wrong_scene_is_a_sentence_with_a_line_for_each_mistake_and_2(right, capsys, tmp_path, old, new, said):
+def test_every_kind_of_wrong_scene_has_a_line_for_each_mistake_and_2(right, capsys, tmp_path, old, new, said):
     text = HINGE.read_text("utf-8")
     assert old in text
     file = tmp_path / "wrong.toml"
