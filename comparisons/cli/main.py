@@ -130,7 +130,10 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
         from comparisons.cli.troubles import told
 
         _give_up_output()
-        trouble = told(error)
+        try:
+            trouble = told(error)
+        except KeyboardInterrupt as stop:
+            return interrupted(stop)
         if trouble is None:
             raise
         return _said(*trouble)
