@@ -46,7 +46,8 @@ def drawn(sheet: Sheet, *, width: int) -> str:
     else:
         parts = _parted([_least(column) for column in texts], whole, width, led=_led(sheet))
     page = io.StringIO()
-    console = Console(file=page, width=width, force_terminal=True, color_system="standard")
+    # without a height a terminal that says it is "dumb" would have 80 columns whatever the width
+    console = Console(file=page, width=width, height=25, force_terminal=True, color_system="standard")
     for place, widths in enumerate(parts):
         console.print(_table(sheet, widths, first=place == 0, last=place == len(parts) - 1))
     return page.getvalue()

@@ -51,6 +51,12 @@ def test_no_number_is_folded_and_no_line_is_too_long(width):
     assert lines[0].strip() == SHEET.title
 
 
+def test_the_width_is_the_one_that_is_asked_on_a_dumb_terminal_too(monkeypatch):
+    monkeypatch.setenv("TERM", "dumb")
+    assert tables(plain(SHEET, 140)) == 1
+    assert max(map(len, plain(SHEET, 140))) > 100
+
+
 def test_where_there_is_room_there_is_one_table():
     assert tables(plain(SHEET, 140)) == 1
     assert tables(plain(SHEET, 80)) > 1
