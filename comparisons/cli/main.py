@@ -130,10 +130,7 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
         from comparisons.cli.troubles import told
 
         _give_up_output()
-        try:
-            trouble = told(error)
-        except KeyboardInterrupt as stop:
-            return interrupted(stop)
+        trouble = told(error)
         if trouble is None:
             raise
         return _said(*trouble)

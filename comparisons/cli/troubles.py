@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-import time
 from concurrent.futures.process import BrokenProcessPool
 from difflib import get_close_matches
 from pathlib import Path
@@ -13,9 +12,6 @@ from scene import Mistake, SceneError
 WRONG_QUESTION = 2
 NOT_FINISHED = 1
 
-_FOR_SIGNAL = 0.5
-"""Seconds: an interrupt from the keyboard goes to every process, and may end the others before it comes to this one."""
-
 
 def told(error: Exception) -> tuple[str, int] | None:
     """A sentence about an ``error`` and the exit code; None of one that is nobody's but ours."""
@@ -24,7 +20,6 @@ def told(error: Exception) -> tuple[str, int] | None:
             told = "\n  ".join(_told(mistake) for mistake in error.mistakes)
             return f"The question is wrong.{' ' if len(error.mistakes) == 1 else chr(10) + '  '}{told}", WRONG_QUESTION
         case BrokenProcessPool():
-            time.sleep(_FOR_SIGNAL)
             return (
                 "A process that was solving ended by force, perhaps for want of memory; what was finished stands.",
                 NOT_FINISHED,

@@ -6,9 +6,7 @@ import re
 import signal
 import subprocess
 import sys
-import threading
 import time
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError
 from pathlib import Path
@@ -403,15 +401,6 @@ def test_an_interrupt_from_the_keyboard_ends_every_process_with_a_sentence(tmp_p
     _, said = process.communicate(timeout=60)
     assert process.returncode == 130
     assert said == "cprbm: Interrupted; what was finished before stands.\n"
-
-
-def test_an_interrupt_that_comes_to_the_workers_first_is_told_as_one(right, capsys):
-    def ended_by_it(scene, choices):
-        threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
-        raise BrokenProcessPool
-
-    assert run(["solve", "hinge"], Solvers(ended_by_it, right.fea)) == 130
-    assert capsys.readouterr().err == "cprbm: Interrupted; what was finished before stands.\n"
 
 
 @pytest.mark.parametrize("installed", [True, False])
