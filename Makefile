@@ -6,11 +6,14 @@
 #   make docs      the documentation in build/docs, with figures made by the code; warnings are errors
 #   make fuzz      alter scene files at places drawn from SEED, RUNS times, and see that the reader takes them
 #   make mutants   put MUTANTS small faults, drawn from SEED, into the solvers, and see which the quick tests catch; an hour
+#   make wheel     the archive of sources and the wheel, in dist/
+#   make pythons   install that wheel under each Python found, try the program and the quick tests; minutes each
+#   make lowest    the same under the oldest one with the lowest versions declared (needs uv)
 #   make setup     only the set-up
 #   make lock      renew requirements.lock (needs uv)
 
 .POSIX:
-.PHONY: setup compare test check docs fuzz mutants lock clean
+.PHONY: setup compare test check docs fuzz mutants wheel pythons lowest lock clean
 
 PYTHON = python3
 SEED = 905
@@ -41,6 +44,16 @@ fuzz: $(READY)
 mutants: $(READY)
 	$(ENVIRONMENT) OMP_NUM_THREADS=1 $(BIN)/python -m tests.mutants --mutants $(MUTANTS) --seed $(SEED)
 
+wheel: $(READY)
+	rm -rf dist
+	$(BIN)/python -m tests.packaging.made dist
+
+pythons: $(READY)
+	$(ENVIRONMENT) $(BIN)/python -m tests.packaging
+
+lowest: $(READY)
+	$(ENVIRONMENT) $(BIN)/python -m tests.packaging --lowest
+
 setup: $(READY)
 
 # The stamp is older than the lock or the project's description exactly if the environment may be stale.
@@ -61,4 +74,4 @@ lock:
 	mv requirements.new requirements.lock
 
 clean:
-	rm -rf .venv report build docs/made *.egg-info
+	rm -rf .venv report build dist docs/made *.egg-info

@@ -9,11 +9,11 @@ from dataclasses import fields
 from typing import Any
 
 import numpy as np
-from frozendict import frozendict
 
 from comparisons.documents import Plain, plain
 from scene import Answer, Certificate, Critical, Ending, Event, Loss, Shape, StationAnswer
 from scene.answer import Array, Inside, Statics, frozen_array
+from scene.frozendict import frozendict
 
 
 def text(answers: Mapping[str, Answer]) -> str:

@@ -6,11 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
 
-from frozendict import frozendict
-
 from comparisons.choices import Choices, Count
 from comparisons.pairing import Crew, Job, Solver, Solvers
 from scene import Answer, Scene
+from scene.frozendict import frozendict
 
 
 def _silent(text: str) -> None:

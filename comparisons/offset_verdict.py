@@ -19,7 +19,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from frozendict import frozendict
 
 from comparisons.formats import percent
 from comparisons.measures import SAFETY, SHARE_OF_LARGEST
@@ -29,6 +28,7 @@ from comparisons.verdict import Verdict
 from comparisons.words import Word
 from scene import OffsetClaim, OffsetQuestion
 from scene.answer import Array
+from scene.frozendict import frozendict
 
 _ROUND_OFF = 64.0 * float(np.finfo(float).eps)
 

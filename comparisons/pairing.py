@@ -20,10 +20,11 @@ which takes no part in the verdict either.
 from __future__ import annotations
 
 import gc
+import logging
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
@@ -31,13 +32,14 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Protocol
 
-from frozendict import frozendict
 from pydantic import ValidationError
 
 from comparisons.choices import KINEMATICS, Choices, Count, Kinematics, check
+from comparisons.listening import heard_from, listen
 from comparisons.nearby import nearby
 from scene import Answer, Mistake, RigidContact, Scene, SceneError, Spacing
 from scene.answer import Array
+from scene.frozendict import frozendict
 from scene.statement import Curve
 
 if TYPE_CHECKING:  # for the peers, which know the record of the problem and nothing of the solver
@@ -45,6 +47,8 @@ if TYPE_CHECKING:  # for the peers, which know the record of the problem and not
     from cprbm.discretisation import FittedContact as FittedContact
     from cprbm.discretisation import RoundContact as RoundContact
     from cprbm.discretisation import Spot as Spot
+
+_SAYS = logging.getLogger(__name__)
 
 Solver = Callable[[Scene, Choices], Answer]
 Prepared = Callable[[], Answer]
@@ -277,7 +281,7 @@ class Crew:
         What it then gives and raises is as of :meth:`answers`.  Without a pool nothing is done before.
         """
         if self.pool is None:
-            return lambda: [solver(scene, choices) for solver, scene, choices in jobs]
+            return lambda: _one_by_one(jobs)
         # The finest runs take longest, and they stand last: handed out first, they leave no worker idle.
         with _workers_deaf_at_first():
             futures: dict[_Pending, int] = {
@@ -290,6 +294,21 @@ class Crew:
 _Pending = Future[Answer | tuple[Mistake, ...]]
 
 
+def _one_by_one(jobs: Sequence[Job]) -> list[Answer]:
+    """The answers, in this process."""
+    answers: list[Answer] = []
+    for solver, scene, choices in jobs:
+        answers.append(solver(scene, choices))
+        _done(answers[-1], len(answers), len(jobs))
+    return answers
+
+
+def _done(answer: Answer, done: int, whole: int) -> None:
+    """Say that a run is done, and how many of the ``whole`` are."""
+    told = answer.scene, done, whole, answer.solver, answer.ending.name, answer.seconds
+    _SAYS.info("%s: run %d of %d is done: %s, %s after %.2f s", *told, extra={"done": done, "whole": whole})
+
+
 def _awaited(futures: Mapping[_Pending, int]) -> list[Answer]:
     """The answers by their places; the first refusal ends the rest."""
     answers: dict[int, Answer] = {}
@@ -299,6 +318,7 @@ def _awaited(futures: Mapping[_Pending, int]) -> list[Answer]:
             if isinstance(result, tuple):
                 raise SceneError(result)
             answers[futures[future]] = result
+            _done(result, len(answers), len(futures))
     finally:
         for future in futures:
             future.cancel()
@@ -319,7 +339,9 @@ def crew_of(workers: int) -> Iterator[Crew]:
         return
     context = get_context("spawn")
     listening, held = context.Pipe(duplex=False)
-    pool = ProcessPoolExecutor(workers, mp_context=context, initializer=_prepared_worker, initargs=(listening,))
+    pool = ProcessPoolExecutor(
+        workers, mp_context=context, initializer=_prepared_worker, initargs=(listening, heard_from())
+    )
     try:
         yield Crew(pool)
     except BaseException:
@@ -468,12 +490,14 @@ def _workers_deaf_at_first() -> Iterator[None]:
         signal.signal(signal.SIGINT, before)
 
 
-def _prepared_worker(listening: Connection) -> None:
+def _prepared_worker(listening: Connection, heard: int) -> None:
     """An interrupt ends a worker at once and without a word: the main process says what happened.
 
+    What it says is ``heard`` from the same level on as there.
     It ends as soon as the other end of ``listening`` is closed, which nobody but the main process holds.
     Its collector of cycles looks less often, and never at what is loaded: records of a march are many and make none.
     """
+    listen(heard)
     gc.freeze()
     gc.set_threshold(*COLLECTED)
     signal.signal(signal.SIGINT, signal.SIG_DFL)

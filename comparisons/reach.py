@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from frozendict import frozendict
-
 from comparisons.pairing import Runs
 from scene import Answer, Ending, Scene
+from scene.frozendict import frozendict
 
 
 def within_reach(scene: Scene, runs: Runs) -> tuple[Scene, Runs] | None:

@@ -30,8 +30,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from frozendict import frozendict
-
 from comparisons.audit import Audit, audit
 from comparisons.branches import Place
 from comparisons.calibration import FAR, JUDGED, every, held, tally
@@ -46,6 +44,7 @@ from comparisons.tolerances.search import Tolerance
 from comparisons.words import Word, worst_of
 from comparisons.work_energy import Reaction, reactions
 from scene import Scene
+from scene.frozendict import frozendict
 
 
 @dataclass(frozen=True, slots=True)

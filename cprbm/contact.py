@@ -13,13 +13,13 @@ from functools import cached_property
 from itertools import accumulate, pairwise
 
 import numpy as np
-from frozendict import frozendict
 
 from cprbm import kinematics
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
 from cprbm.strands import Faces
 from scene.answer import Array, Flags, Ints
+from scene.frozendict import frozendict
 
 REAL = 1e-13  # of the largest curvature of a group; what is below it is round-off
 

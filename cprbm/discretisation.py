@@ -19,8 +19,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from frozendict import frozendict
-
 from cprbm.boundary import FittedBoundary
 from cprbm.energy import DeadLoad
 from cprbm.mechanism import Mechanism, mechanism_of
@@ -30,6 +28,7 @@ from cprbm.settings import Settings
 from cprbm.standing import Attachment
 from scene import Mistake, Scene, SceneError
 from scene.answer import Array, Ints
+from scene.frozendict import frozendict
 
 
 @dataclass(frozen=True, slots=True)

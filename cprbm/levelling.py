@@ -17,7 +17,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from frozendict import frozendict
 
 from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.kinks import kinks_at
@@ -29,6 +28,7 @@ from cprbm.refining import carried_over
 from cprbm.settings import Settings
 from scene import Scene
 from scene.answer import Array
+from scene.frozendict import frozendict
 
 LEVEL = 1e-7  # of a slope: the slopes beside the kinks are those of the state before
 FIRST = 0.02  # elements: the first move of a place

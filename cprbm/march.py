@@ -6,6 +6,7 @@ from there on the mesh that was asked, fitted to where contact is (:mod:`cprbm.r
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -33,6 +34,9 @@ from cprbm.remarks import Remarks
 from cprbm.settings import Settings
 from cprbm.statics import statics
 from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAnswer
+from scene.told import station_reached
+
+_SAYS = logging.getLogger(__name__)
 
 AGAIN = 12  # iterations on a mesh that fits a little better
 LAST = 4  # meshes less one, on one of which there is an equilibrium
@@ -92,7 +96,7 @@ class March:
             for target in stage.stations:
                 found = self._gone_on(stage, target)
                 if found is not None:
-                    self.reached.append(self._answer(stage, target, found))
+                    self._keep(self._answer(stage, target, found))
                     continue
                 reached = self._reach(stage, target)
                 if reached.certificate is None:
@@ -101,8 +105,12 @@ class March:
                 station = self._station(stage, target, reached.certificate)
                 if station is None:
                     return Ending.STEP_TOO_SMALL, "the finer meshes do not follow the coarsest"
-                self.reached.append(station)
+                self._keep(station)
         return Ending.COMPLETED, Ending.COMPLETED.value
+
+    def _keep(self, station: StationAnswer) -> None:
+        self.reached.append(station)
+        station_reached(_SAYS, self.scene, len(self.reached), station)
 
     def _reach(self, stage: Stage, target: float) -> Reached:
         """Go to a station, from branch to branch where one ends."""

@@ -23,7 +23,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from frozendict import frozendict
 
 from cprbm.curves import NeutralLine
 from cprbm.outset import Outset, outset_of
@@ -36,6 +35,7 @@ from cprbm.spacing import spaced
 from cprbm.standing import Attachment
 from scene import Scene
 from scene.answer import Array, Ints
+from scene.frozendict import frozendict
 
 
 @dataclass(frozen=True, eq=False)

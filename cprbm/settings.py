@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Literal, cast
 
-from frozendict import frozendict
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from scene import Mistake, Scene, SceneError
+from scene.frozendict import frozendict
 
 FEWEST_LINKS = 2
 

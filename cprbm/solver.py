@@ -5,14 +5,11 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 
-from threadpoolctl import ThreadpoolController
-
 from cprbm.march import March
 from cprbm.refining import coarser
 from cprbm.settings import Settings
 from scene import Answer, Ending, Scene
-
-_LIBRARIES = ThreadpoolController()  # looks for those that are loaded, once: that takes a millisecond
+from scene.threads import one_thread
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +28,7 @@ class Prepared:
         """March, and hand back what :func:`answer` does."""
         began = time.perf_counter()
         march, settings = self.march, self.settings
-        # small matrices: more than one thread of BLAS costs more than it brings
-        with _LIBRARIES.limit(limits=1, user_api="blas"):
+        with one_thread():
             ending, sentence = march.run()
             if ending not in (Ending.COMPLETED, Ending.BRANCH_ENDS) and len(march.family) > 1:
                 # a coarse mesh may be too coarse: without it then

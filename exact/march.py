@@ -12,6 +12,7 @@ along each other or one contact be closed at two places at once.
 
 from __future__ import annotations
 
+import logging
 import math
 import time
 
@@ -29,6 +30,9 @@ from exact.structure import Meeting, Wrap
 from exact.way import Way
 from scene import Answer, Ending, Scene, StationAnswer
 from scene.statement import BeamContact, BeamMoment, EdgeContact, SelfContact, TurningBody
+from scene.told import station_reached
+
+_SAYS = logging.getLogger(__name__)
 
 _OVERLAP = 1e-10  # of the unit of length
 _FIRST_STEP = 0.2  # of the way to the first station
@@ -69,6 +73,7 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
             for station in stage.stations:
                 step = _advance(way, station / way.unit, step)
                 stations.append(_certified(way, station))
+                station_reached(_SAYS, scene, len(stations), stations[-1])
     except NotCoveredError as error:
         ending, sentence = Ending.NOT_COVERED, f"{error}."
     return Answer(

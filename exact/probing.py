@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from frozendict import frozendict
 
 from exact.equations import unit
 from exact.gaps import SAMPLES
@@ -15,6 +14,7 @@ from exact.structure import Meeting, Wrap
 from exact.way import Way
 from scene import Certificate, CircleContact, Probe, Scene, Shape, StationAnswer
 from scene.answer import Array, frozen_array
+from scene.frozendict import frozendict
 from scene.statement import BeamForce, DisplacementDrive, DistributedLoad, Force, Moment, RotationDrive
 
 _FLOOR = 1e-13  # of a residual, no dimension: some hundred roundings

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
-from frozendict import frozendict
 
 from exact.gaps import Overlap
 from exact.model import Model
 from exact.newton import LostError
 from exact.state import Known
 from exact.structure import Meeting, Resting, Structure, Touch, Wrap
+from scene.frozendict import frozendict
 
 Places = Mapping[tuple[str, str], float]
 """Of a structure's contacts, by (contact, key) as in :class:`exact.layout.Layout`."""

@@ -27,11 +27,11 @@ from dataclasses import replace
 from math import ceil, hypot, pi, sqrt
 
 import numpy as np
-from frozendict import frozendict
 
 from exact.newton import LostError, linearised
 from exact.state import State, start_of
 from exact.structure import Structure
+from scene.frozendict import frozendict
 
 _KNOTS = 8  # of a beam, at least
 _SHARE = 0.4  # of the length at which a piece held from turning at its ends would buckle

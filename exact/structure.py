@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from frozendict import frozendict
+from scene.frozendict import frozendict
 
 
 @dataclass(frozen=True, slots=True)

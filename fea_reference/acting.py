@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from frozendict import frozendict
-
 from scene.answer import Array
+from scene.frozendict import frozendict
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,8 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
-from frozendict import frozendict
-
+from scene.frozendict import frozendict
 from scene.mistakes import Mistake, SceneError
 
 Kinematics = Literal["bending", "stretch", "shear"]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from fea_reference.assembly import assemble_ends
 from fea_reference.certificates import certify
@@ -19,8 +19,10 @@ from fea_reference.statics import statics
 from fea_reference.travel import Course, reach
 from scene.answer import Answer, Ending, Event, StationAnswer
 from scene.statement import Scene, Stage
+from scene.threads import one_thread
+from scene.told import station_reached
 
-_LIBRARIES = ThreadpoolController()  # looks for those that are loaded, once: that takes a millisecond
+_SAYS = logging.getLogger(__name__)
 
 _DEFAULT = Settings()
 
@@ -48,8 +50,7 @@ class Prepared:
         stations: list[StationAnswer] = []
         events: list[Event] = []
         ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
-        # small blocks: more than one thread of BLAS costs more than it brings
-        with _LIBRARIES.limit(limits=1, user_api="blas"):
+        with one_thread():
             try:
                 known: set[str] = set()
                 assemble_ends(scene, march)
@@ -64,6 +65,7 @@ class Prepared:
                         ]
                         known = set(march.closing)
                         stations.append(_certified(scene, march, stage, station))
+                        station_reached(_SAYS, scene, len(stations), stations[-1])
             except StoppedError as stopped:
                 ending, sentence = stopped.ending, stopped.sentence
         closed = {name: f"closed at {value:.6g}" for name, value in march.closing.items()}

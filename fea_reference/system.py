@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from frozendict import frozendict
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import SuperLU, splu
 
@@ -25,6 +24,7 @@ from fea_reference.state import State
 from fea_reference.stops import acting_stops
 from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
 from scene.answer import Array
+from scene.frozendict import frozendict
 
 Entries = tuple[Index, Index, Array]
 

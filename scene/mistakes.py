@@ -50,14 +50,21 @@ def first_of(found: Iterable[Mistake], file: str = "") -> list[Mistake]:
     return some if len(some) <= MOST else [*some[:MOST], Mistake("", "more mistakes", "none; mend these first", file)]
 
 
+def hint(word: str, known: Iterable[str]) -> str:
+    """`` (is 'X' meant?)`` if one of the ``known`` words is near to a ``word``, in whatever case; else nothing."""
+    by_case = {each.casefold(): each for each in known}
+    near = get_close_matches(word.casefold(), by_case, n=1)
+    # of words as short as a unit any two are near
+    told = near and (len(word) > 2 or near[0] == word.casefold())
+    return f" (is {by_case[near[0]]!r} meant?)" if told else ""
+
+
 def unknown_name(key: str, name: str, what: str, known: Iterable[str]) -> Mistake:
     """The mistake of naming a ``what`` (such as ``beam``) that is not among the ``known``."""
     names = list(islice(known, _LISTED + 1))
-    near = get_close_matches(name, names, n=1)
-    hint = f" (is {near[0]!r} meant?)" if near else ""
     listed = ", ".join(repr(each) for each in names[:_LISTED]) or "there is none"
     listed += ", ..." if len(names) > _LISTED else ""
-    return Mistake(key, f"{name!r}, which names no {what}{hint}", f"the name of a {what}: {listed}")
+    return Mistake(key, f"{name!r}, which names no {what}{hint(name, names)}", f"the name of a {what}: {listed}")
 
 
 def written_place(place: tuple[float, float]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -15,7 +15,7 @@ from pydantic_core import ErrorDetails
 from scene.check_offset import mistakes_in_offset
 from scene.checks import mistakes_in
 from scene.keys import is_tag, keys_at, tags_at
-from scene.mistakes import Mistake, SceneError, first_of, unknown_name
+from scene.mistakes import Mistake, SceneError, first_of, hint, unknown_name
 from scene.offset import OffsetQuestion
 from scene.statement import Record, Scene
 from scene.units import in_si
@@ -31,6 +31,11 @@ DEEPEST = 32
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+"""
 _DEEP_KEY = re.compile(rf"(?<![\w-])(?:{_PART}){{{DEEPEST}}}", re.ASCII)
 """A dotted key that no scene has: the parser's time and memory grow with the square of its parts."""
+
+_QUOTED = re.compile(r"'([^']*)'")
+_MEASURED = re.compile(r"\s*[-+]?[\d.]+(?:e[-+]?\d+)?\s*[^\d\s]{1,8}\s*", re.ASCII | re.IGNORECASE)
+_UNITS = """units = { length = "mm" }"""
+_AS_NUMBER = f"; numbers have no units of their own, and the file states its once, as {_UNITS}"
 
 _ALLOWED = {
     "finite_number": "a finite number",
@@ -191,17 +196,33 @@ def _mistake(details: ErrorDetails, file: str, root: type[Record]) -> Mistake:
             allowed = f"at most {context['max_length']} characters"
         case "literal_error":
             allowed = f"one of {context['expected']}"
+            found += _meant(details.get("input"), _QUOTED.findall(context["expected"]))
         case "float_type" if loc[-1] == "number":
             allowed = "a number, or a table with the keys 'at' and 'values'"
+            allowed += _AS_NUMBER if _with_unit(details.get("input")) else ""
+        case "float_type" if _with_unit(details.get("input")):
+            allowed = _ALLOWED[kind] + _AS_NUMBER
         case "union_tag_invalid" | "union_tag_not_found":
             tag = context["discriminator"].strip("'")
             key = f"{key}.{tag}"
             given = details["input"].get(tag)
             found = "nothing" if kind == "union_tag_not_found" else _shown(given)
             allowed = f"one of {', '.join(map(repr, tags_at(loc, root)))}"
+            found += _meant(given, tags_at(loc, root))
+        case "model_type" if loc == ("units",):
+            allowed = f"a table, as {_UNITS}"
         case _:
             allowed = _ALLOWED.get(kind, details["msg"])
     return Mistake(key, found, allowed, file)
+
+
+def _meant(given: object, known: Iterable[str]) -> str:
+    return hint(given, known) if isinstance(given, str) else ""
+
+
+def _with_unit(given: object) -> bool:
+    """Whether a text looks like a number with its unit."""
+    return isinstance(given, str) and _MEASURED.fullmatch(given) is not None
 
 
 def _says_it_again(details: ErrorDetails) -> bool:

@@ -16,9 +16,10 @@ from math import isclose
 from typing import Annotated, ClassVar, Literal, TypeVar
 
 import numpy as np
-from frozendict import frozendict
 from numpy.typing import NDArray
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, StringConstraints, Tag
+
+from scene.frozendict import frozendict
 
 T = TypeVar("T")
 

@@ -19,8 +19,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import TypeVar
 
-from frozendict import frozendict
-
+from scene.frozendict import frozendict
 from scene.mistakes import Mistake, SceneError
 from scene.statement import (
     CRITICAL,

@@ -5,13 +5,12 @@ Seconds are the processor's, since a report is made on machines that have other 
 
 from __future__ import annotations
 
-from frozendict import frozendict
-
 from comparisons import machine
 from comparisons.bench import contenders, errors, question, running
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers
 from scene import Scene
+from scene.frozendict import frozendict
 
 SIZES = (10, 20, 40, 80, 160)
 METHODS: tuple[contenders.Name, ...] = ("auto", "paper", "fea")

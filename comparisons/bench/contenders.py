@@ -6,8 +6,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from frozendict import frozendict
-
 from comparisons.choices import Choices, Count
 from comparisons.converging.families import at
 from comparisons.pairing import Solver, Solvers, discretised, prepared
@@ -16,6 +14,7 @@ from comparisons.peers.judged import judged
 from comparisons.peers.solving import Optimiser, Solved
 from scene import Answer, Scene
 from scene.answer import Array
+from scene.frozendict import frozendict
 
 Name = Literal["auto", "paper", "fea", "slsqp", "trust-constr", "ipopt"]
 NAMES: tuple[Name, ...] = ("auto", "paper", "fea", "slsqp", "trust-constr", "ipopt")

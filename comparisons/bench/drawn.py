@@ -6,13 +6,13 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
-from frozendict import frozendict
 
 from comparisons.bench.contenders import Name
 from comparisons.bench.question import MEASURES, Measure
 from comparisons.bench.running import Benchmark, trend
 from comparisons.bench.told import sized
 from comparisons.figures import BLUE, RED, Picture, canvas, picture
+from scene.frozendict import frozendict
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -21,7 +21,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from frozendict import frozendict
 
 from comparisons.bench.question import MEASURES, Measure, measure_of
 from comparisons.choices import Choices
@@ -30,6 +29,7 @@ from comparisons.pairing import Solvers
 from comparisons.scales import SMALLEST_EVENT, natural_scale
 from scene import Scene, SceneError
 from scene.answer import Array
+from scene.frozendict import frozendict
 
 FINE = (160, 320, 640)
 ORDER = 2.0

@@ -28,8 +28,6 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
-from frozendict import frozendict
-from threadpoolctl import threadpool_limits
 
 from comparisons.bench.contenders import LARGEST, PEERS, Contender, Name, Outcome, mean
 from comparisons.bench.errors import NOTHING, Reference, errors
@@ -37,6 +35,8 @@ from comparisons.bench.question import Measure
 from comparisons.bench.timing import middle, quartiles_apart
 from comparisons.choices import Count, Kinematics
 from scene import Scene, SceneError
+from scene.frozendict import frozendict
+from scene.threads import one_thread
 
 SIZES = (10, 20, 40, 80, 160, 320, 640, 1280, 2560, 5120)
 FIT_FROM = 40
@@ -216,7 +216,7 @@ class Session:
                 self._run(job)
                 self.warm.add(name)
             # libraries that the first run has loaded are held to one thread as well
-            with threadpool_limits(limits=1, user_api="blas"):
+            with one_thread():
                 setup, solve, outcome = self._run(job)
         except SceneError as error:
             self.refused[key] = error

@@ -12,12 +12,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from frozendict import frozendict
-
 from comparisons.bench.contenders import Name
 from comparisons.bench.question import MEASURES, Measure
 from comparisons.bench.running import Benchmark, Timing
 from comparisons.choices import Count
+from scene.frozendict import frozendict
 
 TARGETS = (1e-2, 1e-3, 1e-4)
 Clocked = Literal["solve", "both"]

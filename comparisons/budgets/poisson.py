@@ -23,7 +23,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from frozendict import frozendict
 from scipy.optimize import brentq
 
 from comparisons.budgets.parts import Budget
@@ -34,6 +33,7 @@ from comparisons.scales import denominator, norm
 from comparisons.stations import station_of
 from scene import Answer, Claim, Scene
 from scene.answer import Array
+from scene.frozendict import frozendict
 from scene.statement import STRESSES
 
 BOUNDS = (-1.0, 0.5)

@@ -17,12 +17,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import islice
 
-from frozendict import frozendict
-
 from comparisons.choices import KINEMATICS, Choices, Kinematics, check
 from comparisons.memory import Remembering
 from comparisons.pairing import in_paper
 from scene import Answer, Scene
+from scene.frozendict import frozendict
 
 LEVELS = (1, 2, 4)
 """Links over N."""

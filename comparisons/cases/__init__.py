@@ -80,9 +80,12 @@ def _found(case: str, reader: Callable[[str | Path], T]) -> T:
     if case.endswith(".toml") or "/" in case or "\\" in case:
         return reader(case)
     from scene import Mistake, SceneError
+    from scene.mistakes import hint
 
+    here = Path(f"{case}.toml")
+    meant = f" (is the file {here} meant?)" if here.is_file() else hint(case, names())
     allowed = f"a built-in case ({', '.join(names())}) or the path of a file that ends in .toml"
-    raise SceneError([Mistake("case", repr(case), allowed)])
+    raise SceneError([Mistake("case", repr(case) + meant, allowed)])
 
 
 def _data(name: str) -> dict[str, Any]:

@@ -102,13 +102,12 @@ def command(
 
     Exit code 1 says that a run of the project's own solvers did not complete; what a peer does is told in the tables.
     """
-    from frozendict import frozendict
-
     from comparisons import cases, machine
     from comparisons.bench import contenders, errors, question, running, told
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
     from comparisons.pairing import solvers_of
+    from scene.frozendict import frozendict
 
     if sizes is not None and links:
         raise click.UsageError("found --sizes and -n; allowed: one of them.")

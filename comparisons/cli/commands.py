@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
+
 import click
 
 
@@ -18,6 +20,9 @@ class Commands(click.Group):
         """
         name = args[0]
         if self.get_command(ctx, name) is None:
-            allowed = ", ".join(self.list_commands(ctx))
-            ctx.fail(f"found {name!r}, which is no command of '{ctx.command_path}'; allowed: {allowed}")
+            known = self.list_commands(ctx)
+            near = get_close_matches(name.casefold(), known, n=1)
+            meant = f" (is {near[0]!r} meant?)" if near else ""
+            said = f"found {name!r}, which is no command of '{ctx.command_path}'{meant}; allowed: {', '.join(known)}"
+            ctx.fail(said)
         return super().resolve_command(ctx, args)

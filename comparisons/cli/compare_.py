@@ -79,7 +79,8 @@ def command(
 
         following = begun(0)
         # a line that says which N is being solved stands in the bar's place
-        for place, scene in enumerate(showing.progress(scenes, shown=not quiet and tol is None)):
+        steps = showing.progress(scenes, shown=not quiet and tol is None)
+        for place, scene in enumerate(steps):
             comparison: Comparison | OffsetComparison
             # the next case is solved while this one is judged and drawn
             pending, following = following, begun(place + 1)
@@ -103,6 +104,7 @@ def command(
                     report.put_page(out, chapters)
                 if json_file is not None and printing:
                     showing.json(json_file, {"cases": [_document(one) for one in finished]})
+            steps.clear()
             if printing:
                 if not quiet:
                     if isinstance(comparison, OffsetComparison):

@@ -62,7 +62,8 @@ def command(
     chapters: tuple[report.Chapter, ...] = ()
     names = tuple(question.name for question in wanted)
     with resumed(out, solvers_of(planted), names) as whole, crew_of(workers_for(planted)) as crew:
-        for place, question in enumerate(showing.progress(wanted, shown=not quiet)):
+        steps = showing.progress(wanted, shown=not quiet, share=0.8)
+        for place, question in enumerate(steps):
             told = all_told(question, sizes, choices, whole.solvers, crew)
             finished.append(told)
             if out is not None:
@@ -73,6 +74,7 @@ def command(
                     report.put_page(out, chapters)
                 if json_file is not None and printing:
                     showing.json(json_file, _document(finished, wanted))
+            steps.clear()
             if printing and not quiet:
                 showing.tables(told.sheets)
             if printing:

@@ -8,7 +8,8 @@ INCOMPLETE = 1
 
 
 @click.command("doctor")
-def command() -> int:
+@click.option("-q", "--quiet", is_flag=True, help="Only what is needed and cannot be used.")
+def command(quiet: bool) -> int:  # noqa: FBT001 - click hands it over by name
     """Say which libraries are there and which are missing, with the line that installs each.
 
     Exit code 1 says that something is missing without which nothing works.
@@ -17,7 +18,8 @@ def command() -> int:
 
     from comparisons.starting.present import looked_for
 
-    click.echo(f"Python {platform.python_version()}")
+    if not quiet:
+        click.echo(f"Python {platform.python_version()}")
     whole = True
     for state in looked_for():
         library = state.library
@@ -28,5 +30,6 @@ def command() -> int:
         else:
             said = f"{'missing':<12} for {library.needed_for}; install it: {library.line}"
         whole &= state.there or bool(library.extra)
-        click.echo(f"{library.name:<14} {said}")
+        if not quiet or not (state.there or library.extra):
+            click.echo(f"{library.name:<14} {said}")
     return 0 if whole else INCOMPLETE

@@ -118,6 +118,8 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.format_message(), err=True)
         return WRONG_QUESTION
+    except click.UsageError as error:
+        return _said(_sentence(error.format_message()) + _next_step(error))
     except click.ClickException as error:
         return _said(error.format_message())
     except click.exceptions.Exit as stop:
@@ -136,6 +138,20 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
             raise
         return _said(*trouble)
     return code if isinstance(code, int) else 0
+
+
+def _sentence(text: str) -> str:
+    return text if text.endswith((".", "?", "!")) else f"{text}."
+
+
+def _next_step(error: click.UsageError) -> str:
+    """What to ask next, as sentences after that of the error."""
+    context = error.ctx
+    if context is None:
+        return ""
+    missing = error.param.make_metavar(context) if isinstance(error, click.MissingParameter) and error.param else ""
+    cases = " 'cprbm list' names the cases; 'cprbm new NAME' writes a file to start from." if "CASE" in missing else ""
+    return f"{cases} Try '{context.command_path} --help'."
 
 
 def interrupted(stop: KeyboardInterrupt) -> int:

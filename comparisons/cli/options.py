@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import math
 from collections.abc import Callable
 from itertools import pairwise
@@ -174,9 +175,25 @@ def sized(command: Decorated) -> Decorated:
     return command
 
 
+def _listened(ctx: click.Context, param: click.Parameter, value: bool) -> None:  # noqa: FBT001 - click's form
+    """Have what solvers say while they work put on standard error."""
+    if value:
+        from comparisons.listening import listen, silence
+
+        listen(logging.INFO)
+        ctx.call_on_close(silence)
+
+
+def verbose(command: Decorated) -> Decorated:
+    """``--verbose``."""
+    text = "Say on standard error what is being solved: runs, stations, iterations."
+    return click.option("-v", "--verbose", is_flag=True, expose_value=False, callback=_listened, help=text)(command)
+
+
 def output(command: Decorated) -> Decorated:
-    """``--json`` and ``--quiet``."""
-    command = click.option("--quiet", is_flag=True, help="No tables and no progress.")(command)
+    """``--json``, ``--quiet`` and ``--verbose``."""
+    command = verbose(command)
+    command = click.option("-q", "--quiet", is_flag=True, help="No tables and no progress.")(command)
     return click.option(
         "--json", "json_file", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE",
         help="Write the numbers as JSON; '-' is standard output, and then nothing else is printed there.",

@@ -10,9 +10,11 @@ def main() -> None:
     """Run the command line of this process, and end it."""
     try:
         from comparisons.cli import signals
+        from comparisons.threads import ONE_THREAD
 
         signals.heed()
         _fill_gaps()
+        os.environ.update(ONE_THREAD)  # before anything loads a BLAS; for the processes that share the work as well
         from comparisons.cli.main import run
 
         code = run(sys.argv[1:])

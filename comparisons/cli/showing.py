@@ -6,12 +6,15 @@ import shutil
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
+from logging import NOTSET
 from pathlib import Path
-from typing import TypeVar
+from typing import Generic, TypeVar
 
 import click
 
 from comparisons.documents import Plain, text
+from comparisons.listening import RUNS, SOLVERS, heard_from, steps_of
 from comparisons.sheet import Sheet
 
 T = TypeVar("T")
@@ -55,43 +58,151 @@ def room_for(file: Path | None, out: Path | None = None) -> None:
         out.mkdir(parents=True, exist_ok=True)
 
 
-def progress(items: Sequence[T], *, shown: bool) -> Iterator[T]:
-    """The items, with a bar on standard error if that is a terminal and the bar is wanted."""
-    if not shown or not sys.stderr.isatty():
-        yield from items
-        return
-    from rich.console import Console
-    from rich.progress import track
+class Steps(Generic[T]):
+    """The items one after the other, with a bar on standard error if that is a terminal and the bar is wanted.
 
-    yield from track(items, "solving", console=Console(stderr=True), transient=True)
+    Between one item and the next the bar goes on as those ``within`` it say how much of their own is done.  They may
+    do so in several rounds, each from the beginning: a round takes ``share`` of what was left of the item.
+    """
+
+    def __init__(self, items: Sequence[T], within: tuple[str, ...], share: float, *, shown: bool) -> None:
+        self.items, self.within, self.share, self.shown = items, within, share, shown
+        self._bar: Bar | None = None
+
+    def __iter__(self) -> Iterator[T]:
+        """The items; the bar is there until the last one is done with."""
+        with _bar(len(self.items), shown=self.shown) as bar:
+            if bar is None:
+                yield from self.items
+                return
+            self._bar = bar
+            rounds = Rounds(self.share)
+            with steps_of(self.within, lambda done, whole: bar.move(rounds.at(done, whole))):
+                for item in self.items:
+                    bar.move(rounds.next_item())
+                    yield item
+
+    def clear(self) -> None:
+        """Take the bar away before something else is printed; its next move brings it back."""
+        if self._bar is not None:
+            self._bar.clear()
+
+
+@dataclass(slots=True)
+class Rounds:
+    """How far an item is whose steps come in rounds, of which each takes a ``share`` of what is left of it.
+
+    ``begun`` is the item's number, ``left`` the fraction of it that the round before has left, ``done`` the last step.
+    """
+
+    share: float
+    begun: int = -1
+    left: float = 1.0
+    done: int = 0
+
+    def next_item(self) -> int:
+        """The next item's number."""
+        self.begun, self.left, self.done = self.begun + 1, 1.0, 0
+        return self.begun
+
+    def at(self, done: int, whole: int) -> float:
+        """The items done, and the part of the one that is not, after a step of a round; never less than before."""
+        if done <= self.done:
+            self.left *= 1.0 - self.share
+        self.done = done
+        return self.begun + 1.0 - self.left * (1.0 - self.share * done / whole)
+
+
+def progress(items: Sequence[T], *, shown: bool, within: tuple[str, ...] = (RUNS,), share: float = 1.0) -> Steps[T]:
+    """Some items as :class:`Steps`, of a comparison's runs, in one round, unless told otherwise."""
+    return Steps(items, within, share, shown=shown)
+
+
+@contextmanager
+def stations(*, shown: bool) -> Iterator[None]:
+    """While within, a bar on standard error, as of :class:`Steps`, of the stations that a solver reaches."""
+    with _bar(1, shown=shown) as bar:
+        if bar is None:
+            yield
+            return
+        with steps_of(SOLVERS, lambda done, whole: bar.move(done / whole)):
+            yield
 
 
 @contextmanager
 def counted(whole: int, *, shown: bool) -> Iterator[Callable[[int], None]]:
-    """A bar on standard error, as in :func:`progress`, that is told how many of a ``whole`` are done.
+    """A bar on standard error, as of :class:`Steps`, that is told how many of a ``whole`` are done."""
+    with _bar(whole, shown=shown) as bar:
+        yield (lambda done: None) if bar is None else bar.move
 
+
+@dataclass(frozen=True, slots=True)
+class Bar:
+    """A bar on a terminal: ``move`` it to how many are done, ``clear`` its line."""
+
+    move: Callable[[float], None]
+    clear: Callable[[], None]
+
+
+@contextmanager
+def _bar(whole: int, *, shown: bool) -> Iterator[Bar | None]:
+    """A bar of a ``whole``, with the time that remains; None where none is shown.
+
+    None is where standard error is no terminal, where sentences are asked for in its place, and where none is wanted.
     It is drawn when it is told, by no thread of its own: who shows it may still start processes.
     """
-    if not shown or not sys.stderr.isatty():
-        yield lambda done: None
+    if not shown or not sys.stderr.isatty() or heard_from() != NOTSET:
+        yield None
         return
     from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.control import Control
+    from rich.progress import (
+        BarColumn,
+        Progress,
+        TaskProgressColumn,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+    from rich.segment import ControlType
 
-    columns = (TextColumn("solving"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True, auto_refresh=False) as bar:
-        task = bar.add_task("solving", total=whole)
+    columns = (
+        TextColumn("solving"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TextColumn("since"),
+        TimeElapsedColumn(),
+        TextColumn("still"),
+        TimeRemainingColumn(),
+    )
+    terminal = Console(stderr=True)
+    # what goes to standard output stays there: redirected, it would go where the bar is
+    with Progress(
+        *columns,
+        console=terminal,
+        transient=True,
+        auto_refresh=False,
+        redirect_stdout=False,
+        redirect_stderr=False,
+        speed_estimate_period=3600.0,
+    ) as progress:
+        task = progress.add_task("solving", total=whole)
 
-        def tell(done: int) -> None:
-            bar.update(task, completed=done, refresh=True)
+        def move(done: float) -> None:
+            progress.update(task, completed=done, refresh=True)
 
-        yield tell
+        def clear() -> None:
+            terminal.control(Control(ControlType.CARRIAGE_RETURN, (ControlType.ERASE_IN_LINE, 2)))
+
+        move(0)
+        yield Bar(move, clear)
+        clear()
 
 
 @contextmanager
 def current(*, shown: bool) -> Iterator[Callable[[str], None]]:
     """A line on standard error that says what is being done, if that is a terminal and the line is wanted."""
-    if not shown or not sys.stderr.isatty():
+    if not shown or not sys.stderr.isatty() or heard_from() != NOTSET:
         yield lambda text: None
         return
     from rich.console import Console

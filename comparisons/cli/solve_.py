@@ -66,7 +66,8 @@ def command(
             "exact": solvers.exact or exact_answer,
             "solid": solvers.solid or solid_answer,
         }[solver]
-        answer = asked(scene, choices)
+        with showing.stations(shown=not quiet):
+            answer = asked(scene, choices)
     from comparisons.audit import audit
 
     checked = audit(scene, answer)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import sys
 from concurrent.futures.process import BrokenProcessPool
+from difflib import get_close_matches
+from pathlib import Path
 
-from scene import SceneError
+from scene import Mistake, SceneError
 
 WRONG_QUESTION = 2
 NOT_FINISHED = 1
@@ -15,7 +17,8 @@ def told(error: Exception) -> tuple[str, int] | None:
     """A sentence about an ``error`` and the exit code; None of one that is nobody's but ours."""
     match error:
         case SceneError():
-            return f"The question is wrong. {'; '.join(str(mistake) for mistake in error.mistakes)}", WRONG_QUESTION
+            told = "\n  ".join(_told(mistake) for mistake in error.mistakes)
+            return f"The question is wrong.{' ' if len(error.mistakes) == 1 else chr(10) + '  '}{told}", WRONG_QUESTION
         case BrokenProcessPool():
             return (
                 "A process that was solving ended by force, perhaps for want of memory; what was finished stands.",
@@ -32,6 +35,18 @@ def told(error: Exception) -> tuple[str, int] | None:
         case OSError():
             return f"Cannot write {error.filename or 'the output'}: {error.strerror or error}.", WRONG_QUESTION
     return None
+
+
+def _told(mistake: Mistake) -> str:
+    """A mistake, and what to do next where no file is there."""
+    path = Path(mistake.file)
+    if mistake.key or not mistake.file or path.exists():
+        return str(mistake)
+    near = get_close_matches(path.name, [each.name for each in path.parent.glob("*.toml")], n=1)
+    meant = f"is {path.parent / near[0]} meant? " if near else ""
+    return (
+        f"{mistake}; {meant}'cprbm new NAME' writes a scene to start from, 'cprbm list' names those that are built in"
+    )
 
 
 def _of_others(module: str | None) -> bool:

@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from frozendict import frozendict
 
 from comparisons.peers.formulas import Formulas
 from comparisons.peers.kkt import Stationarity, stationarity
 from comparisons.peers.solving import LATE, Solved
 from scene import Scene
 from scene.answer import Array
+from scene.frozendict import frozendict
 from scene.statement import Probe
 
 if TYPE_CHECKING:

@@ -12,9 +12,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
-from frozendict import frozendict
-
 from comparisons.figures import BLUE, GREY, RED, Picture
+from scene.frozendict import frozendict
 
 _SVG, _XLINK = "{http://www.w3.org/2000/svg}", "{http://www.w3.org/1999/xlink}"
 _COLOURS: Mapping[str, str] = frozendict(

@@ -19,11 +19,10 @@ from multiprocessing.process import BaseProcess
 from typing import Any, Generic, TypeVar
 
 from comparisons.stress.apart import Crashed, End, Limits, apart
+from comparisons.threads import ONE_THREAD
 
 A = TypeVar("A")
 R = TypeVar("R")
-
-_ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 @dataclass(slots=True)
@@ -106,8 +105,8 @@ def hosts_of(count: int, prepare: Callable[[], None], limits: Limits) -> Iterato
 def _started(prepare: Callable[[], None]) -> _Host[Any]:
     mine, its = Pipe()
     process = get_context("spawn").Process(target=_served, args=(its, prepare), daemon=True)
-    before = {name: os.environ.get(name) for name in _ONE_THREAD}
-    os.environ.update(_ONE_THREAD)
+    before = {name: os.environ.get(name) for name in ONE_THREAD}
+    os.environ.update(ONE_THREAD)
     deaf = signal.signal(signal.SIGINT, signal.SIG_IGN)  # what a process is started with it keeps while it loads
     try:
         process.start()

@@ -8,8 +8,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from frozendict import frozendict
-
 from comparisons import cases
 from comparisons.calibration import JUDGED, Held, Judged, Tally, held, tally
 from comparisons.choices import Choices
@@ -17,6 +15,7 @@ from comparisons.pairing import ALONE, Crew, Solvers, exact_answer, paired
 from comparisons.soundness import sound_part
 from comparisons.verdict import Verdict, compared
 from scene import Answer, Scene
+from scene.frozendict import frozendict
 
 SIZES = ((17, 40), (20, 60), (40, 80), (80, 160))
 """Links per beam of the CPRBM and finite elements per beam."""

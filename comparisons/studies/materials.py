@@ -21,8 +21,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from frozendict import frozendict
-
 from comparisons import cases
 from comparisons.budgets.poisson import with_ratio
 from comparisons.choices import Choices, Count, Kinematics
@@ -33,6 +31,7 @@ from comparisons.stations import station_of
 from comparisons.studies.last_loads import at_last_loads
 from comparisons.verdict import Comparison, compared
 from scene import Answer, Claim, Material, Probe, Scene
+from scene.frozendict import frozendict
 
 MATERIALS: Mapping[str, Material] = frozendict(
     {

@@ -20,7 +20,6 @@ from itertools import pairwise
 from typing import Literal
 
 import numpy as np
-from frozendict import frozendict
 from scipy import optimize
 
 from comparisons import cases
@@ -29,6 +28,7 @@ from comparisons.studies.readings_optimisers import Ipopt, Optimiser, Slsqp, Tru
 from comparisons.studies.readings_path import End, State, constraints, followed, settled
 from comparisons.studies.readings_problem import PAPER, Array, Mechanism, Problem, Reading
 from scene import Line, Scene
+from scene.frozendict import frozendict
 
 JUMP = np.radians(15.0)
 """By this a link turns further than it may in an ordinary step."""

@@ -13,10 +13,10 @@ from dataclasses import dataclass, field
 from typing import Literal, Protocol
 
 import numpy as np
-from frozendict import frozendict
 from scipy import optimize
 
 from comparisons.studies.readings_problem import Array, Problem
+from scene.frozendict import frozendict
 
 Units = Literal["J, m", "mJ, mm"]
 _FACTORS: Mapping[Units, tuple[float, float]] = frozendict({"J, m": (1.0, 1.0), "mJ, mm": (1e3, 1e3)})

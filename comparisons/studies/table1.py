@@ -12,15 +12,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from frozendict import frozendict
-from threadpoolctl import threadpool_limits
-
 from comparisons import cases
 from comparisons.bench.timing import Method, middle, quartiles_apart, timed
 from comparisons.choices import Choices, Count
 from comparisons.pairing import Solver, Solvers
 from comparisons.studies.last_loads import at_last_loads
 from scene import Answer, Ending, Scene, SceneError
+from scene.frozendict import frozendict
+from scene.threads import one_thread
 
 THEIR_MACHINE = "Intel Core i5-8500, MATLAB R2018b for the CPRBM, ANSYS 19.1 for the finite elements"
 
@@ -152,7 +151,7 @@ def _solve(cell: Cell, solvers: Solvers) -> tuple[float, Answer] | str:
     if cell.formulation is not None:
         choices = replace(choices, formulation=cell.formulation)
     try:
-        with threadpool_limits(limits=1, user_api="blas"):
+        with one_thread():
             return timed(solver, question(cell), choices)
     except SceneError as error:
         return "; ".join(f"{each.key}: found {each.found}; allowed: {each.allowed}" for each in error.mistakes)

@@ -30,7 +30,6 @@ from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
-from frozendict import frozendict
 
 from comparisons.converging.limits import limit
 from comparisons.order import order_of, richardson
@@ -38,6 +37,7 @@ from comparisons.scales import norm
 from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, StationAnswer
 from scene.answer import Array, frozen_array
+from scene.frozendict import frozendict
 
 Sizes = tuple[int, int, int]
 Three = tuple[Answer, Answer, Answer]

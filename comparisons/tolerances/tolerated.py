@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from frozendict import frozendict
-
 from comparisons.bench.timing import LARGEST, Method
 from comparisons.choices import KINEMATICS, Choices, Kinematics
 from comparisons.memory import Remembering
@@ -19,6 +17,7 @@ from comparisons.pairing import Crew, Runs, Solvers, known_exactly, paired
 from comparisons.tolerances.levels import SceneLevels
 from comparisons.tolerances.search import Found, Tolerance, search
 from scene import Answer, Scene
+from scene.frozendict import frozendict
 
 LARGEST_PAPER = 640
 """Most links in the formulation ``paper``, whose time grows with the cube of N; ``auto`` beside it has twice that."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import ThreadpoolController
 
 from fea_reference.solid.certificates import certify
 from fea_reference.solid.contacts import pairs_of
@@ -18,8 +18,10 @@ from fea_reference.solid.refusals import refuse
 from fea_reference.solid.settings import Settings
 from scene.answer import Answer, Ending, Event, StationAnswer
 from scene.statement import Scene, Stage
+from scene.threads import one_thread
+from scene.told import station_reached
 
-_LIBRARIES = ThreadpoolController()
+_SAYS = logging.getLogger(__name__)
 
 _DEFAULT = Settings()
 
@@ -44,7 +46,7 @@ class Prepared:
         stations: list[StationAnswer] = []
         events: list[Event] = []
         ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
-        with _LIBRARIES.limit(limits=1, user_api="blas"):  # small blocks: threads cost more than they bring
+        with one_thread():
             try:
                 known: set[str] = set()
                 for stage in scene.stages:
@@ -61,6 +63,7 @@ class Prepared:
                         ]
                         known = set(march.closing)
                         stations.append(_certified(scene, march, stage, station))
+                        station_reached(_SAYS, scene, len(stations), stations[-1])
             except StoppedError as stopped:
                 ending, sentence = stopped.ending, stopped.sentence
         tested = tuple(

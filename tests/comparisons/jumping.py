@@ -10,12 +10,12 @@ from dataclasses import dataclass, replace
 from math import cos, radians, sin
 
 import numpy as np
-from frozendict import frozendict
 
 from comparisons.choices import Choices
 from comparisons.geometry import length
 from scene import Answer, Critical, Ending, Loss, PinnedEnd, Scene, Shape, StationAnswer
 from scene.answer import frozen_array
+from scene.frozendict import frozendict
 from scene.statement import TurningBody
 from tests.comparisons.made_up import THEORY, MadeUp
 

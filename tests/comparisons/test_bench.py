@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from frozendict import frozendict
 
 from comparisons import cases, documents, geometry, machine
 from comparisons.bench import drawn, errors, question, told
@@ -18,6 +17,7 @@ from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
 from scene import Ending, Mistake, SceneError
+from scene.frozendict import frozendict
 from tests.comparisons.made_up import MadeUp
 
 MACHINE = {"cpu": "made up", "cores": 3, "system": "none", "python": "0", "numpy": "1", "scipy": "2", "scikit-fem": "3"}

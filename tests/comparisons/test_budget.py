@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from frozendict import frozendict
 
 from comparisons.budgets import drawn, told
 from comparisons.budgets.accounts import accounted
@@ -17,6 +16,7 @@ from comparisons.documents import text
 from comparisons.memory import Remembering
 from comparisons.pairing import Solvers
 from scene import Material, Stage
+from scene.frozendict import frozendict
 from tests.comparisons.made_up import THEORY, MadeUp
 
 LOAD = 0.067

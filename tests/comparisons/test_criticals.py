@@ -4,7 +4,6 @@ from dataclasses import replace
 from math import radians
 
 import pytest
-from frozendict import frozendict
 
 from comparisons import cases, claims, documents, sheets
 from comparisons.choices import Choices
@@ -17,6 +16,7 @@ from comparisons.per_branch import critical_sentence, critical_word
 from comparisons.verdict import compared
 from comparisons.words import Word
 from scene import Answer, Claim, Critical, Ending, Loss, Stage
+from scene.frozendict import frozendict
 from tests.comparisons.jumping import FORWARD, Jumping
 
 

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from frozendict import frozendict
 
 from comparisons import cases, documents
 from comparisons.choices import Choices
@@ -15,6 +14,7 @@ from comparisons.converging.families import at, converged
 from comparisons.pairing import ALONE, Solvers
 from scene import Ending
 from scene.answer import frozen_array
+from scene.frozendict import frozendict
 from tests.comparisons.made_up import MadeUp
 
 SIZES = (10, 20, 40, 80)

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from frozendict import frozendict
 
 from comparisons.choices import Choices
 from comparisons.measures import rows_of
@@ -17,6 +16,7 @@ from comparisons.verdict import judged
 from comparisons.words import Word
 from scene import Probe, Stage
 from scene.answer import frozen_array
+from scene.frozendict import frozendict
 from scene.reading import scene_from
 from tests.comparisons.made_up import CLOSES, MadeUp, with_value
 from tests.cprbm.scenes import LENGTH, RIGIDITY, cantilever_data

@@ -6,7 +6,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from frozendict import frozendict
 
 import cprbm
 from comparisons import cases
@@ -27,6 +26,7 @@ from cprbm.kinematics import State, positions
 from cprbm.mechanism import mechanism_of
 from cprbm.point import contact_gradient, point_at
 from scene import SceneError
+from scene.frozendict import frozendict
 
 OFFERED = ("hinge", "gripper", "gripper-driven", "wrapped", "platform", "tapered")
 COUNT = frozendict({"hinge": 20, "gripper": frozendict({"beam1": 15, "beam2": 20}), "gripper-driven": 20})

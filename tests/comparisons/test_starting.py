@@ -52,7 +52,7 @@ def test_the_schema_is_one_and_stands_beside_the_scene(tmp_path, capsys):
     said = json.loads(capsys.readouterr().out)
     jsonschema.Draft7Validator.check_schema(said)
     assert json.loads((tmp_path / SCHEMA).read_text(encoding="utf-8")) == said
-    assert f"#:schema {SCHEMA}" in (tmp_path / "one.toml").read_text(encoding="utf-8").splitlines()[0]
+    assert f"#:schema ./{SCHEMA}" in (tmp_path / "one.toml").read_text(encoding="utf-8").splitlines()[0]
 
 
 @pytest.mark.parametrize("name", cases.scenes())
@@ -114,3 +114,19 @@ def test_a_library_that_ends_the_process_is_no_end_of_the_doctor(tmp_path, monke
     (tmp_path / "fatal.py").write_text("import os\nos._exit(7)\n", encoding="utf-8")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     assert present._trouble("fatal") == "importing it ends Python with 7"
+
+
+def test_quiet_says_nothing_of_what_is_in_order(tmp_path, capsys):
+    assert run(["new", "still", "--out", str(tmp_path), "--quiet"]) == 0
+    assert (tmp_path / "still.toml").exists()
+    assert capsys.readouterr().out == ""
+
+
+def test_a_quiet_doctor_says_what_is_needed_and_missing_alone(monkeypatch, capsys):
+    there, gone = present.LIBRARIES[0], present.LIBRARIES[1]
+    extra = next(library for library in present.LIBRARIES if library.extra)
+    found = [present.State(there, "9.9", ""), present.State(gone, "", ""), present.State(extra, "", "")]
+    monkeypatch.setattr(present, "looked_for", lambda: iter(found))
+    assert run(["doctor", "--quiet"]) == 1
+    (line,) = capsys.readouterr().out.splitlines()
+    assert line.split()[:2] == [gone.name, "missing"]

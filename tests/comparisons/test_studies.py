@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from frozendict import frozendict
 
 from comparisons import cases, documents
 from comparisons.budgets.poisson import with_ratio
@@ -19,6 +18,7 @@ from comparisons.studies.materials_told import told as told_of_materials
 from comparisons.studies.table1_told import told as told_of_table1
 from scene import Answer, Ending, Mistake, Scene, SceneError
 from scene.answer import frozen_array
+from scene.frozendict import frozendict
 from tests.comparisons.made_up import MadeUp
 
 E_0 = 2.3e9

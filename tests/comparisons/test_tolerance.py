@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 
 import click
 import pytest
-from frozendict import frozendict
 
 from comparisons import cases
 from comparisons.choices import Choices
@@ -23,6 +22,7 @@ from comparisons.verdict import compared
 from comparisons.words import Word
 from scene import Ending, Mistake, Probe, SceneError
 from scene.answer import frozen_array
+from scene.frozendict import frozendict
 from tests.comparisons.made_up import MadeUp
 
 

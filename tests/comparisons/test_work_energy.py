@@ -6,7 +6,6 @@ from math import radians
 
 import numpy as np
 import pytest
-from frozendict import frozendict
 
 from comparisons import cases, documents, reactions_drawn, sheets
 from comparisons.choices import Choices
@@ -17,6 +16,7 @@ from comparisons.work_energy import WITHIN, sentence
 from scene import Stage
 from scene.answer import frozen_array
 from scene.freedoms import unit
+from scene.frozendict import frozendict
 from scene.statement import DisplacementDrive
 from tests.comparisons.jumping import Jumping
 from tests.comparisons.made_up import MadeUp

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from frozendict import frozendict
-
 from comparisons.choices import Choices
 from comparisons.pairing import Runs, Solver, Solvers
 from scene import Answer, Scene
 from scene.answer import frozen_array
+from scene.frozendict import frozendict
 
 COARSE = Choices(elements=20, kinematics="bending")
 

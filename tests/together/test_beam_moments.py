@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from frozendict import frozendict
 
 import cprbm
 import fea_reference
 from scene import SceneError, StationAnswer
+from scene.frozendict import frozendict
 from scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH as SCENES_LENGTH
 from tests.cprbm.scenes import MODULUS as SCENES_MODULUS

@@ -24,7 +24,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from frozendict import frozendict
 
 import cprbm.circle
 import cprbm.mechanism
@@ -40,6 +39,7 @@ from comparisons.verdict import compared
 from comparisons.words import Word
 from scene import Answer, Ending, Probe, Scene, StationAnswer
 from scene.answer import Array, frozen_array
+from scene.frozendict import frozendict
 from scene.statement import Arc, BeamContact, CircleContact, Polynomial
 from tests.together.planted import remembered, stiffer, without_contact
 

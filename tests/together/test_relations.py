@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from frozendict import frozendict
 
 from comparisons import cases
 from comparisons.choices import Choices
@@ -21,6 +20,7 @@ from comparisons.relations.relations import RELATIONS
 from comparisons.relations.reversing import reversed_beam
 from scene import Scene
 from scene.answer import frozen_array
+from scene.frozendict import frozendict
 from scene.geometry import points_on
 from scene.reading import scene_from
 from tests.together.planted import asked_of

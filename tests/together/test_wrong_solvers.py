@@ -20,7 +20,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from frozendict import frozendict
 
 import cprbm.nearest
 import cprbm.section
@@ -31,6 +30,7 @@ from comparisons.verdict import Verdict, compared
 from comparisons.words import Word
 from scene import Answer, Scene
 from scene.answer import Array, frozen_array
+from scene.frozendict import frozendict
 from tests.together.planted import COARSE, asked_of, remembered, stiffer, without_contact
 
 

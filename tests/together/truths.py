@@ -11,7 +11,6 @@ from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
-from frozendict import frozendict
 
 from comparisons import cases
 from comparisons.choices import Choices
@@ -19,6 +18,7 @@ from comparisons.geometry import length, points
 from comparisons.pairing import Solver
 from scene import Answer, Certificate, Ending, Probe, Scene, Shape, StationAnswer
 from scene.answer import frozen_array
+from scene.frozendict import frozendict
 from scene.reading import scene_from
 from tests.cprbm.scenes import HINGE
 from tests.references import hinge, three_cantilevers, two_cantilevers

@@ -1,0 +1,133 @@
+"""What is told while something is solved: bars on a terminal alone, sentences where they are asked for."""
+
+import logging
+import os
+import pty
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from comparisons.cli.main import run
+from comparisons.cli.showing import Rounds, progress
+from comparisons.listening import RUNS, SPEAKERS, heard_from, steps_of
+
+ROOT = Path(__file__).parents[2]
+
+
+def _on_a_terminal(*arguments):
+    """Exit code, standard output, which is a pipe, and what a terminal at standard error was given."""
+    program = "import sys; from comparisons.cli.main import run; sys.exit(run(sys.argv[1:]))"
+    mine, its = pty.openpty()
+    environment = os.environ | {"PYTHONPATH": str(ROOT), "TERM": "xterm", "COLUMNS": "100", "OMP_NUM_THREADS": "1"}
+    process = subprocess.Popen(
+        [sys.executable, "-c", program, *arguments], stdout=subprocess.PIPE, stderr=its, env=environment, cwd=ROOT
+    )
+    os.close(its)
+    seen = b""
+    while True:
+        try:
+            piece = os.read(mine, 4096)
+        except OSError:  # its end of the terminal is closed
+            break
+        if not piece:
+            break
+        seen += piece
+    os.close(mine)
+    out = process.stdout.read().decode()
+    process.stdout.close()
+    return process.wait(), out, seen.decode()
+
+
+def test_on_a_terminal_a_bar_goes_to_the_end_with_the_time_that_remains_and_the_tables_go_where_they_are_sent():
+    code, out, seen = _on_a_terminal("solve", "hinge", "-n", "13")
+    assert code == 0
+    parts = [int(part) for part in re.findall(r"(\d+)%", seen)]
+    # the hinge has ten stations
+    assert {10 * k for k in range(11)} <= set(parts)
+    assert parts == sorted(parts)
+    assert re.search(r"still.*\d:\d\d:\d\d", seen)
+    assert "B.displacement" in out
+    assert "B.displacement" not in seen
+    assert "solving" not in out
+
+
+def test_quiet_shows_none_on_a_terminal_either():
+    assert _on_a_terminal("solve", "hinge", "-n", "13", "--quiet") == (0, "", "")
+
+
+def test_sentences_stand_in_the_bar_s_place():
+    code, _, seen = _on_a_terminal("solve", "hinge", "-n", "13", "-v", "--quiet")
+    assert code == 0
+    lines = seen.splitlines()
+    assert len(lines) == 10
+    assert re.fullmatch(r"cprbm: hinge: cprbm, stage load: station 1 of 10, M = 0\.067, \d+ iterations?", lines[0])
+
+
+def test_without_a_terminal_nothing_is_said(right, capsys):
+    assert run(["compare", "hinge", "--quiet"], right) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_a_comparison_says_which_of_its_runs_are_done_and_then_nobody_listens(right, capsys):
+    assert run(["compare", "hinge", "--quiet", "-v"], right) == 0
+    lines = capsys.readouterr().err.splitlines()
+    done = [re.search(r"run (\d+) of (\d+) is done", line).groups() for line in lines]
+    whole = len(done)
+    assert whole > 3
+    assert done == [(str(number), str(whole)) for number in range(1, whole + 1)]
+    assert heard_from() == logging.NOTSET
+    assert not any(logging.getLogger(name).handlers for name in SPEAKERS)
+
+
+def test_who_does_not_listen_costs_no_sentence(right, monkeypatch):
+    """No record is made where nobody asked for its level."""
+    made = []
+    monkeypatch.setattr(logging.Logger, "makeRecord", lambda *given, **named: made.append(given))
+    assert run(["solve", "hinge", "--quiet"], right) == 0
+    import cprbm
+    from comparisons.cases import opened
+
+    assert cprbm.answer(opened("hinge"), cprbm.Settings(links=11)).completed
+    assert made == []
+
+
+def test_steps_are_heard_from_those_alone_who_are_listened_to():
+    heard = []
+    with steps_of((RUNS,), lambda done, whole: heard.append((done, whole))):
+        logging.getLogger(RUNS).info("x", extra={"done": 3, "whole": 7})
+        logging.getLogger(RUNS).info("no steps")
+        logging.getLogger("cprbm.march").info("x", extra={"done": 5, "whole": 7})
+    logging.getLogger(RUNS).info("x", extra={"done": 4, "whole": 7})
+    assert heard == [(3, 7)]
+
+
+@given(
+    st.lists(st.lists(st.integers(1, 9), min_size=1, max_size=4), min_size=1, max_size=4),
+    st.floats(min_value=0.1, max_value=1.0),
+)
+def test_through_rounds_of_any_length_a_bar_never_goes_back_nor_beyond_its_item(items, share):
+    rounds, before = Rounds(share), 0.0
+    for place, each in enumerate(items):
+        assert rounds.next_item() == place
+        for whole in each:
+            for done in range(1, whole + 1):
+                now = rounds.at(done, whole)
+                assert before - 1e-12 <= now <= place + 1.0
+                before = now
+    assert share < 1.0 or before == len(items)
+
+
+def test_one_round_goes_evenly_to_the_end():
+    rounds = Rounds(1.0)
+    rounds.next_item()
+    assert [rounds.at(done, 4) for done in (1, 2, 3, 4)] == [0.25, 0.5, 0.75, 1.0]
+
+
+@pytest.mark.parametrize("shown", [True, False])
+def test_items_are_handed_on_as_they_are(shown):
+    assert list(progress([3, 1, 2], shown=shown)) == [3, 1, 2]

@@ -1,0 +1,1 @@
+"""What is handed out: the archive of sources and the wheel, as files and as they are installed."""

@@ -1,0 +1,138 @@
+"""``python -m tests.packaging``: the wheel as whoever installs it has it, under each Python that is found.
+
+Of each interpreter an environment of its own is made in a folder aside, the wheel put into it with what it asks for,
+and the program tried there, far from the checkout; then tests of the checkout run under it.  It ends with 1 if anything
+fails under any of them.  ``--lowest`` installs, under the oldest one, the lowest versions that are declared (by uv).
+"""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.packaging.made import ROOT, copied, sources, wheel
+
+MINORS = (11, 12, 13, 14)
+QUICK = (
+    "tests/scene",
+    "tests/house/test_loaded.py",
+    "tests/house/test_threads.py",
+    "tests/cprbm/test_cantilever.py",
+    "tests/cprbm/test_hinge.py",
+    "tests/cprbm/test_derivatives.py",
+    "tests/fea_reference/test_cantilever.py",
+    "tests/fea_reference/test_contact.py",
+    "tests/exact/test_pieces.py",
+    "tests/comparisons/test_starting.py",
+    "tests/comparisons/test_archive.py",
+    "tests/comparisons/test_documents.py",
+    "tests/comparisons/test_pairing.py",
+    "tests/comparisons/test_report.py",
+    "tests/comparisons/test_tidy.py",
+    "tests/comparisons/test_verdict.py",
+)
+"""Tests of every room that take minutes together, run under each Python with warnings as errors."""
+TEST_LIBRARIES = ("pytest", "hypothesis", "jsonschema")
+COMMANDS = (
+    ("--version",),
+    ("list",),
+    ("doctor",),
+    ("schema",),
+    ("new", "mine"),
+    ("solve", "mine.toml", "--json", "mine.json"),
+    ("compare", "mine.toml", "--quiet"),
+    ("solve", "hinge", "--solver", "fea", "--quiet"),
+    ("compare", "hinge", "--out", "report"),
+)
+
+
+@dataclass(frozen=True)
+class Tried:
+    """What was done, how it ended, after how many seconds, and what it said."""
+
+    what: str
+    code: int
+    seconds: float
+    said: str
+
+
+def interpreters() -> list[Path]:
+    """One interpreter for each version: on the path, or kept by pyenv."""
+    kept = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
+    found = []
+    for minor in MINORS:
+        here = sorted(kept.glob(f"3.{minor}.*/bin/python"))
+        named = shutil.which(f"python3.{minor}")
+        works = [path for path in (*here, *([Path(named)] if named else ())) if _is(path, minor)]
+        found += works[:1]
+    return found
+
+
+def _is(python: Path, minor: int) -> bool:
+    """Whether it is that version: on the path may stand a word of pyenv's that there is none."""
+    done = subprocess.run([python, "-c", "import sys; print(sys.version_info[1])"], capture_output=True, check=False)
+    return done.returncode == 0 and done.stdout.strip() == str(minor).encode()
+
+
+def tried(python: Path, made: Path, folder: Path, *, lowest: bool) -> Iterator[Tried]:
+    """The wheel under one interpreter, in a folder of its own."""
+    aside = folder / "aside"
+    aside.mkdir(parents=True)
+    environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "VIRTUAL_ENV")}
+    environment |= {"MPLBACKEND": "Agg", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    binaries = folder / "venv" / "bin"
+
+    def do(*command: str | Path, cwd: Path = aside) -> Tried:
+        began = time.monotonic()
+        run = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, check=False)
+        what = " ".join(Path(part).name if isinstance(part, Path) else part for part in command)
+        return Tried(what, run.returncode, time.monotonic() - began, run.stdout + run.stderr)
+
+    yield do(python, "-m", "venv", folder / "venv")
+    if lowest:
+        install: tuple[str | Path, ...] = ("uv", "pip", "install", "--quiet", "--python", binaries / "python")
+        how: tuple[str, ...] = ("--resolution", "lowest-direct")
+    else:
+        install, how = (binaries / "python", "-m", "pip", "install", "--quiet"), ()
+    for wanted in ((*how, str(made)), TEST_LIBRARIES):
+        installed = do(*install, *wanted)
+        yield installed
+        if installed.code:
+            return
+    for command in COMMANDS:
+        yield do(binaries / "cprbm", *command)
+    yield do(binaries / "python", "-m", "pytest", "-q", "-p", "no:cacheprovider", *QUICK, cwd=ROOT)
+
+
+def main() -> int:
+    """Try what is asked for; the exit code."""
+    parser = argparse.ArgumentParser(description="Try the wheel under each Python that is found.")
+    parser.add_argument("--lowest", action="store_true", help="the lowest versions declared, under the oldest Python")
+    parser.add_argument("pythons", nargs="*", type=Path, help="interpreters, in place of those that are found")
+    asked = parser.parse_args()
+    pythons = asked.pythons or interpreters()
+    if asked.lowest:
+        pythons = pythons[:1]
+    failed = not pythons
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        made = wheel(sources(copied(folder), folder / "sdist"), folder / "wheel")
+        for number, python in enumerate(pythons):
+            sys.stdout.write(f"{python}\n")
+            for one in tried(python, made, folder / str(number), lowest=asked.lowest):
+                sys.stdout.write(f"  {one.code:3d} {one.seconds:7.1f} s  {one.what[:100]}\n")
+                if one.code:
+                    failed = True
+                    sys.stdout.write(f"{one.said[-6000:]}\n")
+                sys.stdout.flush()
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
