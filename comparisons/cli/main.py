@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 _COMMANDS = (
     "list",
     "solve",
+    "view",
     "compare",
     "converge",
     "bench",
@@ -52,6 +53,8 @@ class _SubCommands(Commands):
                 from comparisons.cli.list_ import command
             case "solve":
                 from comparisons.cli.solve_ import command
+            case "view":
+                from comparisons.cli.view_ import command
             case "compare":
                 from comparisons.cli.compare_ import command
             case "converge":

@@ -11,9 +11,19 @@ import numpy as np
 
 from comparisons.bodies_drawn import draw_bodies, draw_stops
 from comparisons.figures import along_axis, canvas
-from comparisons.formats import number, scaled_unit
+from comparisons.formats import number
 from comparisons.measures import load_unit
-from comparisons.viewing.frames import UNITS, Bounds, Coloured, Frame, colour_values
+from comparisons.viewing.frames import (
+    ARROW,
+    COLOURS,
+    LEAST,
+    TINY,
+    Bounds,
+    Coloured,
+    Frame,
+    colour_values,
+    shown_unit,
+)
 from scene import Scene
 from scene.answer import Array
 
@@ -22,15 +32,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 INK, PALE, RIGID, FORCE = "#202428", "#d3d6da", "#b9bfc6", "#0a7d33"
-_MAPS: Mapping[Coloured, str] = {"bending_stress": "RdYlBu_r", "combined_stress": "plasma_r", "moment": "RdYlBu_r"}
-_TITLES: Mapping[Coloured, str] = {
+TITLES: Mapping[Coloured, str] = {
     "bending_stress": "bending stress",
     "combined_stress": "combined stress, largest of the section",
     "moment": "bending moment",
 }
 _LONGEST, _SHORTEST = 7.4, 3.2  # inches of the drawing's sides
-_ARROW = 0.13  # of the mechanism's longer side, for the largest force
-_LEAST = 0.02  # of the largest force: what is less has no arrow
 
 
 def picture(scene: Scene, frame: Frame, bounds: Bounds, quantity: Coloured, kind: str, dots: float) -> bytes:
@@ -80,8 +87,7 @@ def _draw(figure: Figure, scene: Scene, frame: Frame, bounds: Bounds, quantity: 
     for strip in frame.strips.values():
         band = 1e3 * np.concatenate([strip.rest_layer(-1.0), strip.rest_layer(1.0)[::-1]])
         axes.fill(*band.T, facecolor=PALE, edgecolor="#aab0b7", linewidth=0.5, zorder=1.0)
-    factor, unit = scaled_unit(UNITS[quantity], bounds.most)
-    unit, factor = ("MPa", 1e6) if UNITS[quantity] == "Pa" else (unit, factor)
+    factor, unit = shown_unit(quantity, bounds.most)
     coloured = None
     for strip in frame.strips.values():
         right, left = 1e3 * strip.layer(-1.0), 1e3 * strip.layer(1.0)
@@ -91,9 +97,9 @@ def _draw(figure: Figure, scene: Scene, frame: Frame, bounds: Bounds, quantity: 
             np.stack([right[:, 1], left[:, 1]]),
             np.stack([values, values]),
             shading="gouraud",
-            cmap=_MAPS[quantity],
+            cmap=COLOURS[quantity],
             vmin=bounds.least / factor,
-            vmax=max(bounds.most, 1e-300) / factor,
+            vmax=max(bounds.most, TINY) / factor,
             rasterized=True,
             zorder=2.0,
         )
@@ -107,7 +113,7 @@ def _draw(figure: Figure, scene: Scene, frame: Frame, bounds: Bounds, quantity: 
     axes.set_title(title_of(scene, frame), loc="left", fontsize=10)
     if coloured is not None:
         bar = figure.colorbar(coloured, ax=axes, shrink=0.85, pad=0.02, aspect=28)
-        bar.set_label(f"{_TITLES[quantity]}, {unit}")
+        bar.set_label(f"{TITLES[quantity]}, {unit}")
         bar.outline.set_linewidth(0.4)  # type: ignore[operator]  # of the stubs
 
 
@@ -117,15 +123,15 @@ def _arrows(axes: Axes, frame: Frame, bounds: Bounds) -> None:
         for spots in frame.station.touching.values():
             axes.plot(*(1e3 * spots.T), ".", color=FORCE, markersize=3.0, zorder=5.0)
         return
-    longest = _ARROW * float(max(bounds.high - bounds.low)) / bounds.force
+    longest = ARROW * float(max(bounds.high - bounds.low)) / bounds.force
     named: set[str] = set()
     for push in frame.pushes:
         size = hypot(*push.resultant)
-        if size < _LEAST * bounds.force:
+        if size < LEAST * bounds.force:
             continue
         if len(push.places) > 1:
             axes.plot(*(1e3 * push.places.T), ".", color=FORCE, markersize=1.6, zorder=4.9)
-        head = 1e3 * push.centre
+        head = 1e3 * push.middle
         tail = head - 1e3 * longest * push.resultant
         axes.annotate(
             "",

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from comparisons.bodies_drawn import Places
+from comparisons.formats import scaled_unit
 from comparisons.geometry import length
 from comparisons.viewing.moved import Obstacle, obstacles, points_at
 from comparisons.viewing.pushes import Push, pushes_at
@@ -21,8 +22,24 @@ Coloured = Literal["bending_stress", "combined_stress", "moment"]
 COLOURED: tuple[Coloured, ...] = ("bending_stress", "combined_stress", "moment")
 UNITS: Mapping[Coloured, str] = {"bending_stress": "Pa", "combined_stress": "Pa", "moment": "N·m"}
 
+COLOURS: Mapping[Coloured, str] = {
+    "bending_stress": "RdYlBu_r",
+    "combined_stress": "plasma_r",
+    "moment": "RdYlBu_r",
+}
+"""Names of colour maps, known to matplotlib."""
+
+TINY = 1e-300
+"""The least that a scale of colours spans, where nothing is stressed."""
+
+ARROW = 0.13
+"""Length of the largest force's arrow, of the mechanism's longer side."""
+
+LEAST = 0.02
+"""Of the largest force: what is less has no arrow."""
+
 _LARGE = 0.6  # of the longest beam: the radius up to which a circle is shown whole
-_DEPTH = 0.03  # of the longest beam: how deep an edge is shown
+_DEPTH = 0.02  # of the longest beam: how deep an edge is shown
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +101,11 @@ def colour_values(strip: Strip, quantity: Coloured) -> Array:
             return strip.combined_stress
         case "moment":
             return strip.moment
+
+
+def shown_unit(quantity: Coloured, most: float) -> tuple[float, str]:
+    """By what the quantity is divided as it is shown, up to ``most``, and the unit then: of stresses MPa."""
+    return (1e6, "MPa") if UNITS[quantity] == "Pa" else scaled_unit(UNITS[quantity], most)
 
 
 def bounds_of(scene: Scene, frames: Sequence[Frame], quantity: Coloured) -> Bounds:

@@ -27,10 +27,11 @@ class Push:
         return np.asarray(self.forces.sum(axis=0))
 
     @property
-    def centre(self) -> Array:
-        """Their places' mean (2,), weighed by their size, m."""
+    def middle(self) -> Array:
+        """The one of their places (2,), m, that is nearest to the mean of all, weighed by their size."""
         weight = np.hypot(self.forces[:, 0], self.forces[:, 1])
-        return np.asarray(weight @ self.places / weight.sum())
+        away = self.places - weight @ self.places / weight.sum()
+        return np.asarray(self.places[np.argmin(np.hypot(away[:, 0], away[:, 1]))])
 
 
 def pushes_at(scene: Scene, station: StationAnswer) -> list[Push]:
