@@ -21,6 +21,9 @@ Kind = Literal[".3d.png", ".3d.gif", ".3d.apng", ".png", ".svg", ".gif", ".apng"
 KINDS: tuple[Kind, ...] = get_args(Kind)
 """How the names of files end, and so what is in them: those that end in another one stand before it."""
 
+MOVING = (".3d.gif", ".3d.apng", ".gif", ".apng", ".pvd")
+"""Those that hold all stations."""
+
 MOST = 120
 """Pictures in an animation: of more stations so many are shown, evenly."""
 
@@ -47,6 +50,8 @@ def files(scene: Scene, answer: Answer, path: Path, kind: Kind, quantity: Colour
         comparisons.viewing.space.NothingDraws: no picture in space can be drawn here.
     """
     frames = frames_of(scene, answer)
+    if kind not in MOVING:
+        frames = frames[-1:]
     bounds = bounds_of(scene, frames, quantity)
     match kind:
         case ".png" | ".svg":
@@ -56,7 +61,7 @@ def files(scene: Scene, answer: Answer, path: Path, kind: Kind, quantity: Colour
             drawn = [flat.picture(scene, each, bounds, quantity, "png", _MOVING_DOTS) for each in some(frames)]
             yield path, animation(drawn, "gif" if kind == ".gif" else "apng")
         case ".3d.png":
-            yield path, _in_space(scene, frames[-1:], bounds, quantity)[0]
+            yield path, _in_space(scene, frames, bounds, quantity)[0]
         case ".3d.gif" | ".3d.apng":
             drawn = _in_space(scene, some(frames), bounds, quantity)
             yield path, animation(drawn, "gif" if kind == ".3d.gif" else "apng")

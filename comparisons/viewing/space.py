@@ -102,7 +102,7 @@ def _picture(view: View, bounds: Bounds, quantity: Coloured, factor: float, bar:
         scalars=view.beams.values[quantity] / factor,
         cmap=COLOURS[quantity],
         clim=(bounds.least / factor, max(bounds.most, TINY) / factor),
-        scalar_bar_args={"title": bar, "color": "black", "vertical": True, "position_x": 0.87, "position_y": 0.2,
+        scalar_bar_args={"title": bar, "color": "black", "vertical": True, "position_x": 0.88, "position_y": 0.2,
                          "height": 0.6, "width": 0.06, "title_font_size": 22, "label_font_size": 20, "fmt": "%.4g"},
         show_scalar_bar=bool(bar),
         ambient=0.25,
@@ -110,7 +110,7 @@ def _picture(view: View, bounds: Bounds, quantity: Coloured, factor: float, bar:
     plotter.add_mesh(strips.extract_feature_edges(40.0), color="black", line_width=1.2)
     if view.obstacles is not None:
         shown = grid(view.obstacles).extract_surface(algorithm="dataset_surface")
-        plotter.add_mesh(shown.clip_box(_box(bounds), invert=False), color=_RIGID, opacity=0.75)
+        plotter.add_mesh(shown.clip_box(_box(bounds), invert=False), color=_RIGID, ambient=0.3)
     for start, end in view.lines:
         plotter.add_mesh(pyvista.Line(start, end).tube(radius=0.005 * size), color="#3c4248")
     for tail, way in view.arrows:
@@ -119,14 +119,18 @@ def _picture(view: View, bounds: Bounds, quantity: Coloured, factor: float, bar:
             pyvista.Arrow(tail, way, scale=length, tip_length=min(0.9, 0.03 * size / length),
                           tip_radius=0.009 * size / length, shaft_radius=0.004 * size / length),
             color=_FORCE,
+            ambient=0.5,
         )  # fmt: skip
-    plotter.add_text(view.title, position="upper_left", color="black", font_size=12)
+    plotter.add_text(view.title, position="upper_left", color="black", font_size=10)
     plotter.enable_parallel_projection()
+    deep = 0.3 * float(np.ptp(view.beams.places[:, 2]))
     middle = np.array([*(0.5 * (bounds.low + bounds.high)), 0.0])
     plotter.camera.focal_point = middle
-    plotter.camera.position = middle + size * np.array(_WAY)
+    plotter.camera.position = middle + 4.0 * size * np.array(_WAY)
     plotter.camera.up = (0.0, 1.0, 0.0)
-    plotter.camera.parallel_scale = 0.62 * size
+    wide, high = bounds.high - bounds.low
+    plotter.camera.parallel_scale = 0.62 * max(high, wide * _SIZE[1] / (0.75 * _SIZE[0])) + deep
+    plotter.renderer.ResetCameraClippingRange()
     plotter.enable_anti_aliasing("ssaa")
     stream = io.BytesIO()
     plotter.screenshot(stream, return_img=False)
