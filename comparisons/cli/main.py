@@ -32,6 +32,7 @@ _COMMANDS = (
     "stress",
     "regress",
     "new",
+    "import",
     "schema",
     "doctor",
 )
@@ -69,6 +70,8 @@ class _SubCommands(Commands):
                 from comparisons.cli.regress_ import command
             case "new":
                 from comparisons.cli.new_ import command
+            case "import":
+                from comparisons.cli.import_ import command
             case "schema":
                 from comparisons.cli.schema_ import command
             case "doctor":

@@ -15,7 +15,6 @@ WHAT_DRAWS = f"{APT} libegl1 libgl1-mesa-dri"
 WANTED: Mapping[str, str] = {
     "gmsh": f"{APT} libgl1 libglu1-mesa libgomp1 libxcursor1 libxft2 libxinerama1",
     "pyvista": WHAT_DRAWS,
-    "casadi": f"{APT} libgomp1",
 }
 """By a library's name what installs all that it wants of the system."""
 
