@@ -24,11 +24,13 @@ _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_-]{0,63}")
 @click.option("--unit", type=click.Choice(["m", "cm", "mm", "um", "in"]), default="mm", show_default=True,
               help="Unit of lengths in the file, and in the scene.")  # fmt: skip
 @click.option("--within", callback=fraction, default="1e-5", show_default=True, metavar="SHARE",
-              help="How far a spline may be from a curve that is no line and no arc, of the curve's length.")  # fmt: skip
+              help="How far a spline may be from a curve that is no line or arc, of its length.")  # fmt: skip
 @click.option("--name", metavar="NAME", help="Name of the scene.  [default: that of the file]")
 @click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR", default=".", show_default=True,
               help="Folder for NAME.toml.")  # fmt: skip
-def command(drawing: Path, thickness: float, width: float, unit: Unit, within: float, name: str | None, out: Path) -> int:
+def command(
+    drawing: Path, thickness: float, width: float, unit: Unit, within: float, name: str | None, out: Path
+) -> int:
     """Write a scene whose beams are the tagged curves of a .geo, .step or .msh FILE, by gmsh.
 
     Lines and circular arcs stay what they are; other curves become splines, and the scene says how far they are off.

@@ -24,13 +24,13 @@ _QUANTITIES = ("bending_stress", "combined_stress", "moment")
 @click.argument("case", metavar="CASE|FILE.toml")
 @click.option("--solver", type=click.Choice(SOLVERS), default="cprbm", show_default=True)
 @click.option("--out", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE",
-              help="What to write; its name's end says of what kind: .png, .svg; .gif, .apng (an animation through the "
-              "stations); .3d.png, .3d.gif, .3d.apng (in space, by PyVista); .vtu, .pvd (one station, all stations, for "
+              help="What to write; its name's end says what it is: .png, .svg; .gif, .apng (an animation through the "
+              "stations); .3d.png, .3d.gif, .3d.apng (in space, by PyVista); .vtu, .pvd (one station, all, for "
               "ParaView).  [default: the scene's name with .png]")  # fmt: skip
 @click.option("--quantity", type=click.Choice(_QUANTITIES), default=_QUANTITIES[0], show_default=True,
               help="What colours the beams.")  # fmt: skip
 @click.option("--station", metavar="[STAGE:]VALUE",
-              help="The station to show, of an animation or series the last one, in SI.  [default: the last of all]")  # fmt: skip
+              help="The station to show, of several the last, in SI.  [default: the last of all]")  # fmt: skip
 @numerical
 @click.option("--quiet", is_flag=True, help="Do not say what was written.")
 @click.pass_obj
@@ -56,7 +56,7 @@ def command(
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
     from comparisons.viewing.shown import KINDS, files, kind_of
-    from comparisons.viewing.space import NothingDraws
+    from comparisons.viewing.space import DrawingError
     from comparisons.viewing.strips import with_stresses
     from comparisons.writing import write
 
@@ -80,7 +80,7 @@ def command(
     try:
         for file, content in files(scene, seen, path, kind, quantity):
             write(file, content)
-    except NothingDraws as trouble:
+    except DrawingError as trouble:
         from comparisons.starting.system import WHAT_DRAWS
 
         raise click.ClickException(

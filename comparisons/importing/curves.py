@@ -9,14 +9,15 @@ c, R    centre and radius of the circle that is nearest in the least squares, m
 δ       largest distance of any p_k from the record
 ======  ==========================================================================
 
-A line or an arc is one to round-off: δ is at most EXACT·L.  A spline goes through some of the points, twice as many each
-time until δ is at most what is allowed.
+A line or an arc is one to round-off: δ is at most EXACT·L.  A spline goes through some of the points, about twice as
+many each time until δ is at most what is allowed.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -87,7 +88,7 @@ def _arc(p: Array, L: float) -> Fitted | None:
     turn = np.diff(np.unwrap(np.arctan2(q[:, 1] - cy, q[:, 0] - cx)))
     if off > EXACT * L or not (np.all(turn > 0.0) or np.all(turn < 0.0)) or len(p) < 4:
         return None
-    way = "counterclockwise" if turn[0] > 0.0 else "clockwise"
+    way: Literal["counterclockwise", "clockwise"] = "counterclockwise" if turn[0] > 0.0 else "clockwise"
     centre = _point(mean + np.array([cx, cy]), L)
     return Fitted(
         Arc(kind="arc", center=centre, start=_point(p[0], L), end=_point(p[-1], L), direction=way),

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
+from itertools import pairwise
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -79,7 +80,7 @@ def _read(path: str) -> Drawn | str:
         gmsh.option.setNumber("General.Terminal", 0)
         try:
             gmsh.open(path)
-        except Exception as error:  # noqa: BLE001 - gmsh raises nothing narrower
+        except Exception as error:
             return f"what gmsh does not read ({str(error).strip() or 'without a reason'})"
         return _found(gmsh.model)
     finally:
@@ -126,16 +127,13 @@ def _traced(model, tag: str, number: int) -> Traced:  # type: ignore[no-untyped-
 
 def _nodes(model, number: int) -> Array:  # type: ignore[no-untyped-def]  # noqa: ANN001
     """The nodes of a meshed curve in their order, (k, 3)."""
-    _, _, nodes = model.mesh.getElements(1, number)
-    # of elements of higher order the first two nodes are the ends
-    kinds, _, _ = model.mesh.getElements(1, number)
+    kinds, _, nodes = model.mesh.getElements(1, number)
     after = {}
     for kind, each in zip(kinds, nodes, strict=True):
         per = model.mesh.getElementProperties(kind)[3]
         for element in each.reshape(-1, per):
-            inner = element[2:]
-            chain = [element[0], *inner, element[1]]
-            after.update({int(a): int(b) for a, b in zip(chain, chain[1:], strict=False)})
+            chain = [element[0], *element[2:], element[1]]  # the ends stand before what is between them
+            after.update({int(a): int(b) for a, b in pairwise(chain)})
     begin = next(iter(set(after) - set(after.values())), next(iter(after)))
     order = [begin]
     while order[-1] in after and after[order[-1]] != begin:

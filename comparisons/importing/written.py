@@ -1,8 +1,8 @@
 """The text of a scene whose beams are the tagged curves of a file.
 
 Every curve of a physical group is a beam with the group's name, numbered where there are several; ends that meet are
-welded to one body.  A physical group of points is a body: all of ``ground`` (or ``fixed``) stand still.  Numbers stay in
-the file's unit.  What no drawing tells, loads and what is asked, is there to be changed.
+welded to one body.  A physical group of points is a body: ``ground`` (or ``fixed``) stands still.  Numbers stay in the
+file's unit.  What no drawing tells, loads and what is asked, is there to be changed.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ def _beams(drawn: Drawn, path: Path, wish: Wish, near: float) -> list[_Beam]:
         made = fitted(curve.points[:, :2], ways, wish.within * _length(curve.points))
         if made is None:
             mistakes.append(Mistake(key, f"a curve that no spline follows within {wish.within:g} of its length",
-                                    "a smooth curve (cut at its corners), or a larger --within", str(path)))  # fmt: skip
+                                    "a smooth curve, cut at corners, or a larger --within", str(path)))  # fmt: skip
             continue
         beams.append(_Beam(name, curve, made))
     if mistakes:
@@ -108,7 +108,7 @@ def _name(tag: str) -> str:
 
 
 def _bodies(drawn: Drawn, beams: list[_Beam], near: float) -> tuple[list[tuple[Array, str]], dict[str, list[str]]]:
-    """Named places, and the names of every body's points; where ends meet that nobody has named is a body of its own."""
+    """Named places, and the names of every body's points; where ends meet at no named place is a body of its own."""
     places: list[tuple[Array, str]] = []
     bodies: dict[str, list[str]] = {}
     for tag, group in drawn.points.items():
@@ -141,8 +141,13 @@ def _at(places: list[tuple[Array, str]], end: Array, near: float) -> str | None:
 
 
 def _lines(
-    drawn: Drawn, path: Path, wish: Wish, beams: list[_Beam], places: list[tuple[Array, str]], bodies: dict[str, list[str]]
-) -> list[str]:  # fmt: skip
+    drawn: Drawn,
+    path: Path,
+    wish: Wish,
+    beams: list[_Beam],
+    places: list[tuple[Array, str]],
+    bodies: dict[str, list[str]],
+) -> list[str]:
     where = {name: place for place, name in places}
     near = SAME * max(_length(beam.traced.points) for beam in beams)
     of_tags = "curves in physical groups, or with names" if drawn.tagged else "all curves: none has a tag"

@@ -1,4 +1,4 @@
-"""A mechanism drawn in its plane: beams at their true thickness, coloured by what stresses them, over the undeformed."""
+"""A mechanism in its plane: beams at their true thickness, coloured by what stresses them, over the undeformed."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def _draw(figure: Figure, scene: Scene, frame: Frame, bounds: Bounds, quantity: 
     if coloured is not None:
         bar = figure.colorbar(coloured, ax=axes, shrink=0.85, pad=0.02, aspect=28)
         bar.set_label(f"{TITLES[quantity]}, {unit}")
-        bar.outline.set_linewidth(0.4)  # type: ignore[operator]  # of the stubs
+        bar.outline.set_linewidth(0.4)
 
 
 def _arrows(axes: Axes, frame: Frame, bounds: Bounds) -> None:

@@ -44,7 +44,7 @@ _DEPTH = 0.02  # of the longest beam: how deep an edge is shown
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """The mechanism at one station: ``strips`` by beam, ``places`` of bodies' points, what presses and what is rigid."""
+    """The mechanism at a station: ``strips`` by beam, ``places`` of bodies' points, what presses and is rigid."""
 
     station: StationAnswer
     strips: Mapping[str, Strip]

@@ -52,7 +52,9 @@ def series(scene: Scene, frames: Sequence[Frame], path: Path) -> Iterator[tuple[
                     f'    <DataSet timestep="{time!r}" part="{part}" name="{name}" '
                     f"file={quoteattr(f'{folder.name}/{file.name}')}/>\n"
                 )
-    head = '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n  <Collection>\n'
+    head = (
+        '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n  <Collection>\n'
+    )
     yield path, (head + "".join(listed) + "  </Collection>\n</VTKFile>\n").encode("utf-8")
 
 

@@ -47,7 +47,7 @@ def files(scene: Scene, answer: Answer, path: Path, kind: Kind, quantity: Colour
 
     Raises:
         ImportError: a library that the kind needs is not there.
-        comparisons.viewing.space.NothingDraws: no picture in space can be drawn here.
+        comparisons.viewing.space.DrawingError: no picture in space can be drawn here.
     """
     frames = frames_of(scene, answer)
     if kind not in MOVING:

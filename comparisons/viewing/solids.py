@@ -23,7 +23,7 @@ Kind = Literal["hexahedron", "vertex"]
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """Cells of one ``kind``: ``places`` (k, 3), m, ``cells`` (c, corners), and ``values`` (k,) or (k, 3) by name, SI."""
+    """Cells of a ``kind``: ``places`` (k, 3), m, ``cells`` (c, corners), ``values`` (k,) or (k, 3) by name, SI."""
 
     kind: Kind
     places: Array
@@ -84,7 +84,7 @@ def obstacles(frame: Frame) -> Block | None:
 
 
 def _obstacle(number: int, obstacle: Obstacle) -> Block:
-    """Every piece of the outline and what is behind it; as hexahedra, of which those to a middle have two edges in one."""
+    """Pieces of the outline and what is behind each, as hexahedra; those to a middle have two edges in one."""
     flat = np.stack([obstacle.outline, obstacle.solid], axis=1)  # (k, 2, 2)
     half = np.full((*flat.shape[:2], 1), 0.5 * obstacle.width)
     places = np.stack([np.concatenate([flat, side * half], axis=2) for side in (-1.0, 1.0)], axis=2).reshape(-1, 3)

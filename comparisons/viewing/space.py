@@ -19,13 +19,12 @@ from comparisons.viewing.frames import COLOURS, TINY, Bounds, Coloured
 from comparisons.viewing.solids import Block
 from scene.answer import Array
 
-
 _SIZE = (1400, 1000)
 _SKY, _RIGID, _FORCE = "white", "#aeb6bf", "#0a7d33"
 _WAY = (-0.55, 0.75, 1.6)  # from the middle to the eye, of the mechanism's larger side
 
 
-class NothingDraws(RuntimeError):
+class DrawingError(RuntimeError):
     """VTK could not draw here; the words say why, as far as it is known."""
 
 
@@ -48,13 +47,13 @@ def pictures(views: Sequence[View], bounds: Bounds, quantity: Coloured, factor: 
 
     Raises:
         ImportError: PyVista is not there.
-        NothingDraws: VTK finds nothing to draw with, or ends.
+        DrawingError: VTK finds nothing to draw with, or ends.
     """
     with ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=_be_silent) as apart:
         try:
             return apart.submit(_drawn, list(views), bounds, quantity, factor, bar).result()
         except BrokenProcessPool:
-            raise NothingDraws("VTK ended as it began to draw") from None
+            raise DrawingError("VTK ended as it began to draw") from None
 
 
 def tried() -> str:
@@ -64,7 +63,7 @@ def tried() -> str:
     bounds = Bounds(0.0 * corner, corner, 0.0, 1.0, 0.0, 1.0)
     try:
         pictures([View("", block, None, (), np.zeros((0, 2, 3)))], bounds, "bending_stress", 1.0, "")
-    except (NothingDraws, ImportError) as trouble:
+    except (DrawingError, ImportError) as trouble:
         return str(trouble)
     return ""
 
@@ -84,7 +83,7 @@ def _drawn(views: list[View], bounds: Bounds, quantity: Coloured, factor: float,
     try:
         return [_picture(view, bounds, quantity, factor, bar) for view in views]
     except RuntimeError as trouble:
-        raise NothingDraws(str(trouble)) from None
+        raise DrawingError(str(trouble)) from None
 
 
 def _picture(view: View, bounds: Bounds, quantity: Coloured, factor: float, bar: str) -> bytes:
