@@ -7,17 +7,21 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from multiprocessing import get_context
+from typing import ParamSpec, TypeVar
 
 import numpy as np
 
 from comparisons.viewing.frames import COLOURS, TINY, Bounds, Coloured
 from comparisons.viewing.solids import Block
 from scene.answer import Array
+
+T = TypeVar("T")
+P = ParamSpec("P")
 
 _SIZE = (1400, 1000)
 _SKY, _RIGID, _FORCE = "white", "#aeb6bf", "#0a7d33"
@@ -49,9 +53,18 @@ def pictures(views: Sequence[View], bounds: Bounds, quantity: Coloured, factor: 
         ImportError: PyVista is not there.
         DrawingError: VTK finds nothing to draw with, or ends.
     """
-    with ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=_be_silent) as apart:
+    return apart(_drawn, list(views), bounds, quantity, factor, bar)
+
+
+def apart(draws: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
+    """What a function ``draws`` in a process of its own.
+
+    Raises:
+        DrawingError: the process was ended by force.
+    """
+    with ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=_be_silent) as pool:
         try:
-            return apart.submit(_drawn, list(views), bounds, quantity, factor, bar).result()
+            return pool.submit(draws, *arguments, **named).result()
         except BrokenProcessPool:
             raise DrawingError("VTK ended as it began to draw") from None
 
