@@ -67,9 +67,11 @@ $(READY): requirements.lock pyproject.toml
 	$(ENVIRONMENT) $(BIN)/python -m pip install --quiet --no-deps --no-build-isolation -e .
 	touch $(READY)
 
+# The extra 'view' is left out: VTK's modules take 565 MB, and nothing but pictures in space needs them.
 lock:
 	{ sed '/^$$/q' requirements.lock; \
-	  uv pip compile --universal --generate-hashes --python-version 3.11 --all-extras --quiet \
+	  uv pip compile --universal --generate-hashes --python-version 3.11 --quiet \
+	    --extra build --extra docs --extra peers --extra solid --extra test --extra threads \
 	    --no-header --no-emit-index-url pyproject.toml; } > requirements.new
 	mv requirements.new requirements.lock
 

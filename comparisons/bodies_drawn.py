@@ -98,11 +98,11 @@ def draw_stops(axes: Axes, scene: Scene, places: Places) -> None:
     for stop in scene.stops.values():
         end = scene.beams[stop.beam].start if stop.end == "start" else scene.beams[stop.beam].end
         assert isinstance(end, PinnedEnd)
-        rotation = _rotation(scene, scene.body_of(end.point), places)
-        if rotation is None:
+        turned = rotation(scene, scene.body_of(end.point), places)
+        if turned is None:
             continue
         pin, towards = np.array(scene.place_of(end.point)), np.array(scene.place_of(stop.towards))
-        base = atan2(*(towards - pin)[::-1]) + rotation
+        base = atan2(*(towards - pin)[::-1]) + turned
         x, y = 1e3 * np.array(places[end.point])
         for limit in (stop.least, stop.most):
             if limit is not None:
@@ -117,12 +117,12 @@ def draw_edges(axes: Axes, scene: Scene, places: Places, colour: str) -> None:
         if not isinstance(contact, EdgeContact):
             continue
         body = scene.bodies[contact.body]
-        edge, rotation = _edge(contact, reach), _rotation(scene, contact.body, places)
-        if rotation is not None and not isinstance(body, FixedBody):
+        edge, turned = _edge(contact, reach), rotation(scene, contact.body, places)
+        if turned is not None and not isinstance(body, FixedBody):
             known = next(point for point in body.points if point in places)
-            cos, sin = np.cos(rotation), np.sin(rotation)
+            cos, sin = np.cos(turned), np.sin(turned)
             edge = (edge - body.points[known]) @ np.array([[cos, sin], [-sin, cos]]) + places[known]
-        axes.plot(*(1e3 * edge.T), "--" if rotation is None else "-", color=colour, linewidth=0.9, zorder=0)
+        axes.plot(*(1e3 * edge.T), "--" if turned is None else "-", color=colour, linewidth=0.9, zorder=0)
 
 
 def _edge(contact: EdgeContact, reach: float) -> Array:
@@ -165,7 +165,7 @@ def draw_names(axes: Axes, scene: Scene) -> None:
         )
 
 
-def _rotation(scene: Scene, body: str, places: Places) -> float | None:
+def rotation(scene: Scene, body: str, places: Places) -> float | None:
     """φ of a body, rad, from two places or more; None where there are fewer."""
     if isinstance(scene.bodies[body], FixedBody):
         return 0.0

@@ -12,24 +12,37 @@ INCOMPLETE = 1
 def command(quiet: bool) -> int:  # noqa: FBT001 - click hands it over by name
     """Say which libraries are there and which are missing, with the line that installs each.
 
+    At the end stands whether pictures in space can be drawn, which needs libraries of the system.
     Exit code 1 says that something is missing without which nothing works.
     """
     import platform
 
     from comparisons.starting.present import looked_for
+    from comparisons.starting.system import WHAT_DRAWS, line_for
 
     if not quiet:
         click.echo(f"Python {platform.python_version()}")
-    whole = True
+    whole, drawing = True, False
     for state in looked_for():
         library = state.library
         if state.there:
             said = f"{state.version:<12} for {library.needed_for}"
         elif state.version:
             said = f"{state.version:<12} cannot be imported ({state.trouble}); for {library.needed_for}"
+            line = line_for(library.name, state.trouble)
+            said += f"; on Debian and Ubuntu install what it wants: {line}" if line else ""
         else:
             said = f"{'missing':<12} for {library.needed_for}; install it: {library.line}"
         whole &= state.there or bool(library.extra)
+        drawing |= state.there and library.name == "pyvista"
         if not quiet or not (state.there or library.extra):
             click.echo(f"{library.name:<14} {said}")
+    if drawing and not quiet:
+        from comparisons.viewing.space import tried
+
+        trouble = tried()
+        said = "works        for pictures in space by 'view'"
+        if trouble:
+            said = f"{'impossible':<12} ({trouble}); on Debian and Ubuntu install what draws: {WHAT_DRAWS}"
+        click.echo(f"{'drawing':<14} {said}")
     return 0 if whole else INCOMPLETE

@@ -31,7 +31,9 @@ _COMMANDS = (
     "stress",
     "report",
     "regress",
+    "view",
     "new",
+    "import",
     "schema",
     "doctor",
 )
@@ -53,6 +55,8 @@ class _SubCommands(Commands):
                 from comparisons.cli.list_ import command
             case "solve":
                 from comparisons.cli.solve_ import command
+            case "view":
+                from comparisons.cli.view_ import command
             case "compare":
                 from comparisons.cli.compare_ import command
             case "converge":
@@ -69,6 +73,8 @@ class _SubCommands(Commands):
                 from comparisons.cli.regress_ import command
             case "new":
                 from comparisons.cli.new_ import command
+            case "import":
+                from comparisons.cli.import_ import command
             case "schema":
                 from comparisons.cli.schema_ import command
             case "doctor":

@@ -18,18 +18,20 @@ SECONDS = 120.0
 class Library:
     """A library: its distribution's ``name``, the ``module`` that is imported, what it is ``needed_for``.
 
-    ``extra`` is the part of the project that it comes with, empty of one without which nothing works.
+    ``extra`` is the part of the project that it comes with, empty of one without which nothing works; ``least`` the
+    oldest release that will do.
     """
 
     name: str
     module: str
     needed_for: str
+    least: str
     extra: str = ""
 
     @property
     def line(self) -> str:
-        """What installs it."""
-        return f'pip install "cprbm[{self.extra}]"' if self.extra else "pip install cprbm"
+        """What installs it for the Python that runs."""
+        return f'{sys.executable} -m pip install "{self.name}{self.least}"'
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,18 +49,19 @@ class State:
 
 
 LIBRARIES = (
-    Library("numpy", "numpy", "every number"),
-    Library("scipy", "scipy.linalg", "linear algebra"),
-    Library("scikit-fem", "skfem", "the finite elements"),
-    Library("pydantic", "pydantic", "reading scenes and settings"),
-    Library("click", "click", "the command line"),
-    Library("rich", "rich", "tables and progress"),
-    Library("jinja2", "jinja2", "pages"),
-    Library("matplotlib", "matplotlib.figure", "figures"),
-    Library("casadi", "casadi", "IPOPT, one of the optimisers that 'bench' and 'study readings' compare with", "peers"),
-    Library("threadpoolctl", "threadpoolctl", "one thread of BLAS where Python has loaded it before", "threads"),
-    Library("gmsh", "gmsh", "meshes of the solid by gmsh, in the place of plain ones", "solid"),
-    Library("meshio", "meshio", "carrying them over", "solid"),
+    Library("numpy", "numpy", "every number", ">=2.0"),
+    Library("scipy", "scipy.linalg", "linear algebra", ">=1.13"),
+    Library("scikit-fem", "skfem", "the finite elements", ">=12.0,<13"),
+    Library("pydantic", "pydantic", "reading scenes and settings", ">=2.9"),
+    Library("click", "click", "the command line", ">=8.1"),
+    Library("rich", "rich", "tables and progress", ">=13.7"),
+    Library("jinja2", "jinja2", "pages", ">=3.1"),
+    Library("matplotlib", "matplotlib.figure", "figures", ">=3.9"),
+    Library("casadi", "casadi", "IPOPT, an optimiser that 'bench' and 'study readings' compare with", ">=3.6", "peers"),
+    Library("threadpoolctl", "threadpoolctl", "one thread of BLAS where it is loaded before", ">=3.5", "threads"),
+    Library("gmsh", "gmsh", "meshes of the solid by gmsh, and 'import' of geometry", ">=4.13", "solid"),
+    Library("meshio", "meshio", "those meshes, and files for ParaView", ">=5.3", "solid"),
+    Library("pyvista", "pyvista", "pictures in space by 'view'", ">=0.44", "view"),
 )
 
 
@@ -70,10 +73,10 @@ def looked_for() -> Iterator[State]:
         except PackageNotFoundError:
             yield State(library, "", "")
             continue
-        yield State(library, found, _trouble(library.module))
+        yield State(library, found, trouble_with(library.module))
 
 
-def _trouble(module: str) -> str:
+def trouble_with(module: str) -> str:
     """Why a module cannot be imported: the last line that Python says of it."""
     try:
         done = subprocess.run(

@@ -2,6 +2,7 @@
 
 import copy
 import json
+import sys
 import tomllib
 from pathlib import Path
 
@@ -86,16 +87,17 @@ def test_the_schema_refuses_what_reading_refuses(place, value):
 
 def test_the_doctor_names_what_is_missing_and_what_installs_it(monkeypatch, capsys):
     asked = (
-        present.Library("numpy", "numpy", "every number"),
-        present.Library("no-such-thing", "nothing", "the impossible", "dreams"),
-        present.Library("scipy", "scipy.no_such_part", "linear algebra", "dreams"),
+        present.Library("numpy", "numpy", "every number", ">=2.0"),
+        present.Library("no-such-thing", "nothing", "the impossible", ">=0.7", "dreams"),
+        present.Library("scipy", "scipy.no_such_part", "linear algebra", "", "dreams"),
     )
     monkeypatch.setattr(present, "LIBRARIES", asked)
     assert run(["doctor"]) == 0
     said = capsys.readouterr().out
-    assert 'no-such-thing  missing      for the impossible; install it: pip install "cprbm[dreams]"' in said
+    line = f'{sys.executable} -m pip install "no-such-thing>=0.7"'
+    assert f"no-such-thing  missing      for the impossible; install it: {line}\n" in said
     assert "cannot be imported (ModuleNotFoundError: No module named 'scipy.no_such_part')" in said
-    monkeypatch.setattr(present, "LIBRARIES", (present.Library("no-such-thing", "nothing", "all"),))
+    monkeypatch.setattr(present, "LIBRARIES", (present.Library("no-such-thing", "nothing", "all", ""),))
     assert run(["doctor"]) == 1
 
 
@@ -103,17 +105,31 @@ def test_the_doctor_lists_all_that_the_project_asks_for():
     from packaging.requirements import Requirement
 
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    extras = project["optional-dependencies"]
-    extras = {name: asked for name, asked in extras.items() if name not in ("build", "docs", "test")}
-    wanted = {(Requirement(each).name, "") for each in project["dependencies"]}
-    wanted |= {(Requirement(each).name, extra) for extra, asked in extras.items() for each in asked}
-    assert {(library.name, library.extra) for library in present.LIBRARIES} == wanted
+    extras = {
+        name: asked for name, asked in project["optional-dependencies"].items() if name not in ("build", "docs", "test")
+    }
+    wanted = {(Requirement(each), "") for each in project["dependencies"]}
+    wanted |= {(Requirement(each), extra) for extra, asked in extras.items() for each in asked}
+    told = {(Requirement(library.name + library.least), library.extra) for library in present.LIBRARIES}
+    assert told <= wanted
+    assert {requirement for requirement, _ in told} == {requirement for requirement, _ in wanted}
+
+
+def test_a_library_that_wants_one_of_the_system_is_told_with_what_installs_it(tmp_path, monkeypatch, capsys):
+    broken = 'raise OSError("libGLU.so.1: cannot open shared object file")\n'
+    (tmp_path / "gmsh_of_a_bare_machine.py").write_text(broken, encoding="utf-8")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    library = present.Library("gmsh", "gmsh_of_a_bare_machine", "meshes", "", "solid")
+    monkeypatch.setattr(present, "LIBRARIES", (library,))
+    monkeypatch.setattr(present, "version", lambda name: "4.0")
+    assert run(["doctor"]) == 0
+    assert "what it wants: apt-get install --yes --no-install-recommends libgl1 libglu1-mesa" in capsys.readouterr().out
 
 
 def test_a_library_that_ends_the_process_is_no_end_of_the_doctor(tmp_path, monkeypatch):
     (tmp_path / "fatal.py").write_text("import os\nos._exit(7)\n", encoding="utf-8")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    assert present._trouble("fatal") == "importing it ends Python with 7"
+    assert present.trouble_with("fatal") == "importing it ends Python with 7"
 
 
 def test_quiet_says_nothing_of_what_is_in_order(tmp_path, capsys):

@@ -2,7 +2,7 @@
 
 The law (CONTRIBUTING.md): scene imports none of our rooms; the solvers and exact import scene only, and the solid,
 though it lives with the beam elements, is a room of its own; inside comparisons one module, pairing, imports them; each
-heavy library has one door, imported there when used.
+heavy library has one door in a room, imported there when used.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ MAY_IMPORT = {
 SOLVERS = {"cprbm", "fea_reference", "fea_reference.solid", "exact"}
 WITHIN = ("fea_reference.solid",)
 DOOR_TO_SOLVERS = "comparisons.pairing"
-HEAVY = ("matplotlib", "pyvista", "gmsh", "meshio")
+HEAVY = ("matplotlib", "pyvista", "gmsh", "meshio", "PIL")
 HEAVY_ROOMS = {"skfem": "fea_reference"}
 TEST_LIBRARIES = ("pytest", "hypothesis", "tests")
 
@@ -136,8 +136,9 @@ def _wrong_doors(found) -> Iterator[str]:
             continue
         if not each.late:
             yield f"{each}: a heavy library is imported inside the function that uses it"
-        if doors.setdefault(library, each.importer) != each.importer:
-            yield f"{each}: its one door is {doors[library]}"
+        door = doors.setdefault((room_of(each.importer), library), each.importer)
+        if door != each.importer:
+            yield f"{each}: its one door is {door}"
 
 
 def _cycles(found, modules) -> Iterator[str]:

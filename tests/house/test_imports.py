@@ -45,6 +45,15 @@ def test_a_lawful_house_passes(tmp_path):
     assert violations(_house(tmp_path)) == []
 
 
+def test_two_rooms_that_share_nothing_have_a_door_each(tmp_path):
+    house = _house(
+        tmp_path,
+        fea_reference__solid__dot__gmshed="def f():\n    import gmsh",
+        comparisons__imported="def f():\n    import gmsh",
+    )
+    assert violations(house) == []
+
+
 PLANTED = {
     "scene imports a solver": ("scene__bad", "import cprbm.chain", "scene may not import cprbm"),
     "the solid imports beam elements": (

@@ -1,0 +1,119 @@
+"""``cprbm view``: a picture, an animation or VTU files of the deformed mechanism."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from comparisons.choices import Kinematics
+from comparisons.cli.answering import SOLVERS, SolverName, answered, told
+from comparisons.cli.options import numerical, one_of_both, verbose
+
+if TYPE_CHECKING:
+    from comparisons.viewing.frames import Coloured
+    from scene import Answer
+
+_QUANTITIES = ("bending_stress", "combined_stress", "moment")
+
+
+@click.command("view")
+@click.argument("case", metavar="CASE|FILE.toml")
+@click.option("--solver", type=click.Choice(SOLVERS), default="cprbm", show_default=True)
+@click.option("--out", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE",
+              help="What to write; its name's end says what it is: .png, .svg; .gif, .apng (an animation through the "
+              "stations); .3d.png, .3d.gif, .3d.apng (in space, by PyVista); .vtu, .pvd (one station, all, for "
+              "ParaView).  [default: the scene's name with .png]")  # fmt: skip
+@click.option("--quantity", type=click.Choice(_QUANTITIES), default=_QUANTITIES[0], show_default=True,
+              help="What colours the beams.")  # fmt: skip
+@click.option("--station", metavar="[STAGE:]VALUE",
+              help="The station to show, of several the last, in SI.  [default: the last of all]")  # fmt: skip
+@numerical
+@click.option("-q", "--quiet", is_flag=True, help="Do not say what was written.")
+@verbose
+@click.pass_obj
+def command(
+    planted: object,
+    case: str,
+    solver: SolverName,
+    out: Path | None,
+    quantity: Coloured,
+    station: str | None,
+    links: int | Mapping[str, int],
+    elements: int | Mapping[str, int],
+    formulation: Literal["auto", "paper"],
+    kinematics: Kinematics,
+    penetration: float,
+    across: int,
+    tol: float | None,
+    quiet: bool,  # noqa: FBT001 - click hands it over by name
+) -> int:
+    """Show one scene as one solver answers it: beams at their thickness, coloured by what stresses them."""
+    from comparisons import cases
+    from comparisons.audit import audit
+    from comparisons.choices import Choices, check
+    from comparisons.cli import showing
+    from comparisons.viewing.shown import KINDS, files, kind_of
+    from comparisons.viewing.space import DrawingError
+    from comparisons.viewing.strips import with_stresses
+    from comparisons.writing import write
+
+    one_of_both(tol)
+    scene = with_stresses(cases.opened(case))
+    path = Path(f"{scene.name}.png") if out is None else out
+    kind = kind_of(path)
+    if kind is None:
+        raise click.BadParameter(f"found {path.name!r}; allowed: a name that ends in {', '.join(KINDS)}",
+                                 param_hint="--out")  # fmt: skip
+    wanted = None if station is None else _wanted(station, [(s.name, v) for s in scene.stages for v in s.stations])
+    choices = Choices(links, formulation, elements, kinematics, penetration, across)
+    check(choices, scene)
+    showing.room_for(None, path.parent)
+    answer, found = answered(planted, scene, solver, choices, tol, shown=not quiet)
+    code = told(scene, answer, found, audit(scene, answer).complaints)
+    seen = _up_to(answer, wanted)
+    if not seen.stations:
+        click.echo(f"cprbm: {scene.name}: there is nothing to show: that station was not reached.", err=True)
+        return code
+    try:
+        for file, content in files(scene, seen, path, kind, quantity):
+            write(file, content)
+    except DrawingError as trouble:
+        from comparisons.starting.system import WHAT_DRAWS
+
+        raise click.ClickException(
+            f"Nothing can be drawn in space here ({trouble}); on Debian and Ubuntu this installs what is needed: "
+            f"{WHAT_DRAWS}"
+        ) from None
+    if not quiet:
+        click.echo(f"{path}: {scene.name} by {solver}, {seen.stations[-1].stage} {seen.stations[-1].value:g}.")
+    return code
+
+
+def _wanted(text: str, known: list[tuple[str, float]]) -> tuple[str, float]:
+    """The last of the known stations that a text names.
+
+    Raises:
+        click.BadParameter: it names none.
+    """
+    stage, _, value = text.rpartition(":")
+    try:
+        number = float(value)
+    except ValueError:
+        number = float("nan")
+    for name, each in reversed(known):
+        if stage in ("", name) and abs(each - number) <= 1e-9 * max(abs(each), abs(number)):
+            return name, each
+    allowed = ", ".join(f"{name}:{each:g}" for name, each in known[:40]) + (", ..." if len(known) > 40 else "")
+    raise click.BadParameter(f"found {text!r}; allowed: one of {allowed}", param_hint="--station")
+
+
+def _up_to(answer: Answer, wanted: tuple[str, float] | None) -> Answer:
+    """The answer as far as the station that is wanted; without stations if it was not reached."""
+    if wanted is None:
+        return answer
+    places = [place for place, each in enumerate(answer.stations) if (each.stage, each.value) == wanted]
+    return replace(answer, stations=answer.stations[: places[-1] + 1] if places else ())

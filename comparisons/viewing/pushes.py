@@ -1,0 +1,61 @@
+"""Contact forces at a station, as far as the answer says where and how each acts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from scene import Scene, StationAnswer
+from scene.answer import Array
+from scene.statement import SelfContact
+
+
+@dataclass(frozen=True, slots=True)
+class Push:
+    """Forces of one contact ``on`` a beam or body: where they press, m (k, 2), and what they are, N (k, 2)."""
+
+    contact: str
+    on: str
+    places: Array
+    forces: Array
+
+    @property
+    def resultant(self) -> Array:
+        """Their sum (2,), N."""
+        return np.asarray(self.forces.sum(axis=0))
+
+    @property
+    def middle(self) -> Array:
+        """The one of their places (2,), m, that is nearest to the mean of all, weighed by their size."""
+        weight = np.hypot(self.forces[:, 0], self.forces[:, 1])
+        away = self.places - weight @ self.places / weight.sum()
+        return np.asarray(self.places[np.argmin(np.hypot(away[:, 0], away[:, 1]))])
+
+
+def pushes_at(scene: Scene, station: StationAnswer) -> list[Push]:
+    """The forces of closed contacts, at the edges on which they press; none where the answer does not say them."""
+    return list(_pushes(scene, station))
+
+
+def _pushes(scene: Scene, station: StationAnswer) -> Iterator[Push]:
+    statics = station.statics
+    if statics is None:
+        return
+    size = np.hypot(statics.forces[:, 0], statics.forces[:, 1])
+    for name, contact in scene.contacts.items():
+        acting = np.array([by == name for by in statics.by], dtype=bool) & (size > 0.0)
+        for on in dict.fromkeys(on for on, acts in zip(statics.on, acting, strict=True) if acts):
+            mine = np.flatnonzero(acting & np.array([each == on for each in statics.on], dtype=bool))
+            places, forces = statics.places[mine], statics.forces[mine]
+            if contact.thick and on in scene.beams:  # they are told on the neutral line
+                beam, line = scene.beams[on], station.shapes[on]
+                t = beam.thickness_at(statics.s[mine] / line.s[-1])
+                places = places - 0.5 * t[:, None] * forces / size[mine, None]
+            parts = [np.arange(len(mine))]
+            if isinstance(contact, SelfContact) and len(mine) > 1:  # of two places of one beam
+                along = np.argsort(statics.s[mine], kind="stable")
+                parts = np.split(along, [int(np.argmax(np.diff(statics.s[mine][along]))) + 1])
+            for part in parts:
+                yield Push(name, on, places[part], forces[part])

@@ -1,0 +1,127 @@
+"""Scenes from drawings: lines and arcs as they are, splines with a deviation that is stated, and what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+
+import cprbm
+from comparisons.cli.main import run
+from comparisons.importing.curves import fitted
+from comparisons.starting.present import trouble_with
+from scene import Arc, Line, Spline, read
+
+needs_gmsh = pytest.mark.skipif(bool(trouble_with("gmsh")), reason="gmsh cannot be imported here")
+
+FRAME = """
+Point(1) = {0, 0, 0}; Point(2) = {70, 0, 0}; Point(3) = {90, 20, 0}; Point(4) = {70, 20, 0}; Point(5) = {90, 60, 0};
+Point(6) = {60, 80, 0}; Point(7) = {40, 70, 0}; Point(8) = {0, 90, 0}; Point(9) = {-33, 0, 0};
+Line(1) = {1, 2}; Circle(2) = {2, 4, 3}; Line(3) = {3, 5}; Spline(4) = {5, 6, 7, 8}; Line(5) = {1, 9};
+Physical Curve("foot") = {1}; Physical Curve("leg") = {2, 3}; Physical Curve("the arch") = {4};
+Physical Point("ground") = {1}; Physical Point("tip") = {8};
+"""
+
+
+@needs_gmsh
+def test_a_drawing_becomes_a_scene_that_is_solved(tmp_path):
+    (tmp_path / "frame.geo").write_text(FRAME, encoding="utf-8")
+    asked = ["import", str(tmp_path / "frame.geo"), "--thickness", "1.1", "--width", "9", "--out", str(tmp_path)]
+    assert run(asked) == 0
+    scene = read(tmp_path / "frame.toml")
+    assert list(scene.beams) == ["foot", "leg-1", "leg-2", "the_arch"]  # the curve without a tag is none
+    foot, bend, leg, arch = scene.beams.values()
+    assert foot.curve == Line(kind="line", start=(0.0, 0.0), end=(0.07, 0.0))
+    assert isinstance(bend.curve, Arc)
+    assert bend.curve.center == pytest.approx((0.07, 0.02), rel=1e-12)
+    assert bend.curve.direction == "counterclockwise"
+    assert isinstance(leg.curve, Line)
+    assert isinstance(arch.curve, Spline)
+    assert foot.thickness == pytest.approx(0.0011)
+    assert scene.bodies["ground"].points == {"ground-1": (0.0, 0.0)}
+    assert scene.place_of("tip") == pytest.approx((0.0, 0.09))
+    assert foot.end.point == bend.start.point
+    assert arch.end.point == "tip"
+    assert cprbm.answer(scene, cprbm.Settings(links=7)).completed
+    before = (tmp_path / "frame.toml").read_bytes()
+    assert run(asked) == 2  # what is there is kept
+    assert run([*asked, "--name", "again"]) == 0
+    again = (tmp_path / "again.toml").read_bytes()
+    assert again == before.replace(b'name = "frame"', b'name = "again"').replace(b"# frame:", b"# again:")
+
+
+@needs_gmsh
+@pytest.mark.parametrize(
+    ("drawing", "words"),
+    [
+        ("Point(1) = {0, 0", "found what gmsh does not read"),
+        (
+            "Point(1) = {0, 0, 0}; Point(2) = {7, 0, 3}; Point(3) = {0, 1, 0}; Line(1) = {1, 2}; "
+            'Line(2) = {1, 3}; Physical Curve("up") = {1};',
+            "up (curve 1, Line): found points 3 mm off the plane z = 0; allowed: curves in one plane",
+        ),
+        (
+            "Point(1) = {0, 0, 0}; Point(2) = {7, 1, 0}; Point(3) = {3, 5, 0}; Spline(1) = {1, 2, 3, 1}; "
+            'Physical Curve("ring") = {1};',
+            "ring (curve 1, Nurb): found a curve that comes back",
+        ),
+    ],
+    ids=["syntax", "plane", "ring"],
+)
+def test_what_is_no_beam_is_refused_by_name(tmp_path, capsys, drawing, words):
+    path = tmp_path / "bad.geo"
+    path.write_text(drawing + "\n", encoding="utf-8")  # gmsh leaves out a last line without an end
+    assert run(["import", str(path), "--thickness", "1", "--width", "9", "--out", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    assert str(path) in said
+    assert words in said
+    assert not (tmp_path / "bad.toml").exists()
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path, capsys):
+    assert run(["import", str(tmp_path / "no.geo"), "--thickness", "1", "--width", "9"]) == 2
+    assert "no.geo: found no such file" in capsys.readouterr().err
+
+
+def test_points_of_a_line_are_a_line():
+    t = np.linspace(0.0, 1.0, 57)[:, None]
+    made = fitted((1.0 - t) * np.array([0.3, 0.1]) + t * np.array([0.9, -0.7]), None, 1e-5)
+    assert made.curve == Line(kind="line", start=(0.3, 0.1), end=(0.9, -0.7))
+    assert made.deviation < 1e-15
+
+
+@pytest.mark.parametrize(("first", "turn"), [(0.3, 1.1), (2.9, -4.7)])
+def test_points_of_a_circle_are_an_arc(first, turn):
+    angle = first + turn * np.linspace(0.0, 1.0, 61)
+    p = np.array([13.0, -7.0]) + 0.9 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    made = fitted(p, None, 1e-5)
+    assert isinstance(made.curve, Arc)
+    assert made.curve.center == pytest.approx((13.0, -7.0), rel=1e-11)
+    assert made.curve.direction == ("counterclockwise" if turn > 0.0 else "clockwise")
+
+
+def test_what_is_nearly_a_circle_is_none():
+    angle = np.linspace(0.2, 1.7, 301)
+    p = np.stack([3.0 * np.cos(angle), 3.00003 * np.sin(angle)], axis=1)
+    assert isinstance(fitted(p, None, 1e-5).curve, Spline)
+
+
+def test_a_spline_is_as_near_as_it_says():
+    """On y = sin x, whose distance from a place (x, y) near it is |y − sin x|/√(1 + cos²x) to first order."""
+    x = np.linspace(0.0, 3.0, 2001)
+    ways = np.array([[1.0, math.cos(at)] for at in (0.0, 3.0)])
+    ways /= np.hypot(ways[:, 0], ways[:, 1])[:, None]
+    made = fitted(np.stack([x, np.sin(x)], axis=1), ways, 3e-5)
+    assert isinstance(made.curve, Spline)
+    assert made.deviation <= 3e-5
+    from scene.geometry import points_on
+
+    px, py = points_on(made.curve, np.linspace(0.0, 1.0, 4001)).T
+    true = float(np.max(np.abs(py - np.sin(px)) / np.hypot(1.0, np.cos(px))))
+    chord = (3.7 / 8000) ** 2 / 8.0  # measured against a polyline, whose height over a chord is κh²/8 with κ ≤ 1
+    assert made.deviation == pytest.approx(true, abs=chord)
+
+
+def test_a_corner_is_no_spline():
+    t = np.linspace(0.0, 1.0, 201)
+    p = np.concatenate([np.stack([t, 0.0 * t], axis=1), np.stack([1.0 + 0.0 * t[1:], t[1:]], axis=1)])
+    assert fitted(p, None, 1e-9) is None

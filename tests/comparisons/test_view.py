@@ -1,0 +1,312 @@
+"""What ``view`` writes: pictures that stay the same, and cells whose volumes and stresses are those of the beams."""
+
+import io
+import math
+import os
+import re
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import cprbm
+from comparisons import cases
+from comparisons.cli.main import run
+from comparisons.starting.present import trouble_with
+from comparisons.viewing import moved, shown, space
+from comparisons.viewing.animated import animation
+from comparisons.viewing.frames import bounds_of, frames_of
+from comparisons.viewing.solids import ACROSS, beams, contact_forces, obstacles
+from comparisons.viewing.strips import SECTIONS, with_stresses
+from scene.statement import CircleContact, FunctionContact, HalfPlaneContact, LineContact
+
+needs_meshio = pytest.mark.skipif(bool(trouble_with("meshio")), reason="meshio, of the extra 'view', is not there")
+needs_pyvista = pytest.mark.skipif(bool(trouble_with("pyvista")), reason="pyvista, of the extra 'view', is not there")
+
+
+@pytest.fixture(scope="module")
+def hinge():
+    scene = with_stresses(cases.opened("hinge"))
+    return scene, cprbm.answer(scene, cprbm.Settings(links=19))
+
+
+@pytest.fixture(scope="module")
+def tapered():
+    scene = with_stresses(cases.opened("tapered"))
+    return scene, cprbm.answer(scene, cprbm.Settings(links=23))
+
+
+def written(asked, tmp_path, name, quantity="bending_stress"):
+    kind = shown.kind_of(tmp_path / name)
+    return dict(shown.files(*asked, tmp_path / name, kind, quantity))
+
+
+def volume(places, cells):
+    """Of prisms along z over quadrilaterals: shoelace formula times width, the mean of the four corners'."""
+    corner = places[cells]
+    assert np.array_equal(corner[:, :4, :2], corner[:, 4:, :2])
+    x, y = corner[:, :4, 0], corner[:, :4, 1]
+    area = 0.5 * np.sum(x * np.roll(y, -1, axis=1) - y * np.roll(x, -1, axis=1), axis=1)
+    width = (corner[:, 4:, 2] - corner[:, :4, 2]).mean(axis=1)
+    assert area.min() > 0.0
+    assert width.min() > 0.0
+    return float(area @ width)
+
+
+def test_the_cells_of_beams_have_the_beams_volume(hinge):
+    """Of a bent strip it is length times section, wherever its neutral line goes (Pappus)."""
+    scene, answer = hinge
+    expected = sum(
+        math.pi * math.dist(beam.curve.center, beam.curve.start) * beam.thickness * beam.width
+        for beam in scene.beams.values()
+    )
+    frames = frames_of(scene, answer)
+    block = beams(frames[0])
+    assert len(block.cells) == 2 * (SECTIONS - 1) * ACROSS
+    # chords in the place of arcs that turn by δ = π/240: sin δ/δ of the area, and as much again for the solver's line
+    assert volume(block.places, block.cells) == pytest.approx(expected, rel=2.0 * (math.pi / 240) ** 2 / 6.0)
+    # its places at 19 links, two to a link, and what bends between them where a contact presses
+    last = beams(frames[-1])
+    assert volume(last.places, last.cells) == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_beam_that_varies_has_the_volume_of_its_pieces(tapered):
+    scene, answer = tapered
+    (beam,) = scene.beams.values()
+    u = beam.knots
+    expected = 0.0  # Simpson's rule is exact for the product of what goes straight
+    for a, b in pairwise(u):
+        t, w = (size(np.array([a, 0.5 * (a + b), b])) for size in (beam.thickness_at, beam.width_at))
+        expected += (b - a) / 6.0 * float(np.array([1.0, 4.0, 1.0]) @ (t * w))
+    expected *= math.dist(beam.curve.start, beam.curve.end)
+    block = beams(frames_of(scene, answer)[-1])
+    # knots between two sections are cut off
+    assert volume(block.places, block.cells) == pytest.approx(expected, rel=1e-3)
+
+
+def test_edges_bear_the_stress_that_the_answer_states(hinge):
+    scene, answer = hinge
+    station = answer.stations[-1]
+    values = beams(frames_of(scene, answer)[-1]).values
+    stress = values["bending_stress"].reshape(2, SECTIONS, ACROSS + 1, 2)
+    for number, name in enumerate(scene.beams):
+        stated = station.values[f"{name}.bending_stress"]
+        assert np.array_equal(stress[number, :, 0, 0], stated)  # a moment that turns to the left pulls the right edge
+        assert np.array_equal(stress[number, :, -1, 1], -stated)
+        assert np.abs(stress[number, :, ACROSS // 2]).max() == 0.0
+    beam = scene.beams["beam1"]
+    moment = values["moment"].reshape(2, SECTIONS, -1)[0, :, 0]
+    inertia = beam.width * beam.thickness**3 / 12.0
+    bent = moment * 0.5 * beam.thickness / inertia
+    assert bent == pytest.approx(station.values["beam1.bending_stress"], rel=1e-12)
+
+
+def test_displacements_are_those_of_the_points(hinge):
+    scene, answer = hinge
+    moved_by = beams(frames_of(scene, answer)[-1]).values["displacement"].reshape(2, SECTIONS, ACROSS + 1, 2, 3)
+    middle = moved_by[:, :, ACROSS // 2, 0, :2]
+    for number, (beam, point) in enumerate((("beam1", "B"), ("beam2", "D"))):
+        end = scene.beams[beam].end
+        assert end.point == point
+        stated = answer.stations[-1].values[f"{point}.displacement"]
+        assert middle[number, -1] == pytest.approx(stated, abs=1e-9 * np.abs(stated).max())
+
+
+def test_contact_forces_sum_to_the_probe(hinge):
+    scene, answer = hinge
+    frame = frames_of(scene, answer)[-1]
+    (stated,) = answer.stations[-1].values["contact.force"]
+    assert [push.on for push in frame.pushes] == ["beam1", "beam2"]
+    for push in frame.pushes:
+        assert math.hypot(*push.resultant) == pytest.approx(stated, rel=1e-9)
+    both = contact_forces(frame).values["contact_force"]
+    assert np.abs(both.sum(axis=0)).max() < 1e-9 * stated
+    assert contact_forces(frames_of(scene, answer)[0]) is None  # nothing touches yet
+    # both press at the edges, which are in one place
+    first, second = (push.middle for push in frame.pushes)
+    assert math.dist(first, second) < 0.01 * scene.beams["beam1"].thickness
+
+
+@pytest.mark.parametrize("name", ["a.svg", "a.gif"])
+def test_pictures_are_the_same_to_the_byte(tapered, tmp_path, name):
+    scene, answer = tapered
+    asked = scene, replace(answer, stations=answer.stations[-2:])
+    first, second = (written(asked, tmp_path, name) for _ in range(2))
+    assert first == second
+    assert list(first) == [tmp_path / name]
+    (content,) = first.values()
+    if name.endswith("svg"):
+        assert b"<svg" in content
+        assert not re.search(rb"<dc:date>", content)
+    else:
+        assert Image.open(io.BytesIO(content)).n_frames == 2
+
+
+@pytest.mark.parametrize("kind", ["gif", "apng"])
+def test_an_animation_rests_at_its_end(kind):
+    streams = [io.BytesIO() for _ in range(3)]
+    for place, stream in enumerate(streams):
+        picture = Image.new("RGB", (31, 17), "white")
+        picture.putpixel((5 + 7 * place, 9), (200, 10, 10))
+        picture.save(stream, "PNG")
+    made = Image.open(io.BytesIO(animation([stream.getvalue() for stream in streams], kind)))
+    assert made.n_frames == 3
+    stays = []
+    for place in range(3):
+        made.seek(place)
+        stays.append(made.info["duration"])
+        assert np.asarray(made.convert("RGB"))[9, 5 + 7 * place].tolist() == pytest.approx([200, 10, 10], abs=8)
+    assert stays == [500, 500, 1500]
+
+
+@needs_meshio
+def test_a_series_can_be_read_back(hinge, tmp_path):
+    import meshio
+
+    scene, answer = hinge
+    for path, content in written(hinge, tmp_path, "h.pvd").items():
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(content)
+    listed = re.findall(r'timestep="([^"]+)" part="(\d)" name="(\w+)" file="([^"]+)"', (tmp_path / "h.pvd").read_text())
+    assert [float(time) for time, part, _, _ in listed if part == "0"] == [each.value for each in answer.stations]
+    assert all((tmp_path / file).is_file() for *_, file in listed)
+    assert listed[-1][2] == "contacts"
+    mesh = meshio.read(tmp_path / "h" / "beams-0009.vtu")
+    block = beams(frames_of(scene, answer)[-1])
+    assert np.array_equal(mesh.points, block.places)
+    assert np.array_equal(mesh.cells_dict["hexahedron"], block.cells)
+    for name, values in block.values.items():
+        assert np.array_equal(mesh.point_data[name], values)
+    forces = meshio.read(tmp_path / listed[-1][3]).point_data["contact_force"]
+    assert forces.shape == (len(contact_forces(frames_of(scene, answer)[-1]).cells), 3)
+    assert written(hinge, tmp_path, "h.pvd") == written(hinge, tmp_path, "h.pvd")
+
+
+@needs_pyvista
+@needs_meshio
+def test_what_reads_vtk_files_sees_the_same_volume(tapered, tmp_path):
+    import pyvista
+
+    (content,) = written(tapered, tmp_path, "t.vtu").values()
+    (tmp_path / "t.vtu").write_bytes(content)
+    grid = pyvista.read(tmp_path / "t.vtu")
+    sizes = grid.compute_cell_sizes()["Volume"]
+    block = beams(frames_of(*tapered)[-1])
+    assert sizes.min() > 0.0
+    # where the width varies a cell is no prism
+    assert sizes.sum() == pytest.approx(volume(block.places, block.cells), rel=1e-3)
+
+
+@needs_pyvista
+def test_a_picture_in_space_shows_both_edges(tapered, tmp_path):
+    if space.tried():
+        pytest.skip("no library of the system draws here")
+    (content,) = written(tapered, tmp_path, "t.3d.png").values()
+    picture = np.asarray(Image.open(io.BytesIO(content)).convert("RGB")).astype(int)
+    inside = picture[100:, : int(0.75 * picture.shape[1])]
+    red = (inside[..., 0] > inside[..., 2] + 80).sum()
+    blue = (inside[..., 2] > inside[..., 0] + 80).sum()
+    assert red > 500
+    assert blue > 500
+
+
+def test_a_process_that_ends_as_it_draws_is_told_of():
+    with pytest.raises(space.DrawingError, match="VTK ended"):
+        space.apart(os._exit, 139)
+
+
+def test_where_nothing_draws_the_line_that_helps_is_told(tmp_path, monkeypatch, capsys):
+    def cannot(*_):
+        raise space.DrawingError("VTK ended as it began to draw")
+
+    monkeypatch.setattr(space, "pictures", cannot)
+    assert run(["view", "tapered", "-n", "10", "--out", str(tmp_path / "t.3d.png")]) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "apt-get install --yes --no-install-recommends libegl1 libgl1-mesa-dri" in said
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_command_shows_the_station_that_is_asked(tmp_path, capsys):
+    path = tmp_path / "t.png"
+    assert run(["view", "tapered", "-n", "10", "--station", "0.7", "--quantity", "moment", "--out", str(path)]) == 0
+    assert f"{path}: tapered by cprbm, load 0.7." in capsys.readouterr().out
+    with Image.open(path) as picture:
+        assert picture.size[0] > 600
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [
+        ("--out", "t.pdf", "found 't.pdf'; allowed: a name that ends in .3d.png, .3d.gif"),
+        ("--out", ".png", "found '.png'; allowed"),
+        ("--station", "0.8", "found '0.8'; allowed: one of load:0.3, load:0.7, load:1.3, load:2.9"),
+        ("--station", "unload:0.7", "found 'unload:0.7'; allowed"),
+        ("--station", "nan", "found 'nan'; allowed"),
+        ("--quantity", "colour", "'colour' is not one of"),
+    ],
+)
+def test_a_wrong_question_is_told(option, value, words, capsys):
+    assert run(["view", "tapered", option, value]) == 2
+    assert words in capsys.readouterr().err
+
+
+RIGID = {"beam": "b", "body": "g"}
+BELOW = [
+    LineContact(kind="beam-line", points=((0.0, 0.0), (0.7, 0.0), (1.3, 0.0)), side="left", **RIGID),
+    LineContact(kind="beam-line", points=((1.3, 0.0), (0.0, 0.0)), side="right", **RIGID),
+    HalfPlaneContact(kind="beam-half-plane", point=(0.3, 0.0), normal=(0.0, 0.9), **RIGID),
+    FunctionContact(
+        kind="beam-function", axis="x", coefficients=(0.0, 0.0), range=(-0.3, 0.9), side="above", **RIGID
+    ),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("contact", BELOW, ids=lambda contact: f"{contact.kind}")
+def test_what_is_rigid_lies_behind_its_edge(contact):
+    outline, solid, goes_round = moved._outline(contact, 3.0, 0.11)
+    assert not goes_round
+    assert outline[:, 1] == pytest.approx(0.0, abs=1e-15)
+    assert solid[:, 1] == pytest.approx(-0.11, rel=1e-12)
+
+
+def test_a_function_of_y_is_rigid_on_its_own_side():
+    contact = FunctionContact(
+        kind="beam-function", axis="y", coefficients=(0.3, 0.0), range=(0.0, 0.9), side="above", **RIGID
+    )  # fmt: skip
+    outline, solid, _ = moved._outline(contact, 3.0, 0.11)
+    assert outline[:, 0] == pytest.approx(0.3)
+    assert solid[:, 0] == pytest.approx(0.19)  # the beam lies where x is larger
+
+
+def test_a_body_carries_what_is_fixed_to_it():
+    motion = moved.Motion(np.array([0.3, 0.1]), np.array([0.02, -0.07]), 0.5 * math.pi)
+    # a quarter turn about the first point takes (0.7, 0) beside it to (0, 0.7)
+    assert motion.carried(np.array([[1.0, 0.1]]))[0] == pytest.approx([0.32, 0.73])
+    contact = CircleContact(kind="beam-circle", center=(0.5, 0.4), radius=0.13, **RIGID)
+    outline, solid, goes_round = moved._outline(contact, 1.0, 0.1)
+    assert goes_round
+    assert np.hypot(*(motion.carried(outline) - motion.carried(solid)).T) == pytest.approx(0.13)
+
+
+def test_a_wrapped_circle_has_its_cylinders_volume():
+    scene = with_stresses(cases.opened("wrapped"))
+    answer = cprbm.answer(scene, cprbm.Settings(links=10))
+    (contact,) = scene.contacts.values()
+    block = obstacles(frames_of(scene, answer)[0])
+    cylinder = math.pi * contact.radius**2 * scene.beams[contact.beam].width
+    corners = block.places[block.cells]
+    assert corners[:, 4:, 2].min() > corners[:, :4, 2].max()
+    # 120 corners in the place of a circle: 1 − (2π/120)²/6 of its area
+    assert volume(block.places, block.cells) == pytest.approx(cylinder, rel=5e-4)
+
+
+def test_colours_span_what_is_shown(hinge):
+    scene, answer = hinge
+    frames = frames_of(scene, answer)
+    largest = max(np.abs(answer.stations[-1].values[f"{beam}.bending_stress"]).max() for beam in scene.beams)
+    bounds = bounds_of(scene, frames, "bending_stress")
+    assert (bounds.least, bounds.most) == (-largest, largest)
+    assert bounds_of(scene, frames, "combined_stress").least == 0.0
