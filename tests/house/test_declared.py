@@ -12,8 +12,8 @@ from tests.house.imports import ROOMS, Import, imports_of, sources
 ROOT = Path(__file__).parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 MODULES = {"scikit-fem": "skfem", "pydantic": "pydantic", "pytest-xdist": "xdist"}
-BROUGHT = {"pydantic_core"}
-"""By pydantic, of which it is a part."""
+BROUGHT = {"pydantic_core", "PIL"}
+"""By pydantic, of which it is a part; by matplotlib, which writes no picture without it."""
 
 
 def _modules(asked):
