@@ -10,7 +10,8 @@ w, ds   width, and length of the edge without stress
 ======  ===============================================================================
 
 The energy is ½ ∫ ε w g² ds over the places with g < 0; force and tangent are its derivatives.  A pair is every edge
-of the first beam with every one of the second, or with what is rigid.  In the course of Newton's iterations the part
+of the first beam with every one of the second, or with what is rigid.  A rigid corner that juts out presses in a point
+of the edge, with ε over an element's length there.  In the course of Newton's iterations the part
 ε w g ∂²g of the tangent takes the g that the last step foresaw: where an edge has gone too deep the pressure of that
 state, which is far too large, has no say in what is stable.
 """
@@ -22,28 +23,31 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea_reference.solid import facing, rigid
+from fea_reference.solid import edges, facing, pricking, rigid
 from fea_reference.solid.bodies import BodyPart, turned
+from fea_reference.solid.edges import Broken, Corner, Graph
 from fea_reference.solid.model import Model
 from fea_reference.solid.rigid import Half, Round, Shape
 from fea_reference.solid.skin import STENCIL, Skin
 from fea_reference.solid.zones import Zones, zones
 from scene.answer import Array, Ints
-from scene.statement import BeamContact, CircleContact, HalfPlaneContact, Scene
+from scene.statement import BeamContact, CircleContact, FunctionContact, HalfPlaneContact, LineContact, Scene
 
 _REACH = 1.0  # thicknesses that gaps are looked for in, and a few nodes
+_FLAT = -0.9  # cosine between a beam's normal and a side's: what leans more on an edge with corners is on a corner
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pair:
-    """An edge that is integrated over, and what it may touch: another edge, or a shape on the body of a number.
+    """An edge that is integrated over, and what it may touch: another edge, or a shape on the body of a number, or a
+    corner of one.
 
     ``name`` is the contact's; ``measure`` the mean thickness.
     """
 
     name: str
     skin: Skin
-    other: Skin | Shape
+    other: Skin | Shape | Corner
     body: int
     measure: float
 
@@ -102,11 +106,10 @@ def pairs_of(scene: Scene, model: Model) -> tuple[Pair, ...]:
             case BeamContact():
                 one, other = (_skins(scene, model, beam) for beam in contact.between)
                 found += [Pair(name, a, b, -1, 0.5 * (a.thickness + b.thickness)) for a in one for b in other]
-            case CircleContact() | HalfPlaneContact():
-                body = model.bodies[number[contact.body]]
-                shape = _shape(contact, body, model)
+            case CircleContact() | HalfPlaneContact() | LineContact() | FunctionContact():
                 found += [
                     Pair(name, skin, shape, number[contact.body], skin.thickness)
+                    for shape in _shapes(contact, model.bodies[number[contact.body]], model)
                     for skin in _skins(scene, model, contact.beam)
                 ]
     return tuple(found)
@@ -137,14 +140,24 @@ def _skins(scene: Scene, model: Model, name: str) -> tuple[Skin, Skin]:
     return skins[0], skins[1]
 
 
-def _shape(contact: CircleContact | HalfPlaneContact, body: BodyPart, model: Model) -> Shape:
-    units = model.units
-    if isinstance(contact, CircleContact):
-        return Round(
-            (np.array(contact.center) - units.origin) / units.length - body.centre, contact.radius / units.length
-        )
-    normal = np.array(contact.normal) / np.hypot(*contact.normal)
-    return Half((np.array(contact.point) - units.origin) / units.length - body.centre, normal)
+def _shapes(
+    contact: CircleContact | HalfPlaneContact | LineContact | FunctionContact, body: BodyPart, model: Model
+) -> tuple[Shape | Corner, ...]:
+    """What is rigid, as its body sees it from its centre."""
+    unit = model.units.length
+    origin = model.units.origin + body.centre * unit
+    match contact:
+        case CircleContact():
+            return (Round((np.array(contact.center) - origin) / unit, contact.radius / unit),)
+        case HalfPlaneContact():
+            normal = np.array(contact.normal) / np.hypot(*contact.normal)
+            return (Half((np.array(contact.point) - origin) / unit, normal),)
+        case LineContact():
+            sides, corners = edges.broken(contact, origin, unit)
+            return (sides, *corners)
+        case FunctionContact():
+            bent, corners = edges.graph(contact, origin, unit)
+            return (bent, *corners)
 
 
 def touch(
@@ -163,6 +176,8 @@ def touch(
     """
     places = model.mesh.places + q.reshape(-1, 2)
     skin, other = pair.skin, pair.other
+    if isinstance(other, Corner):
+        return _pricked(model, pair, other, factor, places, z, foreseen)
     x = places[skin.nodes]
     found = overlap(model, pair, places, z)
     zeta, weights = found.points(quadrature)
@@ -198,6 +213,36 @@ def touch(
     return Touch(pair, found, zeta, opposite, here, push, dofs, gradient, hessian, g, first, energy)
 
 
+def _pricked(
+    model: Model, pair: Pair, corner: Corner, factor: float, places: Array, z: Array, foreseen: Foreseen | None
+) -> Touch:
+    """A corner and an edge, as of :func:`touch` with the nodes at ``places`` (N, 2)."""
+    skin, body = pair.skin, model.bodies[pair.body]
+    y = places[skin.nodes]
+    found = overlap(model, pair, places, z)
+    zeta = found.zones[0]
+    if not zeta.size:
+        none, n = np.empty(0), 2 * STENCIL + 3
+        rows = np.empty((0, n))
+        dofs = np.empty((0, n), dtype=np.intp)
+        return Touch(pair, found, none, none, np.empty((0, 2)), np.empty((0, 2)), dofs, rows,
+                     np.empty((0, n, n)), none, rows, 0.0)  # fmt: skip
+    first, second = pricking.variations(corner, body, skin, y, zeta, z)
+    g = np.array([found.least])
+    bent = g if foreseen is None else np.array([foreseen[1].min(initial=0.0)])
+    own = skin.nodes[skin.shapes(zeta)[0]]
+    moved = 2 * len(places) + 3 * pair.body + np.arange(3)
+    dofs = np.concatenate([np.stack([2 * own, 2 * own + 1], axis=2).reshape(1, -1), moved[None]], axis=1)
+    element = 2.0 * np.hypot(*skin.curve(skin.places, zeta)[1].T)
+    penalty = factor * skin.at(skin.stiffness, zeta) * skin.at(skin.width, zeta) * element
+    gradient = (penalty * g)[:, None] * first
+    hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
+    push = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
+    here, _ = pricking.place(corner, body, z)
+    energy = 0.5 * float((penalty * g**2).sum())
+    return Touch(pair, found, zeta, np.empty(0), here, push, dofs, gradient, hessian, g, first, energy)
+
+
 def overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
     """Where a pair overlaps, with the nodes at ``places`` (N, 2)."""
     skin, other = pair.skin, pair.other
@@ -209,6 +254,11 @@ def overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
         low, high = x.min(axis=0) - reach, x.max(axis=0) + reach
         if np.any(y.min(axis=0) > high) or np.any(y.max(axis=0) < low):
             return Zones(np.empty((2, 0)), np.inf, 0.0)
+    if isinstance(other, Corner):
+        reach = _REACH * skin.thickness + float(np.hypot(*np.diff(x, axis=0).T).max())
+        g, at = pricking.gap(other, model.bodies[pair.body], skin, x, reach, z)
+        return Zones(np.full((2, 1 if g < 0.0 else 0), at), g, at)
+    flat = _FLAT if isinstance(other, Broken | Graph) else 0.0
 
     def gap(zeta: Array) -> Array:
         here, slope, _ = skin.curve(x, zeta)
@@ -216,7 +266,7 @@ def overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
             return facing.gaps(other, y, here, skin.outward(slope), reach).gap
         g, h, _ = other.measured(rigid.seen(model.bodies[pair.body], here, z))
         h = turned(h, float(model.bodies[pair.body].state(z)[2]))
-        met = (h * skin.outward(slope)).sum(axis=1) < 0.0
+        met = (h * skin.outward(slope)).sum(axis=1) < flat
         return np.asarray(np.where(met, g, np.inf))
 
     return zones(gap, skin.nodes.size)

@@ -1,8 +1,8 @@
 """Whether a beam has passed through what it may touch between two equilibria.
 
 A step may be so long that neither of its ends overlaps.  Of a circle it is looked at whether the neutral line has gone
-over its centre, as the circle's body sees it; of two beams whether their neutral lines cross.  Behind the edge of a
-half-plane everything is within it.
+over its centre, as the circle's body sees it, and so of a corner; of two beams whether their neutral lines cross.
+Behind the edge of a half-plane everything is within it.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from fea_reference.solid.contacts import Pair
+from fea_reference.solid.edges import Corner
 from fea_reference.solid.model import Model
 from fea_reference.solid.rigid import Round, seen
 from fea_reference.solid.skin import Skin
@@ -27,10 +28,10 @@ def passed(model: Model, pairs: Iterable[Pair], before: Array, after: Array) -> 
             other = model.mesh.line(pair.other.beam, 0.0)
             if cross(places[1][own], places[1][other]):
                 return pair.name
-        elif isinstance(pair.other, Round):
+        elif isinstance(pair.other, Round | Corner):
             body = model.bodies[pair.body]
             a, b = (seen(body, x[own], z) for x, z in zip(places, (before, after), strict=True))
-            if swept(a, b, pair.other.centre):
+            if swept(a, b, pair.other.centre if isinstance(pair.other, Round) else pair.other.point):
                 return pair.name
     return ""
 

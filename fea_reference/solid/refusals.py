@@ -5,11 +5,9 @@ from __future__ import annotations
 from fea_reference.solid.areas import too_curved
 from scene.mistakes import Mistake, SceneError
 from scene.statement import (
-    BeamContact,
     BeamMoment,
-    CircleContact,
-    HalfPlaneContact,
     Scene,
+    SelfContact,
 )
 
 _PROBES = frozenset({"angle", "moment"})
@@ -26,12 +24,8 @@ def refuse(scene: Scene) -> None:
         if isinstance(load, BeamMoment):
             mistakes.append(Mistake(f"loads.{name}", "a moment on a beam", "for the solid, forces on beams"))
     for name, contact in scene.contacts.items():
-        if not isinstance(contact, BeamContact | CircleContact | HalfPlaneContact):
-            mistakes.append(
-                Mistake(
-                    f"contacts.{name}", repr(contact.kind), "for the solid, beam-beam, beam-circle, beam-half-plane"
-                )
-            )
+        if isinstance(contact, SelfContact):
+            mistakes.append(Mistake(f"contacts.{name}", repr(contact.kind), "for the solid, beams that touch others"))
         elif not contact.thick:
             mistakes.append(Mistake(f"contacts.{name}", "lines that touch", "for the solid, edges: thick = true"))
     for name in scene.stops:
