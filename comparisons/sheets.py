@@ -363,8 +363,9 @@ def _steps(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
 
 
 def _certificates(compared: Comparison) -> Sheet:
-    names = ("cprbm", f"fea {compared.runs.kinematics}")
-    answers = (compared.runs.cprbm[0], compared.runs.reference)
+    solid = compared.runs.solid[:1] if compared.runs.solid is not None else ()
+    names = ("cprbm", f"fea {compared.runs.kinematics}", *("solid" for _ in solid))
+    answers = (compared.runs.cprbm[0], compared.runs.reference, *solid)
     found = [worst(tuple(station.certificate for station in answer.stations)) for answer in answers]
     body = [
         ("ending", *(answer.ending.name for answer in answers)),
@@ -395,7 +396,8 @@ def _certificates(compared: Comparison) -> Sheet:
         "Certificates",
         ("worst of all stations", *names),
         tuple(body),
-        "All numbers but iterations and seconds are relative to a scale of the problem; see the README.",
+        "All numbers but iterations and seconds are relative to a scale of the problem; see the README."
+        + "".join(f" The solid is {answer.notes[0]}." for answer in solid if answer.notes),
     )
 
 

@@ -10,8 +10,6 @@ from scene.statement import (
     SelfContact,
 )
 
-_PROBES = frozenset({"angle", "moment"})
-
 
 def refuse(scene: Scene) -> None:
     """See that the solid offers all that a scene asks.
@@ -28,8 +26,6 @@ def refuse(scene: Scene) -> None:
             mistakes.append(Mistake(f"contacts.{name}", repr(contact.kind), "for the solid, beams that touch others"))
         elif not contact.thick:
             mistakes.append(Mistake(f"contacts.{name}", "lines that touch", "for the solid, edges: thick = true"))
-    for name in scene.stops:
-        mistakes.append(Mistake(f"stops.{name}", "a stop", "for the solid, pins without limits"))
     if scene.assembly is not None:
         mistakes.append(Mistake("assembly", "ends drawn apart", "for the solid, beams drawn as they are joined"))
     for stage in scene.stages:
@@ -40,7 +36,11 @@ def refuse(scene: Scene) -> None:
                 )
             )
     for probe in scene.probes:
-        if probe.quantity in _PROBES:
-            mistakes.append(Mistake(f"probes.{probe.name}", repr(probe.quantity), "for the solid, another quantity"))
+        if probe.quantity == "moment" and probe.of in scene.contacts:
+            mistakes.append(
+                Mistake(
+                    f"probes.{probe.name}", repr(probe.quantity), "for the solid, a contact's force, or a stop's moment"
+                )
+            )
     if mistakes:
         raise SceneError(mistakes)

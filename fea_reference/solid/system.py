@@ -20,6 +20,7 @@ from fea_reference.solid.bodies import across, turned
 from fea_reference.solid.contacts import Foreseen, Pair, Touch, overlap, touch
 from fea_reference.solid.elements import Strained
 from fea_reference.solid.model import DrivePart, LoadPart, Model
+from fea_reference.solid.stops import STIFFNESS
 from scene.answer import Array
 
 _ROUND_OFF = 8.0  # measured
@@ -153,6 +154,14 @@ def assemble(
             more_columns += [int(dof), row.multiplier]
             more += [float(slope)] * 2
         diagonal += [(dof, mu * second) for dof, second in row.second(model.bodies, z)]
+    for stop in model.stops:
+        moment = stop.moment(z)
+        for dof, slope in stop.dofs if moment else ():
+            residual[dof] -= moment * slope
+            for other, beside in stop.dofs:
+                more_rows.append(dof)
+                more_columns.append(other)
+                more.append(STIFFNESS * slope * beside)
     for dof, value in diagonal:
         more_rows.append(dof)
         more_columns.append(dof)
