@@ -29,7 +29,7 @@ from fea_reference.solid.edges import Broken, Corner, Graph
 from fea_reference.solid.model import Model
 from fea_reference.solid.rigid import Half, Round, Shape
 from fea_reference.solid.skin import STENCIL, Skin
-from fea_reference.solid.zones import Zones, zones
+from fea_reference.solid.zones import NOWHERE, Gap, Zones, least, zones
 from scene.answer import Array, Ints
 from scene.statement import BeamContact, CircleContact, FunctionContact, HalfPlaneContact, LineContact, Scene
 
@@ -245,7 +245,30 @@ def _pricked(
 
 def overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
     """Where a pair overlaps, with the nodes at ``places`` (N, 2)."""
-    skin, other = pair.skin, pair.other
+    if isinstance(pair.other, Corner):
+        g, at = _corner_gap(model, pair, pair.other, places, z)
+        return Zones(np.full((2, 1 if g < 0.0 else 0), at), g, at)
+    gap = _gap(model, pair, pair.other, places, z)
+    return NOWHERE if gap is None else zones(gap, pair.skin.nodes.size)
+
+
+def least_gap(model: Model, pair: Pair, places: Array, z: Array) -> float:
+    """The least gap of a pair, with the nodes at ``places`` (N, 2)."""
+    if isinstance(pair.other, Corner):
+        return _corner_gap(model, pair, pair.other, places, z)[0]
+    gap = _gap(model, pair, pair.other, places, z)
+    return np.inf if gap is None else least(gap, pair.skin.nodes.size)
+
+
+def _corner_gap(model: Model, pair: Pair, corner: Corner, places: Array, z: Array) -> tuple[float, float]:
+    x = places[pair.skin.nodes]
+    reach = _REACH * pair.skin.thickness + float(np.hypot(*np.diff(x, axis=0).T).max())
+    return pricking.gap(corner, model.bodies[pair.body], pair.skin, x, reach, z)
+
+
+def _gap(model: Model, pair: Pair, other: Skin | Shape, places: Array, z: Array) -> Gap | None:
+    """The gap along the first edge; None where the other is far from all of it."""
+    skin = pair.skin
     x = places[skin.nodes]
     if isinstance(other, Skin):
         y = places[other.nodes]
@@ -253,23 +276,23 @@ def overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
         reach = _REACH * (skin.thickness + other.thickness) + apart
         low, high = x.min(axis=0) - reach, x.max(axis=0) + reach
         if np.any(y.min(axis=0) > high) or np.any(y.max(axis=0) < low):
-            return Zones(np.empty((2, 0)), np.inf, 0.0)
-    if isinstance(other, Corner):
-        reach = _REACH * skin.thickness + float(np.hypot(*np.diff(x, axis=0).T).max())
-        g, at = pricking.gap(other, model.bodies[pair.body], skin, x, reach, z)
-        return Zones(np.full((2, 1 if g < 0.0 else 0), at), g, at)
-    flat = _FLAT if isinstance(other, Broken | Graph) else 0.0
+            return None
 
-    def gap(zeta: Array) -> Array:
-        here, slope, _ = skin.curve(x, zeta)
-        if isinstance(other, Skin):
+        def to_edge(zeta: Array) -> Array:
+            here, slope, _ = skin.curve(x, zeta)
             return facing.gaps(other, y, here, skin.outward(slope), reach).gap
-        g, h, _ = other.measured(rigid.seen(model.bodies[pair.body], here, z))
-        h = turned(h, float(model.bodies[pair.body].state(z)[2]))
-        met = (h * skin.outward(slope)).sum(axis=1) < flat
+
+        return to_edge
+    flat = _FLAT if isinstance(other, Broken | Graph) else 0.0
+    body = model.bodies[pair.body]
+
+    def to_shape(zeta: Array) -> Array:
+        here, slope, _ = skin.curve(x, zeta)
+        g, h, _ = other.measured(rigid.seen(body, here, z))
+        met = (turned(h, float(body.state(z)[2])) * skin.outward(slope)).sum(axis=1) < flat
         return np.asarray(np.where(met, g, np.inf))
 
-    return zones(gap, skin.nodes.size)
+    return to_shape
 
 
 def closed(touches: tuple[Touch, ...]) -> Mapping[str, tuple[Touch, ...]]:
