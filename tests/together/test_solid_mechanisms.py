@@ -4,7 +4,6 @@ The full runs are commands: ``cprbm compare hinge gripper --solver cprbm,fea,sol
 """
 
 import numpy as np
-import pytest
 
 import fea_reference
 from comparisons.cases import opened
@@ -12,12 +11,13 @@ from fea_reference import solid
 from fea_reference.solid.passing import crossed
 
 
-def at_last(name, station=None):
-    """A case with one station alone, its last unless another is said."""
+def at_last(name):
+    """A case with its last station alone."""
     scene = opened(name)
     stage = scene.stages[-1]
-    chosen = stage.stations[-1] if station is None else station
-    return scene.model_copy(update={"stages": (stage.model_copy(update={"stations": (chosen,), "shown": ()}),)})
+    return scene.model_copy(
+        update={"stages": (stage.model_copy(update={"stations": stage.stations[-1:], "shown": ()}),)}
+    )
 
 
 def values(answer):
@@ -46,16 +46,6 @@ def test_the_gripper_at_full_load_moves_as_the_shear_beams():
     beams = values(fea_reference.answer(scene, fea_reference.Settings(elements=60, kinematics="shear")))
     for probe in ("A.displacement", "B.displacement", "O.displacement"):
         assert off(ours[probe], beams[probe]) < 3e-3
-
-
-def test_a_free_end_presses_into_another_beams_side():
-    # the middle beam of the stack by its tip; seen from its edge alone the end sank into the lower one
-    scene = at_last("stack", 0.015)
-    ours = values(solid.answer(scene, solid.Settings(elements=24, across=1)))
-    beams = values(fea_reference.answer(scene, fea_reference.Settings(elements=60, kinematics="shear")))
-    for probe, allowed in (("T.displacement", 1e-3), ("T.reaction", 0.02), ("second.centre", 1e-3)):
-        assert off(ours[probe], beams[probe]) < allowed
-    assert ours["second.force"] == pytest.approx(beams["second.force"], rel=0.1)
 
 
 def test_a_line_that_goes_through_anothers_end_is_seen_on_its_way():
