@@ -391,8 +391,9 @@ def _steps(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
 
 
 def _certificates(compared: Comparison) -> Sheet:
-    names = ("cprbm", f"fea {compared.runs.kinematics}")
-    answers = (compared.runs.cprbm[0], compared.runs.reference)
+    solid = compared.runs.solid[:1] if compared.runs.solid is not None else ()
+    names = ("cprbm", f"fea {compared.runs.kinematics}", *("solid" for _ in solid))
+    answers = (compared.runs.cprbm[0], compared.runs.reference, *solid)
     found = [worst(tuple(station.certificate for station in answer.stations)) for answer in answers]
     body = [
         ("ending", *(answer.ending.name for answer in answers)),
@@ -422,22 +423,21 @@ def _certificates(compared: Comparison) -> Sheet:
         "Certificates",
         ("worst of all stations", *names),
         tuple(body),
-        "All numbers but iterations are relative to a scale of the problem; see docs/certificate.md.",
+        "All numbers but iterations are relative to a scale of the problem; see docs/certificate.md."
+        + "".join(f" The solid is {answer.notes[0]}." for answer in solid if answer.notes),
     )
 
 
 def _seconds(compared: Comparison) -> Sheet:
     """By themselves, since they are others with every run."""
     runs = compared.runs
-    answers = (runs.cprbm[0], runs.reference, *(() if runs.exact is None else (runs.exact,)))
-    names = ("CPRBM", f"FEA ({runs.kinematics})", "exact (bending)")
+    answers = {"CPRBM": runs.cprbm[0], f"FEA ({runs.kinematics})": runs.reference}
+    answers |= {} if runs.exact is None else {"exact (bending)": runs.exact}
+    answers |= {} if runs.solid is None else {"solid": runs.solid[0]}
     return Sheet(
         "Seconds",
         ("answer", "stations", "seconds"),
-        tuple(
-            (name, str(len(answer.stations)), number(answer.seconds))
-            for name, answer in zip(names, answers, strict=False)
-        ),
+        tuple((name, str(len(answer.stations)), number(answer.seconds)) for name, answer in answers.items()),
         "From the scene to certified answers, by each solver's own clock.",
     )
 

@@ -1,23 +1,7 @@
 """The third opinion: what both beam theories miss together, each held against the mechanism as a solid.
 
-======  =====================================================================================================
-symbol  meaning
-======  =====================================================================================================
-v, V    the solid's value at n and at 2n elements along (and across, m and 2m)
-p       order of convergence, 2λ
-λ       exponent of the displacement at the corner where a free edge meets a face that is held, κ = (3 − ν)/(1 + ν):
-        κ sin²(λ π/2) = (κ + 1)²/4 − λ², at most 1
-x       extrapolated value, V + (V − v)/(2^p − 1)
-u       its uncertainty, S |x − V|
-======  =====================================================================================================
-
-Elements of second order would converge with the fourth power of their size, but a face that is held keeps the section
-from growing wider, and at its corners the stress has no bound: the energy, and with it every displacement, converges
-with 2λ (M. L. Williams, Stress singularities resulting from various boundary conditions in angular corners of plates in
-extension, J. Appl. Mech. 19 (1952) 526; Szabó & Babuška, Finite Element Analysis, on meshes that are even).  With the
-largest ν of the scene this is about 1.5; taken for the order of all quantities it makes u larger where they are better.
-
-The distances of the beam theories from x are their errors, as far as u and their own uncertainties allow.  Nothing of
+The solid's value x is extrapolated from two meshes, and uncertain by u (:mod:`comparisons.extrapolated_solid`).  The
+distances of the beam theories from x are their errors, as far as u and their own uncertainties allow.  Nothing of
 the verdict rests on them: a beam theory that is as far from the solid as it must be is not wrong.
 """
 
@@ -27,8 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from comparisons.extrapolated_solid import extrapolated
 from comparisons.formats import percent, scaled_unit, vector
-from comparisons.measures import SAFETY, Row
+from comparisons.measures import Row
 from comparisons.scales import norm
 from comparisons.sheet import Sheet
 from comparisons.spots import clear_of_spots
@@ -55,24 +40,11 @@ class Third:
     chosen: float
 
 
-def corner_order(poisson_ratio: float) -> float:
-    """p of a scene with that ratio, at most 2."""
-    from scipy.optimize import brentq  # loaded when a solid is beside, not with every table
-
-    kappa = (3.0 - poisson_ratio) / (1.0 + poisson_ratio)
-
-    def excess(exponent: float) -> float:
-        return float(kappa * np.sin(0.5 * np.pi * exponent) ** 2 - 0.25 * (kappa + 1.0) ** 2 + exponent**2)
-
-    return 2.0 * brentq(excess, 0.1, 1.0) if excess(1.0) > 0.0 else 2.0
-
-
 def thirds_of(compared: Comparison) -> tuple[Third, ...]:
     """The rows at which all answers have a value; none where the solid was not asked or did not arrive."""
     scene, runs = compared.scene, compared.runs
     if runs.solid is None or not all(answer.completed for answer in runs.solid):
         return ()
-    share = 1.0 / (2.0 ** corner_order(max(one.poisson_ratio for one in scene.materials.values())) - 1.0)
     found = []
     for row in compared.rows:
         if row.bounds is None:
@@ -85,7 +57,7 @@ def thirds_of(compared: Comparison) -> tuple[Third, ...]:
         v, V, v_b = coarse.values[name], fine.values[name], bending.values[name]
         if v.shape != row.fea.shape or V.shape != row.fea.shape:
             continue
-        x = V + share * (V - v)
+        x, off = extrapolated(scene, v, V)
         counts = _counts(scene, row, (coarse, fine, chosen))
         if not counts.any():
             continue
@@ -93,7 +65,7 @@ def thirds_of(compared: Comparison) -> tuple[Third, ...]:
         def size(difference: Array, row: Row = row, counts: Flags = counts) -> float:
             return norm(row.probe.quantity, difference[counts])
 
-        found.append(Third(row, x, SAFETY * size(x - V), size(row.cprbm - x), size(v_b - x), size(row.fea - x)))
+        found.append(Third(row, x, size(off), size(row.cprbm - x), size(v_b - x), size(row.fea - x)))
     return tuple(found)
 
 

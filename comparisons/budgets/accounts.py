@@ -24,6 +24,7 @@ class Account:
         budgets: at every station; none where an answer is not whole.
         claims: those of the last station.
         missing: why there are no budgets, in sentences; empty where there are.
+        silent: why the solid, which was asked, says nothing; empty where it does.
     """
 
     scene: Scene
@@ -32,6 +33,7 @@ class Account:
     budgets: tuple[Budget, ...]
     claims: tuple[ClaimedRatio, ...]
     missing: tuple[str, ...]
+    silent: str = ""
 
 
 def accounted(scene: Scene, choices: Choices, memory: Remembering) -> Account:
@@ -52,6 +54,7 @@ def accounted(scene: Scene, choices: Choices, memory: Remembering) -> Account:
     budgets = budgets_of(scene, runs)
     claims = claimed_ratios(scene, runs, budgets)
     ratios = [ratio for claim in claims for ratio in claim.ratios]
+    ended = [each for each in runs.solid or () if not each.completed]
     answers = iter(memory.answers([(memory.solvers.fea, with_ratio(scene, ratio), choices) for ratio in ratios]))
     return Account(
         scene,
@@ -60,4 +63,5 @@ def accounted(scene: Scene, choices: Choices, memory: Remembering) -> Account:
         budgets,
         tuple(rerun(claim, [next(answers) for _ in claim.ratios]) for claim in claims),
         (),
+        f"{ended[0].ending.value}. {ended[0].sentence}" if ended else "",
     )

@@ -24,6 +24,12 @@ LOOKS = {
     "penalty": ("#8fd0b5", "FEA: penalty"),
 }
 
+MISSED = "#8a6d1f"
+_TOLD_OF_SOLID = (
+    " The thin bars beside the sum are what the beam theories miss together: the finite elements' limit less the "
+    "solid's value, and how far that may be off."
+)
+
 
 def of_account(account: Account) -> tuple[Picture, ...]:
     """The figure at the last station; none where there is no budget."""
@@ -49,7 +55,7 @@ def of_account(account: Account) -> tuple[Picture, ...]:
                 f"What the difference of the CPRBM from the finite elements in {account.runs.kinematics} is made of at "
                 f"{stage.name} {stage.stations[-1]:g}: parts that make it larger to the right, those that make it "
                 "smaller to the left, as shares of all of them; the diamond is their sum, which the panel beside shows "
-                "in per cent.",
+                "in per cent." + (_TOLD_OF_SOLID if any(each.missed is not None for each in budgets) else ""),
             ),
         )
 
@@ -64,10 +70,30 @@ def _composition(axes: Axes, budgets: Sequence[Budget]) -> None:
         axes.barh(range(len(budgets)), shares, left=starts, height=0.66, color=colour, label=label)
         for end, share in zip(ends, shares, strict=True):
             end[share < 0.0] += share
+    _missed(axes, budgets)
     net = [sum(end) for end in ends]
     axes.plot(net, range(len(budgets)), "D", color="white", markeredgecolor="black", markersize=5.0, label="their sum")
     axes.axvline(0.0, color="black", linewidth=0.8)
     axes.set_xlabel("share of all parts, %")
+
+
+def _missed(axes: Axes, budgets: Sequence[Budget]) -> None:
+    """A bar below each row whose beam theories are held against the solid."""
+    known = [
+        (place, 100.0 / each.all_parts, each.row.fraction(each.missed), each.row.fraction(each.missed_uncertainty))
+        for place, each in enumerate(budgets)
+        if each.missed is not None and each.missed_uncertainty is not None
+    ]
+    if known:
+        axes.barh(
+            [place + 0.42 for place, *_ in known],
+            [share * (missed or 0.0) for _, share, missed, _ in known],
+            xerr=[share * (doubt or 0.0) for _, share, _, doubt in known],
+            height=0.14,
+            color=MISSED,
+            error_kw={"linewidth": 0.8},
+            label="missed by beam theory: FEA to solid",
+        )
 
 
 def _share(budget: Budget, name: str) -> float:

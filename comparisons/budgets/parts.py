@@ -28,7 +28,8 @@ On a circle the elements' length decides how deep a beam presses, whatever p: th
 ``elements``.
 
 Where ``auto`` was chosen, the distance of ``paper`` at N is told beside the parts and belongs to no sum.  Nor does what
-both solvers leave out of a stress alike, :mod:`comparisons.budgets.curved_beam`.
+both solvers leave out of a stress alike, :mod:`comparisons.budgets.curved_beam`, nor L_f less the value of the solid
+(:mod:`comparisons.extrapolated_solid`): what the beam theories miss together, by which the sum would go on.
 """
 
 from __future__ import annotations
@@ -40,6 +41,7 @@ import numpy as np
 from comparisons.budgets.curved_beam import inner_edge_factor
 from comparisons.budgets.runs import DEEPER, ELEMENTS, LEVELS, TIGHTNESS, BudgetRuns
 from comparisons.converging.limits import limit
+from comparisons.extrapolated_solid import extrapolated
 from comparisons.geometry import bentness_on, length
 from comparisons.measures import Row, bare_row, components, direction, probe_scales
 from comparisons.order import order_of
@@ -47,7 +49,7 @@ from comparisons.scales import norm
 from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, Stage
-from scene.answer import Array
+from scene.answer import Array, Flags
 
 LINEAR = 0.5
 """Of what the line says of p: the most by which the value at p may be off it."""
@@ -90,6 +92,9 @@ class Budget:
         inner_edge: of a stress K (k,) at all places, the curved beam's inner edge over the straight-beam formula; None
             of other probes.
         curved: the largest (K − 1)|v_f| at the places that take part.
+        missed: component along the difference of L_f less the solid's value; None where the solid was not asked, or has
+            no such value.
+        missed_uncertainty: how far that may be off, by the uncertainties of both.
     """
 
     row: Row
@@ -100,6 +105,8 @@ class Budget:
     paper: float | None
     inner_edge: Array | None
     curved: float | None
+    missed: float | None = None
+    missed_uncertainty: float | None = None
 
     @property
     def all_parts(self) -> float:
@@ -163,15 +170,19 @@ def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: f
     stretch, shear = theory + [0.0] * (2 - len(theory))
     paper = _in_paper(runs, row)
     K = _inner_edge(scene, row)
+    elements_uncertainty = float(np.dot(L[-1].uncertainty + in_doubt, np.abs(along)))
+    missed = _missed(scene, runs, row, counts, L[-1].value, along)
     return Budget(
         row=replace(row, difference=norm(probe.quantity, d)),
         parts=Parts(contact, links, rest, stretch, shear, elements, penalty),
         rest_uncertainty=float(np.dot(L_c.uncertainty + L[0].uncertainty + in_doubt, np.abs(along))),
-        elements_uncertainty=float(np.dot(L[-1].uncertainty + in_doubt, np.abs(along))),
+        elements_uncertainty=elements_uncertainty,
         off_line=off_line,
         paper=None if paper is None else float(np.dot(paper[counts] - v_a, along)),
         inner_edge=K,
         curved=None if K is None else float(np.max((K - 1.0)[counts] * np.abs(v_f))),
+        missed=None if missed is None else missed[0],
+        missed_uncertainty=None if missed is None else missed[1] + elements_uncertainty,
     )
 
 
@@ -184,6 +195,24 @@ def _in_paper(runs: BudgetRuns, row: Row) -> Array | None:
         return None
     found = station.values[row.probe.name]
     return found if found.shape == row.cprbm.shape else None
+
+
+def _missed(
+    scene: Scene, runs: BudgetRuns, row: Row, counts: Flags, limit_of_beams: Array, along: Array
+) -> tuple[float, float] | None:
+    """Components of L_f less the solid's value, and of what this is uncertain by; None where there is none."""
+    if runs.solid is None or not all(answer.completed for answer in runs.solid):
+        return None
+    stations = tuple(station_of(answer, row.stage, row.station) for answer in runs.solid)
+    v, V = (station.values[row.probe.name] for station in stations)
+    if v.shape != row.cprbm.shape or V.shape != row.cprbm.shape:
+        return None
+    if row.arc_length is not None:  # the solid's contacts may end elsewhere
+        clear = clear_of_spots(scene, row.probe.of, row.arc_length, stations)[counts]
+        if not clear[np.abs(along) > 0.0].all():
+            return None
+    x, off = extrapolated(scene, v, V)
+    return float(np.dot(limit_of_beams - x[counts], along)), float(np.abs(np.dot(off[counts], along)))
 
 
 def _inner_edge(scene: Scene, row: Row) -> Array | None:

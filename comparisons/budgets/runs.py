@@ -9,6 +9,7 @@ p           the penetration of the choices
 
 The CPRBM runs as it was chosen and, in ``auto``, at N, 2N and 4N.  The finite elements run in the chosen theory at n
 elements and p, p/4 and p/16; and in every theory up to the chosen one at n elements and p/16 and at 2n and p/256.
+Where the solid is among the solvers it runs at n and 2n elements along, and m and 2m across.
 """
 
 from __future__ import annotations
@@ -48,6 +49,7 @@ class BudgetRuns:
         penalty: the finite elements in the chosen theory at n elements and each of :data:`TIGHTNESS`.
         fea: by theory, from ``bending`` up to the chosen one: at n elements and the last of those penetrations, and
             finer, at each of :data:`ELEMENTS` and with :data:`DEEPER` times its penetration.
+        solid: the mechanism as a solid, at each of :data:`ELEMENTS`; None where it was not asked. No sum contains it.
     """
 
     kinematics: Kinematics
@@ -56,6 +58,7 @@ class BudgetRuns:
     paper: Answer | None
     penalty: tuple[Answer, ...]
     fea: Mapping[Kinematics, tuple[Answer, ...]]
+    solid: tuple[Answer, Answer] | None = None
 
     @property
     def reference(self) -> Answer:
@@ -90,13 +93,14 @@ def budgeted(scene: Scene, choices: Choices, memory: Remembering) -> BudgetRuns:
     tight = [replace(choices, penetration=choices.penetration / tightness) for tightness in TIGHTNESS]
     theories = KINEMATICS[: KINEMATICS.index(choices.kinematics) + 1]
     finest = even.finer().finer()
-    cprbm, fea = memory.solvers.cprbm, memory.solvers.fea
+    cprbm, fea, solid = memory.solvers.cprbm, memory.solvers.fea, memory.solvers.solid
     found = iter(
         memory.answers(
             [
                 *((cprbm, scene, own) for own in (choices, even, even.finer(), finest)),
                 *((fea, scene, own) for own in tight),
                 *((fea, scene, own) for theory in theories for own in _both(tight[-1].within(theory))),
+                *((solid, scene, own) for own in _both(choices) if solid is not None),
             ]
         )
     )
@@ -108,6 +112,7 @@ def budgeted(scene: Scene, choices: Choices, memory: Remembering) -> BudgetRuns:
         chosen if choices.formulation == "paper" else in_paper(scene, choices, memory.solvers),
         tuple(islice(found, len(TIGHTNESS))),
         frozendict({theory: tuple(islice(found, len(ELEMENTS))) for theory in theories}),
+        None if solid is None else (next(found), next(found)),
     )
 
 

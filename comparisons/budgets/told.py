@@ -20,6 +20,7 @@ _HEADERS = {
     "elements": "elements",
     "penalty": "penalty",
 }
+_MOVED = ("displacement", "rotation")
 _TOLD = 0.02
 """Parts below this share of a difference are told together."""
 
@@ -33,7 +34,8 @@ def sentences_of(account: Account) -> tuple[str, ...]:
     """Of each claim what our difference is made of; or why there is no budget."""
     if account.missing:
         return (f"{account.scene.name} has no error budget: {'; '.join(account.missing)}.",)
-    return tuple(f"{_made_of(found.budget)} {_as_theirs(found)}" for found in account.claims)
+    claimed = tuple(f"{_made_of(found.budget)} {_as_theirs(found)}" for found in account.claims)
+    return claimed if account.runs.solid is None else (*claimed, _missed(account))
 
 
 def data_of(account: Account) -> Plain:
@@ -72,9 +74,18 @@ def _data(budget: Budget) -> Plain:
         "paper": None if budget.paper is None else row.fraction(budget.paper),
         "curved_beam": None if budget.curved is None else row.fraction(budget.curved),
         "inner_edge_factor": plain(budget.inner_edge),
+        **_solid(budget),
         "scale": row.scale,
         "denominator": row.denominator,
     }
+
+
+def _solid(budget: Budget) -> Plain:
+    """What the solid adds to a row, where it was asked and has a value."""
+    if budget.missed is None or budget.missed_uncertainty is None:
+        return {}
+    row = budget.row
+    return {"missed": row.fraction(budget.missed), "missed_uncertainty": row.fraction(budget.missed_uncertainty)}
 
 
 def _budgets(account: Account) -> Sheet:
@@ -82,6 +93,7 @@ def _budgets(account: Account) -> Sheet:
     chosen = any(budget.parts.contact != 0.0 for budget in rows)
     beside = not chosen and any(budget.paper is not None for budget in rows)
     curved = any(budget.curved for budget in rows)
+    solid = any(budget.missed is not None for budget in rows)
     names = [name for name in _HEADERS if chosen or name != "contact"]
     body = []
     for budget in rows:
@@ -93,6 +105,7 @@ def _budgets(account: Account) -> Sheet:
                 cells.append(_cell(budget, budget.rest_uncertainty) if told else "–")
         cells += [_cell(budget, budget.paper, sign=True)] if beside else []
         cells += [_cell(budget, budget.curved)] if curved else []
+        cells += [_cell(budget, budget.missed, sign=True), _cell(budget, budget.missed_uncertainty)] if solid else []
         body.append((budget.row.probe.name, *cells))
     headers = ["probe", "difference"]
     for name in names:
@@ -110,10 +123,21 @@ def _budgets(account: Account) -> Sheet:
             " Curved: what the inner edge of a beam that is curved at rest has more than both solvers' straight-beam "
             "formula says, t/(3R) to first order."
         )
+    if solid:
+        note += (
+            f" Missed: what the beam theories miss together, the limit in {account.runs.kinematics} less the solid's "
+            "extrapolated value, in the same sense, and how far that may be off; with it the sum would lead from the "
+            "CPRBM to the solid."
+        )
     return Sheet(
         f"Error budget at {stage.name} {stage.stations[-1]:g} with {_count(account.choices.links)} links and "
         f"{_count(account.choices.elements)} elements per beam, %",
-        (*headers, *(("paper",) if beside else ()), *(("curved",) if curved else ())),
+        (
+            *headers,
+            *(("paper",) if beside else ()),
+            *(("curved",) if curved else ()),
+            *(("missed", "±") if solid else ()),
+        ),
         tuple(body),
         note,
     )
@@ -171,6 +195,21 @@ def _made_of(budget: Budget) -> str:
         f"{row.probe.name} at {row.station:g}: our difference of {percent(row.fraction(row.difference))} is "
         f"{listed}, and {_signed(budget, left)} for all else."
     )
+
+
+def _missed(account: Account) -> str:
+    """What the solid says of displacements and rotations at the last station."""
+    if account.silent:
+        return f"The solid says nothing: {account.silent}"
+    of_all = last_budgets(account.scene, account.budgets)
+    told = [each for each in of_all if each.missed is not None and each.row.probe.quantity in _MOVED]
+    if not told:
+        return "The solid has no displacement or rotation to hold the beam theories against."
+    listed = ", ".join(
+        f"{each.row.probe.name} {_cell(each, each.missed, sign=True)} % (± {_cell(each, each.missed_uncertainty)} %)"
+        for each in told
+    )
+    return f"What the beam theories miss together, beside the sum, by the solid: {listed}."
 
 
 def _as_theirs(found: ClaimedRatio) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from comparisons.choices import Kinematics
-from comparisons.cli.options import family_sizes, folder, output, variants
+from comparisons.cli.options import family_sizes, folder, opinions, output, variants
 
 if TYPE_CHECKING:
     from comparisons.converging.report import Told
@@ -21,6 +21,8 @@ NOT_COMPLETED = 1
 
 @click.command("converge")
 @click.argument("asked", nargs=-1, required=True, metavar="CASE|FILE.toml...|all")
+@click.option("--solver", "asking_solid", callback=opinions, default="cprbm,fea", show_default=True, metavar="SOLVERS",
+              help="Who answers: 'cprbm,fea', or 'cprbm,fea,solid' for what the beam theories miss.")  # fmt: skip
 @click.option(
     "--sizes",
     callback=family_sizes,
@@ -36,6 +38,7 @@ NOT_COMPLETED = 1
 def command(
     planted: object,
     asked: tuple[str, ...],
+    asking_solid: bool,  # noqa: FBT001 - click hands it over by name
     sizes: tuple[int, ...],
     formulation: Literal["auto", "paper"],
     kinematics: Kinematics,
@@ -49,19 +52,20 @@ def command(
     from comparisons.cli.asking import questions
     from comparisons.converging import report
     from comparisons.converging.telling import all_told
-    from comparisons.pairing import crew_of, solvers_of, workers_for
+    from comparisons.pairing import crew_of, solvers_of, with_solid, workers_for
     from comparisons.resuming import resumed
 
     wanted = questions(asked)
     if out is None and "all" in asked:
         out = Path("convergence")
     showing.room_for(json_file, out)
+    taking_part = with_solid(solvers_of(planted)) if asking_solid else solvers_of(planted)
     choices = Choices(formulation=formulation, kinematics=kinematics)
     printing = str(json_file) != "-"
     finished: list[Told] = []
     chapters: tuple[report.Chapter, ...] = ()
     names = tuple(question.name for question in wanted)
-    with resumed(out, solvers_of(planted), names) as whole, crew_of(workers_for(planted)) as crew:
+    with resumed(out, taking_part, names) as whole, crew_of(workers_for(planted)) as crew:
         steps = showing.progress(wanted, shown=not quiet, share=0.8)
         for place, question in enumerate(steps):
             told = all_told(question, sizes, choices, whole.solvers, crew)

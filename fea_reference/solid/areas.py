@@ -8,6 +8,8 @@ u       fraction of the neutral line's arc length, 0 at its start, 1 at its end
 p, n    point of the line and its normal to the left
 t       thickness
 x       point of the area, p + η t/2 n
+d, σ    distance from a held face, and what grows evenly from element to element
+ℓ, δ    depth in which elements are shorter, and the share of it where they are shortest
 ======  =====================================================================
 """
 
@@ -18,7 +20,11 @@ import numpy as np
 from scene.answer import Array
 from scene.geometry import arc_length, largest_curvature, points_on, tangents_on
 from scene.mistakes import Mistake
-from scene.statement import Beam, Scene
+from scene.statement import Beam, FreeEnd, Scene
+
+_DEPTH = 1.5
+_SHORTEST = 0.125
+_MOST = 0.25  # of the length, that depth
 
 
 def points(beam: Beam, u: Array, eta: Array) -> Array:
@@ -30,8 +36,8 @@ def points(beam: Beam, u: Array, eta: Array) -> Array:
 
 
 def fractions(beam: Beam, n: int) -> Array:
-    """Where ``n`` elements along a beam meet, (n + 1,): even, and the nearest ones moved to the section's knots."""
-    u = np.linspace(0.0, 1.0, n + 1)
+    """Where ``n`` elements along a beam meet, (n + 1,): graded, and the nearest ones moved to the section's knots."""
+    u = graded(beam, n)
     inner = np.arange(1, n)
     for knot in beam.knots[1:-1]:
         if inner.size:
@@ -39,6 +45,28 @@ def fractions(beam: Beam, n: int) -> Array:
             u[inner[nearest]] = knot
             inner = np.delete(inner, nearest)
     return np.sort(u)
+
+
+def graded(beam: Beam, n: int) -> Array:
+    """Where ``n`` elements would meet, (n + 1,): even but for held ends, where they are short.
+
+    At its corners the stress of a held face has no bound.  From a depth of ``_DEPTH`` thicknesses up to the face an
+    element's length falls straight to ``_SHORTEST`` of what it is elsewhere: σ = ℓ log(1 + d/δ) grows by the same in
+    each, with d from the face, ℓ the depth and δ that share of it.  Of twice as many every other place is the same.
+    """
+    length = arc_length(beam.curve)
+    ends = zip((beam.start, beam.end), beam.thickness_at(np.array([0.0, 1.0])), strict=True)
+    depths = [0.0 if isinstance(end, FreeEnd) else min(_DEPTH * t / length, _MOST) for end, t in ends]
+    more = [depth * (-np.log(_SHORTEST) - 1.0 + _SHORTEST) for depth in depths]
+    sigma = np.linspace(0.0, 1.0 + sum(more), n + 1)
+    u = sigma - more[0]
+    for depth, there in zip(depths, (sigma, sigma[::-1]), strict=True):
+        near = there < -depth * np.log(_SHORTEST)
+        if near.any():
+            away = _SHORTEST * depth * np.expm1(there[near] / depth)
+            u[near] = away if there is sigma else 1.0 - away
+    u[0], u[-1] = 0.0, 1.0
+    return np.asarray(u)
 
 
 def too_curved(scene: Scene) -> list[Mistake]:

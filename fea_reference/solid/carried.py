@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +25,8 @@ def read_quadrilaterals(path: Path) -> tuple[Array, NDArray[np.int64]]:
     """Corners (2, k) and quadrilaterals (4, c) of a mesh in the plane."""
     import meshio
 
-    mesh = meshio.read(path)
+    with redirect_stdout(StringIO()):  # it prints an empty line, and standard output may be a document
+        mesh = meshio.read(path)
     return (
         np.ascontiguousarray(mesh.points[:, :2].T, dtype=np.float64),
         np.ascontiguousarray(mesh.cells_dict["quad"].T, dtype=np.int64),

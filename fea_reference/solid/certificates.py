@@ -8,12 +8,14 @@ from fea_reference.solid.contacts import Pair, touch
 from fea_reference.solid.curvature import smallest_curvature
 from fea_reference.solid.march import March
 from fea_reference.solid.skin import Skin
+from fea_reference.solid.stops import STIFFNESS
 from fea_reference.solid.supports import balance
 from fea_reference.solid.system import assemble
 from scene.answer import Certificate
 
 _VIOLATION = 1e-9
 _BALANCE = 1e-8
+_YIELDING = 1e-4  # rad
 _OTHER_WAY = 5.0  # of the penetration asked: what the other edge's own points may find
 
 
@@ -41,6 +43,9 @@ def certify(march: March) -> Certificate:
         failures.append(f"the unbalanced force is {residual:.1e} of the largest")
     if not violation <= max(_VIOLATION, system.floor):
         failures.append(f"a drive, a slide or a pin is violated by {violation:.1e} of the longest beam")
+    yielding = max((abs(stop.moment(system.z)) / STIFFNESS for stop in model.stops), default=0.0)
+    if not yielding <= _YIELDING:
+        failures.append(f"a stop yields by {yielding:.1e} rad")
     if not thinnest > 0.0:
         failures.append(f"an element is turned inside out: det F is {thinnest:.1e}")
     if not penetration <= settings.penetration:

@@ -10,42 +10,65 @@ w, ds   width, and length of the edge without stress
 ======  ===============================================================================
 
 The energy is ½ ∫ ε w g² ds over the places with g < 0; force and tangent are its derivatives.  A pair is every edge
-of the first beam with every one of the second, or with what is rigid.  In the course of Newton's iterations the part
-ε w g ∂²g of the tangent takes the g that the last step foresaw: where an edge has gone too deep the pressure of that
-state, which is far too large, has no say in what is stable.
+of the first beam with every one of the second, or with what is rigid.  A rigid corner that juts out presses in a point
+of the edge, with ε over an element's length there, and so does the corner of either beam's free end.
+
+In the course of Newton's iterations the part ε w g ∂²g of the tangent takes the g that the last step foresaw: where an
+edge has gone too deep the pressure of that state, which is far too large, has no say in what is stable.  A corner that
+was foreseen to press is held on its edge for one iteration even where it is off it by then, or it would come and go.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
-from fea_reference.solid import facing, rigid
+from fea_reference.solid import edges, facing, pricking, rigid
 from fea_reference.solid.bodies import BodyPart, turned
+from fea_reference.solid.edges import Broken, Corner, Graph
 from fea_reference.solid.model import Model
 from fea_reference.solid.rigid import Half, Round, Shape
 from fea_reference.solid.skin import STENCIL, Skin
-from fea_reference.solid.zones import Zones, zones
+from fea_reference.solid.zones import NOWHERE, Gap, Zones, least, zones
 from scene.answer import Array, Ints
-from scene.statement import BeamContact, CircleContact, HalfPlaneContact, Scene
+from scene.statement import BeamContact, CircleContact, FreeEnd, FunctionContact, HalfPlaneContact, LineContact, Scene
 
 _REACH = 1.0  # thicknesses that gaps are looked for in, and a few nodes
+_FLAT = -0.9  # cosine between a beam's normal and a side's: what leans more on an edge with corners is on a corner
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pair:
-    """An edge that is integrated over, and what it may touch: another edge, or a shape on the body of a number.
+    """An edge that is integrated over, and what it may touch: another edge, or a shape on the body of a number, or a
+    corner of one.
 
     ``name`` is the contact's; ``measure`` the mean thickness.
     """
 
     name: str
     skin: Skin
-    other: Skin | Shape
+    other: Skin | Shape | Corner | Tip
     body: int
     measure: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tip:
+    """The corner of a free end: the ``last`` or first place of an edge, that may press into the other one of a pair.
+
+    It is the pair's own edge if ``own``, and ``skin`` is what it may press into; else it is ``skin`` that has it.
+    """
+
+    skin: Skin
+    own: bool
+    last: bool
+
+    def roles(self, pair: Pair) -> tuple[Skin, Skin]:
+        """The edge that has the corner, and what it presses into."""
+        return (pair.skin, self.skin) if self.own else (self.skin, pair.skin)
 
 
 Foreseen = tuple[Array, Array]
@@ -101,15 +124,27 @@ def pairs_of(scene: Scene, model: Model) -> tuple[Pair, ...]:
         match contact:
             case BeamContact():
                 one, other = (_skins(scene, model, beam) for beam in contact.between)
-                found += [Pair(name, a, b, -1, 0.5 * (a.thickness + b.thickness)) for a in one for b in other]
-            case CircleContact() | HalfPlaneContact():
-                body = model.bodies[number[contact.body]]
-                shape = _shape(contact, body, model)
+                for a, b in product(one, other):
+                    tips = _tips(scene, contact, b)
+                    measure = 0.5 * (a.thickness + b.thickness)
+                    found += [Pair(name, a, b, -1, measure), *(Pair(name, a, tip, -1, measure) for tip in tips)]
+            case CircleContact() | HalfPlaneContact() | LineContact() | FunctionContact():
                 found += [
                     Pair(name, skin, shape, number[contact.body], skin.thickness)
+                    for shape in _shapes(contact, model.bodies[number[contact.body]], model)
                     for skin in _skins(scene, model, contact.beam)
                 ]
     return tuple(found)
+
+
+def _tips(scene: Scene, contact: BeamContact, b: Skin) -> list[Tip]:
+    """The corners of both beams' free ends, for an edge of the second."""
+    return [
+        Tip(b, own, last)
+        for own, name in ((True, contact.between[0]), (False, contact.between[1]))
+        for last, end in ((False, scene.beams[name].start), (True, scene.beams[name].end))
+        if isinstance(end, FreeEnd)
+    ]
 
 
 def _skins(scene: Scene, model: Model, name: str) -> tuple[Skin, Skin]:
@@ -137,14 +172,24 @@ def _skins(scene: Scene, model: Model, name: str) -> tuple[Skin, Skin]:
     return skins[0], skins[1]
 
 
-def _shape(contact: CircleContact | HalfPlaneContact, body: BodyPart, model: Model) -> Shape:
-    units = model.units
-    if isinstance(contact, CircleContact):
-        return Round(
-            (np.array(contact.center) - units.origin) / units.length - body.centre, contact.radius / units.length
-        )
-    normal = np.array(contact.normal) / np.hypot(*contact.normal)
-    return Half((np.array(contact.point) - units.origin) / units.length - body.centre, normal)
+def _shapes(
+    contact: CircleContact | HalfPlaneContact | LineContact | FunctionContact, body: BodyPart, model: Model
+) -> tuple[Shape | Corner, ...]:
+    """What is rigid, as its body sees it from its centre."""
+    unit = model.units.length
+    origin = model.units.origin + body.centre * unit
+    match contact:
+        case CircleContact():
+            return (Round((np.array(contact.center) - origin) / unit, contact.radius / unit),)
+        case HalfPlaneContact():
+            normal = np.array(contact.normal) / np.hypot(*contact.normal)
+            return (Half((np.array(contact.point) - origin) / unit, normal),)
+        case LineContact():
+            sides, corners = edges.broken(contact, origin, unit)
+            return (sides, *corners)
+        case FunctionContact():
+            bent, corners = edges.graph(contact, origin, unit)
+            return (bent, *corners)
 
 
 def touch(
@@ -163,6 +208,10 @@ def touch(
     """
     places = model.mesh.places + q.reshape(-1, 2)
     skin, other = pair.skin, pair.other
+    if isinstance(other, Corner):
+        return _pricked(model, pair, other, factor, places, z, foreseen)
+    if isinstance(other, Tip):
+        return _prodded(model, pair, other, factor, places, foreseen)
     x = places[skin.nodes]
     found = overlap(model, pair, places, z)
     zeta, weights = found.points(quadrature)
@@ -198,9 +247,120 @@ def touch(
     return Touch(pair, found, zeta, opposite, here, push, dofs, gradient, hessian, g, first, energy)
 
 
+def _pricked(
+    model: Model, pair: Pair, corner: Corner, factor: float, places: Array, z: Array, foreseen: Foreseen | None
+) -> Touch:
+    """A corner and an edge, as of :func:`touch` with the nodes at ``places`` (N, 2)."""
+    skin, body = pair.skin, model.bodies[pair.body]
+    y = places[skin.nodes]
+    found = overlap(model, pair, places, z)
+    if not _holds(found.least, foreseen):
+        return _open(pair, found)
+    zeta = np.array([found.place])
+    first, second = pricking.variations(corner, body, skin, y, zeta, z)
+    g = np.array([found.least])
+    bent = g if foreseen is None else np.array([foreseen[1].min(initial=0.0)])
+    own = skin.nodes[skin.shapes(zeta)[0]]
+    moved = 2 * len(places) + 3 * pair.body + np.arange(3)
+    dofs = np.concatenate([np.stack([2 * own, 2 * own + 1], axis=2).reshape(1, -1), moved[None]], axis=1)
+    penalty = factor * _in_a_point(skin, zeta)
+    gradient = (penalty * g)[:, None] * first
+    hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
+    push = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
+    here, _ = pricking.place(corner, body, z)
+    energy = 0.5 * float((penalty * g**2).sum())
+    return Touch(pair, found, zeta, np.empty(0), here, push, dofs, gradient, hessian, g, first, energy)
+
+
+def _prodded(model: Model, pair: Pair, tip: Tip, factor: float, places: Array, foreseen: Foreseen | None) -> Touch:
+    """The corner of an end and an edge, as of :func:`touch` with the nodes at ``places`` (N, 2)."""
+    pointed, pressed = tip.roles(pair)
+    g_least, zeta = _tip_gap(pair, tip, places)
+    own, y = _place_of(tip, pointed), places[pressed.nodes]
+    at = np.array([own if tip.own else zeta])
+    found = Zones(np.full((2, 1 if g_least < 0.0 else 0), at[0]), g_least, float(at[0]))
+    if not _holds(g_least, foreseen):
+        return _open(pair, found)
+    there = np.array([zeta])
+    numbers, N, _, _ = pointed.shapes(np.array([own]))
+    here = (N[:, None] @ places[pointed.nodes][numbers])[:, 0]
+    g, first, second = facing.variations(pressed, y, here, N, there)
+    bent = g if foreseen is None else np.array([foreseen[1].min(initial=0.0)])
+    both = np.concatenate([pointed.nodes[numbers], pressed.nodes[pressed.shapes(there)[0]]], axis=1)
+    dofs = np.stack([2 * both, 2 * both + 1], axis=2).reshape(1, -1)
+    penalty = factor * np.minimum(_in_a_point(pressed, there), _in_a_point(pointed, np.array([own])))
+    gradient = (penalty * g)[:, None] * first
+    hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
+    on_corner = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
+    push = on_corner if tip.own else -on_corner
+    energy = 0.5 * float((penalty * g**2).sum())
+    opposite = there if tip.own else np.array([own])
+    return Touch(pair, found, at, opposite, here, push, dofs, gradient, hessian, g, first, energy)
+
+
+def _holds(g: float, foreseen: Foreseen | None) -> bool:
+    """Whether a corner is held in this iteration: where it is within, or was foreseen to press and is near."""
+    return g < 0.0 or (np.isfinite(g) and foreseen is not None and bool((foreseen[1] < 0.0).any()))
+
+
+def _open(pair: Pair, found: Zones) -> Touch:
+    """A corner that presses nothing."""
+    none, n = np.empty(0), 2 * STENCIL
+    rows, points, dofs = np.empty((0, n)), np.empty((0, 2)), np.empty((0, n), dtype=np.intp)
+    return Touch(pair, found, none, none, points, points, dofs, rows, np.empty((0, n, n)), none, rows, 0.0)
+
+
+def _in_a_point(skin: Skin, zeta: Array) -> Array:
+    """ε w over an element's length, (k,)."""
+    element = 2.0 * np.hypot(*skin.curve(skin.places, zeta)[1].T)
+    return np.asarray(skin.at(skin.stiffness, zeta) * skin.at(skin.width, zeta) * element)
+
+
+def _place_of(tip: Tip, pointed: Skin) -> float:
+    return pointed.nodes.size - 1.0 if tip.last else 0.0
+
+
+def _tip_gap(pair: Pair, tip: Tip, places: Array) -> tuple[float, float]:
+    """g of the corner of an end, infinite where nothing near faces it, and ζ of the other edge."""
+    pointed, pressed = tip.roles(pair)
+    at = np.array([_place_of(tip, pointed)])
+    here, slope, _ = pointed.curve(places[pointed.nodes], at)
+    out = pointed.outward(slope) + (1.0 if tip.last else -1.0) * slope / np.hypot(*slope.T)[:, None]
+    y = places[pressed.nodes]
+    reach = _REACH * pressed.thickness + float(np.hypot(*np.diff(y, axis=0).T).max())
+    found = facing.gaps(pressed, y, here, out / np.sqrt(2.0), reach)
+    return float(found.gap[0]), float(found.zeta[0])
+
+
 def overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
     """Where a pair overlaps, with the nodes at ``places`` (N, 2)."""
-    skin, other = pair.skin, pair.other
+    if isinstance(pair.other, Corner):
+        g, at = _corner_gap(model, pair, pair.other, places, z)
+        return Zones(np.full((2, 1 if g < 0.0 else 0), at), g, at)
+    assert not isinstance(pair.other, Tip)  # which has no extent
+    gap = _gap(model, pair, pair.other, places, z)
+    return NOWHERE if gap is None else zones(gap, pair.skin.nodes.size)
+
+
+def least_gap(model: Model, pair: Pair, places: Array, z: Array) -> float:
+    """The least gap of a pair, with the nodes at ``places`` (N, 2)."""
+    if isinstance(pair.other, Corner):
+        return _corner_gap(model, pair, pair.other, places, z)[0]
+    if isinstance(pair.other, Tip):
+        return _tip_gap(pair, pair.other, places)[0]
+    gap = _gap(model, pair, pair.other, places, z)
+    return np.inf if gap is None else least(gap, pair.skin.nodes.size)
+
+
+def _corner_gap(model: Model, pair: Pair, corner: Corner, places: Array, z: Array) -> tuple[float, float]:
+    x = places[pair.skin.nodes]
+    reach = _REACH * pair.skin.thickness + float(np.hypot(*np.diff(x, axis=0).T).max())
+    return pricking.gap(corner, model.bodies[pair.body], pair.skin, x, reach, z)
+
+
+def _gap(model: Model, pair: Pair, other: Skin | Shape, places: Array, z: Array) -> Gap | None:
+    """The gap along the first edge; None where the other is far from all of it."""
+    skin = pair.skin
     x = places[skin.nodes]
     if isinstance(other, Skin):
         y = places[other.nodes]
@@ -208,18 +368,23 @@ def overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
         reach = _REACH * (skin.thickness + other.thickness) + apart
         low, high = x.min(axis=0) - reach, x.max(axis=0) + reach
         if np.any(y.min(axis=0) > high) or np.any(y.max(axis=0) < low):
-            return Zones(np.empty((2, 0)), np.inf, 0.0)
+            return None
 
-    def gap(zeta: Array) -> Array:
-        here, slope, _ = skin.curve(x, zeta)
-        if isinstance(other, Skin):
+        def to_edge(zeta: Array) -> Array:
+            here, slope, _ = skin.curve(x, zeta)
             return facing.gaps(other, y, here, skin.outward(slope), reach).gap
-        g, h, _ = other.measured(rigid.seen(model.bodies[pair.body], here, z))
-        h = turned(h, float(model.bodies[pair.body].state(z)[2]))
-        met = (h * skin.outward(slope)).sum(axis=1) < 0.0
+
+        return to_edge
+    flat = _FLAT if isinstance(other, Broken | Graph) else 0.0
+    body = model.bodies[pair.body]
+
+    def to_shape(zeta: Array) -> Array:
+        here, slope, _ = skin.curve(x, zeta)
+        g, h, _ = other.measured(rigid.seen(body, here, z))
+        met = (turned(h, float(body.state(z)[2])) * skin.outward(slope)).sum(axis=1) < flat
         return np.asarray(np.where(met, g, np.inf))
 
-    return zones(gap, skin.nodes.size)
+    return to_shape
 
 
 def closed(touches: tuple[Touch, ...]) -> Mapping[str, tuple[Touch, ...]]:

@@ -14,7 +14,7 @@ stretched.)  Where a contact closes on the way, the λ at which its gap vanishes
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -35,6 +35,7 @@ _STIFFEST = 1e4  # of the factor at first
 _CLOSING = 1e-9  # gap at which a contact is found closed, of the longest beam
 _SAME = 1e-12  # of a step: two values that are one
 _LOOKS = 60
+_POLISHED = 1e-12  # residual, over the scale, if round-off allows that
 
 
 class StoppedError(Exception):
@@ -128,11 +129,21 @@ def reach(march: March, part: int, target: float, span: float) -> None:
         march.values, march.system = values, found.system
         march.step *= 2.0 if found.iterations <= _EASY else 1.0
     _tighten(march)
+    _polish(march)
 
 
 def leave_stage(march: March) -> None:
     """What is stepped is another thing from now on: nothing is known of its way."""
     march.step = np.inf
+
+
+def _polish(march: March) -> None:
+    """Iterate on to round-off: balances sum up what is left at many nodes.  Where that fails the state stays."""
+    settings = replace(march.settings, residual=_POLISHED)
+    found = equilibrium(march.model, march.penalties, settings, march.values, march.system.z)
+    march.iterations += found.iterations
+    if found.system is not None:
+        march.system = found.system
 
 
 def _tighten(march: March) -> None:

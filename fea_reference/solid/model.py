@@ -20,6 +20,7 @@ from fea_reference.solid.elements import Elements, Strained, built, plane_stress
 from fea_reference.solid.mesh import Mesh, Rectangle, meshed, plain_rectangle
 from fea_reference.solid.rows import Row, rows_of
 from fea_reference.solid.settings import Settings
+from fea_reference.solid.stops import StopPart, stops_of
 from scene.answer import Array, Ints
 from scene.geometry import arc_length
 from scene.statement import (
@@ -89,6 +90,7 @@ class Model:
     rows: tuple[Row, ...]
     loads: tuple[LoadPart | AreaLoad, ...]
     drives: tuple[DrivePart, ...]
+    stops: tuple[StopPart, ...]
     free: Ints
     size: int
 
@@ -216,6 +218,7 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
             DrivePart(name, units.length if isinstance(drive, DisplacementDrive) else 1.0)
             for name, drive in scene.drives.items()
         ),
+        stops_of(scene, bodies, ties),
         free,
         size + len(rows),
     )

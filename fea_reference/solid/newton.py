@@ -44,9 +44,12 @@ def equilibrium(model: Model, penalties: Mapping[Pair, float], settings: Setting
         if residual <= max(settings.residual * system.scale, system.floor):
             if foreseen is not None:
                 system = assemble(model, penalties, settings.quadrature, values, z)
-            if not float(system.strained.determinants.min()) > 0.0:
+                residual = float(np.abs(system.residual).max())
+            arrived = residual <= max(settings.residual * system.scale, system.floor)
+            if arrived and not float(system.strained.determinants.min()) > 0.0:
                 return Found(None, iteration, "an element is turned inside out")
-            return Found(system, iteration)
+            if arrived:  # else a corner was held that does not press
+                return Found(system, iteration)
         if iteration >= _PATIENCE and residual > _FAR * system.scale:
             return Found(None, iteration, "Newton's iterations do not arrive")
         step = system.solve(-system.residual)

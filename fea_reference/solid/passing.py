@@ -1,8 +1,9 @@
 """Whether a beam has passed through what it may touch between two equilibria.
 
 A step may be so long that neither of its ends overlaps.  Of a circle it is looked at whether the neutral line has gone
-over its centre, as the circle's body sees it; of two beams whether their neutral lines cross.  Behind the edge of a
-half-plane everything is within it.
+over its centre, as the circle's body sees it, and so of a corner; of two beams whether their neutral lines cross at the
+end or on a straight way there, for a beam that goes through another's end lies clear on its wrong side.  Behind the
+edge of a half-plane everything is within it.
 """
 
 from __future__ import annotations
@@ -12,25 +13,31 @@ from collections.abc import Iterable
 import numpy as np
 
 from fea_reference.solid.contacts import Pair
+from fea_reference.solid.edges import Corner
 from fea_reference.solid.model import Model
 from fea_reference.solid.rigid import Round, seen
 from fea_reference.solid.skin import Skin
 from scene.answer import Array
 
+_LOOKS = 16
+
 
 def passed(model: Model, pairs: Iterable[Pair], before: Array, after: Array) -> str:
     """The contact through which a beam has passed between unknowns ``before`` and ``after``; empty if none."""
     places = [model.mesh.places + model.displacements(z).reshape(-1, 2) for z in (before, after)]
+    looked_at = set()
     for pair in pairs:
         own = model.mesh.line(pair.skin.beam, 0.0)
         if isinstance(pair.other, Skin):
+            both = pair.skin.beam, pair.other.beam
             other = model.mesh.line(pair.other.beam, 0.0)
-            if cross(places[1][own], places[1][other]):
+            if both not in looked_at and crossed(*(x[line] for line in (own, other) for x in places)):
                 return pair.name
-        elif isinstance(pair.other, Round):
+            looked_at.add(both)
+        elif isinstance(pair.other, Round | Corner):
             body = model.bodies[pair.body]
             a, b = (seen(body, x[own], z) for x, z in zip(places, (before, after), strict=True))
-            if swept(a, b, pair.other.centre):
+            if swept(a, b, pair.other.centre if isinstance(pair.other, Round) else pair.other.point):
                 return pair.name
     return ""
 
@@ -51,6 +58,12 @@ def _side(p: Array, q: Array, r: Array) -> Array:
     return np.asarray(
         (q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1]) - (q[..., 1] - p[..., 1]) * (r[..., 0] - p[..., 0])
     )
+
+
+def crossed(a: Array, b: Array, c: Array, d: Array) -> bool:
+    """Whether lines cross while one goes straight from ``a`` to ``b`` (n, 2), the other from ``c`` to ``d`` (m, 2)."""
+    shares = np.linspace(0.0, 1.0, _LOOKS + 1)[1:]
+    return any(cross(a + share * (b - a), c + share * (d - c)) for share in shares)
 
 
 def cross(one: Array, other: Array) -> bool:

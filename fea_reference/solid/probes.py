@@ -49,8 +49,10 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
             return frozen_array(_centre(scene, march, probe.of))
         case "ends":
             return frozen_array(_ends(scene, march, probe.of))
-        case "angle" | "moment":
-            raise AssertionError(f"{probe.name} has been refused")
+        case "angle":
+            return frozen_array(next(stop for stop in model.stops if stop.name == probe.of).angle(z))
+        case "moment":
+            return frozen_array(next(stop for stop in model.stops if stop.name == probe.of).moment(z) * units.moment)
 
 
 def shapes(march: March) -> dict[str, Shape]:

@@ -5,14 +5,10 @@ from __future__ import annotations
 from fea_reference.solid.areas import too_curved
 from scene.mistakes import Mistake, SceneError
 from scene.statement import (
-    BeamContact,
     BeamMoment,
-    CircleContact,
-    HalfPlaneContact,
     Scene,
+    SelfContact,
 )
-
-_PROBES = frozenset({"angle", "moment"})
 
 
 def refuse(scene: Scene) -> None:
@@ -26,16 +22,10 @@ def refuse(scene: Scene) -> None:
         if isinstance(load, BeamMoment):
             mistakes.append(Mistake(f"loads.{name}", "a moment on a beam", "for the solid, forces on beams"))
     for name, contact in scene.contacts.items():
-        if not isinstance(contact, BeamContact | CircleContact | HalfPlaneContact):
-            mistakes.append(
-                Mistake(
-                    f"contacts.{name}", repr(contact.kind), "for the solid, beam-beam, beam-circle, beam-half-plane"
-                )
-            )
+        if isinstance(contact, SelfContact):
+            mistakes.append(Mistake(f"contacts.{name}", repr(contact.kind), "for the solid, beams that touch others"))
         elif not contact.thick:
             mistakes.append(Mistake(f"contacts.{name}", "lines that touch", "for the solid, edges: thick = true"))
-    for name in scene.stops:
-        mistakes.append(Mistake(f"stops.{name}", "a stop", "for the solid, pins without limits"))
     if scene.assembly is not None:
         mistakes.append(Mistake("assembly", "ends drawn apart", "for the solid, beams drawn as they are joined"))
     for stage in scene.stages:
@@ -46,7 +36,11 @@ def refuse(scene: Scene) -> None:
                 )
             )
     for probe in scene.probes:
-        if probe.quantity in _PROBES:
-            mistakes.append(Mistake(f"probes.{probe.name}", repr(probe.quantity), "for the solid, another quantity"))
+        if probe.quantity == "moment" and probe.of in scene.contacts:
+            mistakes.append(
+                Mistake(
+                    f"probes.{probe.name}", repr(probe.quantity), "for the solid, a contact's force, or a stop's moment"
+                )
+            )
     if mistakes:
         raise SceneError(mistakes)

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea_reference.solid.bodies import BodyPart, turned
+from fea_reference.solid.edges import Broken, Graph
 from scene.answer import Array
 
 _S = np.array([[0.0, -1.0], [1.0, 0.0]])
@@ -53,7 +54,7 @@ class Half:
         return (xi - self.point) @ self.normal, np.broadcast_to(self.normal, xi.shape), np.zeros((len(xi), 2, 2))
 
 
-Shape = Round | Half
+Shape = Round | Half | Broken | Graph
 
 
 def seen(body: BodyPart, points: Array, z: Array) -> Array:

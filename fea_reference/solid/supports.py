@@ -74,6 +74,7 @@ def balance(model: Model, system: System, values: Array) -> tuple[float, float]:
             moments.append(float(value))
         else:
             enter(value * part.direction, model.bodies[part.body].carried(part.arm, z))
+    moments += [stop.moment(z) for stop in model.stops if model.bodies[stop.body].dofs is None]
     for one in system.touches:
         if one.zeta.size and one.pair.body >= 0 and model.bodies[one.pair.body].dofs is None:
             forces.append(one.push.sum(axis=0))

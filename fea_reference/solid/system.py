@@ -17,9 +17,10 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from fea_reference.solid.beam_loads import AreaLoad
 from fea_reference.solid.bodies import across, turned
-from fea_reference.solid.contacts import Foreseen, Pair, Touch, overlap, touch
+from fea_reference.solid.contacts import Foreseen, Pair, Touch, least_gap, touch
 from fea_reference.solid.elements import Strained
 from fea_reference.solid.model import DrivePart, LoadPart, Model
+from fea_reference.solid.stops import STIFFNESS
 from scene.answer import Array
 
 _ROUND_OFF = 8.0  # measured
@@ -153,6 +154,14 @@ def assemble(
             more_columns += [int(dof), row.multiplier]
             more += [float(slope)] * 2
         diagonal += [(dof, mu * second) for dof, second in row.second(model.bodies, z)]
+    for stop in model.stops:
+        moment = stop.moment(z)
+        for dof, slope in stop.dofs if moment else ():
+            residual[dof] -= moment * slope
+            for other, beside in stop.dofs:
+                more_rows.append(dof)
+                more_columns.append(other)
+                more.append(STIFFNESS * slope * beside)
     for dof, value in diagonal:
         more_rows.append(dof)
         more_columns.append(dof)
@@ -172,7 +181,7 @@ def assemble(
 def deepest(model: Model, pairs: Iterable[Pair], z: Array) -> float:
     """The largest depth of overlap in a state, over the mean thickness."""
     places = model.mesh.places + model.displacements(z).reshape(-1, 2)
-    return max((-overlap(model, pair, places, z).least / pair.measure for pair in pairs), default=0.0)
+    return max((-least_gap(model, pair, places, z) / pair.measure for pair in pairs), default=0.0)
 
 
 def load_direction(model: Model, part: LoadPart | AreaLoad | DrivePart, z: Array) -> Array:

@@ -22,6 +22,7 @@ from scene.answer import Array
 
 SAMPLES = 6  # between two nodes
 _SECANTS = 12
+_VANISHES = 1e-13  # gap at the end of a zone, over the longest beam
 
 Gap = Callable[[Array], Array]
 
@@ -47,14 +48,15 @@ class Zones:
         return np.concatenate(places), np.concatenate(shares)
 
 
+NOWHERE = Zones(np.empty((2, 0)), np.inf, 0.0)
+
+
 def zones(gap: Gap, nodes: int) -> Zones:
     """Find the zones of an edge of so many nodes."""
-    zeta = np.linspace(0.0, nodes - 1.0, SAMPLES * (nodes - 1) + 1)
-    g = gap(zeta)
-    zeta, g = _with_minima(gap, zeta, g)
-    least = int(np.argmin(g))
-    if not g[least] < 0.0:
-        return Zones(np.empty((2, 0)), float(g[least]), float(zeta[least]))
+    zeta, g = _sampled(gap, nodes)
+    lowest = int(np.argmin(g))
+    if not g[lowest] < 0.0:
+        return Zones(np.empty((2, 0)), float(g[lowest]), float(zeta[lowest]))
     within = g < 0.0
     steps = np.diff(np.concatenate([[False], within, [False]]).astype(int))
     begins, ends = np.flatnonzero(steps == 1), np.flatnonzero(steps == -1) - 1
@@ -66,7 +68,18 @@ def zones(gap: Gap, nodes: int) -> Zones:
         if inside.any():
             i, o = index[inside], other[inside]
             edge[inside] = _roots(gap, zeta[i], zeta[o], g[i], g[o])
-    return Zones(np.stack([lower, upper]), float(g[least]), float(zeta[least]))
+    return Zones(np.stack([lower, upper]), float(g[lowest]), float(zeta[lowest]))
+
+
+def least(gap: Gap, nodes: int) -> float:
+    """The least gap along an edge of so many nodes."""
+    return float(_sampled(gap, nodes)[1].min())
+
+
+def _sampled(gap: Gap, nodes: int) -> tuple[Array, Array]:
+    """Places along an edge, and the gaps there."""
+    zeta = np.linspace(0.0, nodes - 1.0, SAMPLES * (nodes - 1) + 1)
+    return _with_minima(gap, zeta, gap(zeta))
 
 
 def _with_minima(gap: Gap, zeta: Array, g: Array) -> tuple[Array, Array]:
@@ -100,6 +113,6 @@ def _roots(gap: Gap, inner: Array, outer: Array, g_inner: Array, g_outer: Array)
         a, fa = np.where(negative, c, a), np.where(negative, fc, fa)
         b, fb = np.where(negative, b, c), np.where(negative, fb, fc)
         side = np.where(negative, -1.0, 1.0)
-        if np.abs(b - a).max() < 1e-13 or np.abs(fc).max() < 1e-16:
+        if np.abs(b - a).max() < 1e-13 or np.abs(fc).max() < _VANISHES:
             break
     return np.asarray(np.where(np.abs(fa) < np.abs(fb), a, b))

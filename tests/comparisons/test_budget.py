@@ -15,7 +15,7 @@ from comparisons.cli.main import run
 from comparisons.documents import text
 from comparisons.memory import Remembering
 from comparisons.pairing import Solvers
-from scene import Material, Stage
+from scene import Ending, Material, Stage
 from scene.frozendict import frozendict
 from tests.comparisons.made_up import THEORY, MadeUp
 
@@ -121,6 +121,47 @@ def test_a_change_with_the_penetration_that_follows_no_law_spoils_no_limit(hinge
     found = budget_at(hinge, Solvers(MadeUp("cprbm", 0.0), restless))
     assert abs(found.parts.rest) < 1e-12
     assert found.rest_uncertainty == pytest.approx(0.9 * LOAD * 1e-3 / 3.0, rel=2e-2)
+
+
+def a_solid(rotation, *, until=None):
+    """A third opinion whose values are those of the load times a factor, at every mesh."""
+
+    def answer(scene, choices):
+        made = MadeUp("fea", 0.0, stiffness=1.0 / rotation, until=until)
+        return made(scene, Choices(elements=choices.elements, kinematics="bending"))
+
+    return answer
+
+
+def test_what_the_beam_theories_miss_is_told_beside_the_sum(hinge):
+    """L_f = 1.005 and the solid's 1.0072, where v_c = 1 is the lower: 0.0022 on from the CPRBM's side."""
+    beams = Solvers(MadeUp("cprbm", 0.0), MadeUp("fea", -8e-3))
+    found = budget_at(hinge, replace(beams, solid=a_solid(1.0072)))
+    assert found.missed == pytest.approx(0.9 * LOAD * 0.0022, rel=1e-9)
+    assert found.missed_uncertainty == pytest.approx(found.elements_uncertainty, rel=1e-9)  # both meshes say the same
+    without = budget_at(hinge, beams)
+    assert (without.missed, without.parts) == (None, found.parts)
+    account = accounted(hinge, Choices(), Remembering(solvers=replace(beams, solid=a_solid(1.0072))))
+    (sheet,) = (one for one in told.sheets_of(account) if "Error budget" in one.title)
+    assert sheet.headers[-2:] == ("missed", "±")
+    row = next(each for each in told.data_of(account)["budget"] if each["probe"] == "BD.rotation")
+    assert row["missed"] == pytest.approx(0.0022 / (1.005 - 8e-3 / 4.0), rel=1e-9)
+    assert "BD.rotation +0.2" in told.sentences_of(account)[-1]
+    (figure,) = drawn.of_account(account)
+    assert "miss together" in figure.caption
+
+
+def test_a_solid_that_did_not_arrive_says_why_and_leaves_the_budget(hinge, right):
+    account = accounted(hinge, Choices(), Remembering(solvers=replace(right, solid=ended_early)))
+    assert account.budgets
+    assert all(each.missed is None for each in account.budgets)
+    assert "det F" in told.sentences_of(account)[-1]
+    assert all("missed" not in each for each in told.data_of(account)["budget"])
+
+
+def ended_early(scene, choices):
+    whole = a_solid(1.0)(scene, choices)
+    return replace(whole, ending=Ending.NOT_CERTIFIED, sentence="det F is -1e-3", stations=whole.stations[:3])
 
 
 def test_what_is_known_is_not_run_again(hinge, right):

@@ -12,9 +12,10 @@ from typing import Any
 
 Data = dict[str, Any]
 
-SOLVERS = {"auto": "CPRBM `auto`", "paper": "CPRBM `paper`", "fea": "FE", "exact": "exact"}
+SOLVERS = {"auto": "CPRBM `auto`", "paper": "CPRBM `paper`", "fea": "FE", "exact": "exact", "solid": "solid"}
 ALL = frozenset(SOLVERS)
 NOT_EXACT, BOTH = ALL - {"exact"}, frozenset({"auto", "fea"})
+NOT_SOLID, BEAMS, THREE = ALL - {"solid"}, NOT_EXACT - {"solid"}, BOTH | {"solid"}
 
 LENGTH, THICKNESS, WIDTH, MODULUS = 0.1, 1.0e-3, 0.012, 2.0e9
 RIGIDITY = MODULUS * WIDTH * THICKNESS**3 / 12.0  # N·m²
@@ -341,7 +342,7 @@ FEATURES = (
             loads={"M": {"kind": "beam_moment", "beam": "beam", "at": 0.63}},
             asked=(*ASKED, "R.reaction_moment", "beam.bending_stress"),
         ),
-        NOT_EXACT,
+        BEAMS,
     ),
     Feature(
         "loads",
@@ -362,22 +363,22 @@ FEATURES = (
         cantilever(drives={"r": {"kind": "rotation", "body": "tip"}}, asked=(*ASKED, "tip.reaction_moment")),
     ),
     Feature("contacts", "two beams by their edges", two_beams()),
-    Feature("contacts", "two beams as lines", two_beams(thick=False)),
-    Feature("contacts", "two beams by their edges, of thickness that varies", two_tapered(), BOTH),
+    Feature("contacts", "two beams as lines", two_beams(thick=False), NOT_SOLID),
+    Feature("contacts", "two beams by their edges, of thickness that varies", two_tapered(), THREE),
     Feature("contacts", "circle", held_by(CIRCLE)),
     Feature("contacts", "circle on a body that moves", moved(CIRCLE), NOT_EXACT),
     Feature("contacts", "half-plane", held_by(PLANE), NOT_EXACT),
     Feature("contacts", "line", held_by(TABLE), NOT_EXACT),
-    Feature("contacts", "polyline with a corner that stands out", held_by(ROOF), BOTH),
-    Feature("contacts", "polyline that goes round", held_by(BLOCK), BOTH),
+    Feature("contacts", "polyline with a corner that stands out", held_by(ROOF), THREE),
+    Feature("contacts", "polyline that goes round", held_by(BLOCK), THREE),
     Feature("contacts", "function", held_by(HILL), NOT_EXACT),
     Feature("contacts", "half-plane on a body that moves", moved(PLANE), NOT_EXACT),
-    Feature("contacts", "polyline on a body that moves", moved(ROOF), BOTH),
+    Feature("contacts", "polyline on a body that moves", moved(ROOF), THREE),
     Feature("contacts", "function on a body that moves", moved(HILL), NOT_EXACT),
-    Feature("contacts", "beam pinned to what it touches", lying_on_its_pin(), NOT_EXACT),
+    Feature("contacts", "beam pinned to what it touches", lying_on_its_pin(), BEAMS),
     Feature("contacts", "beam with itself", itself(), BOTH),
     Feature("contacts", "beam with itself, of thickness that varies", itself_tapered(), BOTH),
-    Feature("stages", "assembly first, by moments and pins", bowed(), NOT_EXACT),
+    Feature("stages", "assembly first, by moments and pins", bowed(), BEAMS),
     Feature(
         "probes",
         "bending stress along a beam",

@@ -5,8 +5,9 @@ import pytest
 
 from comparisons.choices import Choices
 from comparisons.documents import comparison
+from comparisons.extrapolated_solid import corner_order
 from comparisons.pairing import Solvers, paired, with_solid
-from comparisons.third import corner_order, of_thirds, sentence, thirds_of
+from comparisons.third import of_thirds, sentence, thirds_of
 from comparisons.verdict import compared
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
 

@@ -25,7 +25,7 @@ def inner(mesh):
 
 def test_the_area_is_that_of_a_ring_of_varying_thickness():
     # the normals of a circle are radial, so a strip of angle dφ has the area r t dφ whatever t
-    one = model(40)
+    one = model(60)
     r, t = 0.11, np.interp(np.linspace(0.0, 1.0, 200_001), TAPERED["at"], TAPERED["values"])
     assert one.mesh.weights.sum() * one.units.length**2 == pytest.approx(
         np.trapezoid(t, dx=1 / 200_000) * r * np.pi / 2, rel=1e-8

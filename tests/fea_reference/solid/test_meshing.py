@@ -17,9 +17,10 @@ def placed(corners, quadrilaterals):
 
 
 @pytest.mark.skipif(meshing.chosen()[0] is plain_rectangle, reason="gmsh and meshio are not there")
-def test_gmsh_cuts_the_same_quadrilaterals():
+def test_gmsh_cuts_the_same_quadrilaterals_and_says_nothing(capfd):
     along = np.array([0.0, 0.11, 0.2, 0.47, 0.8, 1.0])
     assert placed(*meshing.by_gmsh(along, 3)) == placed(*plain_rectangle(along, 3))
+    assert capfd.readouterr().out == ""
 
 
 def test_without_gmsh_the_answer_says_so(monkeypatch):

@@ -1,0 +1,173 @@
+"""Rigid edges that are straight, broken or graphs of functions, as the body sees them that carries them.
+
+======  ========================================================================================
+symbol  meaning
+======  ========================================================================================
+ξ       a point
+g       its distance from the nearest side, negative behind it
+h, H    ∂g/∂ξ, the side's normal, and ∂²g/∂ξ² = κ/(1 + κ g) τ τᵀ
+τ, κ    tangent with the free side on its left; curvature, positive where the edge juts out
+======  ========================================================================================
+
+A point counts for the side behind which it lies least deep.  What is rigid ends where its edge does and goes straight
+back from there, by two more sides.  In front of a corner that juts out no side has the point: there the corner itself
+is held against the smooth edge of the beam, see :mod:`fea_reference.solid.pricking`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from scene.answer import Array
+from scene.statement import FunctionContact, LineContact
+
+_SAMPLES = 257  # of a graph, from which the nearest place is sought
+_NEWTON_STEPS = 20
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Corner:
+    """A corner that juts out at ``point`` (2,); ``normal`` (2,) halves it."""
+
+    point: Array
+    normal: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Broken:
+    """Straight sides from ``first`` (s, 2) along unit vectors ``tangent`` (s, 2), ``low`` to ``high`` (s,) far."""
+
+    first: Array
+    tangent: Array
+    low: Array
+    high: Array
+
+    def measured(self, xi: Array) -> tuple[Array, Array, Array]:
+        """g (k,), infinite where no side has the point, h (k, 2) and H (k, 2, 2) at ξ (k, 2)."""
+        away = xi[:, None] - self.first
+        along, normal = (away * self.tangent).sum(axis=2), left(self.tangent)
+        g = (away * normal).sum(axis=2)
+        past = along - np.clip(along, self.low, self.high)
+        nearest = np.hypot(g, past).argmin(axis=1)
+        every = np.arange(len(xi))
+        found = np.where(past[every, nearest] == 0.0, g[every, nearest], np.inf)  # else a corner is nearest
+        return found, normal[nearest], np.zeros((len(xi), 2, 2))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Graph:
+    """An edge y₂ = f(y₁), or y₁ = f(y₂) if ``across``, with the variable in ``span``, and the ``sides`` straight back.
+
+    ``forwards`` says whether the free side is on the left of what runs along the variable.
+    """
+
+    f: Polynomial
+    span: tuple[float, float]
+    across: bool
+    forwards: bool
+    sides: Broken
+
+    def measured(self, xi: Array) -> tuple[Array, Array, Array]:
+        """g (k,), infinite where no side has the point, h (k, 2) and H (k, 2, 2) at ξ (k, 2)."""
+        v = self._nearest(xi)
+        point, tangent, kappa = self.at(v)
+        away, normal = xi - point, left(tangent)
+        g = (away * normal).sum(axis=1)
+        beyond = np.abs((away * tangent).sum(axis=1)) > 1e-9 * (self.span[1] - self.span[0])
+        bend = kappa / np.maximum(1.0 + kappa * g, 0.1)
+        H = bend[:, None, None] * tangent[:, :, None] * tangent[:, None, :]
+        back, h_back, _ = self.sides.measured(xi)
+        behind = (g < 0.0) & (back > g) & (back <= 0.0)
+        g = np.where(beyond, np.inf, np.where(behind, back, g))
+        return g, np.where(behind[:, None], h_back, normal), np.where(behind[:, None, None], 0.0, H)
+
+    def at(self, v: Array) -> tuple[Array, Array, Array]:
+        """Points and unit tangents (k, 2), and κ (k,), at values ``v`` (k,) of the variable."""
+        slope, second = self.f.deriv(1)(v), self.f.deriv(2)(v)
+        point = np.stack([v, self.f(v)], axis=1)
+        way = 1.0 if self.forwards else -1.0
+        tangent = way * np.stack([np.ones_like(v), slope], axis=1) / np.hypot(1.0, slope)[:, None]
+        # a graph that bends to the left of its way juts in; seen across, left and right are exchanged
+        kappa = (way if self.across else -way) * second / np.hypot(1.0, slope) ** 3
+        return (point[:, ::-1], tangent[:, ::-1], kappa) if self.across else (point, tangent, kappa)
+
+    def _nearest(self, xi: Array) -> Array:
+        """The variable where the edge is nearest to ξ, (k,)."""
+        low, high = self.span
+        w, y = xi.T[::-1] if self.across else xi.T
+        samples = np.linspace(low, high, _SAMPLES)
+        v = samples[((w[:, None] - samples) ** 2 + (y[:, None] - self.f(samples)) ** 2).argmin(axis=1)]
+        slope, second = self.f.deriv(1), self.f.deriv(2)
+        for _ in range(_NEWTON_STEPS):
+            rest, rise = self.f(v) - y, slope(v)
+            bent = 1.0 + rise**2 + rest * second(v)
+            moved = np.clip(v - (v - w + rest * rise) / np.where(bent > 0.0, bent, np.inf), low, high)
+            done = np.abs(moved - v).max(initial=0.0) <= 1e-14 * (high - low)
+            v = moved
+            if done:
+                break
+        return np.asarray(v)
+
+
+def broken(contact: LineContact, origin: Array, unit: float) -> tuple[Broken, tuple[Corner, ...]]:
+    """The edge of straight pieces with ``origin`` (2,) m for its own and ``unit`` m for one, and its corners."""
+    points = (np.array(contact.points) - origin) / unit
+    if contact.side == "right":
+        points = points[::-1]
+    way = np.diff(points, axis=0)
+    length = np.hypot(*way.T)
+    tangent = way / length[:, None]
+    first, low, high = points[:-1], np.zeros_like(length), length
+    if contact.closed:
+        return Broken(first, tangent, low, high), corners(first, np.roll(tangent, 1, axis=0), tangent)
+    back = ends(points[[0, -1]], tangent[[0, -1]])
+    before = np.vstack([back.tangent[:1], tangent])
+    behind = np.vstack([tangent, back.tangent[1:]])
+    return (
+        Broken(
+            np.vstack([first, back.first]),
+            np.vstack([tangent, back.tangent]),
+            np.concatenate([low, back.low]),
+            np.concatenate([high, back.high]),
+        ),
+        corners(points, before, behind),
+    )
+
+
+def graph(contact: FunctionContact, origin: Array, unit: float) -> tuple[Graph, tuple[Corner, ...]]:
+    """The same of the graph of a function."""
+    across = contact.axis == "y"
+    here, other = origin[::-1] if across else origin
+    f = (Polynomial(contact.coefficients)(Polynomial([here, unit])) - other) / unit
+    low, high = sorted((end - here) / unit for end in contact.range)
+    forwards = (contact.side == "above") != across
+    bare = Graph(f, (low, high), across, forwards, Broken(*np.empty((2, 0, 2)), *np.empty((2, 0))))
+    points, tangent, _ = bare.at(np.array([low, high] if forwards else [high, low]))
+    back = ends(points, tangent)
+    before, behind = np.stack([back.tangent[0], tangent[1]]), np.stack([tangent[0], back.tangent[1]])
+    return Graph(f, (low, high), across, forwards, back), corners(points, before, behind)
+
+
+def ends(points: Array, tangents: Array) -> Broken:
+    """The sides straight back from the first and the last of ``points`` (2, 2) with ``tangents`` (2, 2) there."""
+    out = left(tangents)
+    return Broken(points, np.stack([out[0], -out[1]]), np.array([-np.inf, 0.0]), np.array([0.0, np.inf]))
+
+
+def corners(points: Array, before: Array, behind: Array) -> tuple[Corner, ...]:
+    """The corners that jut out, of places (c, 2) between sides with tangents (c, 2) each."""
+    turn = before[:, 0] * behind[:, 1] - before[:, 1] * behind[:, 0]
+    half = left(before + behind)
+    return tuple(
+        Corner(point, normal / np.hypot(*normal))
+        for point, normal, t in zip(points, half, turn, strict=True)
+        if t < 0.0
+    )
+
+
+def left(vectors: Array) -> Array:
+    """Vectors (k, 2) turned counter-clockwise by a right angle."""
+    return np.stack([-vectors[:, 1], vectors[:, 0]], axis=1)

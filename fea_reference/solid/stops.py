@@ -1,0 +1,79 @@
+"""Stops: limits of the angle at which a pinned face stands to its body, held by a stiff moment.
+
+======  ==============================================================================
+symbol  meaning
+======  ==============================================================================
+ψ, φ    rotation of the face, and of the body
+β       angle, β⁰ + ψ − φ, with β⁰ as drawn: from the body's line to the beam, in (−π, π]
+K       moment per angle beyond a limit
+m       moment on the face, K (limit − β) beyond it, else 0
+======  ==============================================================================
+
+The energy is m²/(2 K).  K is small beside what the mesh has for its nodes and large beside what a beam has for its
+end, so that a limit yields by a millionth of an angle.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea_reference.solid.bodies import BodyPart, Tie
+from scene.answer import Array
+from scene.geometry import tangents_on
+from scene.statement import PinnedEnd, Scene
+
+STIFFNESS = 1e6
+"""K over the largest bending stiffness, per longest beam."""
+
+_ROUNDED = 1e-9  # rad: an angle that is π may be drawn a little beyond
+
+
+@dataclass(frozen=True, slots=True)
+class StopPart:
+    """A stop: ``psi`` is the unknown ψ, ``body`` the body's number and ``phi`` its unknown φ, None of the ground."""
+
+    name: str
+    psi: int
+    body: int
+    phi: int | None
+    drawn: float
+    least: float
+    most: float
+
+    def angle(self, z: Array) -> float:
+        """β, rad."""
+        return self.drawn + float(z[self.psi]) - (0.0 if self.phi is None else float(z[self.phi]))
+
+    def moment(self, z: Array) -> float:
+        """m, without units."""
+        angle = self.angle(z)
+        return STIFFNESS * (float(np.clip(angle, self.least, self.most)) - angle)
+
+    @property
+    def dofs(self) -> tuple[tuple[int, float], ...]:
+        """The unknowns of β, each with ∂β."""
+        return ((self.psi, 1.0),) if self.phi is None else ((self.psi, 1.0), (self.phi, -1.0))
+
+
+def stops_of(scene: Scene, bodies: Sequence[BodyPart], ties: Sequence[Tie]) -> tuple[StopPart, ...]:
+    """The scene's stops."""
+    names = list(scene.beams)
+    found = []
+    for name, stop in scene.stops.items():
+        beam = scene.beams[stop.beam]
+        end = beam.start if stop.end == "start" else beam.end
+        tie = next(tie for tie in ties if (names[tie.beam], tie.end) == (stop.beam, stop.end))
+        assert isinstance(end, PinnedEnd)
+        assert tie.psi is not None
+        u, way = (0.0, 1.0) if stop.end == "start" else (1.0, -1.0)
+        leaving = way * tangents_on(beam.curve, np.array([u]))[0]
+        line = np.array(scene.place_of(stop.towards)) - np.array(scene.place_of(end.point))
+        turn = float(np.arctan2(line[0] * leaving[1] - line[1] * leaving[0], line @ leaving))
+        turn += 2.0 * np.pi if turn < -np.pi + _ROUNDED else 0.0
+        dofs = bodies[tie.body].dofs
+        least, most = (-np.inf if stop.least is None else stop.least), (np.inf if stop.most is None else stop.most)
+        found.append(StopPart(name, tie.psi, tie.body, None if dofs is None else int(dofs[2]), turn, least, most))
+    return tuple(found)
