@@ -1,0 +1,48 @@
+"""A cantilever that lies on an edge from its clamp on, pressed down at one place: nothing bends, the clamp has nothing."""
+
+import numpy as np
+import pytest
+
+import cprbm
+from scene.reading import scene_from
+from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data
+
+FORCE = 1.3 * RIGIDITY / LENGTH**2
+DRAWN_AT = 0.7
+
+
+def turned(x, y):
+    cos, sin = np.cos(DRAWN_AT), np.sin(DRAWN_AT)
+    return [float(cos * x - sin * y), float(sin * x + cos * y)]
+
+
+def pressed(clamped, at):
+    """The cantilever with its start or its end ``clamped``, pressed at a share ``at`` of its length from there."""
+    down = {"kind": "beam_force", "beam": "beam", "at": at if clamped == "start" else 1.0 - at}
+    data = cantilever_data({**down, "direction": turned(0.0, -1.0)}, [FORCE])
+    data["bodies"] = {"wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}}}
+    ends = {"start": ([0.0, 0.0], {"joint": "weld", "point": "R"}), "end": (turned(LENGTH, 0.0), {"joint": "free"})}
+    if clamped == "end":
+        ends = {"start": ends["end"], "end": ends["start"]}
+    line = {"kind": "line", "start": ends["start"][0], "end": ends["end"][0]}
+    data["beams"]["beam"] |= {"curve": line, "start": ends["start"][1], "end": ends["end"][1]}
+    below = {"point": turned(0.3 * LENGTH, -0.5 * THICKNESS), "normal": turned(0.0, 1.0)}
+    data["contacts"] = {"edge": {"kind": "beam-half-plane", "beam": "beam", "body": "wall", **below}}
+    data["probes"] = [{"of": "edge", "quantity": quantity} for quantity in ("force", "centre", "ends")]
+    data["probes"].append({"of": "R", "quantity": "reaction_moment"})
+    return scene_from(data)
+
+
+@pytest.mark.parametrize("links", [20, 37])
+@pytest.mark.parametrize("at", [0.37, 0.6])
+@pytest.mark.parametrize("clamped", ["start", "end"])
+def test_the_force_goes_straight_through(clamped, at, links):
+    answer = cprbm.answer(pressed(clamped, at), cprbm.Settings(links=links))
+    assert answer.completed, answer.sentence
+    values, element = answer.stations[-1].values, 1.0 / links
+    place, error = at if clamped == "start" else 1.0 - at, 0.5 * (element / at) ** 2
+    assert values["edge.force"][0] == pytest.approx(FORCE, rel=error)
+    assert values["edge.centre"][0] == pytest.approx(place * LENGTH, abs=error * at * LENGTH)
+    # what presses are the joints beside the place, and not the clamp
+    assert values["edge.ends"] == pytest.approx([place * LENGTH] * 2, abs=1.001 * element * LENGTH)
+    assert values["R.reaction_moment"][0] == pytest.approx(0.0, abs=error * at * FORCE * LENGTH)
