@@ -1,4 +1,4 @@
-"""A cantilever that lies on an edge from its clamp on, pressed down at one place: nothing bends, the clamp has nothing."""
+"""A cantilever that lies on an edge from its clamp on, pressed down at one place: nothing bends, only the edge acts."""
 
 import numpy as np
 import pytest
