@@ -72,7 +72,7 @@ def main() -> None:
     told_of = {}
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
         copy_of_sources(tree := Path(folder))
-        for mutant in (*known, *drawn):
+        for mutant in (*drawn, *known):
             around = digest_around(mutant)
             key = f"{mutant.fault} {around}"
             tests = planned(mutant, mapped, options.seconds)
