@@ -7,6 +7,7 @@ import pytest
 
 import cprbm
 from cprbm.contact import NO_ROWS
+from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import State, rest_state
 from cprbm.levelling import levelled
 from cprbm.march import March
@@ -110,6 +111,24 @@ def test_a_state_carried_to_a_finer_mesh_and_back_turns_no_link_by_more_than_the
     pressing = there.rows.arc[there.lam > 0.0]
     (zone,) = all_zones(march.on.mechanism, march.on.point)["circle"]
     assert np.all(pressing < zone.end + 1.0 / 160)
+
+
+@pytest.mark.parametrize(("force", "finer"), [(97.0, 24), (97.0, 30), (191.0, 9), (191.0, 16)])
+def test_a_zone_goes_on_from_elements_of_one_size_to_those_of_another(force, finer):
+    # reference: tests.references.wrapped; sizes change by up to six times at little more than half of the zone
+    end = Wrapped(**BEAM, radius=RADIUS, force=force).wrap_length / BEAM["length"]
+    fit = Fit({"beam": np.interp(np.arange(41), [0, finer, 40], [0.0, 0.55 * end, 1.0])}, {})
+    mechanism = mechanism_of(scene_of([force]), Settings(links=40), fit)
+    problem = mechanism.problem
+    point = point_at(problem, {}, rest_state(problem.model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
+    for part in (0.25, 0.5, 0.75, 1.0):
+        found = equilibrium(problem, {"P": part * force}, point, 1e-11, 60)
+        assert found.converged
+        point = found.point
+    (zone,) = all_zones(mechanism, point)["circle"]
+    assert zone.long
+    assert zone.begin == 0.0
+    assert zone.end == pytest.approx(end, abs=1e-3)
 
 
 def test_a_place_is_no_long_zone():
