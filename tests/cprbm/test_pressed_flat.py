@@ -19,8 +19,11 @@ def turned(x, y):
     return [float(cos * x - sin * y), float(sin * x + cos * y)]
 
 
-def pressed(clamped, at):
-    """The cantilever with its start or its end ``clamped``, pressed at a share ``at`` of its length from there."""
+def pressed(clamped, at, gap=0.0, lean=0.0):
+    """The cantilever with its start or its end ``clamped``, pressed at a share ``at`` of its length from there.
+
+    Or it is drawn ``gap`` above the edge, which falls by ``lean``.
+    """
     down = {"kind": "beam_force", "beam": "beam", "at": at if clamped == "start" else 1.0 - at}
     data = cantilever_data({**down, "direction": turned(0.0, -1.0)}, [FORCE])
     data["bodies"] = {"wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}}}
@@ -29,7 +32,7 @@ def pressed(clamped, at):
         ends = {"start": ends["end"], "end": ends["start"]}
     line = {"kind": "line", "start": ends["start"][0], "end": ends["end"][0]}
     data["beams"]["beam"] |= {"curve": line, "start": ends["start"][1], "end": ends["end"][1]}
-    below = {"point": turned(0.3 * LENGTH, -0.5 * THICKNESS), "normal": turned(0.0, 1.0)}
+    below = {"point": turned(0.0, -0.5 * THICKNESS - gap), "normal": turned(lean, 1.0)}
     data["contacts"] = {"edge": {"kind": "beam-half-plane", "beam": "beam", "body": "wall", **below}}
     data["probes"] = [{"of": "edge", "quantity": quantity} for quantity in ("force", "centre", "ends")]
     data["probes"].append({"of": "R", "quantity": "reaction_moment"})
@@ -66,3 +69,13 @@ def test_every_row_is_known_by_a_key_of_its_own(shares):
     keys = [key for key, _ in rows if key >= 0]
     assert len(keys) > 9
     assert len(set(keys)) == len(keys)
+
+
+@pytest.mark.parametrize("end", ["start", "end"])
+def test_an_end_is_clamped_in_touch_where_it_lies_on_the_edge_and_along_it(end):
+    def found(**changes):
+        return mechanism_of(pressed(end, 0.37, **changes), cprbm.Settings(links=9)).pairs["edge"].clamped
+
+    assert found() == (end == "start", end == "end")
+    assert found(gap=1e-6 * LENGTH) == (False, False)
+    assert found(lean=1e-6) == (False, False)
