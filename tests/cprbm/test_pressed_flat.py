@@ -19,13 +19,13 @@ def turned(x, y):
     return [float(cos * x - sin * y), float(sin * x + cos * y)]
 
 
-def pressed(clamped, at, gap=0.0, lean=0.0):
+def pressed(clamped, at, gap=0.0, lean=0.0, along=False):
     """The cantilever with its start or its end ``clamped``, pressed at a share ``at`` of its length from there.
 
-    Or it is drawn ``gap`` above the edge, which falls by ``lean``.
+    Or it is drawn ``gap`` above the edge, which falls by ``lean``; or pulled ``along`` itself.
     """
     down = {"kind": "beam_force", "beam": "beam", "at": at if clamped == "start" else 1.0 - at}
-    data = cantilever_data({**down, "direction": turned(0.0, -1.0)}, [FORCE])
+    data = cantilever_data({**down, "direction": turned(1.0, 0.0) if along else turned(0.0, -1.0)}, [FORCE])
     data["bodies"] = {"wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}}}
     ends = {"start": ([0.0, 0.0], {"joint": "weld", "point": "R"}), "end": (turned(LENGTH, 0.0), {"joint": "free"})}
     if clamped == "end":
@@ -35,7 +35,7 @@ def pressed(clamped, at, gap=0.0, lean=0.0):
     below = {"point": turned(0.0, -0.5 * THICKNESS - gap), "normal": turned(lean, 1.0)}
     data["contacts"] = {"edge": {"kind": "beam-half-plane", "beam": "beam", "body": "wall", **below}}
     data["probes"] = [{"of": "edge", "quantity": quantity} for quantity in ("force", "centre", "ends")]
-    data["probes"].append({"of": "R", "quantity": "reaction_moment"})
+    data["probes"] += [{"of": "R", "quantity": quantity} for quantity in ("reaction", "reaction_moment")]
     return scene_from(data)
 
 
@@ -79,3 +79,14 @@ def test_an_end_is_clamped_in_touch_where_it_lies_on_the_edge_and_along_it(end):
     assert found() == (end == "start", end == "end")
     assert found(gap=1e-6 * LENGTH) == (False, False)
     assert found(lean=1e-6) == (False, False)
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.02 * LENGTH])
+def test_a_pull_along_it_moves_nothing(gap):
+    # neither a link nor the rate at which one would turn
+    answer = cprbm.answer(pressed("start", 0.37, gap=gap, along=True), cprbm.Settings(links=20))
+    assert answer.completed, answer.sentence
+    values = answer.stations[-1].values
+    assert values["R.reaction"] == pytest.approx(turned(-FORCE, 0.0), rel=1e-12)
+    assert values["R.reaction_moment"][0] == pytest.approx(0.0, abs=1e-9 * FORCE * LENGTH)
+    assert values["edge.force"][0] == pytest.approx(0.0, abs=1e-9 * FORCE)

@@ -8,7 +8,8 @@ mutants a seed draws is a matter of each by itself: as sources change, those of 
 known of a mutant holds as long as the function around it is the same.  Those drawn earlier are told of too.
 
 The fates: ``caught`` by a test; ``endless``, which took several times the seconds of its tests; ``survived`` all; and
-``unreached`` by any.  Survivors of which it was understood why nothing can catch them stand in ``equivalent.json``.
+``unreached`` by any.  Survivors of which it was understood why nothing can catch them stand in ``equivalent.json``,
+those that a test was seen to catch which is not among the quick ones in ``longer.json``.
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ import time
 from hashlib import sha256
 from pathlib import Path
 
+import numpy as np
+
 from comparisons.writing import write
 from tests.mutants.forked import forked_pytest, warm
 from tests.mutants.kinds import KINDS, Mutant, mutants_of, reads, statement_at
@@ -33,6 +36,7 @@ ROOT = Path(__file__).parents[2]
 WORK = ROOT / ".mutants"
 RESULTS = Path(__file__).parent / "results.json"
 EQUIVALENT = Path(__file__).parent / "equivalent.json"
+LONGER = Path(__file__).parent / "longer.json"
 COPIED = ("scene", "cprbm", "fea_reference", "exact", "comparisons", "tests", "pyproject.toml", "Makefile", "README.md")
 ROOMS = ("cprbm", "fea_reference")
 NO_MECHANICS = ("__init__.py", "settings.py", "remarks.py")
@@ -45,6 +49,7 @@ HEAD = (
     "catches it. The kinds are told in `tests/mutants/kinds.py`, every mutant with the test that caught it in",
     "`tests/mutants/results.json`.",
     "A mutant is equivalent where it was understood why nothing that can be asked shows it; the reason stands below.",
+    "By longer tests are those caught that survive the quick ones and that a slower test was seen to catch.",
     "",
 )
 ENDLESS = 6.0
@@ -223,25 +228,34 @@ def copy_of_sources(tree: Path) -> None:
 
 def told(tried: list[tuple[Mutant, dict]], how: tuple[str, ...]) -> None:
     """Write the score by kind, and who survives."""
-    equivalent = json.loads(EQUIVALENT.read_text("utf-8")) if EQUIVALENT.exists() else {}
-    lines = [*HEAD, *how, "| kind | mutants | caught | equivalent | alive |", "|---|---|---|---|---|"]
-    total = [0, 0, 0, 0]
+    equivalent, longer = (json.loads(path.read_text("utf-8")) if path.exists() else {} for path in (EQUIVALENT, LONGER))
+    lines = [
+        *HEAD,
+        *how,
+        "| kind | mutants | caught | by longer tests | equivalent | alive |",
+        "|---|---|---|---|---|---|",
+    ]
+    total = np.zeros(5, dtype=int)
     for kind in KINDS:
-        mine = [(mutant, each) for mutant, each in tried if mutant.kind == kind]
-        caught = sum(each["fate"] in CAUGHT for _, each in mine)
-        same = sum(each["fate"] not in CAUGHT and mutant.fault in equivalent for mutant, each in mine)
-        row = [len(mine), caught, same, len(mine) - caught - same]
-        total = [one + other for one, other in zip(total, row, strict=True)]
+        mine = [mutant.fault for mutant, each in tried if mutant.kind == kind and each["fate"] not in CAUGHT]
+        number = sum(mutant.kind == kind for mutant, _ in tried)
+        late, same = sum(fault in longer for fault in mine), sum(fault in equivalent for fault in mine)
+        row = [number, number - len(mine), late, same, len(mine) - late - same]
+        total += row
         lines.append(f"| {kind} | {' | '.join(map(str, row))} |")
-    lines += [f"| all | {' | '.join(map(str, total))} |", "", "## Survivors", ""]
+    lines += [f"| all | {' | '.join(map(str, total))} |", "", "## Survivors of the quick tests", ""]
     lines += ["| where | line | becomes | what is known of it |", "|---|---|---|---|"]
     for mutant, each in tried:
         if each["fate"] not in CAUGHT:
-            known = equivalent.get(mutant.fault) or f"alive: {each['fate']} {each['by']}".rstrip()
+            known = f"alive: {each['fate']} {each['by']}".rstrip()
+            if mutant.fault in longer:
+                known = f"caught by `{longer[mutant.fault]}`"
+            known = equivalent.get(mutant.fault, known)
             where = (f"{mutant.file}:{mutant.line}", mutant.text, mutant.new)
             lines.append(f"| {' | '.join(f'`{text}`'.replace('|', chr(92) + '|') for text in where)} | {known} |")
     write(TOLD, "\n".join(lines) + "\n")
-    sys.stdout.write(f"{total[0]} mutants: {total[1]} caught, {total[2]} equivalent, {total[3]} alive; {TOLD}\n")
+    score = f"{total[1]} caught, {total[2]} by longer tests, {total[3]} equivalent, {total[4]} alive"
+    sys.stdout.write(f"{total[0]} mutants: {score}; {TOLD}\n")
 
 
 if __name__ == "__main__":
