@@ -7,7 +7,8 @@ import cprbm
 from cprbm import newton
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import equilibrium
-from cprbm.kinematics import State, rest_state
+from cprbm.kinematics import State, positions, rest_state
+from cprbm.local import local_step
 from cprbm.mechanism import mechanism_of
 from cprbm.newton import system
 from cprbm.point import contact_gradient, contact_rows, point_at
@@ -215,6 +216,32 @@ def test_derivatives_of_gaps_and_of_the_lagrangian(bent):
         upper = found.factors.tridiagonal.times(d[:n, None])[:, 0] + border[:, :3] @ d[n:] + border[:, low] @ s
         lower = border[:, :3].T @ d[:n] + corner[:3, :3] @ d[n:] + corner[:3, low] @ s
         assert np.concatenate((upper, lower)) == pytest.approx(product, rel=1e-5, abs=1e-5 * np.max(np.abs(product)))
+
+
+def test_both_forms_of_newtons_system_make_one_step_with_two_circles_that_move():
+    # reference: the form without the joints' and the centres' positions among its unknowns
+    contacts = {
+        name: {
+            "kind": "beam-circle",
+            "beam": "beam",
+            "body": "tip",
+            "center": [at * BEAM["length"], below],
+            "radius": r,
+        }
+        for name, at, below, r in (("one", 0.43, -0.0097, 0.0072), ("other", 0.71, -0.0113, 0.0081))
+    }
+    scene = scene_of([1.0], contacts=contacts, probes=[{"of": "one", "quantity": "force"}])
+    problem = mechanism_of(scene, cprbm.Settings(links=17)).problem
+    model, random = problem.model, np.random.default_rng(12)
+    rest = rest_state(model)
+    state = State(rest.theta + 0.02 * random.standard_normal(model.n_links), rest.bodies)
+    mu = random.standard_normal(problem.closure.rows)
+    rows = problem.formulation(state, positions(model, state), NO_ROWS)
+    assert {name for name, _ in rows.keys} == {"one", "other"}
+    point = point_at(problem, {"P": 0.7}, state, mu, 0.5 + random.random(rows.size), rows)
+    one, other = newton.newton_step(problem, point), local_step(newton.local_system_at(problem, point), point.lam > 0.0)
+    for mine, theirs in zip(one, other, strict=True):
+        assert mine == pytest.approx(theirs, rel=1e-7, abs=1e-7 * np.max(np.abs(mine), initial=0.0))
 
 
 def hanging(reference, hold):
