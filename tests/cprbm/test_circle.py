@@ -130,6 +130,38 @@ def test_nothing_presses_below_the_closing_load_and_the_circle_does_above(truth)
     assert above.values["circle.force"][0] > 0.0
 
 
+def test_a_circle_that_is_driven_to_a_beam_at_rest_moves_nothing_before_it_touches():
+    # reference: a cantilever that is lifted at 0.6 of its length by what the circle goes beyond its gap;
+    # so little that its place on the circle hardly leaves the crown
+    length, radius, below = BEAM["length"], 0.0071, 0.02
+    place = 0.6 * length
+    gap = below - radius - 0.5 * BEAM["thickness"]
+    bodies = {
+        "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
+        "tip": {"motion": "free", "points": {"T": [length, 0.0]}},
+        "sled": {"motion": "slides", "along": [0.0, 1.0], "points": {"S": [place, -below]}},
+    }
+    circle = {"kind": "beam-circle", "beam": "beam", "body": "sled", "center": [place, -below], "radius": radius}
+    scene = scene_of(
+        [1.0],
+        bodies=bodies,
+        contacts={"circle": circle},
+        drives={"lift": {"kind": "displacement", "point": "S", "direction": [0.0, 1.0]}},
+        stages=[{"name": "lift", "steps": "lift", "stations": [0.3 * gap, 0.8 * gap, 1.003 * gap]}],
+        probes=[{"of": "circle", "quantity": "force"}, {"of": "T", "quantity": "displacement"}],
+    )
+    answer = cprbm.answer(scene, cprbm.Settings(links=60))
+    assert answer.completed, answer.sentence
+    for station in answer.stations[:2]:
+        assert station.values["circle.force"] == [0.0]
+        assert station.values["T.displacement"] == pytest.approx([0.0, 0.0], abs=1e-15)
+    lifted, values = 0.003 * gap, answer.stations[-1].values
+    rigidity = BEAM["youngs_modulus"] * BEAM["width"] * BEAM["thickness"] ** 3 / 12.0
+    assert values["circle.force"][0] == pytest.approx(3.0 * rigidity * lifted / place**3, rel=1e-3)
+    tip = lifted * (1.0 + 1.5 * (length - place) / place)
+    assert values["T.displacement"][1] == pytest.approx(tip, rel=1e-3)
+
+
 def test_a_force_that_pulls_backwards_wraps_more_than_half_a_circle():
     # reference: tests.references.wrapped; down first, then backwards, then up, or the beam would bend away
     reference = Wrapped(**BEAM, radius=0.0181, force=2500.0, pull=np.radians(230.0))
