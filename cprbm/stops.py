@@ -25,6 +25,8 @@ from cprbm.model import Model
 from scene import FreeEnd, Scene
 from scene.answer import Array, Ints
 
+STRAIGHT = 1e-9  # rad: an angle so close to −π as drawn is π, which rounding turns into either
+
 
 @dataclass(frozen=True, slots=True)
 class AngleStop:
@@ -90,7 +92,7 @@ def stop_of(scene: Scene, model: Model, name: str) -> AngleStop:
     arc, link, back = (0.0, chain.first_link, 0.0) if stop.end == "start" else (length, chain.first_link + chain.n, pi)
     leaves = float(chain.line.angle(np.array([arc]))[0]) + back
     beta = remainder(leaves - atan2(qy - py, qx - px), tau)
-    beta = pi if beta == -pi else beta
+    beta += tau if beta < STRAIGHT - pi else 0.0
     limits = [(stop.most, 1.0), (stop.least, -1.0)]
     given = [(limit, sign) for limit, sign in limits if limit is not None]
     return AngleStop(

@@ -13,6 +13,7 @@ from scene.mistakes import Mistake
 from scene.statement import PinnedEnd, Scene, Stop
 
 ROUNDED = 1e-6  # rad, by which an angle as drawn may be beyond a limit
+STRAIGHT = 1e-9  # rad: an angle so close to −π is π, which coordinates that are rounded may turn into either
 
 
 def wrong_stops(scene: Scene) -> Iterator[Mistake]:
@@ -49,7 +50,7 @@ def wrong_stops(scene: Scene) -> Iterator[Mistake]:
 
 
 def drawn_angle(scene: Scene, stop: Stop) -> float:
-    """The stop's angle as drawn, rad, in (−π, π]; of an end that is apart with its direction there."""
+    """The stop's angle as drawn, rad, in (−π, π] but for rounding; of an end that is apart with its direction there."""
     beam = scene.beams[stop.beam]
     end = getattr(beam, stop.end)
     (tx, ty), sign = (
@@ -59,7 +60,7 @@ def drawn_angle(scene: Scene, stop: Stop) -> float:
     )
     (px, py), (qx, qy) = scene.place_of(end.point), scene.place_of(stop.towards)
     angle = (atan2(sign * ty, sign * tx) - atan2(qy - py, qx - px)) % tau
-    return angle - tau if angle > pi else angle
+    return angle - tau if angle > pi + STRAIGHT else angle
 
 
 def _beyond_as_drawn(scene: Scene, name: str, stop: Stop) -> Iterator[Mistake]:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cprbm import smooth
-from cprbm.beam_loads import beam_loads, beam_work
+from cprbm.beam_loads import beam_loads, beam_work, kinks
 from cprbm.energy import load_work
 from cprbm.kinematics import State, positions, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
@@ -21,6 +21,7 @@ LOADS = {
     "end": {"kind": "beam_force", "beam": "bow", "at": 1.0, "direction": [0.0, 2.0]},
     "all": {"kind": "distributed", "beam": "beam1", "direction": [0.3, -1.0]},
     "apart": {"kind": "beam_force", "beam": "further", "at": 0.37, "direction": [1.0, -0.7]},
+    "along": {"kind": "distributed", "beam": "further", "direction": [0.4, -1.0], "along": [0.21, 0.84]},
     "part": {"kind": "distributed", "beam": "bow", "direction": [-0.7, -1.0], "along": [0.137, 0.731]},
 }
 
@@ -113,3 +114,20 @@ def test_a_rigid_motion_does_the_work_of_the_moment(scene):
         if chain.start.body >= 0:
             body = over_bodies[3 * chain.start.body : 3 * chain.start.body + 2]
             assert body == pytest.approx([work.fx.sum(), work.fy.sum()]), name
+
+
+@pytest.mark.parametrize(("name", "at", "per"), [("apart", [0.37], 0), ("along", [0.21, 0.84], 1)])
+def test_the_moment_is_bent_by_what_acts_across(scene, name, at, per):
+    # a straight beam that has been turned as it is; what acts across is the part along its left normal
+    model = mechanism_of(scene, Settings(links=7)).problem.model
+    rest, chain = rest_state(model), model.chain("further")
+    theta = rest.theta.copy()
+    theta[chain.links] += 0.83
+    state = State(theta, rest.bodies)
+    angle = np.arctan2(-0.031 + 0.02625, 0.083 - 0.051) + 0.83
+    direction = np.array(LOADS[name]["direction"]) / np.hypot(*LOADS[name]["direction"])
+    across = direction @ [-np.sin(angle), np.cos(angle)] / model.unit_force * model.unit_length**per
+    places, jumps = kinks(model, beam_loads(scene, model)[name], state, positions(model, state))
+    length = np.hypot(0.031 - 0.02625, 0.083 - 0.051) / model.unit_length
+    assert places == pytest.approx(np.array(at) * length, rel=1e-12)
+    assert jumps == pytest.approx(across * np.array([1.0, -1.0][: len(at)]), rel=1e-12)

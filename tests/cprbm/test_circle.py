@@ -7,7 +7,8 @@ import cprbm
 from cprbm import newton
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import equilibrium
-from cprbm.kinematics import State, rest_state
+from cprbm.kinematics import State, positions, rest_state
+from cprbm.local import local_step
 from cprbm.mechanism import mechanism_of
 from cprbm.newton import system
 from cprbm.point import contact_gradient, contact_rows, point_at
@@ -129,6 +130,38 @@ def test_nothing_presses_below_the_closing_load_and_the_circle_does_above(truth)
     assert above.values["circle.force"][0] > 0.0
 
 
+def test_a_circle_that_is_driven_to_a_beam_at_rest_moves_nothing_before_it_touches():
+    # reference: a cantilever that is lifted at 0.6 of its length by what the circle goes beyond its gap;
+    # so little that its place on the circle hardly leaves the crown
+    length, radius, below = BEAM["length"], 0.0071, 0.02
+    place = 0.6 * length
+    gap = below - radius - 0.5 * BEAM["thickness"]
+    bodies = {
+        "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
+        "tip": {"motion": "free", "points": {"T": [length, 0.0]}},
+        "sled": {"motion": "slides", "along": [0.0, 1.0], "points": {"S": [place, -below]}},
+    }
+    circle = {"kind": "beam-circle", "beam": "beam", "body": "sled", "center": [place, -below], "radius": radius}
+    scene = scene_of(
+        [1.0],
+        bodies=bodies,
+        contacts={"circle": circle},
+        drives={"lift": {"kind": "displacement", "point": "S", "direction": [0.0, 1.0]}},
+        stages=[{"name": "lift", "steps": "lift", "stations": [0.3 * gap, 0.8 * gap, 1.003 * gap]}],
+        probes=[{"of": "circle", "quantity": "force"}, {"of": "T", "quantity": "displacement"}],
+    )
+    answer = cprbm.answer(scene, cprbm.Settings(links=60))
+    assert answer.completed, answer.sentence
+    for station in answer.stations[:2]:
+        assert station.values["circle.force"] == [0.0]
+        assert station.values["T.displacement"] == pytest.approx([0.0, 0.0], abs=1e-15)
+    lifted, values = 0.003 * gap, answer.stations[-1].values
+    rigidity = BEAM["youngs_modulus"] * BEAM["width"] * BEAM["thickness"] ** 3 / 12.0
+    assert values["circle.force"][0] == pytest.approx(3.0 * rigidity * lifted / place**3, rel=1e-3)
+    tip = lifted * (1.0 + 1.5 * (length - place) / place)
+    assert values["T.displacement"][1] == pytest.approx(tip, rel=1e-3)
+
+
 def test_a_force_that_pulls_backwards_wraps_more_than_half_a_circle():
     # reference: tests.references.wrapped; down first, then backwards, then up, or the beam would bend away
     reference = Wrapped(**BEAM, radius=0.0181, force=2500.0, pull=np.radians(230.0))
@@ -215,6 +248,32 @@ def test_derivatives_of_gaps_and_of_the_lagrangian(bent):
         upper = found.factors.tridiagonal.times(d[:n, None])[:, 0] + border[:, :3] @ d[n:] + border[:, low] @ s
         lower = border[:, :3].T @ d[:n] + corner[:3, :3] @ d[n:] + corner[:3, low] @ s
         assert np.concatenate((upper, lower)) == pytest.approx(product, rel=1e-5, abs=1e-5 * np.max(np.abs(product)))
+
+
+def test_both_forms_of_newtons_system_make_one_step_with_two_circles_that_move():
+    # reference: the form without the joints' and the centres' positions among its unknowns
+    contacts = {
+        name: {
+            "kind": "beam-circle",
+            "beam": "beam",
+            "body": "tip",
+            "center": [at * BEAM["length"], below],
+            "radius": r,
+        }
+        for name, at, below, r in (("one", 0.43, -0.0097, 0.0072), ("other", 0.71, -0.0113, 0.0081))
+    }
+    scene = scene_of([1.0], contacts=contacts, probes=[{"of": "one", "quantity": "force"}])
+    problem = mechanism_of(scene, cprbm.Settings(links=17)).problem
+    model, random = problem.model, np.random.default_rng(12)
+    rest = rest_state(model)
+    state = State(rest.theta + 0.02 * random.standard_normal(model.n_links), rest.bodies)
+    mu = random.standard_normal(problem.closure.rows)
+    rows = problem.formulation(state, positions(model, state), NO_ROWS)
+    assert {name for name, _ in rows.keys} == {"one", "other"}
+    point = point_at(problem, {"P": 0.7}, state, mu, 0.5 + random.random(rows.size), rows)
+    one, other = newton.newton_step(problem, point), local_step(newton.local_system_at(problem, point), point.lam > 0.0)
+    for mine, theirs in zip(one, other, strict=True):
+        assert mine == pytest.approx(theirs, rel=1e-7, abs=1e-7 * np.max(np.abs(mine), initial=0.0))
 
 
 def hanging(reference, hold):

@@ -11,7 +11,7 @@ import pytest
 import cprbm
 from cprbm.kinematics import State
 from cprbm.kinks import kinks_at, missed
-from cprbm.model import Kinks, build
+from cprbm.model import NO_KINKS, Kinks, build
 from scene.reading import read
 from tests.cprbm.scenes import cantilever, force
 
@@ -155,3 +155,9 @@ def test_bend_and_integral_of_what_is_missed_are_its_own():
     assert (more.integral - less.integral) / (2.0 * step) == pytest.approx(here.angle, abs=1e-8)
     far = missed(chain, kinks, np.array([0.15, 0.85]))
     assert not np.any(far.angle)
+
+
+def test_the_largest_slope_is_that_of_the_kinks_themselves():
+    # by which it is told whether others are the same: under a small load all are small
+    assert Kinks(np.array([0.3, 0.7]), np.array([2e-7, -7e-7]), np.array([5e-7, 1e-7])).largest == 7e-7
+    assert NO_KINKS.largest == 0.0

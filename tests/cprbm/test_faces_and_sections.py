@@ -26,6 +26,22 @@ def test_a_curve_is_seen_from_its_nearest_place(swapped):
     assert np.abs(seen.distance)[seen.within] == pytest.approx(nearest[seen.within], abs=1e-8)
 
 
+@pytest.mark.parametrize("swapped", [False, True])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_the_distance_from_a_curve_bends_as_that_of_its_parallel(side, swapped):
+    # reference: second differences of the distance itself, across the normal
+    graph = Graph((0.13, -0.31, 1.7, 0.9, -2.3), -1.13, 0.97, side, swapped, (0.21, -0.07))
+    v = np.linspace(-0.9, 0.8, 31)
+    height = np.where(np.arange(31) % 2, 0.031, -0.017)
+    q = np.stack((v, polynomial.polyval(v, graph.coefficients) + height), axis=1) - np.array(graph.origin)
+    q = q[:, ::-1] if swapped else q
+    seen, step = graph.seen(q), 1e-4
+    tau = np.stack((-seen.normal[:, 1], seen.normal[:, 0]), axis=1)
+    ahead, behind = (graph.seen(q + sign * step * tau).distance for sign in (1.0, -1.0))
+    assert np.all(seen.within)
+    assert seen.bend == pytest.approx((ahead - 2.0 * seen.distance + behind) / step**2, rel=1e-4, abs=1e-5)
+
+
 @pytest.mark.parametrize("thinner", [1.7, 7.3, 61.0])
 @pytest.mark.parametrize("links", [2, 5])
 def test_elements_of_a_beam_that_thins_yield_as_their_integral(thinner, links):

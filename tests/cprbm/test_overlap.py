@@ -49,3 +49,18 @@ def test_beams_of_which_one_went_through_the_other():
 def test_springs_never_deny_that_a_beam_is_beyond(wave):
     pair, state, at = bent(0.004, wave)
     assert may_be_beyond(pair, state, at) >= pair.gone_round(state, at)
+
+
+@pytest.mark.parametrize("end", [0.0304, 0.0337, 0.0372, 0.0425, 0.0456, 0.0531])
+def test_a_tip_that_stands_out_between_two_springs_is_seen(end):
+    # a few long elements 4 mm above many short ones, of which the last seventh has turned up by 0.9 rad
+    scene = beams(line([0.0, 0.004], [0.1, 0.004]), line([-0.033, 0.0], [end, 0.0]), 0.5 * THICKNESS)
+    mechanism = mechanism_of(scene, cprbm.Settings(links={"A": 4, "B": 67}))
+    model, pair = mechanism.problem.model, mechanism.pairs["c"]
+    state = rest_state(model)
+    theta = state.theta.copy()
+    theta[pair.b.links] += 0.9 * np.clip((pair.b.borders / pair.b.borders[-1] - 0.85) / 0.03, 0.0, 1.0)
+    state = State(theta, state.bodies)
+    at = positions(model, state)
+    assert at.y[pair.b.joints][-1] * model.unit_length > 0.0065
+    assert may_be_beyond(pair, state, at)

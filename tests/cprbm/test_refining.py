@@ -7,6 +7,7 @@ import pytest
 
 import cprbm
 from cprbm.contact import NO_ROWS
+from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import State, rest_state
 from cprbm.levelling import levelled
 from cprbm.march import March
@@ -16,7 +17,9 @@ from cprbm.point import point_at
 from cprbm.refining import BEYOND, SHARE, all_zones, carried_over, coarser, ends_of, fits, fitted, long_ones
 from cprbm.settings import Settings
 from cprbm.zones import Zone
-from tests.cprbm.scenes import hinge
+from scene import Ending
+from scene.reading import scene_from
+from tests.cprbm.scenes import cantilever_data, force, hinge
 from tests.cprbm.test_circle import BEAM, RADIUS, scene_of
 from tests.references.wrapped import Wrapped
 
@@ -33,6 +36,23 @@ def test_many_links_are_reached_through_quarters_and_few_at_once():
     assert family[-1] == 1281
     assert family[0] <= 80
     assert all(fine <= 4 * coarse for coarse, fine in pairwise(family))
+
+
+@pytest.mark.parametrize("links", [[9], [5, 9]])
+@pytest.mark.parametrize("arrives", [True, False])
+def test_only_what_did_not_arrive_by_a_coarse_mesh_is_gone_again_without_it(monkeypatch, links, arrives):
+    gone = []
+
+    class Noted(March):
+        def run(self):
+            gone.append([settings.links for settings in self.family])
+            return super().run() if arrives else (Ending.STEP_TOO_SMALL, "nothing was tried")
+
+    monkeypatch.setattr("cprbm.solver.March", Noted)
+    monkeypatch.setattr("cprbm.solver.coarser", lambda asked: tuple(Settings(links=n) for n in links))
+    answer = cprbm.answer(scene_from(cantilever_data(force(0.3, -1.0), [0.4])), Settings(links=9))
+    assert answer.completed == arrives
+    assert gone == ([links] if arrives or len(links) == 1 else [links, [9]])
 
 
 def test_beams_with_few_links_keep_some_and_the_papers_meshes_are_not_coarsened():
@@ -110,6 +130,24 @@ def test_a_state_carried_to_a_finer_mesh_and_back_turns_no_link_by_more_than_the
     pressing = there.rows.arc[there.lam > 0.0]
     (zone,) = all_zones(march.on.mechanism, march.on.point)["circle"]
     assert np.all(pressing < zone.end + 1.0 / 160)
+
+
+@pytest.mark.parametrize(("force", "finer"), [(97.0, 24), (97.0, 30), (191.0, 9), (191.0, 16)])
+def test_a_zone_goes_on_from_elements_of_one_size_to_those_of_another(force, finer):
+    # reference: tests.references.wrapped; sizes change by up to six times at little more than half of the zone
+    end = Wrapped(**BEAM, radius=RADIUS, force=force).wrap_length / BEAM["length"]
+    fit = Fit({"beam": np.interp(np.arange(41), [0, finer, 40], [0.0, 0.55 * end, 1.0])}, {})
+    mechanism = mechanism_of(scene_of([force]), Settings(links=40), fit)
+    problem = mechanism.problem
+    point = point_at(problem, {}, rest_state(problem.model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
+    for part in (0.25, 0.5, 0.75, 1.0):
+        found = equilibrium(problem, {"P": part * force}, point, 1e-11, 60)
+        assert found.converged
+        point = found.point
+    (zone,) = all_zones(mechanism, point)["circle"]
+    assert zone.long
+    assert zone.begin == 0.0
+    assert zone.end == pytest.approx(end, abs=1e-3)
 
 
 def test_a_place_is_no_long_zone():

@@ -43,6 +43,27 @@ def test_a_beam_above_lies_on_the_left_of_one_that_runs_to_the_right(above, lift
     assert (found.side, found.across) == (-1.0, 1.0)
 
 
+@pytest.mark.parametrize("turn", [0.0, 0.9, 2.3, -2.0])
+@pytest.mark.parametrize("above", [0.013, -0.013])
+@pytest.mark.parametrize("back", [False, True])
+def test_on_which_side_a_beam_lies_is_no_matter_of_where_the_two_begin(turn, above, back):
+    # a straight one 1.7 long, and a shorter bowed one beside its far end, that starts a length away or more
+    def placed(x, y):
+        return (float(np.cos(turn) * x - np.sin(turn) * y), float(np.sin(turn) * x + np.cos(turn) * y))
+
+    center, ends = placed(1.3, above - 0.9), [placed(1.3 - 0.27, above - 0.9 + np.sqrt(0.81 - 0.27**2))]
+    ends.append(placed(1.3 + 0.27, above - 0.9 + np.sqrt(0.81 - 0.27**2)))
+    start, end = ends[::-1] if back else ends
+    way = "counterclockwise" if back else "clockwise"
+    bowed = beam(Arc(kind="arc", center=center, start=start, end=end, direction=way))
+    level = 0.0 if above > 0.0 else 0.05  # below its ends, or above its crown
+    long = straight(placed(0.0, level - 0.05), placed(1.7, level - 0.05))
+    side = 1.0 if above > 0.0 else -1.0
+    assert standing(bowed, long, 1.7, thick=False).side == side
+    assert standing(long, bowed, 1.7, thick=False).side == (side if back else -side)
+    assert standing(long, bowed, 1.7, thick=False).across == side
+
+
 def test_where_beams_are_closest_tells():
     # beyond the end of B its line goes on below A, and A is bent down there: what has no foot tells nothing
     bent = Polynomial(kind="polynomial", axis="x", coefficients=(0.02, 0.0, 0.3, -0.3), range=(0.0, 1.3))

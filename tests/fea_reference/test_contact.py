@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from fea_reference import Settings, answer
+from fea_reference.contact import least_at_ends
+from fea_reference.contacts import contacts
 from fea_reference.crossing import cross
 from fea_reference.facing import borders
 from fea_reference.hermite import NeutralLine
+from fea_reference.model import build
 from fea_reference.zones import Gap, negative, overlap, seen
 from scene import Ending
 from scene.reading import scene_from
@@ -218,6 +221,23 @@ def test_beams_change_places_where_an_end_of_the_second_comes_to_press(monkeypat
     found = got.stations[0].values
     for probe in ("touch.force", "V.reaction", "tip.displacement"):
         np.testing.assert_allclose(found[probe], expected[probe], rtol=1e-7, err_msg=probe)
+
+
+@pytest.mark.parametrize("beyond", [False, True])
+def test_the_gap_of_an_end_is_its_distance_from_the_side_that_faces_it(monkeypatch, beyond):
+    """The lower leans as drawn: its end is DROP below the upper's side, or beyond the upper's end and faces none."""
+    first_at_first(monkeypatch)
+    scene = end_under_side(("upper", "lower"))
+    lower, end = scene.beams["lower"], (1.1 * A if beyond else C, GAP - DROP)
+    line = lower.curve.model_copy(update={"start": (0.3 * C, GAP - 3.0 * DROP), "end": end})
+    ground = scene.bodies["ground"].model_copy(update={"points": {"U": (0.0, GAP), "V": line.start}})
+    beams = {**scene.beams, "lower": lower.model_copy(update={"curve": line})}
+    bodies = {**scene.bodies, "ground": ground}
+    scene, settings = scene.model_copy(update={"beams": beams, "bodies": bodies}), Settings(elements=7)
+    model = build(scene, settings)
+    (pair,) = contacts(scene, model, settings.penetration)
+    found = least_at_ends(model, pair, model.start) * model.units.length
+    assert found == (np.inf if beyond else pytest.approx(DROP, rel=1e-12))
 
 
 def test_an_integral_along_the_wrong_beam_is_not_certified(monkeypatch):

@@ -63,6 +63,24 @@ def test_a_stop_turns_the_end_by_what_the_wheel_goes_beyond_it(end, towards, sen
     assert beyond["wheel.reaction_moment"] == pytest.approx([sense * 4.0 * turn * MOMENT], rel=1e-4)
 
 
+@pytest.mark.parametrize("end", ["start", "end"])
+def test_the_moment_of_a_stop_acts_where_the_beam_is_pinned(end):
+    # the pin is at the wheel's pivot, the origin; where a beam takes a moment its bending has a jump
+    scene = wheel(2.0, end, {"least": -2.3}, [[0.301]])
+    got = answer(scene, Settings(elements=6, kinematics="bending"))
+    # of double precision: a single one would make one of what it is compared with
+    assert float(got.events[0].value) == pytest.approx(0.3, abs=1e-9)
+    acting = got.stations[-1].statics
+    own, other = (
+        [i for i, by in enumerate(acting.by) if by == "stop" and acting.on[i] == on] for on in ("beam", "wheel")
+    )
+    assert acting.places[[*own, *other]] == pytest.approx(np.zeros((2, 2)), abs=1e-12 * LENGTH)
+    assert acting.s[own] == pytest.approx([0.0 if end == "start" else LENGTH], abs=1e-12 * LENGTH)
+    moment = 4.0 * 1e-3 * MOMENT
+    assert acting.moments[own] == pytest.approx([moment], rel=1e-4)
+    assert acting.moments[other] == pytest.approx([-moment], rel=1e-4)
+
+
 def pressed(stations=(0.2, 0.301)):
     """A model and a march of the wheel's, which has gone to the stations."""
     scene, settings = wheel(2.0, "start", {"least": -2.3}, [stations]), Settings(elements=6, kinematics="bending")

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from fea_reference.zones import Gap, negative
+from fea_reference.hermite import NeutralLine
+from fea_reference.zones import Gap, negative, seen
 
 
 def gap_of(f):
@@ -31,3 +32,21 @@ def test_a_zone_between_two_places_with_slopes_of_one_sign_is_found(turned, dept
     zones = negative(at, places, at(places, np.zeros(2)), np.array([True]))
     assert zones.least == pytest.approx(-depth, rel=1e-9)
     assert zones.intervals == pytest.approx(np.array([[low, high]]), abs=1e-7)
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_a_gap_is_seen_as_far_as_the_other_beam_reaches(sense):
+    # two level straight lines, of which the second begins later and ends earlier: the gap is their distance there
+    def level(begin, end, y, n):
+        s = np.linspace(begin, end, n + 1)[:: int(sense)]
+        along, none = np.full(n + 1, 0.0 if sense > 0.0 else np.pi), np.zeros(n)
+        return NeutralLine.through(
+            np.stack([s, np.full(n + 1, y)]), along, none + (end - begin) / n, np.zeros((2, n + 1)), none, none
+        )
+
+    first, second = level(0.0, 2.0, 0.3, 12), level(0.53, 1.63, 0.0, 7)
+    found = seen(first, second, sense, 0.01)
+    assert found.least == pytest.approx(0.29, rel=1e-14)
+    ends = found.zeta[[0, -1]] * 2.0 / 12
+    assert (ends if sense > 0.0 else 2.0 - ends[::-1]) == pytest.approx([0.53, 1.63], rel=1e-12)
+    assert found.there.g == pytest.approx(np.full(found.zeta.size, 0.29), rel=1e-12)

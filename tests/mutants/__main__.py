@@ -3,25 +3,30 @@
 First every file of the solvers' own tests runs once and notes which lines its quick tests reach (``.mutants/map``).
 Then mutants are drawn, kind by kind; each is put into a copy of the tree, and those tests run that reach its
 statement, the quickest first and ``--seconds`` of the processor at most, until one fails.  Whatever is there already,
-the map of an unchanged test file or the fate of a mutant, is not done again: a run may be ended at any time.
+the map of an unchanged test file or the fate of a mutant, is not done again: a run may be ended at any time.  Which
+mutants a seed draws is a matter of each by itself: as sources change, those of unchanged lines stay drawn, and what is
+known of a mutant holds as long as the function around it is the same.  Those drawn earlier are told of too.
 
 The fates: ``caught`` by a test; ``endless``, which took several times the seconds of its tests; ``survived`` all; and
-``unreached`` by any.  Survivors of which it was understood why nothing can catch them stand in ``equivalent.json``.
+``unreached`` by any.  Survivors of which it was understood why nothing can catch them stand in ``equivalent.json``,
+those that a test was seen to catch which is not among the quick ones in ``longer.json``.
 """
 
 from __future__ import annotations
 
 import argparse
+import ast
 import compileall
 import json
 import py_compile
-import random
 import shutil
 import sys
 import tempfile
 import time
 from hashlib import sha256
 from pathlib import Path
+
+import numpy as np
 
 from comparisons.writing import write
 from tests.mutants.forked import forked_pytest, warm
@@ -31,6 +36,7 @@ ROOT = Path(__file__).parents[2]
 WORK = ROOT / ".mutants"
 RESULTS = Path(__file__).parent / "results.json"
 EQUIVALENT = Path(__file__).parent / "equivalent.json"
+LONGER = Path(__file__).parent / "longer.json"
 COPIED = ("scene", "cprbm", "fea_reference", "exact", "comparisons", "tests", "pyproject.toml", "Makefile", "README.md")
 ROOMS = ("cprbm", "fea_reference")
 NO_MECHANICS = ("__init__.py", "settings.py", "remarks.py")
@@ -43,6 +49,7 @@ HEAD = (
     "catches it. The kinds are told in `tests/mutants/kinds.py`, every mutant with the test that caught it in",
     "`tests/mutants/results.json`.",
     "A mutant is equivalent where it was understood why nothing that can be asked shows it; the reason stands below.",
+    "By longer tests are those caught that survive the quick ones and that a slower test was seen to catch.",
     "",
 )
 ENDLESS = 6.0
@@ -65,44 +72,53 @@ def main() -> None:
     warm()
     mapped = reached(options.tests)
     results = json.loads(RESULTS.read_text("utf-8")) if RESULTS.exists() else {}
-    mine = []
+    drawn = sample(options.mutants, options.seed, options.only)
+    known = known_before(results, drawn)
+    told_of = {}
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
         copy_of_sources(tree := Path(folder))
-        for mutant in sample(options.mutants, options.seed, options.only):
-            key = f"{mutant.name} {source_digest(mutant.file)}"  # of a file that has changed all are tried again
+        for mutant in (*drawn, *known):
+            around = digest_around(mutant)
+            key = f"{mutant.fault} {around}"
             tests = planned(mutant, mapped, options.seconds)
             with_tests = sha256(repr(sorted(tests)).encode()).hexdigest()[:12]
             in_time = time.monotonic() - begun < 60.0 * options.minutes
-            known = results.get(key)
-            if in_time and (known is None or (known["fate"] not in CAUGHT and known["with"] != with_tests)):
+            last = results.get(key)
+            if in_time and (last is None or (last["fate"] not in CAUGHT and last["with"] != with_tests)):
                 fate, by = tried(mutant, tests, mapped, tree)
-                line = (ROOT / mutant.file).read_text("utf-8").splitlines()[mutant.line - 1].strip()
-                results[key] = {
-                    "fate": fate,
-                    "by": by,
-                    "kind": mutant.kind,
-                    "file": mutant.file,
-                    "line": line,
-                    "new": mutant.new,
-                    "with": with_tests,
-                }
+                results = {one: each for one, each in results.items() if fault_of(one) != mutant.fault}
+                results[key] = {"fate": fate, "by": by, "kind": mutant.kind, "with": with_tests}
                 write(RESULTS, json.dumps(results, indent=1, ensure_ascii=False) + "\n")
-                sys.stdout.write(f"{fate:10s} {mutant.name}  {by}\n")
+                sys.stdout.write(
+                    f"{fate:10s} {mutant.file}:{mutant.line} {mutant.kind}: {mutant.text} -> {mutant.new}  {by}\n"
+                )
                 sys.stdout.flush()
             if key in results:
-                mine.append(key)
-    asked_for = f"{len(mine)} of the {options.mutants} mutants that seed {options.seed} draws from"
+                told_of[key] = (mutant, results[key])
+    of_seed = sum(mutant in drawn for mutant, _ in told_of.values())
+    asked_for = f"{of_seed} of the {options.mutants} mutants that seed {options.seed} draws from"
     quick = f"Each was given at most {options.seconds:g} s of the processor of {len(mapped)} quick tests, those that"
     how = (
-        f"{asked_for} {', '.join(options.only) or ' and '.join(ROOMS)}.",
+        f"{asked_for} {', '.join(options.only) or ' and '.join(ROOMS)}, and {len(told_of) - of_seed} drawn earlier.",
         f"{quick} reach its statement, in {', '.join(options.tests)}.",
     )
-    told({key: results[key] for key in mine}, (*how, ""))
+    told(list(told_of.values()), (*how, ""))
 
 
-def source_digest(file: str) -> str:
-    """Short, of a file as it is now."""
-    return sha256((ROOT / file).read_bytes()).hexdigest()[:12]
+def fault_of(key: str) -> str:
+    """What a key of the results begins with: the fault, without the digest of what was around it."""
+    return key.rpartition(" ")[0]
+
+
+def digest_around(mutant: Mutant) -> str:
+    """Short, of the function around a mutant as it is now; of what is in none, of the statement."""
+    source = (ROOT / mutant.file).read_bytes()
+    functions = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.FunctionDef)]
+    around = [node for node in functions if node.lineno <= mutant.line <= node.end_lineno]
+    first, last = statement_at(source, mutant.line)
+    if around:
+        first, last = min(node.lineno for node in around), max(node.end_lineno for node in around)
+    return sha256(b"\n".join(source.splitlines()[first - 1 : last])).hexdigest()[:12]
 
 
 def sample(number: int, seed: int, only: list[str]) -> list[Mutant]:
@@ -116,18 +132,27 @@ def sample(number: int, seed: int, only: list[str]) -> list[Mutant]:
         for path in sorted((ROOT / room).glob("*.py"))
         if path.name not in NO_MECHANICS and (not only or f"{room}/{path.name}" in only)
     ]
-    drawn = random.Random(seed)
-    by_kind: dict[str, list[Mutant]] = {kind: [] for kind in KINDS}
+    by_kind: dict[str, dict[str, Mutant]] = {kind: {} for kind in KINDS}
     for file in files:
         for mutant in mutants_of(file, (ROOT / file).read_bytes()):
-            by_kind[mutant.kind].append(mutant)
-    for mutants in by_kind.values():
-        drawn.shuffle(mutants)
+            by_kind[mutant.kind].setdefault(sha256(f"{seed} {mutant.kind} {mutant.fault}".encode()).hexdigest(), mutant)
+    drawn = [[of[lot] for lot in sorted(of, reverse=True)] for of in by_kind.values()]
     found: list[Mutant] = []
-    while len(found) < number and any(by_kind.values()):
-        popped = [mutants.pop() for mutants in by_kind.values() if mutants]
+    while len(found) < number and any(drawn):
+        popped = [mutants.pop() for mutants in drawn if mutants]
         found.extend(each for each in popped if reads(each.applied((ROOT / each.file).read_bytes())))
     return found[:number]
+
+
+def known_before(results: dict[str, dict], drawn: list[Mutant]) -> list[Mutant]:
+    """Those beside the drawn of which results tell, as far as their lines are still there."""
+    known, found = {fault_of(key) for key in results}, {mutant.fault: mutant for mutant in drawn}
+    for file in sorted({fault.partition(": ")[0] for fault in known}):
+        if (ROOT / file).exists():
+            for mutant in mutants_of(file, (ROOT / file).read_bytes()):
+                if mutant.fault in known:
+                    found.setdefault(mutant.fault, mutant)
+    return [mutant for mutant in found.values() if mutant not in drawn]
 
 
 def reached(folders: list[str]) -> dict[str, dict]:
@@ -201,32 +226,36 @@ def copy_of_sources(tree: Path) -> None:
             shutil.copy(ROOT / name, tree / name)
 
 
-def told(results: dict[str, dict], how: tuple[str, ...]) -> None:
+def told(tried: list[tuple[Mutant, dict]], how: tuple[str, ...]) -> None:
     """Write the score by kind, and who survives."""
-    equivalent = json.loads(EQUIVALENT.read_text("utf-8")) if EQUIVALENT.exists() else {}
-    lines = [*HEAD, *how, "| kind | mutants | caught | equivalent | alive |", "|---|---|---|---|---|"]
-    total = [0, 0, 0, 0]
+    equivalent, longer = (json.loads(path.read_text("utf-8")) if path.exists() else {} for path in (EQUIVALENT, LONGER))
+    lines = [
+        *HEAD,
+        *how,
+        "| kind | mutants | caught | by longer tests | equivalent | alive |",
+        "|---|---|---|---|---|---|",
+    ]
+    total = np.zeros(5, dtype=int)
     for kind in KINDS:
-        mine = {key: each for key, each in results.items() if each["kind"] == kind}
-        caught = sum(each["fate"] in CAUGHT for each in mine.values())
-        same = sum(each["fate"] not in CAUGHT and _fault(each) in equivalent for each in mine.values())
-        row = [len(mine), caught, same, len(mine) - caught - same]
-        total = [one + other for one, other in zip(total, row, strict=True)]
+        mine = [mutant.fault for mutant, each in tried if mutant.kind == kind and each["fate"] not in CAUGHT]
+        number = sum(mutant.kind == kind for mutant, _ in tried)
+        late, same = sum(fault in longer for fault in mine), sum(fault in equivalent for fault in mine)
+        row = [number, number - len(mine), late, same, len(mine) - late - same]
+        total += row
         lines.append(f"| {kind} | {' | '.join(map(str, row))} |")
-    lines += [f"| all | {' | '.join(map(str, total))} |", "", "## Survivors", ""]
+    lines += [f"| all | {' | '.join(map(str, total))} |", "", "## Survivors of the quick tests", ""]
     lines += ["| where | line | becomes | what is known of it |", "|---|---|---|---|"]
-    for key, each in results.items():
+    for mutant, each in tried:
         if each["fate"] not in CAUGHT:
-            known = equivalent.get(_fault(each)) or f"alive: {each['fate']} {each['by']}".rstrip()
-            told = [f"`{text}`".replace("|", "\\|") for text in (key.split()[0], each["line"], each["new"])]
-            lines.append(f"| {' | '.join(told)} | {known} |")
+            known = f"alive: {each['fate']} {each['by']}".rstrip()
+            if mutant.fault in longer:
+                known = f"caught by `{longer[mutant.fault]}`"
+            known = equivalent.get(mutant.fault, known)
+            where = (f"{mutant.file}:{mutant.line}", mutant.text, mutant.new)
+            lines.append(f"| {' | '.join(f'`{text}`'.replace('|', chr(92) + '|') for text in where)} | {known} |")
     write(TOLD, "\n".join(lines) + "\n")
-    sys.stdout.write(f"{total[0]} mutants: {total[1]} caught, {total[2]} equivalent, {total[3]} alive; {TOLD}\n")
-
-
-def _fault(each: dict) -> str:
-    """What a mutant is called in ``equivalent.json``: it stays the same as lines move."""
-    return f"{each['file']}: {each['line']} -> {each['new']}"
+    score = f"{total[1]} caught, {total[2]} by longer tests, {total[3]} equivalent, {total[4]} alive"
+    sys.stdout.write(f"{total[0]} mutants: {score}; {TOLD}\n")
 
 
 if __name__ == "__main__":

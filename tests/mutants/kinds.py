@@ -61,8 +61,8 @@ SINGLE = "__import__('numpy').float32"
 class Mutant:
     """Bytes ``first`` to ``last`` of ``file`` become ``new``.
 
-    ``line`` is where that stands, and ``function`` the line of the ``def`` around it, or of its first decorator; zero
-    where there is none.
+    ``line`` is where that stands, ``text`` what stands there, and ``function`` the line of the ``def`` around it, or of
+    its first decorator; zero where there is none.
     """
 
     file: str
@@ -72,11 +72,12 @@ class Mutant:
     first: int
     last: int
     new: str
+    text: str
 
     @property
-    def name(self) -> str:
-        """Names it in a table."""
-        return f"{self.file}:{self.line} {self.kind} {self.first}-{self.last} {self.new}"
+    def fault(self) -> str:
+        """Names it, also after lines have moved; two alike in one line have one name."""
+        return f"{self.file}: {self.text} -> {self.new}"
 
     def applied(self, source: bytes) -> bytes:
         """The altered source."""
@@ -88,6 +89,8 @@ def mutants_of(file: str, source: bytes) -> list[Mutant]:
     starts = [0]
     for line in source.splitlines(keepends=True):
         starts.append(starts[-1] + len(line))
+
+    texts = [line.decode().strip() for line in source.splitlines()]
 
     def place(node: ast.AST) -> tuple[int, int]:
         return starts[node.lineno - 1] + node.col_offset, starts[node.end_lineno - 1] + node.end_col_offset
@@ -101,7 +104,7 @@ def mutants_of(file: str, source: bytes) -> list[Mutant]:
         for kind, where, new in _altered(node, told, again, indexed):
             first, last = place(where)
             if source[first:last].decode() != new:
-                found.append(Mutant(file, where.lineno, function, kind, first, last, new))
+                found.append(Mutant(file, where.lineno, function, kind, first, last, new, texts[where.lineno - 1]))
     return found
 
 

@@ -51,22 +51,26 @@ def lever(r):
     )
 
 
-def wheel(towards, end, limits, stations):
+def wheel(towards, end, limits, stations, drawn_at=0.0):
     """A beam pinned to a driven wheel at its pivot and clamped to a shoe that slides along it: idle but for the stop.
 
-    ``towards`` is the direction, rad, of the wheel's other point.
+    ``towards`` is the direction, rad, of the wheel's other point against the beam, and ``drawn_at`` that of the beam.
     """
-    wheel_end, shoe_end = ([0.0, 0.0], [LENGTH, 0.0])
+
+    def polar(distance, angle):
+        return [float(distance * np.cos(angle)), float(distance * np.sin(angle))]
+
+    wheel_end, shoe_end = [0.0, 0.0], polar(LENGTH, drawn_at)
     along = line(wheel_end, shoe_end) if end == "start" else line(shoe_end, wheel_end)
     ends = {"start": pin("A"), "end": weld("T")} if end == "start" else {"start": weld("T"), "end": pin("A")}
-    other = [0.3 * LENGTH * np.cos(towards), 0.3 * LENGTH * np.sin(towards)]
+    other = polar(0.3 * LENGTH, towards + drawn_at)
     return scene_from(
         {
             "name": "wheel",
             "materials": MATERIALS,
             "bodies": {
                 "wheel": {"motion": "turns", "about": "A", "points": {"A": [0.0, 0.0], "W": other}},
-                "shoe": {"motion": "slides", "along": [1.0, 0.0], "points": {"T": [LENGTH, 0.0]}},
+                "shoe": {"motion": "slides", "along": polar(1.0, drawn_at), "points": {"T": shoe_end}},
             },
             "beams": {"beam": {**STRIP, "curve": along, **ends}},
             "drives": {"turn": {"kind": "rotation", "body": "wheel"}},

@@ -16,12 +16,14 @@ from cprbm.curves import neutral_line
 from cprbm.kinematics import positions, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.nearest import distance_along
+from cprbm.stops import stop_of
 from fea_reference import curves
 from fea_reference.model import build
 from fea_reference.projection import project
 from fea_reference.section import compliance
 from scene import Arc, Line, Polynomial, Spline
 from tests.cprbm.scenes import hinge, hinge_data
+from tests.together.pivots import wheel
 
 RANDOM = np.random.default_rng(20261121)
 
@@ -149,3 +151,16 @@ def test_gaps_between_the_undeformed_beams():
     assert at == pytest.approx(np.stack([x, y]), abs=1e-9)
     exact_there = np.hypot(*(at - center[:, None])) - radius
     assert theirs == pytest.approx(exact_there, abs=1e-12)
+
+
+@pytest.mark.parametrize("end", ["start", "end"])
+@pytest.mark.parametrize("behind", [np.pi, -np.pi, 2.3])
+def test_the_angle_at_a_stop_is_the_same_however_the_scene_is_turned(end, behind):
+    # straight back it is π and never −π, of which rounding makes either; the limit is one that −π would be beyond
+    expected = np.pi if abs(behind) == np.pi else -behind
+    for drawn_at in np.random.default_rng(20261122).uniform(-np.pi, np.pi, 25):
+        scene = wheel(behind, end, {"least": expected - 0.3}, [[0.1]], drawn_at)
+        model = mechanism_of(scene, cprbm.Settings(links=4)).problem.model
+        assert stop_of(scene, model, "stop").angle(rest_state(model)) == pytest.approx(expected, abs=1e-12)
+        reference = build(scene, fea_reference.Settings(elements=4))
+        assert reference.stops[0].angle(reference.start) == pytest.approx(expected, abs=1e-12)

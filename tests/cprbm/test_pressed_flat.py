@@ -1,0 +1,92 @@
+"""A cantilever that lies on an edge from its clamp on, pressed down at one place: nothing bends, only the edge acts."""
+
+import numpy as np
+import pytest
+
+import cprbm
+from cprbm.kinematics import positions, rest_state
+from cprbm.mechanism import mechanism_of
+from cprbm.model import Fit
+from scene.reading import scene_from
+from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data
+
+FORCE = 1.3 * RIGIDITY / LENGTH**2
+DRAWN_AT = 0.7
+
+
+def turned(x, y):
+    cos, sin = np.cos(DRAWN_AT), np.sin(DRAWN_AT)
+    return [float(cos * x - sin * y), float(sin * x + cos * y)]
+
+
+def pressed(clamped, at, gap=0.0, lean=0.0, along=False):
+    """The cantilever with its start or its end ``clamped``, pressed at a share ``at`` of its length from there.
+
+    Or it is drawn ``gap`` above the edge, which falls by ``lean``; or pulled ``along`` itself.
+    """
+    down = {"kind": "beam_force", "beam": "beam", "at": at if clamped == "start" else 1.0 - at}
+    data = cantilever_data({**down, "direction": turned(1.0, 0.0) if along else turned(0.0, -1.0)}, [FORCE])
+    data["bodies"] = {"wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}}}
+    ends = {"start": ([0.0, 0.0], {"joint": "weld", "point": "R"}), "end": (turned(LENGTH, 0.0), {"joint": "free"})}
+    if clamped == "end":
+        ends = {"start": ends["end"], "end": ends["start"]}
+    line = {"kind": "line", "start": ends["start"][0], "end": ends["end"][0]}
+    data["beams"]["beam"] |= {"curve": line, "start": ends["start"][1], "end": ends["end"][1]}
+    below = {"point": turned(0.0, -0.5 * THICKNESS - gap), "normal": turned(lean, 1.0)}
+    data["contacts"] = {"edge": {"kind": "beam-half-plane", "beam": "beam", "body": "wall", **below}}
+    data["probes"] = [{"of": "edge", "quantity": quantity} for quantity in ("force", "centre", "ends")]
+    data["probes"] += [{"of": "R", "quantity": quantity} for quantity in ("reaction", "reaction_moment")]
+    return scene_from(data)
+
+
+@pytest.mark.parametrize("links", [20, 37])
+@pytest.mark.parametrize("at", [0.37, 0.6])
+@pytest.mark.parametrize("clamped", ["start", "end"])
+def test_the_force_goes_straight_through(clamped, at, links):
+    answer = cprbm.answer(pressed(clamped, at), cprbm.Settings(links=links))
+    assert answer.completed, answer.sentence
+    values, element = answer.stations[-1].values, 1.0 / links
+    place, error = at if clamped == "start" else 1.0 - at, 0.5 * (element / at) ** 2
+    assert values["edge.force"][0] == pytest.approx(FORCE, rel=error)
+    assert values["edge.centre"][0] == pytest.approx(place * LENGTH, abs=error * at * LENGTH)
+    # what presses are the joints beside the place, and not the clamp
+    assert values["edge.ends"] == pytest.approx([place * LENGTH] * 2, abs=1.001 * element * LENGTH)
+    assert values["R.reaction_moment"][0] == pytest.approx(0.0, abs=error * at * FORCE * LENGTH)
+
+
+@pytest.mark.parametrize("shares", [[0.31, 0.83], [0.83, 0.31]])
+def test_every_row_is_known_by_a_key_of_its_own(shares):
+    # as the contact's zones end: rows at joints and at both ends, by which Newton's steps tell them from each other
+    mechanism = mechanism_of(pressed("start", 0.37), cprbm.Settings(links=9), Fit({}, {"edge": np.array(shares)}))
+    model, edge = mechanism.problem.model, mechanism.pairs["edge"]
+    state = rest_state(model)
+    rows = [
+        (key, arc)
+        for group in edge.groups(state, positions(model, state))
+        for key, arc in zip(group.keys, group.arc, strict=True)
+    ]
+    assert {round(float(arc), 9) for _, arc in rows} >= {0.31, 0.83}
+    keys = [key for key, _ in rows if key >= 0]
+    assert len(keys) > 9
+    assert len(set(keys)) == len(keys)
+
+
+@pytest.mark.parametrize("end", ["start", "end"])
+def test_an_end_is_clamped_in_touch_where_it_lies_on_the_edge_and_along_it(end):
+    def found(**changes):
+        return mechanism_of(pressed(end, 0.37, **changes), cprbm.Settings(links=9)).pairs["edge"].clamped
+
+    assert found() == (end == "start", end == "end")
+    assert found(gap=1e-6 * LENGTH) == (False, False)
+    assert found(lean=1e-6) == (False, False)
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.02 * LENGTH])
+def test_a_pull_along_it_moves_nothing(gap):
+    # neither a link nor the rate at which one would turn
+    answer = cprbm.answer(pressed("start", 0.37, gap=gap, along=True), cprbm.Settings(links=20))
+    assert answer.completed, answer.sentence
+    values = answer.stations[-1].values
+    assert values["R.reaction"] == pytest.approx(turned(-FORCE, 0.0), rel=1e-12)
+    assert values["R.reaction_moment"][0] == pytest.approx(0.0, abs=1e-9 * FORCE * LENGTH)
+    assert values["edge.force"][0] == pytest.approx(0.0, abs=1e-9 * FORCE)

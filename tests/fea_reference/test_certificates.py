@@ -1,0 +1,29 @@
+"""A certificate is refused where what it says is more than was asked."""
+
+from dataclasses import replace
+
+import pytest
+
+from fea_reference import Settings
+from fea_reference.certificates import certify
+from fea_reference.contacts import contacts
+from fea_reference.march import begin
+from fea_reference.model import build
+from fea_reference.travel import Course, reach
+from tests.fea_reference.test_contact import CLOSING, two_cantilevers
+
+
+@pytest.mark.parametrize("thick", [True, False])
+def test_what_overlaps_by_more_than_was_asked_is_not_certified(thick):
+    # two beams, one pressed on the other by three times what closes the gap, at the penetration of 1e-2
+    scene, settings = two_cantilevers("upper", "lower", [1.0], thick=thick), Settings(elements=5, penetration=1e-2)
+    model = build(scene, settings)
+    march = begin(model, settings, contacts(scene, model, settings.penetration))
+    reach(march, Course(0, 1.0), 3.0 * CLOSING / model.stepped[0].unit)
+    assert certify(march).failures == ()
+    march.settings = replace(settings, penetration=1e-4)
+    (failure,) = certify(march).failures
+    assert failure.startswith("what touches in touch overlaps by ")
+    assert failure.endswith("; 1.0e-04 was asked")
+    # as tight as the penalties are made for the penetration that was asked of them
+    assert 3e-3 < float(failure.split(";")[0].rsplit(" ", 1)[1]) <= 1e-2
