@@ -48,7 +48,8 @@ _SHARPENINGS = 3
 _PULLS = 1e-9  # of the largest force or of EI/length: with which a stop may pull before it lets go
 _SWITCHED = 1e-8  # rad, or of these: how near to its change a stop is found
 _AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
-_STIFFEST = 1e9  # times what the elements can follow: the most that a penalty is raised to
+_STIFFEST = 1e9  # times what the elements can follow: the most that a penalty is raised to, for a penetration of
+_STANDARD = 1e-4
 _EVEN = 0.03  # by which a penalty may differ from the one wanted
 _SAME = 1e-9  # by which the one of a circle may
 _POLISHINGS = 8  # tries after which a penetration below the one asked will do
@@ -566,7 +567,8 @@ class March:
         if isinstance(one.pair, Rigid) and not one.sharp:
             return max(1.0, least)
         aim = _AIM * self.settings.penetration * one.pair.scale
-        most = _STIFFEST * least  # what overlaps in spite of that has gone through, and is not pushed out again
+        # what overlaps in spite of that has gone through, and is not pushed out again
+        most = _STIFFEST * (_STANDARD / self.settings.penetration) ** _FALLS[1] * least
         return min(max(float((one.penetration / aim) ** fall), least), most)
 
     def _will_do(self, one: Touch, factor: float, tries: int) -> bool:
