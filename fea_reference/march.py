@@ -569,7 +569,7 @@ class March:
         aim = _AIM * self.settings.penetration * one.pair.scale
         # what overlaps in spite of that has gone through, and is not pushed out again
         most = _STIFFEST * (_STANDARD / self.settings.penetration) ** _FALLS[1] * least
-        return min(max(float((one.penetration / aim) ** fall), least), most)
+        return float(min(max((one.penetration / aim) ** fall, least), most))
 
     def _will_do(self, one: Touch, factor: float, tries: int) -> bool:
         """Whether a penalty is as wanted; after some tries that of beams may be stiffer."""
