@@ -23,7 +23,8 @@ has no part of it; as the place moves with the beam, the second derivative has �
 less what is behind.
 
 A corner that presses on a beam's side, or a beam's end that presses on the edge, sinks in by the root of its force over
-ε, on however few elements: there the penalty goes by the penetration that is asked, as it does between beams.
+ε, on however few elements: there the penalty goes by the penetration that is asked, as it does between beams.  A thick
+beam's neutral line goes round a corner by an arc of half its thickness, which no element resolves either.
 
 A beam's end that a joint holds on the edge is there whatever happens: it counts for no gap.  Where it is pinned, a stop
 keeps its tangent from turning into the edge (:mod:`fea_reference.own_pins`).  Along a straight edge an even beam's
@@ -181,7 +182,7 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
         normal=n,
         missing=0.0,
         bent=bent,
-        sharp=bool(ends.any()) or bent is not None,
+        sharp=bool(ends.any()) or bent is not None or bool(near.corner.any()),
     )
 
 

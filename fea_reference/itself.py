@@ -33,6 +33,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
+from fea_reference.edge import Edge
 from fea_reference.facing import Tapers, borders
 from fea_reference.hermite import NeutralLine, plane
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Survey, gap, one_side, rounded, survey
@@ -68,9 +69,18 @@ class Roles:
         """The same, with what is across from each node where the ``line`` lies now."""
         nodes = np.arange(line.n + 1)
         i, j = (index.ravel() for index in np.meshgrid(nodes, nodes[:-1], indexing="ij"))
-        zeta, zeta_m = _partners(line, nodes.astype(float), i, j, later=self.later)[:2]
+        zeta, zeta_m = _partners(line, nodes.astype(float), i, j, 0.0, later=self.later)[:2]
         d = gap(line, line, one_side(1.0), 0.0, None, zeta, zeta_m).g
         return Roles(self.later, np.stack([zeta, zeta_m], axis=1), self.sides(zeta, zeta_m, d))
+
+    def about(self, line: NeutralLine) -> Roles:
+        """The same seen from the other of each two places, with what is across where the ``line`` lies now.
+
+        Of the side on which one lies of the other: between sides that run the same way the two are on unlike ones.
+        """
+        one, other = (line.around(places) for places in self.across.T)
+        alike = np.where((one.ahead * other.ahead.conj()).real < 0.0, -1.0, 1.0)
+        return Roles(not self.later, self.across[:, ::-1], -alike * self.side).renewed(line)
 
 
 def unseen(*, later: bool) -> Roles:
@@ -92,7 +102,8 @@ def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None
     pairs = np.concatenate([near["i"] * (line.n + 1) + near["j"], near["i"] * (line.n + 1) + near["j"] - 1])
     i, j = np.divmod(np.unique(pairs), line.n + 1)
     inside = j < line.n
-    places, partners, i = _partners(line, zeta, i[inside], j[inside], later=roles.later)
+    steepest = 0.0 if tapers is None else _steepest(tapers.first, line)
+    places, partners, i = _partners(line, zeta, i[inside], j[inside], steepest, later=roles.later)
     there = at(places, partners)
     usable = there.found & (np.abs(there.g + T) < reach)
     places, there, i = places[usable], there.chosen(usable), i[usable]
@@ -102,8 +113,12 @@ def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None
     return survey(at, places[order], there.chosen(order), follows, knots, floor=rounded(line, line, T))
 
 
-def _partners(line: NeutralLine, zeta: Array, i: Ints, j: Ints, *, later: bool) -> tuple[Array, Array, Ints]:
+def _partners(
+    line: NeutralLine, zeta: Array, i: Ints, j: Ints, steepest: float, *, later: bool
+) -> tuple[Array, Array, Ints]:
     """Of places ``zeta`` (k,), by number ``i`` (m,), and elements ``j`` (m,) those that hold a partner.
+
+    What is across from an end leans from there by an angle of up to the sine ``steepest``.
 
     Returns:
         Their places ζ and about their partners' ζ_m, and the numbers of the places.
@@ -116,13 +131,20 @@ def _partners(line: NeutralLine, zeta: Array, i: Ints, j: Ints, *, later: bool) 
         return np.asarray(((x[:, i] - line.points[:, node]) * line.tangents[:, node]).sum(axis=0))
 
     here, there = f(j), f(j + 1)
-    # straight across from an end f is zero but for round-off
-    nothing = _NOTHING * line.longest**2
-    here = np.where((j == 0) & (np.abs(here) <= nothing), 0.0, here)
-    there = np.where((j == line.n - 1) & (np.abs(there) <= nothing), 0.0, there)
+    # straight across from an end f is zero but for round-off, and for what the edge leans by
+    for at_end, f_end, node in ((j == 0, here, 0), (j == line.n - 1, there, line.n)):
+        away = np.hypot(*(x[:, i[at_end]] - line.points[:, [node]]))
+        nothing = _NOTHING * line.longest**2 + steepest * away
+        f_end[at_end] = np.where(np.abs(f_end[at_end]) <= nothing, 0.0, f_end[at_end])
     least = (here >= 0.0) & (there <= 0.0) & (here > there)
     i, j, here, there = i[least], j[least], here[least], there[least]
     return zeta[i], j + here / (here - there), i
+
+
+def _steepest(edge: Edge, line: NeutralLine) -> float:
+    """The largest sine of a lean, but for what changes the line's speed."""
+    slopes = np.abs(edge.slope(np.array(edge.knots)))
+    return 2.0 * float(slopes.max()) / float(line.lengths.min())
 
 
 def _samples(line: NeutralLine, tapers: Tapers | None, reach: float) -> Array:

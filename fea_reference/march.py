@@ -10,7 +10,16 @@ from scipy.optimize import brentq
 
 from fea_reference.acting import Acting
 from fea_reference.advance import advance, bend, way_to
-from fea_reference.contacts import against, least_gap, looked_at, passed_through, resting_pressure, room, zones_of
+from fea_reference.contacts import (
+    about,
+    against,
+    least_gap,
+    looked_at,
+    passed_through,
+    resting_pressure,
+    room,
+    zones_of,
+)
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
@@ -39,6 +48,8 @@ _SHARPENINGS = 3
 _PULLS = 1e-9  # of the largest force or of EI/length: with which a stop may pull before it lets go
 _SWITCHED = 1e-8  # rad, or of these: how near to its change a stop is found
 _AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
+_STIFFEST = 1e9  # times what the elements can follow: the most that a penalty is raised to, for a penetration of
+_STANDARD = 1e-4
 _EVEN = 0.03  # by which a penalty may differ from the one wanted
 _SAME = 1e-9  # by which the one of a circle may
 _POLISHINGS = 8  # tries after which a penetration below the one asked will do
@@ -420,7 +431,7 @@ class March:
             self.open.remove(pair)
             # an end that touches is to be the first beam's
             unseen = zones_of(self.model, pair, z).least > _CLOSED * pair.scale
-            closed = pair.about() if unseen and isinstance(pair, Pair) else pair
+            closed = about(self.model, pair, z) if unseen and isinstance(pair, Pair) else pair
             self.penalties[closed] = Penalty(pair.stiffness)
             self.closing.setdefault(pair.name, self.value(load))
         if closing:
@@ -449,9 +460,9 @@ class March:
     def change_places(self) -> None:
         """Let the beams of a pair change places where an end of the second presses: only ends of the first are seen."""
         for one in self.system.touches:
-            if not isinstance(one.pair, Pair) or one.pair.roles is not None or one.lacks <= LACKING:
+            if not isinstance(one.pair, Pair) or one.lacks <= LACKING:
                 continue
-            other = one.pair.about()
+            other = about(self.model, one.pair, self.system.z)
             penalties = {other if pair == one.pair else pair: penalty for pair, penalty in self.penalties.items()}
             depths = {other if pair == one.pair else pair: depth for pair, depth in self.depths().items()}
             pushes = {pair: push for pair, push in self.pushes().items() if pair != one.pair}
@@ -556,7 +567,9 @@ class March:
         if isinstance(one.pair, Rigid) and not one.sharp:
             return max(1.0, least)
         aim = _AIM * self.settings.penetration * one.pair.scale
-        return max(float((one.penetration / aim) ** fall), least)
+        # what overlaps in spite of that has gone through, and is not pushed out again
+        most = _STIFFEST * (_STANDARD / self.settings.penetration) ** _FALLS[1] * least
+        return float(min(max((one.penetration / aim) ** fall, least), most))
 
     def _will_do(self, one: Touch, factor: float, tries: int) -> bool:
         """Whether a penalty is as wanted; after some tries that of beams may be stiffer."""

@@ -11,10 +11,15 @@ P       the joint, on the edge (half of the thickness from it, for a beam that t
 The free side is 0 ≤ β ≤ ∠(τ₊, −τ₋).  Where the edge ends at P only one of the two holds, and if that is the second, β
 is counted from −τ₋ and is not positive.  A stop holds these limits: the tangent at the pin is what the gap beside it
 goes by, on however fine a mesh, and the moment of the pressure that would be there is the stop's.
+
+What is drawn from rounded numbers leaves the pin beyond a limit by their rounding, and may stand there until the edge
+presses.  Then it lies along the edge: a flat part that is held at an angle δ to it would ask for a force of 6 EI δ/h²
+beside the pin, which is of no size as drawn and of any on short elements.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
 import numpy as np
@@ -26,6 +31,7 @@ from scene.answer import Array
 from scene.statement import BeamEnd, EdgeContact, FreeEnd, PinnedEnd, Scene
 
 Which = Literal["start", "end"]
+_OPEN = 1.5 * np.pi  # what is free beside an edge that ends at the pin
 _SAME = 1e-6  # of the beam's length or of the unit: as near as a scene's places have to be
 
 
@@ -73,17 +79,15 @@ def own_pins(
             along = drawn if which == "start" else drawn + np.pi  # out of the pin into the beam
             limits: tuple[float | None, float | None]
             if ahead is not None:
-                angle = _within(along - _angle(ahead), -np.pi / 4.0 if back is None else 0.0)
-                limits = 0.0, None if back is None else _within(_angle(back) - _angle(ahead), 0.0)
+                widest = None if back is None else float(np.remainder(_angle(back) - _angle(ahead), 2.0 * np.pi))
+                angle = _about(along - _angle(ahead), 0.5 * (_OPEN if widest is None else widest))
+                limits = 0.0, widest
             elif back is not None:
-                angle, limits = -_within(_angle(back) - along, -np.pi / 4.0), (None, 0.0)
+                angle, limits = _about(along - _angle(back), -0.5 * _OPEN), (None, 0.0)
             else:
                 continue
-            # what was drawn from rounded numbers may lie beyond a limit by their rounding, and begins at it
-            least, most = (
-                None if limit is None else further(limit, angle)
-                for limit, further in zip(limits, (min, max), strict=True)
-            )
+            least, most = limits
+            beyond = max(0.0, 0.0 if least is None else least - angle, 0.0 if most is None else angle - most)
             phi = None if dofs is None else int(dofs[2])
             found.append(
                 StopPart(
@@ -98,24 +102,27 @@ def own_pins(
                     most,
                     (contact.beam, which),
                     name,
+                    beyond,
                 )
             )
     return tuple(found)
 
 
 def _moves_with(scene: Scene, point: str, body: str) -> bool:
-    """Whether a point is the body's, or pinned to one of its own."""
+    """Whether a point is the body's, or pinned to one of its own; bodies that do not move are one."""
     points = {point}
     for pin in scene.pins.values():
         if point in pin.points:
             points.update(pin.points)
-    return any(scene.body_of(each) == body for each in points)
+    together = {name for name, one in scene.bodies.items() if one.motion == "fixed"}
+    together = together if body in together else {body}
+    return any(scene.body_of(each) in together for each in points)
 
 
 def _angle(vector: Array) -> float:
     return float(np.arctan2(vector[1], vector[0]))
 
 
-def _within(angle: float, least: float) -> float:
-    """An angle from ``least`` on, to what it may be rounded to."""
-    return float(np.remainder(angle - least + _SAME, 2.0 * np.pi)) + least - _SAME
+def _about(angle: float, middle: float) -> float:
+    """An angle, in the turn about ``middle``."""
+    return middle + math.remainder(angle - middle, 2.0 * np.pi)

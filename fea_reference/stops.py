@@ -35,7 +35,8 @@ class StopPart:
     """A stop: unknown ``theta`` of the end, number of the ``body`` and its unknown ``phi`` if it moves, ``row`` of m.
 
     ``offset`` is β⁰ − θ⁰; ``point`` names the pin's, ``end`` the beam and which end of it.  ``owner`` names the contact
-    whose edge the end is pinned to, of a stop that is one, see :mod:`fea_reference.own_pins`.
+    whose edge the end is pinned to, of a stop that is one, see :mod:`fea_reference.own_pins`; ``beyond`` (rad) is how
+    far an angle may be beyond a limit before the stop acts, and brings it there.
     """
 
     name: str
@@ -49,6 +50,7 @@ class StopPart:
     most: float | None
     end: tuple[str, str]
     owner: str = ""
+    beyond: float = 0.0
 
     @property
     def known_as(self) -> str:
@@ -69,8 +71,8 @@ class StopPart:
         """How far the angle is from either limit, negative beyond it, and the nearer of the two limits; rad."""
         angle, found = self.angle(z), (np.inf, np.nan)
         for limit, sign in ((self.least, 1.0), (self.most, -1.0)):
-            if limit is not None and sign * (angle - limit) < found[0]:
-                found = (sign * (angle - limit), limit)
+            if limit is not None and sign * (angle - limit) + self.beyond < found[0]:
+                found = (sign * (angle - limit) + self.beyond, limit)
         return found
 
     def press(self, z: State, limit: float) -> float:

@@ -32,6 +32,10 @@ from scene.answer import Array, Critical, Ending, Loss
 
 _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
 _CUTS = 10  # in a row, each to a quarter
+_CREPT = (
+    1e-5  # of the span: a step that fails and is as short creeps up to where the branch ends, and is left to looking
+)
+_NO_FARTHER = 1e-8  # of the span: the same of steps that look
 _EASY = 6  # iterations: a step that took more is not followed by a longer one
 _FAR = 4.0  # elements: a zone that goes farther from station to station is sought with loose penalties, if it had to
 _ASIDE = 0.15  # of a step's own way: by which it may end aside of the mean of its rates
@@ -192,6 +196,8 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
             rate = None
             if not searching and march.loosen(Circle, Face, Pair):
                 searching, march.far, known = True, True, []
+            elif size < (_NO_FARTHER if watched else _CREPT) * course.span:
+                raise StoppedError(*trouble)
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
 

@@ -217,6 +217,44 @@ def test_the_same_edge_said_in_other_ways(contact):
         assert second == pytest.approx(first, rel=1e-9, abs=1e-12)
 
 
+@pytest.mark.parametrize("beyond", [1.7e-6, 7.3e-6])
+def test_a_beam_that_is_drawn_beyond_its_own_edge_by_rounding_lies_along_it(beyond):
+    # reference: peeled() on the edge itself, from which an edge that turns by so little is as far
+    force, c, _, strain = peeled(DROP, KAPPA)
+    contact = {"kind": "beam-half-plane", "point": (0.0, 0.0), "normal": (-math.sin(beyond), math.cos(beyond))}
+    for elements in (20, 80):
+        _, found = on_its_pin(contact=contact, elements=elements)
+        assert found.ending is Ending.COMPLETED, found.sentence
+        values = found.stations[-1].values
+        assert values["scene.potential_energy"][0] == pytest.approx(strain, rel=2e-4)
+        assert values["edge.force"][0] == pytest.approx(force, rel=1e-2)
+        assert values["edge.ends"] == pytest.approx([0.0, c], abs=1e-2)
+
+
+def test_an_edge_on_another_body_that_stands_still_holds_the_pin_too():
+    # reference: peeled(); bodies that do not move are one
+    force, _, tip, strain = peeled(DROP, KAPPA)
+    drawn = (math.sin(KAPPA) / KAPPA, (1.0 - math.cos(KAPPA)) / KAPPA)
+    scene = scene_of(
+        {"kind": "arc", "center": (0.0, 1 / KAPPA), "start": (0.0, 0.0), "end": drawn, "direction": "counterclockwise"},
+        {"joint": "pin", "point": "root"},
+        {"joint": "weld", "point": "tip"},
+        {"body": "bench", "thick": False, "kind": "beam-half-plane", "point": (0.3, 0.0), "normal": (0.0, 1.0)},
+        bodies={
+            "ground": {"motion": "fixed", "points": {"root": (0.0, 0.0)}},
+            "bench": {"motion": "fixed", "points": {"leg": (0.3, -1.0)}},
+            "block": {"motion": "free", "points": {"tip": drawn}},
+        },
+        drives={"d": {"kind": "displacement", "point": "tip", "direction": (0.0, -1.0)}},
+        stages=(("d", (DROP,)),),
+        probes=(("tip", "displacement"), ("edge", "force"), ("scene", "potential_energy")),
+    )
+    values = answer(scene, Settings(elements=40, kinematics="bending")).stations[-1].values
+    assert values["tip.displacement"] == pytest.approx(tip - drawn, abs=2e-5)
+    assert values["scene.potential_energy"][0] == pytest.approx(strain, rel=2e-5)
+    assert values["edge.force"][0] == pytest.approx(force, rel=1e-3)
+
+
 def over_a_corner(force, a, b):
     """A cantilever along x, EI = L = 1, over a corner at (a, −b): a dead force at its tip, and N across the beam there.
 
