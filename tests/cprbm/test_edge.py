@@ -147,6 +147,17 @@ def test_an_edge_and_a_pin_on_a_body_that_turns(monkeypatch):
         assert other[name] == pytest.approx(value, rel=1e-7, abs=1e-9 * np.max(np.abs(value)))
 
 
+def test_an_edge_that_is_drawn_beyond_its_beam_by_rounding_holds_it_along_itself():
+    # what is held at an angle to the edge needs a force beside the pin that grows with the square of N
+    told = []
+    for beyond in (0.0, 1.6e-6):
+        scene = arch()
+        edge = scene.contacts["edge"].model_copy(update={"normal": (-beyond, 1.0), "point": (0.0, 0.0)})
+        told.append(solved(scene.model_copy(update={"contacts": {"edge": edge}}), 80))
+    for probe, values in told[0].items():
+        assert told[1][probe] == pytest.approx(values, rel=1e-4, abs=1e-5 * np.max(np.abs(values)))
+
+
 def test_before_it_lies_flat_the_moment_at_the_pin_is_the_forces():
     # reference: statics: the moment of the tip's force about the pin, which is all that holds
     values = solved(arch(part=0.3), 40)
