@@ -43,7 +43,7 @@ import numpy as np
 from cprbm import smooth, wells
 from cprbm.contact import Blocks, Group
 from cprbm.corner import Corner, corners_of
-from cprbm.faces import Face, Seen, faces_of, sides_of
+from cprbm.faces import Face, Seen, Straight, faces_of, sides_of
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
@@ -176,6 +176,8 @@ class Edge:
 
     def next_to(self, face: Face, q: Array) -> Flags:
         """Which places ``q`` (k, 2), as the body sees them, face a piece: before it, or behind it and none nearer."""
+        if isinstance(face, Straight) and not np.any(beside := face.within(q)):
+            return beside
         mine = face.seen(q)
         facing = mine.within & (mine.distance >= 0.0)
         if np.all(facing == mine.within):  # there is none behind it
@@ -346,6 +348,8 @@ class Edge:
         """Arc lengths of the rows against one piece, and which of them move with a minimum."""
         A = line.sampled
         s, mine = A.s, self._next_to(face, A, frame)
+        if not mine.any() and face not in self.pieces:  # a side has no end that is between two samples alone
+            return np.zeros(0), np.zeros(0, dtype=bool)
         seen = self._seen(face, A, frame)
         D = seen.distance - self.offset
         near = np.zeros(len(s), dtype=bool)
@@ -452,8 +456,11 @@ class Edge:
         """Of the pieces that some points face, the nearest: D (k,), infinite where there is none, n (k, 2), k (k,)."""
         least, normal, bend = np.full(len(A.s), np.inf), np.zeros((len(A.s), 2)), np.zeros(len(A.s))
         for face in self.faces:
+            facing = self._next_to(face, A, frame)
+            if not facing.any():
+                continue
             seen = self._seen(face, A, frame)
-            nearer = self._next_to(face, A, frame) & (seen.distance < least)
+            nearer = facing & (seen.distance < least)
             least = np.where(nearer, seen.distance, least)
             normal, bend = np.where(nearer[:, None], seen.normal, normal), np.where(nearer, seen.bend, bend)
         for corner in self.corners:
@@ -505,7 +512,8 @@ class Edge:
         least = [self._nearest(line.sampled, frame)[0].min()]
         for face in self.faces:
             s, _ = self._places(face, line, frame)
-            least.append(self._nearest(line.at(s), frame)[0].min(initial=np.inf))
+            if s.size:
+                least.append(self._nearest(line.at(s), frame)[0].min())
         for corner in self.corners:
             A = line.at(self._closest(corner, line, frame, np.zeros(0)))
             rho = np.sum(self._away(corner, A, frame) * self._from(corner, A, frame), axis=1)

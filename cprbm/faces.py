@@ -117,10 +117,13 @@ class Straight:
 
     def seen(self, q: Array) -> Seen:
         """The piece from places ``q`` (k, 2)."""
-        r, none = q - np.array(self.origin), np.zeros(len(q))
-        along = r @ np.array(self.tau)
-        within = (along >= self.low) & (along <= self.high)
-        return Seen(r @ np.array(self.normal), np.tile(self.normal, (len(q), 1)), none, within)
+        distance = (q - np.array(self.origin)) @ np.array(self.normal)
+        return Seen(distance, np.tile(self.normal, (len(q), 1)), np.zeros(len(q)), self.within(q))
+
+    def within(self, q: Array) -> Flags:
+        """Which places ``q`` (k, 2) are beside the piece and not beyond its ends."""
+        along = (q - np.array(self.origin)) @ np.array(self.tau)
+        return np.asarray((along >= self.low) & (along <= self.high))
 
 
 @dataclass(frozen=True, slots=True)
