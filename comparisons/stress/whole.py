@@ -144,7 +144,8 @@ def column(draft: Draft) -> None:
     back = [-c for c in along]
     stages: list[Data] = []
     loads: Data = {}
-    if not bent or happens(rng, 0.3):
+    # aside first, its ends would be held by the drive
+    if not bent or (not driven and happens(rng, 0.3)):
         side = draft.frame.direction((0.0, sign(rng)))
         loads["nudge"] = {"kind": "distributed", "beam": "beam1", "direction": [round(c, 3) for c in side]}
         stages.append({"name": "aside", "steps": "nudge", "stations": [rounded(spread(rng, 0.3, 1.5) * force / size)]})

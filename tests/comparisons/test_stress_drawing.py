@@ -130,6 +130,8 @@ def test_a_column_between_driven_ends_is_bent():
     drawn_so = [data for data in (laid_out(column, seed) for seed in range(40)) if "drives" in data]
     assert len(drawn_so) > 5
     assert all(data["beams"]["beam1"]["curve"]["kind"] == "arc" for data in drawn_so)
+    # a load before the drive would bend it between ends that the drive holds
+    assert all([stage["steps"] for stage in data["stages"]] == ["press"] for data in drawn_so)
 
 
 @pytest.mark.parametrize(("angle", "alone"), [(0.0, True), (0.9, False)])
