@@ -29,11 +29,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm.faces import Face, Seen
+from cprbm.faces import SAME, Face, Seen
 from scene import LineContact
 from scene.answer import Array
 
-NEAREST = 1e-9  # of ℓ: ends of pieces that are closer are one
 JUTTING = 1e-9  # sine of the angle by which an edge turns at least where it stands out
 
 
@@ -41,7 +40,7 @@ JUTTING = 1e-9  # sine of the angle by which an edge turns at least where it sta
 class Corner:
     """A corner at ``place``, between the unit normals ``before`` and ``behind``, in the frame of the edge's body.
 
-    ``ends`` where the edge does, and does not go on in another piece.
+    ``ends`` where the edge does, and one of both pieces is a side of what is rigid behind it.
     """
 
     place: tuple[float, float]
@@ -84,22 +83,18 @@ def stands_out(line: LineContact) -> bool:
     return bool(np.any(away > JUTTING))
 
 
-def corners_of(faces: Sequence[Face]) -> tuple[Corner, ...]:
-    """Where the pieces of an edge stand out: between two, and where the first begins and the last ends.
-
-    There what is rigid goes straight back, at right angles to the piece.
-    """
+def corners_of(pieces: Sequence[Face], sides: Sequence[Face]) -> tuple[Corner, ...]:
+    """Where the pieces of an edge and the ``sides`` of what is behind it stand out."""
     found = []
-    for face in faces:
-        begin, end = face.ends
-        if begin is not None:
-            n = _normal(face, begin)
-            other = next((each for each in faces if each is not face and _same(each.ends[1], begin)), None)
-            before = np.array([-n[1], n[0]]) if other is None else _normal(other, begin)
-            found.append((begin, before, n, other is None))
-        if end is not None and not any(_same(each.ends[0], end) for each in faces if each is not face):
-            n = _normal(face, end)
-            found.append((end, n, np.array([n[1], -n[0]]), True))
+    for face in (*pieces, *sides):
+        begin = face.ends[0]
+        if begin is None:
+            continue
+        for other in (*pieces, *sides):
+            if other is not face and _same(other.ends[1], begin):
+                ends = face in sides or other in sides
+                found.append((begin, _normal(other, begin), _normal(face, begin), ends))
+                break
     return tuple(
         Corner(
             place=(float(place[0]), float(place[1])),
@@ -117,4 +112,4 @@ def _normal(face: Face, place: Array) -> Array:
 
 
 def _same(one: Array | None, other: Array) -> bool:
-    return one is not None and bool(np.hypot(*(one - other)) <= NEAREST)
+    return one is not None and bool(np.hypot(*(one - other)) <= SAME)

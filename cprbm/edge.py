@@ -26,6 +26,10 @@ end whatever happens (:mod:`cprbm.own_pins`).  There the edge holds the directio
 (:mod:`cprbm.stops`), whose moment is what the pressure over a length that goes to nothing comes to.  The end is no row
 then, nor is the first spring: where the first link lies along the edge, so does that.
 
+What is rigid goes straight back from where the edge ends: its sides (:func:`cprbm.faces.sides_of`) are pieces like the
+others, so that a beam that passes beyond an end and comes back behind it meets the side, and is nowhere behind what it
+has passed.
+
 A corner that stands out has one row where the beam is closest to it, at a place of its own always, whose normal is
 between those of its pieces (:mod:`cprbm.corner`).  Of the pieces on either side it is the other that has one then.
 """
@@ -39,7 +43,7 @@ import numpy as np
 from cprbm import smooth, wells
 from cprbm.contact import Blocks, Group
 from cprbm.corner import Corner, corners_of
-from cprbm.faces import Face, Seen, faces_of
+from cprbm.faces import Face, Seen, Straight, faces_of, sides_of
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
@@ -95,7 +99,8 @@ class Edge:
         a: the beam's chain.
         body: that the edge is fixed to, −1 for the ground; ``mark`` the number of m among the joints, and ``turning``
             that of φ among the unknowns, if that is a body that moves.
-        faces: its pieces; ``corners`` between them and at their ends, but for those at which the beam is pinned.
+        pieces: its own; ``faces`` are these, and where it has ends the sides of what is rigid behind it.
+        corners: between the faces, but for those at which the beam is pinned.
         offset: T₀, zero for a line; units of length.
         unit_length: ℓ, m.
         held: whether the beam's start and end cannot move against the edge's body.
@@ -112,6 +117,7 @@ class Edge:
     body: int
     mark: int
     turning: int
+    pieces: tuple[Face, ...]
     faces: tuple[Face, ...]
     corners: tuple[Corner, ...]
     offset: float
@@ -170,6 +176,8 @@ class Edge:
 
     def next_to(self, face: Face, q: Array) -> Flags:
         """Which places ``q`` (k, 2), as the body sees them, face a piece: before it, or behind it and none nearer."""
+        if isinstance(face, Straight) and not np.any(beside := face.within(q)):
+            return beside
         mine = face.seen(q)
         facing = mine.within & (mine.distance >= 0.0)
         if np.all(facing == mine.within):  # there is none behind it
@@ -340,6 +348,8 @@ class Edge:
         """Arc lengths of the rows against one piece, and which of them move with a minimum."""
         A = line.sampled
         s, mine = A.s, self._next_to(face, A, frame)
+        if not mine.any() and face not in self.pieces:  # a side has no end that is between two samples alone
+            return np.zeros(0), np.zeros(0, dtype=bool)
         seen = self._seen(face, A, frame)
         D = seen.distance - self.offset
         near = np.zeros(len(s), dtype=bool)
@@ -446,8 +456,11 @@ class Edge:
         """Of the pieces that some points face, the nearest: D (k,), infinite where there is none, n (k, 2), k (k,)."""
         least, normal, bend = np.full(len(A.s), np.inf), np.zeros((len(A.s), 2)), np.zeros(len(A.s))
         for face in self.faces:
+            facing = self._next_to(face, A, frame)
+            if not facing.any():
+                continue
             seen = self._seen(face, A, frame)
-            nearer = self._next_to(face, A, frame) & (seen.distance < least)
+            nearer = facing & (seen.distance < least)
             least = np.where(nearer, seen.distance, least)
             normal, bend = np.where(nearer[:, None], seen.normal, normal), np.where(nearer, seen.bend, bend)
         for corner in self.corners:
@@ -499,7 +512,8 @@ class Edge:
         least = [self._nearest(line.sampled, frame)[0].min()]
         for face in self.faces:
             s, _ = self._places(face, line, frame)
-            least.append(self._nearest(line.at(s), frame)[0].min(initial=np.inf))
+            if s.size:
+                least.append(self._nearest(line.at(s), frame)[0].min())
         for corner in self.corners:
             A = line.at(self._closest(corner, line, frame, np.zeros(0)))
             rho = np.sum(self._away(corner, A, frame) * self._from(corner, A, frame), axis=1)
@@ -529,15 +543,18 @@ def edge_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Edge:
     pins = own_pins(scene, model, name)
     held = (chain.start.body == body, chain.end is not None and chain.end.body == body)
     welded = (chain.start.welded, chain.end is not None and chain.end.welded)
-    faces = faces_of(contact, model.unit_length, (float(x), float(y)))
+    pieces = faces_of(contact, model.unit_length, (float(x), float(y)))
+    sides = sides_of(pieces)
+    pinned = _pinned_at(scene, model, contact, pins, (float(x), float(y)))
     edge = Edge(
         name=name,
         a=chain,
         body=body,
         mark=model.mark_of(name),
         turning=model.n_links + 3 * body + 2,
-        faces=faces,
-        corners=_corners(faces, _pinned_at(scene, model, contact, pins, (float(x), float(y))), offset),
+        pieces=pieces,
+        faces=(*pieces, *sides),
+        corners=_corners(pieces, sides, pinned, offset),
         offset=offset,
         unit_length=model.unit_length,
         held=(held[0] or pins[0] is not None, held[1] or pins[1] is not None),
@@ -570,10 +587,10 @@ def _pinned_at(
     return np.asarray(np.array(places, dtype=float).reshape(-1, 2) / model.unit_length - np.array(origin))
 
 
-def _corners(faces: tuple[Face, ...], pinned: Array, offset: float) -> tuple[Corner, ...]:
+def _corners(pieces: tuple[Face, ...], sides: tuple[Face, ...], pinned: Array, offset: float) -> tuple[Corner, ...]:
     """The corners but for those at which the beam is ``pinned`` (k, 2): they hold it as its pin does."""
     return tuple(
         corner
-        for corner in corners_of(faces)
+        for corner in corners_of(pieces, sides)
         if not np.any(np.hypot(*(pinned - np.array(corner.place)).T) <= offset + PIN_ON_IT)
     )

@@ -10,11 +10,15 @@ k           curvature with which the free side's distance bends: ∂²D/∂q² =
 
 Beyond its ends a piece is continued straight: so D has derivatives everywhere, and ``within`` says where it is the
 piece that is seen.
+
+What is rigid ends where the edge does, and goes straight back from there: its two sides are straight pieces too, and
+end where they meet or come to the edge from behind.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
 from typing import Protocol
@@ -27,6 +31,7 @@ from scene.answer import Array, Flags
 
 NEWTON_STEPS = 30
 SAMPLES = 65  # of a graph, from which the nearest place is sought
+SAME = 1e-9  # of ℓ: ends of pieces that are closer are one
 GRAPHS = 1024  # of which it is known how high and how sharp they are
 
 
@@ -82,27 +87,28 @@ class Face(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Straight:
-    """A straight piece from ``begin`` (2,) on along ``tau`` (2,), ``length`` long (inf for a half-plane's edge)."""
+    """A straight piece along ``tau`` (2,) from ``low`` to ``high`` beyond its ``origin`` (2,); both may be infinite."""
 
-    begin: tuple[float, float]
+    origin: tuple[float, float]
     tau: tuple[float, float]
     normal: tuple[float, float]
-    length: float
+    low: float
+    high: float
 
     @property
     def ends(self) -> tuple[Array | None, Array | None]:
         """Where it begins and ends."""
-        if self.length == np.inf:
-            return None, None
         (tx, ty), (nx, ny) = self.tau, self.normal
-        begin, end = np.array(self.begin), np.array(self.begin) + self.length * np.array(self.tau)
-        return (begin, end) if tx * ny - ty * nx > 0.0 else (end, begin)
+        low, high = (
+            np.array(self.origin) + far * np.array(self.tau) if np.isfinite(far) else None
+            for far in (self.low, self.high)
+        )
+        return (low, high) if tx * ny - ty * nx > 0.0 else (high, low)
 
     @property
     def roof(self) -> Roof:
         """What it lies under."""
-        low = -np.inf if self.length == np.inf else 0.0
-        return Roof(self.begin, self.tau, self.normal, low, self.length, 0.0, 0.0, 0.0)
+        return Roof(self.origin, self.tau, self.normal, self.low, self.high, 0.0, 0.0, 0.0)
 
     @property
     def sharpest(self) -> float:
@@ -111,10 +117,13 @@ class Straight:
 
     def seen(self, q: Array) -> Seen:
         """The piece from places ``q`` (k, 2)."""
-        r, none = q - np.array(self.begin), np.zeros(len(q))
-        along = r @ np.array(self.tau)
-        within = (self.length == np.inf) | ((along >= 0.0) & (along <= self.length))
-        return Seen(r @ np.array(self.normal), np.tile(self.normal, (len(q), 1)), none, within)
+        distance = (q - np.array(self.origin)) @ np.array(self.normal)
+        return Seen(distance, np.tile(self.normal, (len(q), 1)), np.zeros(len(q)), self.within(q))
+
+    def within(self, q: Array) -> Flags:
+        """Which places ``q`` (k, 2) are beside the piece and not beyond its ends."""
+        along = (q - np.array(self.origin)) @ np.array(self.tau)
+        return np.asarray((along >= self.low) & (along <= self.high))
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,12 +235,13 @@ def faces_of(contact: EdgeContact, unit_length: float, origin: tuple[float, floa
                 length = float(np.hypot(*(other - one)))
                 tx, ty = (other - one) / length
                 begin = (float(one[0]), float(one[1]))
-                found.append(Straight(begin, (float(tx), float(ty)), (float(-sign * ty), float(sign * tx)), length))
+                normal = (float(-sign * ty), float(sign * tx))
+                found.append(Straight(begin, (float(tx), float(ty)), normal, 0.0, length))
             return tuple(found)
         case HalfPlaneContact():
             x, y = np.array(contact.point) / unit_length - np.array(origin)
             nx, ny = np.array(contact.normal) / np.hypot(*contact.normal)
-            return (Straight((float(x), float(y)), (float(ny), float(-nx)), (float(nx), float(ny)), np.inf),)
+            return (Straight((float(x), float(y)), (float(ny), float(-nx)), (float(nx), float(ny)), -np.inf, np.inf),)
     swapped = contact.axis == "y"
     low, high = sorted(contact.range)
     # f and its variable in units of length
@@ -246,3 +256,36 @@ def faces_of(contact: EdgeContact, unit_length: float, origin: tuple[float, floa
             origin=origin[::-1] if swapped else origin,
         ),
     )
+
+
+def sides_of(faces: Sequence[Face]) -> tuple[Straight, ...]:
+    """The sides of what is rigid behind the ``faces`` of an edge, in their order; none of what has no ends."""
+    begins = {tuple(end) for face in faces if (end := face.ends[0]) is not None}
+    stops = {tuple(end) for face in faces if (end := face.ends[1]) is not None}
+    found = []
+    for face in faces:
+        for end, others, leads in zip(face.ends, (stops, begins), (-1.0, 1.0), strict=True):
+            if end is None or any(np.hypot(*(end - np.array(other))) <= SAME for other in others):
+                continue
+            nx, ny = face.seen(end[None]).normal[0]
+            # out of the edge, along it: to the right of n where the edge ends, to the left where it begins
+            out = (float(leads * ny), float(-leads * nx))
+            found.append(Straight((float(end[0]), float(end[1])), (float(-nx), float(-ny)), out, 0.0, np.inf))
+    straight = [face for face in faces if isinstance(face, Straight)]
+    return tuple(
+        replace(
+            side, high=min((_met(side, other) for other in (*straight, *found) if other is not side), default=np.inf)
+        )
+        for side in found
+    )
+
+
+def _met(side: Straight, other: Straight) -> float:
+    """How far along a ``side`` it meets another piece; infinite where it does not."""
+    (tx, ty), (ux, uy) = side.tau, other.tau
+    across = tx * uy - ty * ux
+    if abs(across) <= SAME:
+        return np.inf
+    x, y = np.array(other.origin) - np.array(side.origin)
+    far, along = (x * uy - y * ux) / across, (x * ty - y * tx) / across
+    return float(far) if far > SAME and other.low <= along <= other.high else np.inf

@@ -55,7 +55,7 @@ def own_pins(scene: Scene, model: Model, name: str) -> tuple[AngleStop | None, A
                 link=link,
                 body=body,
                 drawn=beta - float(model.rest[link]),
-                limits=np.array([max(most, beta), min(0.0, beta)]),
+                limits=np.array([most, 0.0]),
                 signs=np.array([1.0, -1.0]),
                 arc=arc / model.unit_length,
             )

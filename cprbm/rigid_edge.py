@@ -64,7 +64,7 @@ class RigidEdge:
         p = np.stack((at.x[every], at.y[every]), axis=1)
         q = frame.inwards(p)
         found = []
-        for number, face in enumerate(self.edge.faces):
+        for number, face in enumerate(self.edge.pieces):
             facing, seen = self.edge.next_to(face, q), face.seen(q)
             if np.any(facing):
                 seen = Seen(seen.distance, frame.turned(seen.normal, frame.phi), seen.bend, seen.within)

@@ -95,7 +95,6 @@ def _at_ends(scene: Scene, mechanism: Mechanism, point: Point) -> Iterator[_Acti
             first, link = np.array((at.x[chain.first_joint], at.y[chain.first_joint])), chain.first_link
             on_ground = chain.start.welded and chain.start.body < 0
             moment = float(turned[link]) if on_ground else welds.get((link, chain.start.body), 0.0)
-            moment = moment if chain.start.welded else 0.0
             yield from _joined(chain, names, beam.start.point, chain.start, 0.0, first, start, moment)
         if chain.end is not None and not isinstance(beam.end, FreeEnd):
             here, link = np.array((at.x[last], at.y[last])), chain.first_link + chain.n

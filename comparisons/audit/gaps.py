@@ -14,9 +14,10 @@ from itertools import combinations, pairwise
 import numpy as np
 from scipy.spatial import cKDTree
 
+from comparisons.audit.corners import Corners, corners_of, leaning
 from comparisons.audit.rest import Complex
 from comparisons.audit.seen import AnyBeam, Seen
-from scene.answer import Array, Flags
+from scene.answer import Array, Flags, Ints
 from scene.statement import (
     BeamContact,
     CircleContact,
@@ -32,6 +33,7 @@ SUNK = 2e-3  # of the longest beam: the same of lines without thickness
 APART = 0.05  # of the mean thickness: by which a contact may press across a gap
 ALIGNED = 0.02  # 1 − cos: by which a force may lean from the normal
 BESIDE = 3.0  # thicknesses beside a common joint in which an overlap is the joint's
+RUBBING = 0.2  # sine: the same at a corner
 NOTHING = 1e-6  # of a contact's largest force
 
 
@@ -115,7 +117,25 @@ def _of_rigid(
     counted &= ~_round_an_end(contact, still(A.line(s)[0]), feet)
     allowed = DEEP * 2.0 * float(half.mean()) if contact.thick else SUNK * seen.longest
     yield from _deepest(f"{a} and what is rigid in {name}", s, feet.distance - half, counted, allowed)
-    yield from _pressing(seen, name, a, surface(_pressed(seen, name, a)[1]), None, thick=contact.thick)
+    s, places, forces = _pressed(seen, name, a)
+    on = np.zeros(len(s), dtype=bool)
+    if s.size and not contact.thick and isinstance(contact, LineContact | FunctionContact):
+        corners = _standing_out(contact).moved(first, moved, turn)
+        number, on = corners.standing(places, SUNK * seen.longest)
+        on &= corners.allow(forces, number)
+        yield from _on_corners(name, A, s, forces, np.where(on, number, -1))
+    yield from _pressing(seen, name, a, surface(places), None, thick=contact.thick, on_corners=on)
+
+
+def _on_corners(name: str, beam: AnyBeam, s: Array, forces: Complex, number: Ints) -> Iterator[str]:
+    """Of forces (k,) on a line those that rub together where a corner presses; ``number`` is −1 for none."""
+    size = np.abs(forces)
+    for corner in np.unique(number[number >= 0]):
+        mine = (number == corner) & (size > NOTHING * size.max())
+        at_end = np.isin(s[mine], (0.0, beam.rest.length)).any()
+        tangents = np.exp(1j * beam.line(s[mine])[1])
+        if mine.any() and not at_end and leaning(tangents, forces[mine]) > RUBBING:
+            yield f"{name} rubs its beam at {s[mine][0]:.4g} m, where a corner presses"
 
 
 def _pressed(seen: Seen, name: str, beam: str) -> tuple[Array, Complex, Complex]:
@@ -126,8 +146,17 @@ def _pressed(seen: Seen, name: str, beam: str) -> tuple[Array, Complex, Complex]
     return s, seen.beams[beam].line(s)[0], acting.forces[mine]
 
 
-def _pressing(seen: Seen, name: str, beam: str, feet: Feet, other: AnyBeam | None, *, thick: bool) -> Iterator[str]:
-    """Forces where nothing touches, and such as pull or rub."""
+def _pressing(
+    seen: Seen,
+    name: str,
+    beam: str,
+    feet: Feet,
+    other: AnyBeam | None,
+    *,
+    thick: bool,
+    on_corners: Flags | None = None,
+) -> Iterator[str]:
+    """Forces where nothing touches, and such as pull or rub; those ``on_corners`` have no normal of their own."""
     s, _, forces = _pressed(seen, name, beam)
     if not s.size:
         return
@@ -146,6 +175,8 @@ def _pressing(seen: Seen, name: str, beam: str, feet: Feet, other: AnyBeam | Non
     if not thick and other is not None:
         return  # lines: which way a normal points is lost where they touch
     along = (forces * np.conj(feet.normal)).real / np.where(size > 0.0, size, 1.0)
+    if on_corners is not None:
+        real &= ~on_corners
     worst = int(np.argmin(np.where(real, along, 1.0)))
     if real[worst] and not along[worst] >= 1.0 - ALIGNED:
         how = "pulls" if along[worst] < 0.0 else "rubs"
@@ -222,12 +253,7 @@ def _surface(contact: CircleContact | LineContact | HalfPlaneContact | FunctionC
         normal = complex(*contact.normal) / abs(complex(*contact.normal))
         distance = ((places - complex(*contact.point)) * np.conj(normal)).real
         return Feet(distance, np.full(len(places), normal), 0.0 * distance, nowhere)
-    corners = _corners(contact)
-    if isinstance(contact, LineContact):
-        left = contact.side == "left"
-    else:
-        # along growing x what is above lies to the left; along growing y what is at larger x to the right
-        left = ((contact.side == "above") == (contact.axis == "x")) == (contact.range[1] > contact.range[0])
+    corners, left = _corners(contact), _left(contact)
     steps = np.diff(corners)
     share = ((places[:, None] - corners[:-1]) * np.conj(steps)).real / np.abs(steps) ** 2
     held = np.clip(share, 0.0, 1.0)
@@ -251,6 +277,24 @@ def _surface(contact: CircleContact | LineContact | HalfPlaneContact | FunctionC
         lying | ~corner & (size < 1e-9), side[piece], sign * away / np.maximum(size, np.finfo(float).tiny)
     )
     return Feet(sign * size, normal, 0.0 * size, ended & ~closed)
+
+
+def _left(contact: LineContact | FunctionContact) -> bool:
+    """Whether the free side is to the left."""
+    if isinstance(contact, LineContact):
+        return contact.side == "left"
+    # along growing x what is above lies to the left; along growing y what is at larger x to the right
+    return ((contact.side == "above") == (contact.axis == "x")) == (contact.range[1] > contact.range[0])
+
+
+def _standing_out(contact: LineContact | FunctionContact) -> Corners:
+    """Corners and ends; of a graph its ends alone."""
+    points = _corners(contact)
+    found = corners_of(points if _left(contact) else points[::-1])
+    if isinstance(contact, LineContact):
+        return found
+    ends = np.isin(found.places, points[[0, -1]])
+    return Corners(found.places[ends], found.before[ends], found.behind[ends])
 
 
 def _corners(contact: LineContact | FunctionContact) -> Complex:

@@ -16,6 +16,8 @@ MOST_BEAMS = 4
 _TRIES = 10
 _STRIDE = 2  # of the states without a barrier, which are followed anew with it
 _AWAY = 0.85  # of the states before one that was not found
+DEEP = 0.2  # of the size: farther behind it is what has come round its end
+SUNK = 0.03  # of the size: a node that sinks deeper into a barrier is led there, and nothing gives way
 _REACHED = 0.55  # of the way: a mechanism that a barrier ends before is left without it
 
 
@@ -80,7 +82,13 @@ def _with(model: Estimate, states: Sequence[State], acting: Sequence[str], barri
             if value == state.values.get(name, 0.0):
                 continue
             state = next(followed(model, state, name, iter([value]), barriers), None) or State(state.q, {})
-            if not state.values:
+            if not state.values or any(_sunk(model, state, barrier) for barrier in barriers):
                 return found
         found.append(state)
     return found
+
+
+def _sunk(model: Estimate, state: State, barrier: Barrier) -> bool:
+    """Whether a beam is deeper in a barrier than its springs give way where what presses it can yield."""
+    distance = barrier.distance(model.shape(state.q, barrier.beam))
+    return bool(np.any((distance < barrier.apart - SUNK * model.size) & (distance > -DEEP * model.size)))

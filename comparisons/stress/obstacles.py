@@ -25,6 +25,7 @@ from comparisons.stress.estimate import BARS, Estimate, State
 
 Array = NDArray[np.float64]
 Distance = Callable[[Array], Array]
+SLACK = 0.08  # of the size: by how much a beam between two held ends is bowed at least
 _TRIES = 12
 _KINDS = (("circle", 0.3), ("half-plane", 0.16), ("line", 0.22), ("roof", 0.14), ("block", 0.12), ("function", 0.18))
 
@@ -165,7 +166,8 @@ def companion(draft: Draft, name: str, spot: Spot) -> Obstacle:
     section = draft.section()
     thickness = section["thickness"]["values"][0] if isinstance(section["thickness"], dict) else section["thickness"]
     middle = spot.s + 0.5 * thickness * spot.n
-    bow = between(rng, 0.0, 0.2) * size * spot.n
+    high = between(rng, 0.0, 0.2)
+    bow = high * size * spot.n
     root, end = draft.frame.written(_pair(middle - a * tau + bow)), draft.frame.written(_pair(middle + b * tau + bow))
     if happens(rng, 0.35):
         between_them = draft.frame.written(_pair(middle))
@@ -177,6 +179,8 @@ def companion(draft: Draft, name: str, spot: Spot) -> Obstacle:
     wall = draft.data["bodies"]["wall"]["points"]
     wall[f"{name}_root"] = list(root)
     joints = weighted(rng, ((("weld", "free"), 0.5), (("weld", "weld"), 0.25), (("weld", "pin"), 0.25)))
+    if len(points) < 3 or high < SLACK:  # straight between two held ends it would not give way by bending
+        joints = ("weld", "free")
     ends: list[Data] = [{"joint": "weld", "point": f"{name}_root"}, {"joint": "free"}]
     if joints[1] != "free":
         wall[f"{name}_end"] = list(end)

@@ -14,11 +14,13 @@ from math import cos, pi, sin
 import numpy as np
 
 from comparisons.stress.actions import force_of
-from comparisons.stress.chance import between, happens, rounded, sign, spread, weighted
+from comparisons.stress.chance import RedrawError, between, happens, rounded, sign, spread, weighted
 from comparisons.stress.curves import arc_of_turn
 from comparisons.stress.draft import THINNEST, Data, Draft
 
 STOUTEST_COLUMN = 120.0  # times as long as thick
+STOUTEST_HELD = 60.0  # the same of a beam with both ends held, which has to stretch where it can bend but little
+TAUT = 0.95  # of a beam's length, between its ends
 
 
 def rolled(draft: Draft) -> None:
@@ -49,6 +51,7 @@ def rolled(draft: Draft) -> None:
 def assembled(draft: Draft) -> None:
     """A beam that is bowed while its end is brought to a pin, of the wall or of a crank that is turned then."""
     rng = draft.rng
+    draft.slenderness = spread(rng, STOUTEST_HELD, 1.0 / THINNEST)
     side = sign(rng)
     T = (between(rng, 0.72, 0.9), side * between(rng, 0.2, 0.42))
     draft.body("wall", "fixed", {"R": (0.0, 0.0)})
@@ -72,6 +75,11 @@ def assembled(draft: Draft) -> None:
     if cranked:
         draft.data["drives"] = {"turn": {"kind": "rotation", "body": "crank"}}
         last = sign(rng) * between(rng, 0.1, 0.35)
+        # a beam that is drawn straight locks; the crank goes where its ends come closer, as the frame mirrors it
+        if _farthest(T, pivot, draft.frame.mirror * last) > TAUT:
+            last = -last
+        if _farthest(T, pivot, draft.frame.mirror * last) > TAUT:
+            raise RedrawError
     else:
         x, y = draft.frame.direction((between(rng, -0.3, 0.3), side))
         at = round(between(rng, 0.3, 0.8), 2)
@@ -80,6 +88,12 @@ def assembled(draft: Draft) -> None:
         }
         last = spread(rng, 0.5, 6.0) * force * sign(rng)
     draft.data["stages"] = [{"name": "stage1", "steps": "turn", "stations": [rounded(0.5 * last), rounded(last)]}]
+
+
+def _farthest(place: tuple[float, float], pivot: tuple[float, float], turn: float) -> float:
+    """How far from the origin a place comes that turns about a pivot."""
+    turns = np.exp(1j * np.linspace(0.0, turn, 20))
+    return float(np.max(np.abs(complex(*pivot) + turns * (complex(*place) - complex(*pivot)))))
 
 
 def lying(draft: Draft) -> None:
@@ -121,19 +135,22 @@ def column(draft: Draft) -> None:
         draft.body("tip", "slides", {"T": (1.0, 0.0)}, along=along)
     start, end = draft.place("R"), draft.place("T")
     turn = spread(rng, 0.03, 0.2) * sign(rng)
-    bent = happens(rng, 0.6)
+    # a load on a column that folds as it bends further, and a straight one between ends that are held, lead nowhere
+    driven = ends != ("free",) and (ends[-1] == "pin" or happens(rng, 0.5))
+    bent = driven or happens(rng, 0.6)
     curve: Data = arc_of_turn(start, end, turn) if bent else _line(start, end)
     draft.beam_of("beam1", curve, _weld("R"), {"joint": ends[-1] if ends != ("free",) else "weld", "point": "T"})
     force = force_of(draft, "beam1")
     back = [-c for c in along]
     stages: list[Data] = []
     loads: Data = {}
-    if not bent or happens(rng, 0.3):
+    # aside first, its ends would be held by the drive
+    if not bent or (not driven and happens(rng, 0.3)):
         side = draft.frame.direction((0.0, sign(rng)))
         loads["nudge"] = {"kind": "distributed", "beam": "beam1", "direction": [round(c, 3) for c in side]}
         stages.append({"name": "aside", "steps": "nudge", "stations": [rounded(spread(rng, 0.3, 1.5) * force / size)]})
     walled = happens(rng, 0.8)
-    if happens(rng, 0.5) and ends != ("free",):
+    if driven:
         draft.data["drives"] = {"press": {"kind": "displacement", "point": "T", "direction": back}}
         # pressed further a column between walls snaps into waves, where its branch ends
         last = size * between(rng, 0.05, 0.15 if walled else 0.45)

@@ -11,11 +11,15 @@ from hypothesis import strategies as st
 from numpy.random import Generator, Philox
 
 from comparisons.stress import strata
+from comparisons.stress.chance import RedrawError
 from comparisons.stress.draft import started
 from comparisons.stress.drawing import drawn
 from comparisons.stress.estimate import Estimate, State, followed
+from comparisons.stress.obstacles import Obstacle
+from comparisons.stress.pushers import leaves_alone
 from comparisons.stress.theories import LARGEST_SHARE, made_thin, share_of
 from comparisons.stress.toml import toml_of
+from comparisons.stress.whole import assembled, column
 from scene.reading import read, scene_from
 from tests.cprbm.scenes import LENGTH, THICKNESS, cantilever_data, force
 
@@ -95,3 +99,52 @@ def test_thinner_beams_carry_weaker_loads():
 def test_text_of_what_no_scene_is_written_with_is_refused():
     with pytest.raises(TypeError, match="complex"):
         toml_of({"name": "x", "stages": [{"stations": [1j]}]})
+
+
+def laid_out(whole, seed):
+    """What a mechanism that is laid out as a whole is drawn as; nothing where it is to be drawn anew."""
+    draft = started(np.random.default_rng(seed))
+    try:
+        whole(draft)
+    except RedrawError:
+        return None
+    return draft.data
+
+
+def test_a_crank_never_draws_its_beam_straight():
+    seen = 0
+    for data in filter(None, (laid_out(assembled, seed) for seed in range(40))):
+        if "drives" not in data:
+            continue
+        seen += 1
+        crank, curve = data["bodies"]["crank"]["points"], data["beams"]["beam1"]["curve"]
+        pivot, pin, root = (complex(*place) for place in (crank["P"], crank["T"], curve["start"]))
+        turns = np.linspace(0.0, max(data["stages"][0]["stations"], key=abs), 7)
+        chord = np.abs(pivot + np.exp(1j * turns) * (pin - pivot) - root)
+        # the beam is at least as long as from one of its ends to the other
+        assert chord.max() <= 0.951 * abs(complex(*curve["end"]) - root)
+    assert seen > 5
+
+
+def test_a_column_between_driven_ends_is_bent():
+    drawn_so = [data for data in (laid_out(column, seed) for seed in range(40)) if "drives" in data]
+    assert len(drawn_so) > 5
+    assert all(data["beams"]["beam1"]["curve"]["kind"] == "arc" for data in drawn_so)
+    # a load before the drive would bend it between ends that the drive holds
+    assert all([stage["steps"] for stage in data["stages"]] == ["press"] for data in drawn_so)
+
+
+@pytest.mark.parametrize(("angle", "alone"), [(0.0, True), (0.9, False)])
+def test_what_is_driven_against_a_beam_leaves_alone_where_it_is_held(angle, alone):
+    # a plane above the tip of a cantilever comes down by a quarter of its length: level it stays above the root, which
+    # it is 0.3 away from; by cos 0.9 × 0.25 = 0.155 it comes to it where it leans by 0.9 and begins 0.1 from it
+    model, _ = tip_loaded(0.0, 1.0)
+    size = model.size
+    normal = np.array([-np.sin(angle), -np.cos(angle)])
+    away = 0.3 * size if alone else 0.1 * size
+    obstacle = Obstacle({}, lambda p: p @ normal + away)
+
+    def motion(part):
+        return 1.0 + 0.0j, -0.25j * part * size
+
+    assert leaves_alone(model, obstacle, motion, 0.02 * size) is alone

@@ -8,8 +8,8 @@ import pytest
 import cprbm
 from cprbm import newton
 from cprbm.corner import corners_of
-from cprbm.faces import faces_of
-from scene.statement import LineContact
+from cprbm.faces import faces_of, sides_of
+from scene.statement import HalfPlaneContact, LineContact
 from tests.fea_reference.on_an_edge import T, cantilever_over, scene_of
 from tests.references.cornered import Cornered
 
@@ -166,7 +166,9 @@ def test_where_an_edge_stands_out():
         points=((0.0, 0.0), (1.0, 0.0), (2.0, -1.0), (3.0, -1.0)),
         side="left",
     )
-    corners = corners_of(faces_of(line, 1.0, (0.0, 0.0)))
+    pieces = faces_of(line, 1.0, (0.0, 0.0))
+    corners = sorted(corners_of(pieces, sides_of(pieces)), key=lambda corner: corner.place)
+    assert [corner.ends for corner in corners] == [True, False, True]
     assert [corner.place for corner in corners] == [(0.0, 0.0), (1.0, 0.0), (3.0, -1.0)]
     half = math.sqrt(0.5)
     assert corners[0].before == pytest.approx((-1.0, 0.0))
@@ -175,3 +177,21 @@ def test_where_an_edge_stands_out():
     assert corners[2].behind == pytest.approx((1.0, 0.0))
     normals = np.array([[0.0, 1.0], [0.1, 1.0], [half, half], [-0.1, 1.0], [1.0, 0.9], [-0.3, -1.0]])
     assert list(np.sign(np.round(corners[1].beyond(normals), 12))) == [0.0, 1.0, 0.0, -1.0, -1.0, -1.0]
+
+
+def test_what_is_rigid_behind_an_edge_ends_where_its_sides_meet():
+    # a gable of equal legs: both sides go back at right angles to them, and meet below its ridge; a hollow edge's part
+    gable = LineContact(
+        kind="beam-line", beam="beam", body="wall", points=((-3.0, -1.0), (0.0, 0.0), (3.0, -1.0)), side="left"
+    )
+    first, last = sides_of(faces_of(gable, 1.0, (0.0, 0.0)))
+    # from (3, −1) on along −(1, 3) to x = 0
+    assert np.array(last.ends) == pytest.approx(np.array([[3.0, -1.0], [0.0, -10.0]]))
+    assert np.array(first.ends) == pytest.approx(np.array([[0.0, -10.0], [-3.0, -1.0]]))
+    assert last.normal == pytest.approx((3.0 / math.sqrt(10.0), -1.0 / math.sqrt(10.0)))
+    hollow = gable.model_copy(update={"points": ((-3.0, 1.0), (0.0, 0.0), (3.0, 1.0))})
+    assert [side.high for side in sides_of(faces_of(hollow, 1.0, (0.0, 0.0)))] == [math.inf, math.inf]
+    # a straight edge without ends, and one that goes round, have none
+    round_it = gable.model_copy(update={"points": (*gable.points, gable.points[0])})
+    half_plane = HalfPlaneContact(kind="beam-half-plane", beam="beam", body="wall", point=(0.0, 0.0), normal=(1.0, 2.0))
+    assert sides_of(faces_of(round_it, 1.0, (0.0, 0.0))) == sides_of(faces_of(half_plane, 1.0, (0.0, 0.0))) == ()

@@ -1,5 +1,7 @@
 """Contact with straight edges and graphs: derivatives, and beams that are pressed on them against closed forms."""
 
+import math
+
 import numpy as np
 import pytest
 from pydantic import TypeAdapter
@@ -145,6 +147,17 @@ def test_an_edge_and_a_pin_on_a_body_that_turns(monkeypatch):
         assert other[name] == pytest.approx(value, rel=1e-7, abs=1e-9 * np.max(np.abs(value)))
 
 
+def test_an_edge_that_is_drawn_beyond_its_beam_by_rounding_holds_it_along_itself():
+    # what is held at an angle to the edge needs a force beside the pin that grows with the square of N
+    told = []
+    for beyond in (0.0, 1.6e-6):
+        scene = arch()
+        edge = scene.contacts["edge"].model_copy(update={"normal": (-beyond, 1.0), "point": (0.0, 0.0)})
+        told.append(solved(scene.model_copy(update={"contacts": {"edge": edge}}), 80))
+    for probe, values in told[0].items():
+        assert told[1][probe] == pytest.approx(values, rel=1e-4, abs=1e-5 * np.max(np.abs(values)))
+
+
 def test_before_it_lies_flat_the_moment_at_the_pin_is_the_forces():
     # reference: statics: the moment of the tip's force about the pin, which is all that holds
     values = solved(arch(part=0.3), 40)
@@ -217,7 +230,7 @@ def test_rows_and_blocks_are_derivatives(kind, moves, formulation):
     assert point.rows.size >= (1 if kind == "corner" else 4)
     keys = {key for _, key in point.rows.keys}
     # a place of its own: the second corner's
-    assert formulation == "paper" or (2 * (13 + 2) + 1 if kind == "corner" else -1) in keys
+    assert formulation == "paper" or (4 * (13 + 2) + 1 if kind == "corner" else -1) in keys
     second = np.zeros((len(base), len(base)))
     for group, share in point.rows.shares(lam):
         blocks = group.curvature(share)
@@ -332,3 +345,49 @@ def test_the_papers_form_holds_every_joint_that_can_move_against_the_edge(joint,
     scene = arch(joint=joint, end=end, turn=turn)
     boundary = mechanism_of(scene, cprbm.Settings(links=20, formulation="paper")).boundaries["edge"]
     assert (boundary.joints[0], boundary.joints[-1]) == held
+
+
+def beside(contact):
+    """A cantilever whose tip a slider presses down and back, by something that faces it aslant."""
+    return scene_from(
+        {
+            "name": "beside",
+            "materials": MATERIALS,
+            "bodies": {
+                "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
+                "slider": {"motion": "slides", "along": [0.0, 1.0], "points": {"S": [1.3 * LENGTH, 0.0]}},
+            },
+            "beams": {
+                "beam": {
+                    **STRIP,
+                    "curve": {"kind": "line", "start": [0.0, 0.0], "end": [LENGTH, 0.0]},
+                    "start": weld("R"),
+                    "end": {"joint": "free"},
+                }
+            },
+            "contacts": {"edge": {**contact, "beam": "beam", "body": "slider"}},
+            "drives": {"push": {"kind": "displacement", "point": "S", "direction": [0.0, -1.0]}},
+            "stages": [{"name": "push", "steps": "push", "stations": [0.31 * LENGTH, 0.57 * LENGTH]}],
+            "probes": [{"of": "edge", "quantity": "force"}, {"of": "scene", "quantity": "potential_energy"}],
+        }
+    )
+
+
+@pytest.mark.parametrize("kind", ["line", "function"])
+def test_beyond_an_edges_end_a_beam_meets_the_side_of_what_is_rigid_behind_it(kind):
+    # the edge leads up and away from its end; from there its side goes back at right angles, over the beam
+    half = math.sqrt(0.75)
+    end = [1.3 * LENGTH, 0.0]
+    line = {"kind": "beam-line", "points": [end, [1.6 * LENGTH, 0.6 * half * LENGTH]], "side": "right"}
+    slope = 2.0 * half
+    graph = {"kind": "beam-function", "axis": "x", "coefficients": [-slope * end[0], slope], "side": "below"}
+    graph["range"] = [end[0], 1.6 * LENGTH]
+    plane = {"kind": "beam-half-plane", "point": end, "normal": [-0.5, -half]}
+    by_side = cprbm.answer(beside(line if kind == "line" else graph), cprbm.Settings(links=20))
+    by_plane = cprbm.answer(beside(plane), cprbm.Settings(links=20))
+    assert by_side.completed
+    assert by_plane.completed
+    for one, other in zip(by_side.stations, by_plane.stations, strict=True):
+        assert other.values["edge.force"][0] > 0.0
+        for probe, values in other.values.items():
+            assert one.values[probe] == pytest.approx(values, rel=1e-9)

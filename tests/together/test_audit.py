@@ -14,6 +14,7 @@ import pytest
 import cprbm
 import fea_reference
 from comparisons.audit import audit, audited
+from comparisons.audit.corners import corners_of
 from comparisons.audit.gaps import _surface
 from comparisons.cases import opened
 from scene import Ending
@@ -21,6 +22,7 @@ from scene.answer import frozen_array
 from scene.reading import scene_from
 from scene.statement import FunctionContact, LineContact
 from tests.cprbm.scenes import LENGTH, MODULUS, THICKNESS, WIDTH, cantilever_data
+from tests.fea_reference.on_an_edge import cantilever_over
 from tests.references import columns
 from tests.together import branches
 from tests.together.branches import PINNED_ARCH
@@ -119,6 +121,41 @@ def test_a_graph_over_y_is_looked_at_from_its_side(side, ahead):
         kind="beam-function", beam="b", body="w", axis="y", coefficients=(0.3, 0.0), range=(-1.0, 0.7), side=side
     )
     assert _surface(contact, np.array([0.41 + 0.2j])).distance == pytest.approx([0.11 * ahead])
+
+
+@pytest.mark.parametrize("solver", ["cprbm", "fea"])
+def test_a_line_on_a_corner_is_pressed_across_itself(solver):
+    # without thickness it stands on the corner itself, whose nearest place says nothing of the force's direction
+    contact = {"kind": "beam-line", "points": ((0.2, -0.3), (0.5, -0.02), (0.83, -0.3)), "side": "left"}
+    scene = cantilever_over({**contact, "thick": False}, force=0.7)
+    found = by_fea(scene) if solver == "fea" else cprbm.answer(scene, cprbm.Settings(links=40))
+    assert found.completed, found.sentence
+    assert audited(scene, found) == ()
+    # turned by 0.3 its force still lies between the normals of both pieces, and drags the beam along
+    of = found.stations[-1].statics
+    turn = 0.3 * np.array([by == "edge" for by in of.by])
+    x, y = of.forces.T
+    forces = np.stack((np.cos(turn) * x - np.sin(turn) * y, np.sin(turn) * x + np.cos(turn) * y), axis=1)
+    assert any("rubs" in complaint for complaint in audited(scene, last(found, forces=frozen_array(forces))))
+    # turned by 1.2 it does not
+    turn *= 4.0
+    forces = np.stack((np.cos(turn) * x - np.sin(turn) * y, np.sin(turn) * x + np.cos(turn) * y), axis=1)
+    assert any("along the normal" in said for said in audited(scene, last(found, forces=frozen_array(forces))))
+
+
+def test_corners_stand_out_between_the_normals_of_what_meets_there():
+    # along x, up a step, along x again, down; free above; the step's foot is hollow
+    points = np.array([-1.0, 0.0, 1j, 2.0 + 1j, 3.0 + 0j])
+    found = corners_of(points)
+    assert found.places == pytest.approx([-1.0, 1j, 2.0 + 1j, 3.0 + 0j])
+    half = np.sqrt(0.5) * (1.0 + 1j)
+    assert found.before == pytest.approx([-1.0, -1.0, 1j, half])
+    assert found.behind == pytest.approx([1j, 1j, half, np.conj(half)])
+    number, on = found.standing(np.array([0.05 + 0.9j, 0.4 + 1j, 3.0 + 0j]), 0.2)
+    assert list(number[on]) == [1, 3]
+    forces = np.array([-0.3 + 0.7j, 0.1 + 0.7j, 0.7 - 0.2j])
+    assert list(found.allow(forces, np.array([1, 1, 3]))) == [True, False, True]
+    assert list(found.allow(-forces, np.array([1, 1, 3]))) == [False, False, False]
 
 
 # ------------------------------------------------------------------------------------------- planted faults
