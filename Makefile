@@ -76,4 +76,4 @@ lock:
 	mv requirements.new requirements.lock
 
 clean:
-	rm -rf .venv report build dist docs/made *.egg-info
+	rm -rf .venv report full-report build dist docs/made *.egg-info

@@ -28,7 +28,7 @@ PARTS = ("convergence", "times")
               help="Leave out a longer part; may be repeated. 'convergence': error against N and the error budget. "
               "'times': run time against error, and the paper's Table 1.")  # fmt: skip
 @output
-@folder("Folder of the report; 'report' unless given.")
+@folder("Folder of the report; 'full-report' unless given.")
 @click.pass_obj
 def command(
     planted: object,
@@ -63,7 +63,7 @@ def command(
     for question in wanted:
         if not isinstance(question, OffsetQuestion):
             check(choices, question)
-    out = out or Path("report")
+    out = out or Path("full-report")
     showing.room_for(json_file, out)
     parts = Wanted(choices, () if "convergence" in without else sizes, times="times" not in without)
     made_on = machine.made_on()
