@@ -32,10 +32,8 @@ from scene.answer import Array, Critical, Ending, Loss
 
 _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
 _CUTS = 10  # in a row, each to a quarter
-_CREPT = (
-    1e-5  # of the span: a step that fails and is as short creeps up to where the branch ends, and is left to looking
-)
-_NO_FARTHER = 1e-8  # of the span: the same of steps that look
+_PACE = 1e-3  # of the span: who has not come so far
+_PATIENCE = 250  # in so many iterations, and fails, may creep up to where the branch ends, and looks for that
 _EASY = 6  # iterations: a step that took more is not followed by a longer one
 _FAR = 4.0  # elements: a zone that goes farther from station to station is sought with loose penalties, if it had to
 _ASIDE = 0.15  # of a step's own way: by which it may end aside of the mean of its rates
@@ -130,7 +128,10 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
     known: list[tuple[float, float]] = []
     limit = march.settings.iteration_limit
     rate: Array | None = None
+    paced = march.values[load], march.iterations
     while march.values[load] != target:
+        if abs(march.values[load] - paced[0]) >= _PACE * course.span:
+            paced = march.values[load], march.iterations
         if cuts > _CUTS:
             raise StoppedError(*reason)
         if march.iterations > limit:
@@ -169,7 +170,9 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
         if unstable and not follow:
             # the branch has no end near by, and this is another one
             trouble = Ending.NOT_A_MINIMUM, f"beyond {saved.shown(load, saved.values[load])} no minimum is found"
-        tired = trouble is not None and cuts >= _TIRED
+        crept = trouble is not None and march.iterations - paced[1] > _PATIENCE
+        tired = crept or (trouble is not None and cuts >= _TIRED)
+        paced = (paced[0], march.iterations) if crept else paced
         if minimum and follow and (close or unstable or tired):
             march.restore(saved)
             lost = followed(march, load, target, course.span) if march.curvature > 0.0 else None
@@ -177,6 +180,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
                 _beyond(march, course, target, lost)
                 stride, cuts, searching = np.inf, 0, False
                 limit = march.iterations + march.settings.iteration_limit
+                paced = march.values[load], march.iterations
             elif tired:
                 march.restore(saved)
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble or reason
@@ -196,8 +200,6 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
             rate = None
             if not searching and march.loosen(Circle, Face, Pair):
                 searching, march.far, known = True, True, []
-            elif size < (_NO_FARTHER if watched else _CREPT) * course.span:
-                raise StoppedError(*trouble)
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
 
