@@ -56,7 +56,7 @@ def test_a_linkage_is_a_scene():
 @pytest.mark.parametrize(
     ("edits", "key", "said"),
     [
-        ([("pins/at_A/points", ["A", "A2"])], "pins.at_A.points[1]", "is 'A' meant?"),
+        ([("pins/at_A/points", ["A", "A2"])], "pins.at_A.points[1]", "which names no point"),
         ([("pins/at_A/points", ["A"])], "pins.at_A.points[1]", "an item here"),
         ([("pins/at_A/points", ["A1", "B"])], "pins.at_A.points", "both of the body 'coupler'"),
         ([("pins/at_A/points", ["A", "B"])], "pins.at_A.points", "0.158 m apart"),

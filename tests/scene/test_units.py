@@ -169,7 +169,7 @@ def test_the_data_of_a_file_in_other_units_are_those_of_the_scene(tmp_path):
 
 
 def test_a_unit_that_there_is_not_is_refused():
-    with pytest.raises(SceneError, match=r"units\.length: found 'inch'; allowed: .*'mm'.*'in'"):
+    with pytest.raises(SceneError, match=r"units\.length: found 'inch' \(is 'in' meant\?\); allowed: .*'mm'.*'in'"):
         scene_from({**DATA, "units": {"length": "inch"}})
     with pytest.raises(SceneError, match=r"units\.mass"):
         scene_from({**DATA, "units": {"mass": "kg"}})
