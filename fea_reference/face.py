@@ -31,9 +31,9 @@ keeps its section from turning into the edge (:mod:`fea_reference.own_pins`).  W
 that is held by γ, hence into the edge as far as 2γ/κ, where κ lifts it off.  All of the shear force would go from the
 joint over to a contact of γ/κ in width beside it, which is of the second order in the thickness: the arm of a force is
 nothing there, and the force is what no mesh tells.  What a pressure does within √(EI/κ_s GA) of a held section, half a
-thickness, that section hands on to the joint: there it is the joint's, and the edge presses on what is beyond.  Along a straight edge an even beam's
-moment is constant: what presses it on acts at the ends of the zone, by a force where it lifts off, and at the pin by
-the stop's moment.
+thickness, that section hands on to the joint: beside an end on a straight edge, which axial forces do not press on,
+it is the joint's, and the edge presses on what is beyond.  Along a straight edge an even beam's moment is constant:
+what presses it on acts at the ends of the zone, by a force where it lifts off, and at the pin by the stop's moment.
 """
 
 from __future__ import annotations
@@ -81,8 +81,9 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
         h = float(model.elements.length[beam.elements.start])
         width = max(h, 0.5 * beam.thickness, beam.length / _LAYERS)
         outline, own = held_on(scene, contact, units.origin + units.length * model.bodies[body].centre, units.length)
+        straight = {which for which, place in own.items() if outline.near(place[:, None]).bend[0] == 0.0}
         sides = (layer(model.elements, e) for e in (beam.elements.start, beam.elements.stop - 1))
-        begins, stops = (one if which in own else 0.0 for which, one in zip(("start", "end"), sides, strict=True))
+        begins, stops = (one if which in straight else 0.0 for which, one in zip(("start", "end"), sides, strict=True))
         found.append(
             Face(
                 name,
