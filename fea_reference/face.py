@@ -81,9 +81,9 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
         h = float(model.elements.length[beam.elements.start])
         width = max(h, 0.5 * beam.thickness, beam.length / _LAYERS)
         outline, own = held_on(scene, contact, units.origin + units.length * model.bodies[body].centre, units.length)
-        straight = {which for which, place in own.items() if outline.near(place[:, None]).bend[0] == 0.0}
+        joints = own if outline.straight else {}
         sides = (layer(model.elements, e) for e in (beam.elements.start, beam.elements.stop - 1))
-        begins, stops = (one if which in straight else 0.0 for which, one in zip(("start", "end"), sides, strict=True))
+        begins, stops = (one if which in joints else 0.0 for which, one in zip(("start", "end"), sides, strict=True))
         found.append(
             Face(
                 name,

@@ -113,7 +113,7 @@ def on_its_pin(
 
     Its tip is driven down to the edge, and free along it and to turn.  What drives it is on a body that turns, too.
     """
-    away = 0.5 * T if thick else 0.0
+    away = 0.5 * thickness if thick else 0.0
     cos, sin = math.cos(angle), math.sin(angle)
 
     def at(x, y):

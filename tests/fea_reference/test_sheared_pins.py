@@ -102,8 +102,10 @@ def near_peeled(drop, thickness):
     return energy + on_edge, force * (c + x)
 
 
-def found(drop, elements, *, thickness=STOUT, joint="pin"):
-    _, answered = on_its_pin(elements=elements, kinematics="shear", drop=drop, thickness=thickness, joint=joint)
+def found(drop, elements, *, thickness=STOUT, joint="pin", thick=False):
+    _, answered = on_its_pin(
+        elements=elements, kinematics="shear", drop=drop, thickness=thickness, joint=joint, thick=thick
+    )
     assert answered.ending is Ending.COMPLETED, answered.sentence
     return [float(answered.stations[-1].values[quantity][0]) for quantity in QUANTITIES]
 
@@ -124,9 +126,10 @@ def test_with_less_shear_it_peels_off_as_in_bending():
     assert thin == pytest.approx(stout / 9.0, abs=2e-4)
 
 
-def test_where_the_line_leans_into_the_edge_beside_a_section_that_lifts_it_off_the_joint_holds_it():
+@pytest.mark.parametrize("thick", [False, True])
+def test_where_the_line_leans_into_the_edge_beside_a_section_that_lifts_it_off_the_joint_holds_it(thick):
     energy, moment = clamped(0.26, STOUT)
-    values = np.array([found(0.26, elements) for elements in (10, 20, 40, 80, 160)])
+    values = np.array([found(0.26, elements, thick=thick) for elements in (10, 20, 40, 80, 160)])
     assert np.all(values[:, 3] == 0.0)
     errors = np.abs(values[:, :2] / [energy, moment] - 1.0)
     assert np.all(errors[0] < 1e-4)
