@@ -25,11 +25,14 @@ A cubic over an arc is slower in the middle, by α²/8 of its speed with the ele
 
 A moment M does the work M (θ − θ⁰) of the section's rotation θ at its place, and not of the line's tangent: that leans
 by the shear, and a moment on it would be a couple of forces as far apart as an element is long, which shear the beam
-the more the shorter that is.  With the angle of shear γ of its element, and ψ the tangent angle of the cubic whose
-nodes have the sections' rotations for tangents, θ = ψ − 6 ξ (1 − ξ) γ.  By x' = ∂x/∂ξ, its size g and the normal and
-tangent n', t' there
+the more the shorter that is.  With the angle of shear γ of its element, and θ₁ and θ₂ of the sections at its nodes,
 
-    dψ = n'·dx'/g,    d²ψ = n'·d²x'/g − 2 (n'·dx')(t'·dx')/g²
+    θ = (1 − ξ)(1 − 3 ξ) θ₁ − ξ (2 − 3 ξ) θ₂ + 6 ξ (1 − ξ)(α − γ),
+
+which is what the element's energy goes by.  The slope of a cubic through both nodes is another angle, by the third
+power of the element's turning and more or less by where in its element the place is: no mesh would tell what is left.
+
+    dα = n·d(x₂ − x₁)/l,    d²α = −2 (n·d(x₂ − x₁)) (t·d(x₂ − x₁))/l²
 
 As a force has, it has a give of its place in an element whose ends are held, c' = (u v/L)(1 − 3 σ u v/L²)/EI: a
 constant ½ c' M².  Two in one element, at u ≤ u', turn each other's places by (u v'/L)(1 − 3 σ v u'/L²)/EI.  With shear
@@ -146,18 +149,18 @@ def _mutual(model: Model, part: BeamMomentPart, other: BeamMomentPart, line: Neu
 
 
 def _turning(line: NeutralLine, zeta: Array) -> tuple[Array, Array, Array]:
-    """ψ at places (k,), counted on from the nodes', and its derivatives by what the elements' lines go by."""
+    """θ + 6 ξ (1 − ξ) γ at places (k,), counted on from the nodes', and its derivatives by what their lines go by."""
     e, xi = line.locate(zeta)
-    x1 = line.at(zeta)[1]
-    first = line.angles[e]
-    cos, sin = np.cos(first), np.sin(first)
-    psi = first + np.arctan2(cos * x1[1] - sin * x1[0], cos * x1[0] + sin * x1[1])
-    g = np.hypot(*x1)
-    t, H1 = x1 / g, shape_slopes(xi)
-    n = np.stack([-t[1], t[0]])
-    across, ahead = along(n / g, H1, line, e), along(t / g, H1, line, e)
-    both = across[:, None] * ahead[None, :]
-    return psi, across, twice_along(n / g, H1, line, e) - both - both.transpose(1, 0, 2)
+    first, last = line.angles[e], line.angles[e + 1]
+    (cos, sin), _, turn, stretch = _chord(line, e)
+    lean = np.arctan2(np.cos(first) * sin - np.sin(first) * cos, np.cos(first) * cos + np.sin(first) * sin)
+    of_last, of_chord = xi * (3.0 * xi - 2.0), 6.0 * xi * (1.0 - xi)
+    theta = first + of_last * (last - first) + of_chord * lean
+    by = of_chord * turn
+    by[2] += 1.0 - of_last - of_chord
+    by[5] += of_last
+    both = stretch[:, None] * turn[None, :]
+    return theta, by, -of_chord * (both + both.transpose(1, 0, 2))
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,16 +211,22 @@ class _Bubble:
 
 
 def _bubble(line: NeutralLine, e: Index, give: Array, f: Array) -> _Bubble:
-    dx, dy = line.points[:, e + 1] - line.points[:, e]
-    l = np.hypot(dx, dy)  # noqa: E741 - the chord's length
-    t, n = np.stack([dx, dy]) / l, np.stack([-dy, dx]) / l
+    t, n, turn, stretch = _chord(line, e)
     across, ahead = (f * n).sum(axis=0), (f * t).sum(axis=0)
-    turn, stretch = np.zeros((_LINE, l.size)), np.zeros((_LINE, l.size))
-    turn[:2], turn[3:5] = -n / l, n / l
-    stretch[:2], stretch[3:5] = -t / l, t / l
     both = stretch[:, None] * turn[None, :]
     twice = (ahead**2 - across**2) * turn[:, None] * turn[None, :] + across * ahead * (both + both.transpose(1, 0, 2))
     return _Bubble(-give * across * ahead * turn, give * twice, give * across * n)
+
+
+def _chord(line: NeutralLine, e: Index) -> tuple[Array, Array, Array, Array]:
+    """Of elements (k,) t and n (2, k), and dα and dl/l by what their lines go by (7, k)."""
+    dx, dy = line.points[:, e + 1] - line.points[:, e]
+    l = np.hypot(dx, dy)  # noqa: E741 - the chord's length
+    t, n = np.stack([dx, dy]) / l, np.stack([-dy, dx]) / l
+    turn, stretch = np.zeros((_LINE, l.size)), np.zeros((_LINE, l.size))
+    turn[:2], turn[3:5] = -n / l, n / l
+    stretch[:2], stretch[3:5] = -t / l, t / l
+    return t, n, turn, stretch
 
 
 def load_forces(model: Model, part: OnBeam, z: State) -> Array:

@@ -190,6 +190,12 @@ def shear_angle(elements: Elements, part: slice, dofs: Index, state: State) -> A
     return np.asarray(-(elements.slip[:, part] * delta).sum(axis=0))
 
 
+def layer(elements: Elements, e: int) -> float:
+    """√(EI/GA) of an element over its length: that of an even one has a slip of ½ Φ/(1 + Φ), Φ = 12 EI/(GA L²)."""
+    slip = float(elements.slip[:, e].mean())
+    return float(np.sqrt(slip / (6.0 * (1.0 - 2.0 * slip))))
+
+
 def _chord(dx: Array, dy: Array, l: Array) -> tuple[Array, Array, Array]:  # noqa: E741 - the chord's length
     """Derivatives of the chord, l by the unknowns r (7, n), α z/l (7, n), and ϑ (2, 7, n)."""
     cos, sin, zero = dx / l, dy / l, np.zeros_like(l)

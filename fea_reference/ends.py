@@ -59,7 +59,8 @@ def _continued(model: Model, system: System, touch: Touch, at: int, outwards: fl
     side = 0 if outwards < 0.0 else 1
     zeta, facing = float(touch.zones.intervals[at, side]), float(touch.zones.zeta_m[at, side])
     n = model.line(model.beams[touch.pair.first], system.z).n
-    room = (n - zeta) if outwards > 0.0 else zeta
+    least, most = touch.pair.within if isinstance(touch.pair, Face) else (0.0, float(n))
+    room = (most - zeta) if outwards > 0.0 else zeta - least
     if room <= _AT_END:
         return zeta
     beyond = zeta + outwards * _READ * min(1.0, room / _READ[-1])

@@ -27,9 +27,13 @@ A corner that presses on a beam's side, or a beam's end that presses on the edge
 beam's neutral line goes round a corner by an arc of half its thickness, which no element resolves either.
 
 A beam's end that a joint holds on the edge is there whatever happens: it counts for no gap.  Where it is pinned, a stop
-keeps its tangent from turning into the edge (:mod:`fea_reference.own_pins`).  Along a straight edge an even beam's
-moment is constant: what presses it on acts at the ends of the zone, by a force where it lifts off, and at the pin by
-the stop's moment.
+keeps its section from turning into the edge (:mod:`fea_reference.own_pins`).  With shear the line leans from a section
+that is held by γ, hence into the edge as far as 2γ/κ, where κ lifts it off.  All of the shear force would go from the
+joint over to a contact of γ/κ in width beside it, which is of the second order in the thickness: the arm of a force is
+nothing there, and the force is what no mesh tells.  What a pressure does within √(EI/κ_s GA) of a held section, half a
+thickness, that section hands on to the joint: beside an end on a straight edge, which axial forces do not press on,
+it is the joint's, and the edge presses on what is beyond.  Along a straight edge an even beam's moment is constant:
+what presses it on acts at the ends of the zone, by a force where it lifts off, and at the pin by the stop's moment.
 """
 
 from __future__ import annotations
@@ -37,6 +41,7 @@ from __future__ import annotations
 import numpy as np
 
 from fea_reference.edge import edge_of
+from fea_reference.element import layer
 from fea_reference.hermite import Around, Index, NeutralLine, along, plane, shapes, twice_along
 from fea_reference.model import BodyPart, Model, turned
 from fea_reference.outline import Near
@@ -74,8 +79,11 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
         units = model.units
         edge = edge_of(beam.record, elements, units.length, thick=contact.thick)
         h = float(model.elements.length[beam.elements.start])
-        layer = max(h, 0.5 * beam.thickness, beam.length / _LAYERS)
+        width = max(h, 0.5 * beam.thickness, beam.length / _LAYERS)
         outline, own = held_on(scene, contact, units.origin + units.length * model.bodies[body].centre, units.length)
+        joints = own if outline.straight else {}
+        sides = (layer(model.elements, e) for e in (beam.elements.start, beam.elements.stop - 1))
+        begins, stops = (one if which in joints else 0.0 for which, one in zip(("start", "end"), sides, strict=True))
         found.append(
             Face(
                 name,
@@ -83,10 +91,11 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
                 body,
                 outline,
                 tuple(float(elements) if end == "end" else 0.0 for end in own),
+                (begins, elements - stops),
                 edge,
                 2.0 * edge.nearest if contact.thick else _SLENDER,
                 max(2.0 * edge.nearest, THINNEST) if contact.thick else 1.0,
-                beam.softest / layer**4,
+                beam.softest / width**4,
                 beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
             )
         )
@@ -259,12 +268,14 @@ class _Seen:
         face, line = self.face, self.line
         even = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
         borders, kinks = self._borders(even)
-        zeta = np.unique(np.concatenate([even, face.edge.knots, borders]))
+        zeta = np.unique(np.concatenate([even, face.edge.knots, borders, face.within]))
+        zeta = zeta[(zeta >= face.within[0]) & (zeta <= face.within[1])]
         there = self._at(zeta, np.zeros_like(zeta))
-        for end in face.own:
+        own = tuple(end for end in face.own if end in face.within)
+        for end in own:
             # where it is zero by a joint, what is nearest is a matter of round-off: it goes on as beside it
-            own, beside = (0, 1) if end == 0.0 else (-1, -2)
-            there.g[own], there.slope[own], there.curvature[own] = 0.0, there.slope[beside], there.curvature[beside]
+            at, beside = (0, 1) if end == 0.0 else (-1, -2)
+            there.g[at], there.slope[at], there.curvature[at] = 0.0, there.slope[beside], there.curvature[beside]
         if not there.found.any():
             return none(float(np.abs(there.g).min())), {}
         neighbours = there.found[:-1] & there.found[1:]
@@ -275,7 +286,7 @@ class _Seen:
             there = Gap(there.g[keep], there.slope[keep], there.curvature[keep], there.zeta_m[keep], keep[keep])
         splits = (*face.edge.knots, *borders.tolist())
         floor = float(np.finfo(float).eps) * line.longest
-        return negative(self._at, zeta, there, neighbours, splits, face.own, floor), kinks
+        return negative(self._at, zeta, there, neighbours, splits, own, floor), kinks
 
     def _at(self, zeta: Array, none_m: Array) -> Gap:
         face = self.face
@@ -329,4 +340,5 @@ class _Seen:
         crosses = np.abs(((self._place(self.line.around(zeta)) - at) * along_t).real) < _ARRIVED
         for end in self.face.own:
             crosses &= np.abs(zeta - end) > _AT_END
+        crosses &= (zeta >= self.face.within[0]) & (zeta <= self.face.within[1])
         return zeta, crosses

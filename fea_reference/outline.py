@@ -88,6 +88,11 @@ class HalfPlane:
         return np.empty((2, 0))
 
     @property
+    def straight(self) -> bool:
+        """Whether all of it is but for corners."""
+        return True
+
+    @property
     def extent(self) -> float:
         """How deep behind the edge a place is still taken for one that has sunk in."""
         return float(np.inf)
@@ -122,6 +127,11 @@ class Broken:
         before = np.column_stack([_left(tau[:, :1]), tau])
         behind = np.column_stack([tau, -_left(tau[:, -1:])])
         return Corners(self.points, (before, behind), (_left(before), _left(behind)))
+
+    @property
+    def straight(self) -> bool:
+        """Whether all of it is but for corners."""
+        return True
 
     @property
     def extent(self) -> float:
@@ -202,6 +212,11 @@ class Graph:
         before = np.column_stack([_left(tau[:, :1]), tau[:, 1:]])
         behind = np.column_stack([tau[:, :1], -_left(tau[:, 1:])])
         return Corners(points, (before, behind), (_left(before), _left(behind)))
+
+    @property
+    def straight(self) -> bool:
+        """Whether all of it is."""
+        return not self._derivatives[:, 2].any()
 
     @property
     def extent(self) -> float:

@@ -10,7 +10,8 @@ P       the joint, on the edge (half of the thickness from it, for a beam that t
 
 The free side is 0 ≤ β ≤ ∠(τ₊, −τ₋).  Where the edge ends at P only one of the two holds, and if that is the second, β
 is counted from −τ₋ and is not positive.  A stop holds these limits: the tangent at the pin is what the gap beside it
-goes by, on however fine a mesh, and the moment of the pressure that would be there is the stop's.
+goes by, on however fine a mesh, and the moment of the pressure that would be there is the stop's.  With shear it is
+the section that is held, as by any stop; what the line beside it leans is seen to in :mod:`fea_reference.face`.
 
 What is drawn from rounded numbers leaves the pin beyond a limit by their rounding, and may stand there until the edge
 presses.  Then it lies along the edge: a flat part that is held at an angle δ to it would ask for a force of 6 EI δ/h²

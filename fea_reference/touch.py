@@ -143,6 +143,7 @@ class Face:
         body: number of the body that the edge is fixed to.
         outline: the edge, in a frame about the body's reference centre.
         own: ends ζ of the beam that joints hold on the edge.
+        within: from which place ζ to which the edge presses; with shear the joint does beside such an end.
         edge: T, distance of the neutral line from the edge where they touch.
         scale, measure: as of a pair.
         loosest, stiffest: as of a circle.
@@ -153,6 +154,7 @@ class Face:
     body: int
     outline: Outline
     own: tuple[float, ...]
+    within: tuple[float, float]
     edge: Edge
     scale: float
     measure: float

@@ -3,20 +3,21 @@
 from scene import Scene
 
 T, WIDTH = 0.01, 0.05
-YOUNG = 12 / (WIDTH * T**3)  # so that EI = 1
 
 
-def scene_of(curve, start, end, contact, *, bodies=None, loads=None, drives=None, stages, pins=None, probes=()):
-    """One beam ``beam`` and the contact ``edge``."""
+def scene_of(
+    curve, start, end, contact, *, bodies=None, loads=None, drives=None, stages, pins=None, probes=(), thickness=T
+):
+    """One beam ``beam``, with a modulus that makes EI one, and the contact ``edge``."""
     return Scene.model_validate(
         {
             "name": "edge",
-            "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
+            "materials": {"m": {"youngs_modulus": 12.0 / (WIDTH * thickness**3), "poisson_ratio": 0.3}},
             "bodies": bodies,
             "beams": {
                 "beam": {
                     "curve": curve,
-                    "thickness": T,
+                    "thickness": thickness,
                     "width": WIDTH,
                     "material": "m",
                     "start": start,

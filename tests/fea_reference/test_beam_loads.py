@@ -80,3 +80,16 @@ def test_what_is_asked_is_balanced():
     assert station.values["beam.bending_stress"][-1] == pytest.approx(0.0, abs=1e-6)
     assert abs(moment) > 0.1 * RIGIDITY / LENGTH
     assert station.certificate.moment_balance < 1e-10
+
+
+@pytest.mark.parametrize("kinematics", ["bending", "shear"])
+@pytest.mark.parametrize("bowed", [False, True])
+@pytest.mark.parametrize("elements", [3, 7, 40])
+def test_a_moment_alone_is_exact_wherever_in_its_element_it_acts(kinematics, bowed, elements):
+    """Reference: up to its place the moment bends evenly, by 2.1 on the whole length; ½ M²/EI of energy per length."""
+    at, turn = 0.39, 2.1
+    load = ({"kind": "beam_moment", "beam": "beam", "at": at}, turn * RIGIDITY / LENGTH)
+    scene = scene_from(acting([load], bowed=bowed))
+    values = answer(scene, Settings(elements=elements, kinematics=kinematics)).stations[-1].values
+    energy = -0.5 * turn**2 * at * RIGIDITY / LENGTH
+    assert values["scene.potential_energy"][0] == pytest.approx(energy, rel=1e-10)

@@ -106,12 +106,14 @@ def peeled(drop, kappa):
 KAPPA, DROP = 1.0, 0.4
 
 
-def on_its_pin(angle=0.0, *, contact=None, elements=20, kinematics="bending", turned=0.0, thick=False):
+def on_its_pin(
+    angle=0.0, *, contact=None, elements=20, kinematics="bending", thick=False, drop=DROP, thickness=T, joint="pin"
+):
     """An arc pinned to the edge that it is tangent to at the pin, which stands at an ``angle``, or is turned there.
 
     Its tip is driven down to the edge, and free along it and to turn.  What drives it is on a body that turns, too.
     """
-    away = 0.5 * T if thick else 0.0
+    away = 0.5 * thickness if thick else 0.0
     cos, sin = math.cos(angle), math.sin(angle)
 
     def at(x, y):
@@ -121,7 +123,7 @@ def on_its_pin(angle=0.0, *, contact=None, elements=20, kinematics="bending", tu
     edge = contact or {"kind": "beam-line", "points": (at(0.0, -away), at(2.0, -away)), "side": "left"}
     scene = scene_of(
         {"kind": "arc", "center": at(0.0, 1 / KAPPA), "start": (0.0, 0.0), "end": tip, "direction": "counterclockwise"},
-        {"joint": "pin", "point": "root"},
+        {"joint": joint, "point": "root"},
         {"joint": "weld", "point": "tip"},
         {"body": "link", "thick": thick, **edge},
         bodies={
@@ -133,7 +135,7 @@ def on_its_pin(angle=0.0, *, contact=None, elements=20, kinematics="bending", tu
             "phi": {"kind": "rotation", "body": "link"},
             "d": {"kind": "displacement", "point": "tip", "direction": at(0.0, -1.0)},
         },
-        stages=(("d", (0.5 * DROP, DROP)),),
+        stages=(("d", (0.5 * drop, drop)),),
         probes=(
             ("tip", "displacement"),
             ("edge", "force"),
@@ -143,6 +145,7 @@ def on_its_pin(angle=0.0, *, contact=None, elements=20, kinematics="bending", tu
             ("root", "reaction"),
             ("scene", "potential_energy"),
         ),
+        thickness=thickness,
     )
     return np.array(tip), answer(scene, Settings(elements=elements, kinematics=kinematics))
 
