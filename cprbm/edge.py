@@ -43,7 +43,7 @@ import numpy as np
 from cprbm import smooth, wells
 from cprbm.contact import Blocks, Group
 from cprbm.corner import Corner, corners_of
-from cprbm.faces import Face, Seen, Straight, faces_of, sides_of
+from cprbm.faces import SAME, Face, Seen, Straight, faces_of, sides_of
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
@@ -100,6 +100,7 @@ class Edge:
         body: that the edge is fixed to, −1 for the ground; ``mark`` the number of m among the joints, and ``turning``
             that of φ among the unknowns, if that is a body that moves.
         pieces: its own; ``faces`` are these, and where it has ends the sides of what is rigid behind it.
+        tips: where faces begin and end (k, 2): nothing is deeper behind the edge than it is far from the nearest.
         corners: between the faces, but for those at which the beam is pinned.
         offset: T₀, zero for a line; units of length.
         unit_length: ℓ, m.
@@ -119,6 +120,7 @@ class Edge:
     turning: int
     pieces: tuple[Face, ...]
     faces: tuple[Face, ...]
+    tips: Array
     corners: tuple[Corner, ...]
     offset: float
     unit_length: float
@@ -187,9 +189,9 @@ class Edge:
             if other is not face:
                 seen = other.seen(q)
                 nearest &= ~seen.within | (np.abs(mine.distance) <= np.abs(seen.distance) + NEAREST)
-        for corner in self.corners:
-            seen = corner.seen(q)
-            nearest &= ~seen.within | (np.abs(mine.distance) <= seen.distance + NEAREST)
+        # beside a tip, above all one where the beam is pinned, a place is by round-off alone beside a piece, or none
+        for tip in self.tips:
+            nearest &= np.abs(mine.distance) <= np.hypot(*(q - tip).T) + NEAREST
         return np.asarray(facing | nearest)
 
     def _next_to(self, face: Face, A: smooth.Points, frame: Frame) -> Flags:
@@ -554,6 +556,7 @@ def edge_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Edge:
         turning=model.n_links + 3 * body + 2,
         pieces=pieces,
         faces=(*pieces, *sides),
+        tips=_tips((*pieces, *sides)),
         corners=_corners(pieces, sides, pinned, offset),
         offset=offset,
         unit_length=model.unit_length,
@@ -585,6 +588,15 @@ def _pinned_at(
     curve = scene.beams[contact.beam].curve
     places = [place for pin, place in zip(pins, (curve.start, curve.end), strict=True) if pin is not None]
     return np.asarray(np.array(places, dtype=float).reshape(-1, 2) / model.unit_length - np.array(origin))
+
+
+def _tips(faces: tuple[Face, ...]) -> Array:
+    """Where the ``faces`` begin and end, each place once, (k, 2)."""
+    found: list[Array] = []
+    for tip in (end for face in faces for end in face.ends if end is not None):
+        if not any(np.hypot(*(tip - other)) <= SAME for other in found):
+            found.append(tip)
+    return np.array(found).reshape(-1, 2)
 
 
 def _corners(pieces: tuple[Face, ...], sides: tuple[Face, ...], pinned: Array, offset: float) -> tuple[Corner, ...]:

@@ -158,6 +158,30 @@ def test_an_edge_that_is_drawn_beyond_its_beam_by_rounding_holds_it_along_itself
         assert told[1][probe] == pytest.approx(values, rel=1e-4, abs=1e-5 * np.max(np.abs(values)))
 
 
+@pytest.mark.parametrize("bent", [-0.31, 0.0, 0.43], ids=["jutting", "straight", "hollow"])
+def test_no_place_is_deeper_behind_an_edge_than_it_is_far_from_it(bent):
+    # reference: the distance to the edge's own segments.  Beside a tip, above all where the beam is pinned, round-off
+    # says which piece a place is beside: it is not as deep then as the other end's side is far away
+    scene, turn = arch(edge="line"), 0.37
+    corners = np.array(
+        [turned(place, turn) for place in ([0.0, 0.0], [0.7 * LENGTH, 0.0], [1.3 * LENGTH, bent * LENGTH])]
+    )
+    line = scene.contacts["edge"].model_copy(update={"points": tuple(map(tuple, corners.tolist()))})
+    edge = mechanism_of(scene.model_copy(update={"contacts": {"edge": line}}), cprbm.Settings(links=13)).pairs["edge"]
+    assert edge.pins[0] is not None
+    corners /= edge.unit_length
+    begin, along = corners[:-1], np.diff(corners, axis=0)
+    rng = np.random.default_rng(5)
+    for far in (0.0, 1e-17, 3e-16, 1e-13, 1e-4, 0.07):
+        q = np.repeat(corners, 70, axis=0)
+        q += far * rng.standard_normal(q.shape)
+        share = np.clip(np.sum((q[:, None] - begin) * along, axis=2) / np.sum(along**2, axis=1), 0.0, 1.0)
+        away = np.min(np.linalg.norm(q[:, None] - begin - share[:, :, None] * along, axis=2), axis=1)
+        for face in edge.faces:
+            facing = edge.next_to(face, q)
+            assert np.all(-face.seen(q).distance[facing] <= away[facing] + 2e-9)
+
+
 def test_before_it_lies_flat_the_moment_at_the_pin_is_the_forces():
     # reference: statics: the moment of the tip's force about the pin, which is all that holds
     values = solved(arch(part=0.3), 40)
