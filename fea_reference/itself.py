@@ -76,9 +76,9 @@ class Roles:
         i, j = (index.ravel() for index in np.meshgrid(nodes, nodes[:-1], indexing="ij"))
         zeta, zeta_m, _ = _partners(line, nodes.astype(float), i, j, 0.0, self)
         there = gap(line, line, one_side(1.0), 0.0, None, zeta, zeta_m)
-        # round an end a place goes from one side to the other
-        side = np.where(there.found, self.sides(zeta, zeta_m, there.g), np.where(there.g < 0.0, -1.0, 1.0))
-        return Roles(self.later, self.ended, np.stack([zeta, zeta_m], axis=1), side)
+        # beyond an end a place has no side, and comes round it to either
+        zeta, zeta_m, d = zeta[there.found], zeta_m[there.found], there.g[there.found]
+        return Roles(self.later, self.ended, np.stack([zeta, zeta_m], axis=1), self.sides(zeta, zeta_m, d))
 
 
 def unseen(*, later: bool, ended: bool) -> Roles:
