@@ -62,7 +62,10 @@ class Tapers:
 
 @dataclass(frozen=True, slots=True)
 class Facing:
-    """Of k points: ζ_m, whether it was ``found``, what is ``across`` there, w and c; ``fixed`` are those at a knot or an end."""
+    """Of k points: ζ_m, whether it was ``found``, what is ``across`` there, w and c.
+
+    ``fixed`` are those at a knot or an end.
+    """
 
     zeta_m: Array
     found: Flags
@@ -126,9 +129,7 @@ def _between_ends(
     return _leaning(second, edge, points, foot, d, sides(zeta, d))
 
 
-def _with_ends(
-    second: NeutralLine, points: Complex, faced: Facing, sides: Callable[[Array, Array], Array]
-) -> Facing:
+def _with_ends(second: NeutralLine, points: Complex, faced: Facing, sides: Callable[[Array, Array], Array]) -> Facing:
     """The same where points (k,) beyond an end face that."""
     at_end = ~faced.found & ((faced.zeta_m == 0.0) | (faced.zeta_m == second.n))
     if not at_end.any():

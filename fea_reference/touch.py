@@ -69,7 +69,9 @@ class Pair:
         """What places ``zeta`` (k,) of the first beam face on the second, sought from ``guess`` (k,)."""
         there = first.around(zeta)
         points = first.nodes[there.element] + there.way
-        return facing(second, self.edge_m, points, guess, lambda zeta_m, d: self.sides(zeta, zeta_m, d), ended=self.ended)
+        return facing(
+            second, self.edge_m, points, guess, lambda zeta_m, d: self.sides(zeta, zeta_m, d), ended=self.ended
+        )
 
     def apart(self, zeta: Array, zeta_m: Array) -> Array:
         """How far apart the neutral lines are when they touch at places ``zeta`` and ``zeta_m`` (k,)."""
