@@ -1,4 +1,4 @@
-"""A strip that comes back to the clamped end that it began with, from behind and across it, and is pushed on to that."""
+"""A strip that comes back to the clamped end that it began with, from behind and across it, and is pushed on to it."""
 
 from __future__ import annotations
 

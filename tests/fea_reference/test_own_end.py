@@ -47,7 +47,7 @@ def test_the_contacts_derivatives(lean, thickness, backwards):
     on_end = touch(model, pair, Penalty(1.0), 12, State.of(z)).zeta_m == end
     assert on_end.any()
     assert on_end.all() == (lean == ACROSS)  # else a part of it lies beside the end
-    value, gradient, hessian = gathered(z)
+    value, _, hessian = gathered(z)
     assert value > 0.0
     assert hessian == pytest.approx(hessian.T, abs=1e-12 * np.abs(hessian).max())
     check(model, gathered, z, times=3, rel=1e-5, tangent=1e-4)
