@@ -9,7 +9,7 @@ from scene import Ending
 from scene.reading import scene_from
 
 THICKNESS, RADIUS, HALF = 0.0011, 0.051, 3.0
-LOAD = 5.3  # N
+LOAD = 6.1  # N; the ends meet at about 4.9
 
 
 def ring(load, *, contact):
