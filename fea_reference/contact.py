@@ -140,7 +140,7 @@ def selves(scene: Scene, model: Model) -> tuple[Pair, ...]:
         least = beam.record.thinnest / model.units.length
         T, scale, measure = (beam.thickness, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
         later = not (_grounded(scene, contact.beam, "end") and not _grounded(scene, contact.beam, "start"))
-        roles = unseen(later=later).renewed(model.line(beam, model.start))
+        roles = unseen(later=later, ended=contact.thick).renewed(model.line(beam, model.start))
         penalties = _penalties(model, beam, beam.thickness)
         tapers = _tapers(model, beam, beam, thick=contact.thick)
         found.append(
@@ -240,7 +240,7 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     n = np.stack([-tau[1], tau[0]])
     d = (n * plane(apart(line, there, line_m, across))).sum(axis=0)
     a = (n * plane(across.bent)).sum(axis=0)
-    Z = J**2 - d * a
+    Z = np.where(faced.fixed, 1.0, J**2 - d * a)
     side = pair.sides(zeta, zeta_m, d)
     g = side * d - distance
     if pair.tapers is not None:
@@ -312,6 +312,8 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
 
 def _missing(first: NeutralLine, second: NeutralLine, pair: Pair, penalty: Penalty, zones: Zones) -> float:
     """½ ε g²/|x'·τ|, summed over the intervals' ends that are across from an end of the second beam."""
+    if pair.ended:
+        return 0.0
     zeta, zeta_m = zones.intervals.ravel(), zones.zeta_m.ravel()
     across = np.minimum(zeta_m, second.n - zeta_m) <= _AT_END
     zeta, zeta_m = zeta[across], zeta_m[across]

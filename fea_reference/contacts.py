@@ -91,13 +91,6 @@ def looked_at(model: Model, what: Contact, z: State) -> Contact:
     return what
 
 
-def about(model: Model, pair: Pair, z: State) -> Pair:
-    """A pair whose beams have changed places in state ``z``; a beam and itself is seen from the other of its places."""
-    if pair.roles is None:
-        return pair.about()
-    return replace(pair, turned=not pair.turned, roles=pair.roles.about(model.line(model.beams[pair.first], z)))
-
-
 def room(model: Model, what: Contact, z: State) -> float:
     """How far what may touch can move, each against the other, before anything of it is seen to: a lower bound.
 

@@ -21,6 +21,8 @@ A beam of one thickness, and a line, has α = 0: then x_m is the closest point a
 by c (w·δx)/Z.  As D − T_m is stationary, what moves ζ_m adds nothing to its derivative, so that a force along u, on the
 line through both places, is all there is.
 
+What is beyond an end of the beam sees the circle about that: there ζ_m stays, and u points to x from there.
+
 Where T_m' falls at a knot, the surface has a corner that juts out, an arc about the knot: ζ_m stays there while u
 turns from one lean to the other.  Where it rises, the corner goes in, and the mean of both leans parts the places
 before it from those behind; on that line either circle is as near, but for the third order of T_m'.
@@ -60,7 +62,10 @@ class Tapers:
 
 @dataclass(frozen=True, slots=True)
 class Facing:
-    """Of k points: ζ_m, whether it was ``found``, what is ``across`` there, w and c; ``fixed`` are those at a knot."""
+    """Of k points: ζ_m, whether it was ``found``, what is ``across`` there, w and c.
+
+    ``fixed`` are those at a knot or an end.
+    """
 
     zeta_m: Array
     found: Flags
@@ -93,12 +98,27 @@ class Borders:
 
 
 def facing(
-    second: NeutralLine, edge: Edge | None, points: Complex, guess: Array, sides: Callable[[Array, Array], Array]
+    second: NeutralLine,
+    edge: Edge | None,
+    points: Complex,
+    guess: Array,
+    sides: Callable[[Array, Array], Array],
+    *,
+    ended: bool,
 ) -> Facing:
     """What points x + i y (k,) face, sought from ``guess`` (k,); an ``edge`` tells how the beam's thickness varies.
 
-    ``sides`` are the sides (k,) on which they lie, of the closest places ζ_m (k,) and d (k,) there.
+    ``sides`` are the sides (k,) on which they lie, of the closest places ζ_m (k,) and d (k,) there.  Points beyond an
+    end face nothing, or the end of a beam that is ``ended`` by circles.
     """
+    faced = _between_ends(second, edge, points, guess, sides)
+    return _with_ends(second, points, faced, sides) if ended else faced
+
+
+def _between_ends(
+    second: NeutralLine, edge: Edge | None, points: Complex, guess: Array, sides: Callable[[Array, Array], Array]
+) -> Facing:
+    """The same of a beam that nothing beyond its ends faces."""
     zeta, found, across = closest(second, points, guess)
     J = np.abs(across.ahead)
     w = across.ahead / J
@@ -107,6 +127,26 @@ def facing(
         return foot
     d = ((1j * w).conj() * (points - second.nodes[across.element] - across.way)).real
     return _leaning(second, edge, points, foot, d, sides(zeta, d))
+
+
+def _with_ends(second: NeutralLine, points: Complex, faced: Facing, sides: Callable[[Array, Array], Array]) -> Facing:
+    """The same where points (k,) beyond an end face that."""
+    at_end = ~faced.found & ((faced.zeta_m == 0.0) | (faced.zeta_m == second.n))
+    if not at_end.any():
+        return faced
+    r = points - second.nodes[faced.across.element] - faced.across.way
+    ahead = (faced.w.conj() * r).real
+    at_end &= np.where(faced.zeta_m == 0.0, ahead < 0.0, ahead > 0.0)
+    out = sides(faced.zeta_m, ((1j * faced.w).conj() * r).real) * r  # u₀
+    w = np.where(at_end, -1j * out / np.maximum(np.abs(out), _NOTHING), faced.w)
+    return Facing(
+        faced.zeta_m,
+        faced.found | at_end,
+        faced.across,
+        w,
+        (w.conj() * faced.across.ahead).real,
+        faced.fixed | at_end,
+    )
 
 
 def lean(ahead: Complex, slope: Array, side: Array | float) -> Complex:

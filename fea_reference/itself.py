@@ -15,7 +15,9 @@ therefore told from what may touch by being the same least value, with no length
 that touch the tangents turn by about π, or 2π in a coil.
 
 Each two places are looked at once, from the later one or from the earlier one; see :class:`Roles`.  A place may have
-several partners: those that follow each other along the beam are one sequence.
+several partners: those that follow each other along the beam are one sequence.  Of what has thickness an end is a
+circle, and a partner of all places that see it by a least value, at whatever angle: where f is negative at the start,
+or positive at the other end.
 
 On which side a place lies is not told by where it is once lines without thickness overlap.  It is what it was in the
 state that the march has reached last, for the places that were across from each other near by, and for others what is
@@ -49,11 +51,14 @@ _NOTHING = 1e-9  # of an element's length, squared
 class Roles:
     """Which of two places carries the integral: the ``later``, if the beam's end may lie over its inside, or else.
 
+    The other is then never nearer to that end than to its own, which it is ``ended`` by if it has thickness.
+
     ``across`` (k, 2) are places ζ and ζ_m that were across from each other in the state that was reached last,
     ``side`` (k,) of the second one on which the first lay there.
     """
 
     later: bool
+    ended: bool
     across: Array = field(compare=False)
     side: Array = field(compare=False)
 
@@ -69,30 +74,23 @@ class Roles:
         """The same, with what is across from each node where the ``line`` lies now."""
         nodes = np.arange(line.n + 1)
         i, j = (index.ravel() for index in np.meshgrid(nodes, nodes[:-1], indexing="ij"))
-        zeta, zeta_m = _partners(line, nodes.astype(float), i, j, 0.0, later=self.later)[:2]
-        d = gap(line, line, one_side(1.0), 0.0, None, zeta, zeta_m).g
-        return Roles(self.later, np.stack([zeta, zeta_m], axis=1), self.sides(zeta, zeta_m, d))
-
-    def about(self, line: NeutralLine) -> Roles:
-        """The same seen from the other of each two places, with what is across where the ``line`` lies now.
-
-        Of the side on which one lies of the other: between sides that run the same way the two are on unlike ones.
-        """
-        one, other = (line.around(places) for places in self.across.T)
-        alike = np.where((one.ahead * other.ahead.conj()).real < 0.0, -1.0, 1.0)
-        return Roles(not self.later, self.across[:, ::-1], -alike * self.side).renewed(line)
+        zeta, zeta_m, _ = _partners(line, nodes.astype(float), i, j, 0.0, self)
+        there = gap(line, line, one_side(1.0), 0.0, None, zeta, zeta_m)
+        # beyond an end a place has no side, and comes round it to either
+        zeta, zeta_m, d = zeta[there.found], zeta_m[there.found], there.g[there.found]
+        return Roles(self.later, self.ended, np.stack([zeta, zeta_m], axis=1), self.sides(zeta, zeta_m, d))
 
 
-def unseen(*, later: bool) -> Roles:
+def unseen(*, later: bool, ended: bool) -> Roles:
     """Where nothing is known of any side."""
-    return Roles(later, np.empty((0, 2)), np.empty(0))
+    return Roles(later, ended, np.empty((0, 2)), np.empty(0))
 
 
 def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None) -> Survey:
     """The gap of a beam and itself wherever it is less than a few elements."""
 
     def at(where: Array, guess: Array) -> Gap:
-        return gap(line, line, roles.sides, T, tapers, where, guess)
+        return gap(line, line, roles.sides, T, tapers, where, guess, ended=roles.ended)
 
     reach = 2.0 * abs(T) + 3.0 * line.longest
     knots = () if tapers is None else tapers.first.knots
@@ -103,7 +101,7 @@ def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None
     i, j = np.divmod(np.unique(pairs), line.n + 1)
     inside = j < line.n
     steepest = 0.0 if tapers is None else _steepest(tapers.first, line)
-    places, partners, i = _partners(line, zeta, i[inside], j[inside], steepest, later=roles.later)
+    places, partners, i = _partners(line, zeta, i[inside], j[inside], steepest, roles)
     there = at(places, partners)
     usable = there.found & (np.abs(there.g + T) < reach)
     places, there, i = places[usable], there.chosen(usable), i[usable]
@@ -114,7 +112,7 @@ def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None
 
 
 def _partners(
-    line: NeutralLine, zeta: Array, i: Ints, j: Ints, steepest: float, *, later: bool
+    line: NeutralLine, zeta: Array, i: Ints, j: Ints, steepest: float, roles: Roles
 ) -> tuple[Array, Array, Ints]:
     """Of places ``zeta`` (k,), by number ``i`` (m,), and elements ``j`` (m,) those that hold a partner.
 
@@ -123,7 +121,7 @@ def _partners(
     Returns:
         Their places ζ and about their partners' ζ_m, and the numbers of the places.
     """
-    before = j + 1.0 < zeta[i] if later else j > zeta[i]
+    before = j + 1.0 < zeta[i] if roles.later else j > zeta[i]
     i, j = i[before], j[before]
     x = line.at(zeta)[0]
 
@@ -137,8 +135,12 @@ def _partners(
         nothing = _NOTHING * line.longest**2 + steepest * away
         f_end[at_end] = np.where(np.abs(f_end[at_end]) <= nothing, 0.0, f_end[at_end])
     least = (here >= 0.0) & (there <= 0.0) & (here > there)
-    i, j, here, there = i[least], j[least], here[least], there[least]
-    return zeta[i], j + here / (here - there), i
+    share = here / np.where(least, here - there, 1.0)
+    if roles.ended:
+        for at_end, f_end, place in ((j == 0, -here, 0.0), (j == line.n - 1, there, 1.0)):
+            beyond = at_end & (f_end > 0.0)
+            least, share = least | beyond, np.where(beyond, place, share)
+    return zeta[i[least]], (j + share)[least], i[least]
 
 
 def _steepest(edge: Edge, line: NeutralLine) -> float:

@@ -10,16 +10,7 @@ from scipy.optimize import brentq
 
 from fea_reference.acting import Acting
 from fea_reference.advance import advance, bend, way_to
-from fea_reference.contacts import (
-    about,
-    against,
-    least_gap,
-    looked_at,
-    passed_through,
-    resting_pressure,
-    room,
-    zones_of,
-)
+from fea_reference.contacts import against, least_gap, looked_at, passed_through, resting_pressure, room, zones_of
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
@@ -431,7 +422,7 @@ class March:
             self.open.remove(pair)
             # an end that touches is to be the first beam's
             unseen = zones_of(self.model, pair, z).least > _CLOSED * pair.scale
-            closed = about(self.model, pair, z) if unseen and isinstance(pair, Pair) else pair
+            closed = pair.about() if unseen and isinstance(pair, Pair) else pair
             self.penalties[closed] = Penalty(pair.stiffness)
             self.closing.setdefault(pair.name, self.value(load))
         if closing:
@@ -460,9 +451,9 @@ class March:
     def change_places(self) -> None:
         """Let the beams of a pair change places where an end of the second presses: only ends of the first are seen."""
         for one in self.system.touches:
-            if not isinstance(one.pair, Pair) or one.lacks <= LACKING:
+            if not isinstance(one.pair, Pair) or one.pair.roles is not None or one.lacks <= LACKING:
                 continue
-            other = about(self.model, one.pair, self.system.z)
+            other = one.pair.about()
             penalties = {other if pair == one.pair else pair: penalty for pair, penalty in self.penalties.items()}
             depths = {other if pair == one.pair else pair: depth for pair, depth in self.depths().items()}
             pushes = {pair: push for pair, push in self.pushes().items() if pair != one.pair}

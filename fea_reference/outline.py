@@ -10,9 +10,10 @@ P, t    a place where n or b jumps lies on the straight line through P across t
 ======  =====================================================================================
 
 An edge runs with the free side to its left; a side to the right is one that runs the other way.  Where it ends, what is
-rigid goes straight back: two more sides, at right angles to the first and the last piece, of no end.  In front of a
-corner that juts out d is the distance from the corner, b = 1/d; behind it the nearer side counts, and n jumps on the
-line that halves the angle.  At a corner that juts in it is the other way round.
+rigid goes straight back: two more sides, at right angles to the first and the last piece.  They go on without end, but
+to where they meet each other, which is a corner too, or the edge from behind.  In front of a corner that juts out d is
+the distance from the corner, b = 1/d; behind it the nearer side counts, and n jumps on the line that halves the angle.
+At a corner that juts in it is the other way round.
 
 So of a graph, with b = κ/(1 + κ d) where κ is its curvature, positive where it juts out.
 """
@@ -124,9 +125,13 @@ class Broken:
         if self.closed:
             before = np.roll(tau, 1, axis=1)
             return Corners(self.points[:, :-1], (before, tau), (_left(before), _left(tau)))
-        before = np.column_stack([_left(tau[:, :1]), tau])
-        behind = np.column_stack([tau, -_left(tau[:, -1:])])
-        return Corners(self.points, (before, behind), (_left(before), _left(behind)))
+        first, last = _left(tau[:, :1]), -_left(tau[:, -1:])
+        points, before, behind = self.points, np.column_stack([first, tau]), np.column_stack([tau, last])
+        if self._round_behind:
+            corner = self.points[:, -1:] + self._back[1] * last
+            points, before = np.column_stack([points, corner]), np.column_stack([before, last])
+            behind = np.column_stack([behind, first])
+        return Corners(points, (before, behind), (_left(before), _left(behind)))
 
     @property
     def straight(self) -> bool:
@@ -159,7 +164,8 @@ class Broken:
         d = (side * away).sum(axis=0)
         # at a corner both of its sides say on which of them a place is
         neighbour = np.where(before, nearest - 1, nearest + 1)
-        neighbour = neighbour % low.size if self.closed else np.minimum(np.maximum(neighbour, 0), low.size - 1)
+        round_it = self.closed or self._round_behind
+        neighbour = neighbour % low.size if round_it else np.minimum(np.maximum(neighbour, 0), low.size - 1)
         both = side + np.where(corner, _left(tangents[:, neighbour]), 0.0)
         r_corner = np.hypot(away[0], away[1])
         corner &= r_corner > 0.0
@@ -177,12 +183,43 @@ class Broken:
         """Tangents and first points (2, m+2), and between which distances from these the sides lie (m+2,)."""
         tau = self._tangents
         length = np.hypot(*np.diff(self.points, axis=1))
-        # the sides straight back begin or end at no place
+        if self.closed:
+            return tau, self.points[:, :-1], np.zeros(length.size), length
         tangents = np.column_stack([_left(tau[:, :1]), tau, -_left(tau[:, -1:])])
         first = np.column_stack([self.points[:, :1], self.points[:, :-1], self.points[:, -1:]])
-        low, high = np.concatenate([[-np.inf], np.zeros(length.size), [0.0]]), np.concatenate([[0.0], length, [np.inf]])
-        # what goes round has no such sides
-        return (tau, self.points[:, :-1], low[1:-1], high[1:-1]) if self.closed else (tangents, first, low, high)
+        back = self._back
+        return (
+            tangents,
+            first,
+            np.append(-back[0], np.zeros(length.size + 1)),
+            np.concatenate([[0.0], length, back[1:]]),
+        )
+
+    @cached_property
+    def _back(self) -> Array:
+        """How far the sides straight back go from where the edge begins and ends, (2,)."""
+        each = self._met_each_other
+        tau, ends = -_left(self._tangents[:, [0, -1]]), self.points[:, [0, -1]]
+        length = np.hypot(*np.diff(self.points, axis=1))
+        found = []
+        for i in (0, 1):
+            far, along = _crossing(ends[:, i], tau[:, i], self.points[:, :-1], self._tangents)
+            meets = (far > _SAME) & (along >= 0.0) & (along <= length)
+            found.append(min(float(far[meets].min(initial=np.inf)), float(each[i])))
+        return np.array(found)
+
+    @property
+    def _met_each_other(self) -> Array:
+        """How far from there they meet each other, (2,); infinite where they do not."""
+        tau, ends = -_left(self._tangents[:, [0, -1]]), self.points[:, [0, -1]]
+        far, along = _crossing(ends[:, 0], tau[:, 0], ends[:, 1:], tau[:, 1:])
+        apart = np.append(far, along)
+        return apart if (apart > _SAME).all() else np.full(2, np.inf)
+
+    @cached_property
+    def _round_behind(self) -> bool:
+        """Whether what is rigid ends where its two sides meet."""
+        return not self.closed and bool(np.isfinite(self._back).all() and (self._back == self._met_each_other).all())
 
     @property
     def closed(self) -> bool:
@@ -336,12 +373,22 @@ def ends_at(outline: Outline, place: Array, near: float) -> tuple[Array | None, 
     ahead = np.array([normal[1], -normal[0]])
     if at.size == 0:
         return ahead, -ahead
-    corner, last = int(at[0]), corners.points.shape[1] - 1
+    corner, last = int(at[0]), (outline.points if isinstance(outline, Broken) else corners.points).shape[1] - 1
     round_it = isinstance(outline, Broken) and outline.closed
     return (
         corners.tangents[1][:, corner] if round_it or corner < last else None,
         -corners.tangents[0][:, corner] if round_it or corner > 0 else None,
     )
+
+
+def _crossing(place: Array, ahead: Array, places: Array, aheads: Array) -> tuple[Array, Array]:
+    """How far (k,) a straight line goes to others, and these from their ``places`` (2, k); infinite if parallel."""
+    across = ahead[0] * aheads[1] - ahead[1] * aheads[0]
+    parallel = np.abs(across) <= _SAME
+    x, y = places - place[:, None]
+    share = 1.0 / np.where(parallel, 1.0, across)
+    far, along = (x * aheads[1] - y * aheads[0]) * share, (x * ahead[1] - y * ahead[0]) * share
+    return np.where(parallel, np.inf, far), np.where(parallel, np.inf, along)
 
 
 def _left(tangents: Array) -> Array:

@@ -69,7 +69,9 @@ class Pair:
         """What places ``zeta`` (k,) of the first beam face on the second, sought from ``guess`` (k,)."""
         there = first.around(zeta)
         points = first.nodes[there.element] + there.way
-        return facing(second, self.edge_m, points, guess, lambda zeta_m, d: self.sides(zeta, zeta_m, d))
+        return facing(
+            second, self.edge_m, points, guess, lambda zeta_m, d: self.sides(zeta, zeta_m, d), ended=self.ended
+        )
 
     def apart(self, zeta: Array, zeta_m: Array) -> Array:
         """How far apart the neutral lines are when they touch at places ``zeta`` and ``zeta_m`` (k,)."""
@@ -89,6 +91,11 @@ class Pair:
             ends_m=self.ends,
             tapers=None if self.tapers is None else Tapers(self.tapers.second, self.tapers.first),
         )
+
+    @property
+    def ended(self) -> bool:
+        """Whether places beyond an end of the second beam see that: those of the same one, but for a line's."""
+        return self.roles is not None and self.roles.ended
 
     @property
     def edge_m(self) -> Edge | None:

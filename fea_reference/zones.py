@@ -138,21 +138,24 @@ def gap(
     tapers: Tapers | None,
     zeta: Array,
     zeta_m: Array,
+    *,
+    ended: bool = False,
 ) -> Gap:
     """The gap at ``zeta`` (k,), closest points sought from ``zeta_m`` (k,).
 
-    ``sides`` are the sides (k,) at ζ and ζ_m where n·(x − x_m) is d.
+    ``sides`` are the sides (k,) at ζ and ζ_m where n·(x − x_m) is d.  Whether what is beyond an end of the second beam
+    sees that, ``ended`` says.
     """
     there = first.around(zeta)
     points = first.nodes[there.element] + there.way
     edge = None if tapers is None else tapers.second
-    faced = facing(second, edge, points, zeta_m, lambda at_m, d: sides(zeta, at_m, d))
+    faced = facing(second, edge, points, zeta_m, lambda at_m, d: sides(zeta, at_m, d), ended=ended)
     across, J, zeta_m = faced.across, faced.c, faced.zeta_m
     back = (1j * faced.w).conj()  # n; of a product with it n·v is real, and −τ·v imaginary
     d = (back * apart(first, there, second, across)).real
     a = (back * across.bent).real
     ahead = back * there.ahead
-    bend = -a / (J**2 - d * a)
+    bend = -a / np.where(faced.fixed, 1.0, J**2 - d * a)
     if faced.fixed.any():
         bend = np.where(faced.fixed, 1.0 / np.where(d == 0.0, 1.0, d), bend)
     curvature = (back * there.bent).real + bend * ahead.imag**2

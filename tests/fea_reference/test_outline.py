@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fea_reference.outline import outline_of
+from fea_reference.outline import Broken, outline_of
 from scene.statement import FunctionContact
 
 COEFFICIENTS = (0.013, -0.31, 0.83)
@@ -45,3 +45,27 @@ def test_the_nearest_place_of_a_parabola(axis):
         assert near.normal[:, i] == pytest.approx(away if axis == "x" else away[::-1], abs=1e-9)
         assert near.bend[i] == pytest.approx(curved / (1.0 + curved * d), rel=1e-9)
     assert not near.corner.any()
+
+
+def test_sides_that_meet_behind_an_edge_are_those_of_a_block():
+    """An edge of two pieces is the same as a line round all of what is rigid behind it."""
+    a, b, c = np.array([[-0.41, -1.01], [-0.44, -0.33], [0.37, -0.36]])
+    # straight back from a and c, at right angles to the pieces there
+    fourth = np.linalg.solve(np.stack([b - a, c - b]), [(b - a) @ a, (c - b) @ c])
+    edge, block = Broken(np.stack([a, b, c], axis=1)), Broken(np.stack([a, b, c, fourth, a], axis=1))
+    places = np.random.default_rng(3).uniform(-1.7, 1.7, (2, 977))
+    found, expected = edge.near(places), block.near(places)
+    assert (expected.distance < 0.0).any()
+    assert found.distance == pytest.approx(expected.distance, abs=1e-12)
+    assert found.normal == pytest.approx(expected.normal, abs=1e-12)
+    assert found.bend == pytest.approx(expected.bend, rel=1e-9, abs=1e-12)
+    assert edge.corners.points[:, -1] == pytest.approx(fourth, rel=1e-12)
+    assert edge.corners.jutting.all()
+
+
+def test_a_side_ends_where_it_comes_to_the_edge_from_behind():
+    """A hook: beyond its long piece, whose other face is free, the side behind its short end is no obstacle."""
+    edge = Broken(np.array([[0.0, 0.3, 0.3, 0.1], [0.0, 0.0, 0.9, 0.9]])[:, ::-1])
+    # straight back from (0.1, 0.9), downwards, it comes to the first piece at (0.1, 0)
+    beyond = edge.near(np.array([[0.1, 0.14, 0.07], [-0.5, -0.7, -0.61]]))
+    assert np.abs(beyond.distance) == pytest.approx([0.5, 0.7, 0.61])
