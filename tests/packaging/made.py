@@ -47,7 +47,10 @@ def sources(checkout: Path, into: Path) -> Path:
 def wheel(archive: Path, into: Path) -> Path:
     """The wheel of an archive of sources."""
     with tarfile.open(archive) as opened:
-        opened.extractall(into / "unpacked", filter="data")
+        # the archive is our own; the first releases of 3.11 know no filter, and later ones ask for one
+        if hasattr(tarfile, "data_filter"):
+            opened.extraction_filter = tarfile.data_filter
+        opened.extractall(into / "unpacked")
     (tree,) = (into / "unpacked").iterdir()
     return _made("build_wheel", tree, into)
 
