@@ -13,6 +13,9 @@ opposite, so that what goes before s carries nothing of them, to the last digit.
 
 Rows stand at the minima of D along the nearer place s, at the joints there where strands lie on each other, and where
 an end of the beam faces a part of it.  Arc lengths of the contact are those of s.
+
+Ends that meet head-on have no row: neither has a place of the other's side before it.  They count for the least gap, so
+that an answer in which they overlap is none.
 """
 
 from __future__ import annotations
@@ -288,8 +291,17 @@ class Itself:
             D = feet_near(pair, facing.lines, pair.on_a(facing.lines, s), sigma)[0] if s.size else np.zeros(0)
             ridges = feet_of_ridges(pair, facing.lines, strand.D, strand.sigma)[1]
             least = min(least, float(np.min(strand.D)), float(np.min(np.append(D, ridges), initial=np.inf)))
+        least = min(least, self._ends_apart(facing.lines))
         depth = self._crosses(facing.lines)
         return float(min(least, -depth) if depth > 0.0 else least) - self.offset
+
+    def _ends_apart(self, lines: Lines) -> float:
+        """The distance of the beam's ends, which meet head-on where neither has a place of the other before it."""
+        G = lines[0].sampled
+        if self.offset == 0.0 or not turned_enough(G.psi[-1:] - G.psi[:1])[0]:
+            return np.inf
+        wider = np.max(self._sided(1.0, 1.0).wider(G.s[:1], G.s[-1:]))
+        return float(np.hypot(G.x[-1] - G.x[0], G.y[-1] - G.y[0]) - wider)
 
     def passed(self, way: Iterable[tuple[State, Positions]], end: tuple[State, Positions], allowed: float) -> bool:
         """Whether the beam went through itself on a ``way`` from where its faces are known to an ``end``.

@@ -66,3 +66,15 @@ def test_ends_that_meet_share_the_load():
     assert alone.ending is Ending.COMPLETED, alone.sentence
     expected = alone.stations[-1].values["T.displacement"]
     assert station.values["T.displacement"] == pytest.approx(expected, abs=1e-3 * abs(expected[1]))
+
+
+@pytest.mark.parametrize(("load", "meet"), [(4.5, False), (5.0, True)])
+def test_the_links_end_where_ends_meet_which_they_cannot_hold_apart(load, meet):
+    """The ring alone says whether its ends would overlap: an answer without a force is then none."""
+    settings = cprbm.Settings(links=53)
+    shape = cprbm.answer(ring(load, contact=False), settings).stations[-1].shapes["strip"]
+    apart = float(np.hypot(shape.x[-1] - shape.x[0], shape.y[-1] - shape.y[0]))
+    assert (apart < THICKNESS) is meet
+    found = cprbm.answer(ring(load, contact=True), settings)
+    assert found.ending is (Ending.BEAMS_CROSSED if meet else Ending.COMPLETED)
+    assert len(found.stations) == (0 if meet else 1)
