@@ -8,7 +8,6 @@ Arrows of one kind (contacts, loads and drives) have one scale for all stations.
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
@@ -24,6 +23,7 @@ from comparisons.reporting.outlines import Frame, arrows, band, circle, dots, fr
 from comparisons.scales import norm
 from comparisons.stations import station_of
 from comparisons.verdict import Comparison
+from comparisons.viewing.moved import Motion
 from scene import Beam, CircleContact, Scene, Stage, StationAnswer
 from scene.answer import Array
 from scene.freedoms import unit
@@ -316,9 +316,7 @@ def _carried(body: Body, places: Array, name: str, station: StationAnswer) -> Ar
     if station.statics is None or name not in station.statics.bodies:
         return places
     x, y, angle = station.statics.bodies[name]
-    first = np.array(next(iter(body.points.values())))
-    cos, sin = math.cos(angle), math.sin(angle)
-    return np.asarray((places - first) @ np.array([[cos, sin], [-sin, cos]]) + first + (x, y))
+    return Motion(np.array(next(iter(body.points.values()))), np.array([x, y]), angle).carried(places)
 
 
 def _point(scene: Scene, point: str, station: StationAnswer) -> Array:
