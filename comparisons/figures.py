@@ -17,6 +17,7 @@ import numpy as np
 
 from comparisons.bodies_drawn import draw_bodies, draw_edges, draw_names, draw_stops, joined_ends, places_at
 from comparisons.formats import number, scaled_unit
+from comparisons.framing import frame
 from comparisons.geometry import length, points
 from comparisons.measures import Row, load_unit
 from comparisons.pairing import Runs
@@ -159,8 +160,7 @@ def _mechanism(axes: Axes, scene: Scene, runs: Runs, stage: str, value: float) -
             # the many places of a zone would hide the beam behind them
             size = 9.0 if len(spots) <= FEW_PLACES else 2.5
             axes.plot(x, y, marker, color=colour, markersize=size, markerfacecolor="none", linestyle="", label=label)
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.margins(0.08)
+    frame(axes, fea)
 
 
 def _stresses(rows: list[Row]) -> Picture:

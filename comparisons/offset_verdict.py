@@ -167,4 +167,4 @@ def _judged(question: OffsetQuestion, rows: tuple[OffsetRow, ...]) -> Verdict:
             sentence = f"{len(those)} of {len(rows)} rows differ, most of all {place}."
         case Word.UNDECIDED:
             sentence = f"{len(those)} of {len(rows)} rows cannot be told, least of all {place}."
-    return Verdict(word, sentence, tuple(words), completed=all(np.isfinite(each.difference) for each in rows))
+    return Verdict(word, (sentence,), tuple(words), completed=all(np.isfinite(each.difference) for each in rows))

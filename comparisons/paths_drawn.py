@@ -56,12 +56,14 @@ def of_every_way(compared: Comparison) -> tuple[Picture, ...]:
 
 
 def _ways(compared: Comparison) -> dict[str, list[Stage]]:
-    """By drive or load the stages that step it; none where a run gave no whole answer."""
+    """By drive or load the stages that step it, to two values at least; none where a run gave no whole answer."""
     stages = compared.scene.stages if compared.rows else ()
     found: dict[str, list[Stage]] = {}
     for stage in stages:
         found.setdefault(stage.steps, []).append(stage)
-    return found
+    return {
+        stepped: each for stepped, each in found.items() if len({value for one in each for value in one.stations}) > 1
+    }
 
 
 def _ordinates(scene: Scene, stage: Stage) -> Iterator[_Ordinate]:

@@ -17,8 +17,12 @@ if TYPE_CHECKING:
 
 
 def of_comparison(compared: Comparison) -> tuple[Picture, ...]:
-    """A figure for each drive that a stage steps."""
-    return tuple(_drawn(compared.scene, drive, reactions) for drive, reactions in by_drive(compared.reactions).items())
+    """A figure for each drive that is stepped to two values at least; one alone is told by the table."""
+    return tuple(
+        _drawn(compared.scene, drive, reactions)
+        for drive, reactions in by_drive(compared.reactions).items()
+        if len({each.station for each in reactions}) > 1
+    )
 
 
 def _drawn(scene: Scene, drive: str, reactions: Sequence[Reaction]) -> Picture:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
@@ -43,9 +44,18 @@ def rendered(template: str, context: Mapping[str, object]) -> str:
     )
     environment.filters["cells"] = cells_of
     environment.filters["words"] = words_in
+    environment.filters["parted"] = _parted
     environment.filters["joined"] = lambda text: text.replace(" %", "\u00a0%")  # on one line with its number
     style = _beside("style.css")
     return environment.get_template(template).render({**context, "style": style, "marked": _MARKED}) + "\n"
+
+
+def _parted(escaped: str) -> str:
+    """An escaped name that may be parted behind its points and underscores, where a column is narrow.
+
+    It stays of its type, by which a template knows that it is escaped.
+    """
+    return type(escaped)(re.sub(r"(?<=[^\W\d][._])(?=[^\W\d])", "<wbr>", escaped))
 
 
 def script(name: str) -> str:

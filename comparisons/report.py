@@ -23,12 +23,13 @@ _DRAWN = (figures, paths_drawn, reactions_drawn)
 
 @dataclass(frozen=True, slots=True)
 class Chapter:
-    """What the page shows of one case."""
+    """What the page shows of one case; ``because`` is what decided, ``sentence`` all that the verdict says."""
 
     name: str
     title: str
     source: str
     word: str
+    because: str
     sentence: str
     sheets: tuple[Sheet, ...]
     explanation: tuple[str, ...]
@@ -134,6 +135,7 @@ def _chapter(
         title=asked.title or asked.name,
         source=asked.source,
         word=verdict.word.value,
+        because=next(iter(verdict.sentences), ""),
         sentence=verdict.sentence,
         sheets=tables,
         explanation=explanation,

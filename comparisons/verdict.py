@@ -53,17 +53,22 @@ class Verdict:
 
     Attributes:
         word: of the case.
-        sentence: which row decided, or why nothing could be decided.
+        sentences: which row decided, or why nothing could be decided, that first; then whatever else is to be said.
         words: one per row, in the order of the rows; None for a row that takes no part.
         completed: whether every run gave a whole answer.
         branches: what the rows of each branch say.
     """
 
     word: Word
-    sentence: str
+    sentences: tuple[str, ...]
     words: tuple[Word | None, ...]
     completed: bool
     branches: tuple[BranchVerdict, ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        """All that is said."""
+        return " ".join(self.sentences)
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +104,7 @@ def compared(scene: Scene, runs: Runs) -> Comparison:
             found.setdefault(f"{what[0]}{more}", []).append(name)
     if found:
         sentence = "; ".join(f"{', '.join(names)} gave no whole answer: {what}" for what, names in found.items())
-        verdict = Verdict(Word.UNDECIDED, sentence + ".", (), completed=False)
+        verdict = Verdict(Word.UNDECIDED, (sentence + ".",), (), completed=False)
         return Comparison(scene, runs, (), verdict, critical_rows(scene, runs), _reactions(scene, runs))
     # nothing rests on what stands beside, so that where it fails it leaves no more than a gap
     paper, exact = (None if answer is None else sound_part(within, answer) for answer in (cut.paper, cut.exact))
@@ -124,14 +129,14 @@ def _as_audited(verdict: Verdict, audits: Mapping[str, Audit]) -> Verdict:
     if not said:
         return verdict
     word = Word.UNDECIDED if verdict.word is Word.AGREE else verdict.word
-    return replace(verdict, word=word, sentence=" ".join((*said, verdict.sentence)))
+    return replace(verdict, word=word, sentences=(*said, *verdict.sentences))
 
 
 def _up_to_there(verdict: Verdict, last: Row) -> Verdict:
     """The verdict on what comes before a branch ends: the stations behind it have no answer to agree on."""
     word = verdict.word if verdict.word is Word.DIFFER else Word.UNDECIDED
-    said = f"The branch ends before the last station; up to {last.stage} {last.station:g}: {verdict.word.value}. "
-    return replace(verdict, word=word, sentence=said + verdict.sentence, completed=False)
+    said = f"The branch ends before the last station; up to {last.stage} {last.station:g}: {verdict.word.value}."
+    return replace(verdict, word=word, sentences=(said, *verdict.sentences), completed=False)
 
 
 def _reactions(scene: Scene, runs: Runs) -> tuple[Reaction, ...]:
@@ -144,28 +149,29 @@ def _reactions(scene: Scene, runs: Runs) -> tuple[Reaction, ...]:
 def judged(scene: Scene, rows: tuple[Row, ...], criticals: tuple[CriticalRow, ...] = ()) -> Verdict:
     """The verdict on the rows and the critical values of whole answers."""
     words = tuple(_word(scene, row) for row in rows)
-    of_rows, sentence = _judged_rows(scene, rows, words)
+    of_rows, of_them = _judged_rows(scene, rows, words)
     branches = branch_verdicts(rows, words)
     of_criticals = worst_of(critical_word(each) for each in criticals)
     word = worst_of((of_rows, of_criticals)) or of_rows
     more = told(rows, branches, criticals)
     # what decides comes first
-    sentences = (sentence, *more) if word is of_rows else (*more, sentence)
-    return Verdict(word, " ".join(sentences), words, completed=True, branches=branches)
+    sentences = (*of_them, *more) if word is of_rows else (*more, *of_them)
+    return Verdict(word, sentences, words, completed=True, branches=branches)
 
 
-def _judged_rows(scene: Scene, rows: tuple[Row, ...], words: tuple[Word | None, ...]) -> tuple[Word, str]:
-    """The word of all rows, and a sentence that names the one which decided."""
+def _judged_rows(scene: Scene, rows: tuple[Row, ...], words: tuple[Word | None, ...]) -> tuple[Word, tuple[str, ...]]:
+    """The word of all rows, a sentence that names the one which decided, and what else is to be said of them."""
     judged_rows = [(row, word) for row, word in zip(rows, words, strict=True) if word is not None]
     for word in (Word.DIFFER, Word.UNDECIDED):
         worst = [row for row, said in judged_rows if said is word]
         if worst:
             row = max(worst, key=lambda row: _pressure(scene, row, word))
-            return word, _sentence(scene, row, word, len(worst), len(judged_rows)) + _exactly(rows)
+            return word, (_sentence(scene, row, word, len(worst), len(judged_rows)), *_exactly(rows))
     if not judged_rows:
-        return Word.UNDECIDED, "There is no row that could be compared."
+        return Word.UNDECIDED, ("There is no row that could be compared.",)
     row = max((row for row, _ in judged_rows), key=lambda row: max(_between(row)))
-    return Word.AGREE, _sentence(scene, row, Word.AGREE, len(judged_rows), len(judged_rows)) + _exactly(rows)
+    said = _sentence(scene, row, Word.AGREE, len(judged_rows), len(judged_rows))
+    return Word.AGREE, (said, *_allowed(scene), *_exactly(rows))
 
 
 def _word(scene: Scene, row: Row) -> Word | None:
@@ -259,14 +265,14 @@ def _sentence(scene: Scene, row: Row, word: Word, count: int, rows: int) -> str:
                 f"{_of_scale(largest, row)} of the scale, more than {percent(scene.limit(row.probe))}."
             )
         case Word.AGREE:
-            return f"All {rows} rows agree; the closest call is {place}: {said}.{_allowed(scene)}"
+            return f"All {rows} rows agree; the closest call is {place}: {said}."
 
 
 _NAMES = {"cprbm": "the CPRBM's values", "fea": "the finite elements' in bending"}
 
 
-def _exactly(rows: tuple[Row, ...]) -> str:
-    """How the true errors stand to the stated ones, in a sentence; nothing where no exact value is known."""
+def _exactly(rows: tuple[Row, ...]) -> tuple[str, ...]:
+    """How the true errors stand to the stated ones, in a sentence; none where no exact value is known."""
     found = held(rows)
     said = []
     for solver in JUDGED:
@@ -279,17 +285,17 @@ def _exactly(rows: tuple[Row, ...]) -> str:
             f"{number(worst.ratio)} times ({worst.row.probe.name} at {worst.row.stage} {worst.row.station:g})"
         )
     if said:
-        return f" Beside the exact answer {'; '.join(said)}."
-    return " The true errors, beside the exact answer in bending, are within the stated ones." if found else ""
+        return (f"Beside the exact answer {'; '.join(said)}.",)
+    return ("The true errors, beside the exact answer in bending, are within the stated ones.",) if found else ()
 
 
-def _allowed(scene: Scene) -> str:
-    """Which probes the scene allows a larger uncertainty than the others, in a sentence; nothing if none."""
+def _allowed(scene: Scene) -> tuple[str, ...]:
+    """Which probes the scene allows a larger uncertainty than the others, in a sentence; none if none is."""
     wider = [probe for probe in scene.probes if scene.limit(probe) > scene.verdict_limit]
     if not wider:
-        return ""
+        return ()
     said = ", ".join(f"{percent(scene.limit(probe))} for {probe.name}" for probe in wider)
-    return f" The scene allows stated uncertainties of up to {percent(scene.verdict_limit)} of the scale; {said}."
+    return (f"The scene allows stated uncertainties of up to {percent(scene.verdict_limit)} of the scale; {said}.",)
 
 
 def _sum(bounds: Bounds, row: Row, *, tight: bool) -> str:

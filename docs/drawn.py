@@ -28,6 +28,7 @@ from comparisons import cases, offset_drawn
 from comparisons.bodies_drawn import draw_bodies, draw_edges, draw_names, draw_stops, joined_ends, places_at
 from comparisons.figures import BLUE, GREY, RED, Picture, along_axis, canvas, picture
 from comparisons.formats import number, scaled_unit
+from comparisons.framing import frame
 from comparisons.geometry import length, points
 from comparisons.measures import COMPONENTS, arc_lengths, load_unit, unit_of
 from comparisons.offset_verdict import compared_offset
@@ -45,7 +46,7 @@ ROOT = HERE.parent
 MADE = HERE / "made"
 ACCEPTED = ROOT / "tests" / "together" / "regression"
 LONGEST = ("prestressed", "five-bar", "rolled")  # begun first, so that no process waits at the end
-LINKS, ELEMENTS = 20, 20
+LINKS, ELEMENTS = 20, 40
 MOST_STATIONS = 41  # of a stage that is drawn; of more every so-many-th is solved, the shown ones and the last
 NOTHING = 1e-15  # m, rad, N, N·m or J: round-off of what is zero
 CURVES = ("rotation", "force", "moment", "reaction", "reaction_moment", "potential_energy")
@@ -101,8 +102,7 @@ def shapes(scene: Scene, answers: tuple[Answer, Answer]) -> Picture:
             _loaded(axes, scene, chain, elements)
             factor, unit = along_axis(load_unit(scene, stage), value)
             axes.set_title(f"{stage.steps} = {_told(value / factor, unit)}", loc="left", fontsize=10)
-            axes.set_aspect("equal", adjustable="datalim")
-            axes.margins(0.08)
+            frame(axes, elements)
             if place == 0:
                 draw_names(axes, scene)
         handles, labels = figure.axes[0].get_legend_handles_labels()

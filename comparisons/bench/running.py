@@ -245,7 +245,9 @@ class Session:
                     found = errors(self.scene, known, outcome.values)
                     timings.append(Timing(contender, count, setups, solves, outcome, found))
                 elif key in self.refused:
-                    why = "; ".join(f"{one.key}: found {one.found}" for one in self.refused[key].mistakes)
+                    why = "; ".join(
+                        f"{one.key}: found {one.found}; allowed: {one.allowed}" for one in self.refused[key].mistakes
+                    )
                     left_out.append(LeftOut(contender.name, count, why))
                 elif mean(count) > self.largest.get(contender.name, np.inf):
                     left_out.append(LeftOut(contender.name, count, f"more than {self.plan.at_most:g} s"))

@@ -11,7 +11,7 @@ from comparisons.choices import Count
 from comparisons.documents import Plain, plain
 from comparisons.formats import number, percent
 from comparisons.peers.judged import TOLERANCE
-from comparisons.sheet import Sheet
+from comparisons.sheet import Sheet, without_empty
 
 _OF_CLOCK: dict[Clock, str] = {"wall": "", "cpu": " of the processor"}
 _CLOCKED: dict[Clocked, str] = {"both": "set-up and solve", "solve": "solve alone"}
@@ -19,7 +19,8 @@ _CLOCKED: dict[Clocked, str] = {"both": "set-up and solve", "solve": "solve alon
 
 def sheets(measured: Benchmark) -> tuple[Sheet, ...]:
     """All tables: times and errors, who is fastest, ratios, growth, and what was left out."""
-    found = [_timings(measured), *_fastest(measured), _ratios(measured), _trends(measured), _left_out(measured)]
+    peers = without_empty(_ratios(measured))
+    found = [_timings(measured), *_fastest(measured), peers, _trends(measured), _left_out(measured)]
     return tuple(sheet for sheet in found if sheet.rows)
 
 

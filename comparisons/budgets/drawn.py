@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -101,6 +102,7 @@ def _share(budget: Budget, name: str) -> float:
 
 
 def _sizes(axes: Axes, budgets: Sequence[Budget]) -> None:
+    shown = list[float]()
     for label, marker, colour, sizes in (
         ("difference, %", "D", "black", [each.row.difference for each in budgets]),
         ("paper beside auto, %", "o", LOOKS["contact"][0], [_beside(each) for each in budgets]),
@@ -109,6 +111,7 @@ def _sizes(axes: Axes, budgets: Sequence[Budget]) -> None:
         known = [(100.0 * fraction, place) for place, fraction in enumerate(_fractions(budgets, sizes)) if fraction]
         if known:
             x, y = zip(*known, strict=True)
+            shown += x
             face = colour if marker == "D" else "none"
             axes.plot(x, y, marker, color=colour, markersize=5.0, markerfacecolor=face, label=label)
     for place, budget in enumerate(budgets):
@@ -119,10 +122,21 @@ def _sizes(axes: Axes, budgets: Sequence[Budget]) -> None:
             va="center",
             fontsize=9.0,
         )
-    axes.set_xscale("log")
+    _decades(axes, shown)
     axes.tick_params(axis="y", length=0.0)
     axes.grid(visible=True, which="major", axis="x", color="#e4e4e4", linewidth=0.6)
     axes.set_xlabel("size, %")
+
+
+def _decades(axes: Axes, shown: Sequence[float]) -> None:
+    """Whole decades, of which alone the numbers are written: those between them have no room in so narrow a panel."""
+    axes.set_xscale("log")
+    if shown:
+        lowest, highest = math.floor(math.log10(min(shown))), math.ceil(math.log10(max(shown)))
+        axes.set_xlim(10.0**lowest / 2.0, 2.0 * 10.0 ** max(highest, lowest + 1))
+        every = max(1, math.ceil((highest - lowest) / 4))
+        axes.set_xticks([10.0**power for power in range(lowest, max(highest, lowest + 1) + 1, every)])
+    axes.tick_params(axis="x", which="minor", labelbottom=False)
 
 
 def _beside(budget: Budget) -> float | None:

@@ -19,7 +19,7 @@ from comparisons.reporting.stepping import Stepper, stepper
 from comparisons.sheet import Sheet
 from comparisons.sheets import Subject
 from comparisons.studies.told import Told as Study
-from comparisons.verdict import Comparison
+from comparisons.verdict import Comparison, Verdict
 from scene import Answer, Question
 
 
@@ -42,12 +42,14 @@ class Glance:
         of: that probe.
         met: claims of the source that are met.
         claims: all of them.
+        because: what decided the verdict, in a sentence; the chapter says the rest.
     """
 
     largest: str
     of: str
     met: int
     claims: int
+    because: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,7 +206,8 @@ def _of_offset(found: Found, compared: OffsetComparison) -> Chapter:
         *_convergence(found),
         *_times(found, (seconds,)),
     )
-    glance = Glance(percent(largest.difference), f"{largest.spacing}, N = {largest.n}", _met(claims), len(claims))
+    worst = f"{largest.spacing}, N = {largest.n}"
+    glance = Glance(percent(largest.difference), worst, _met(claims), len(claims), _first(compared.verdict))
     return _chapter(found, question, glance, claims, None, sections)
 
 
@@ -235,10 +238,15 @@ def _sentences(text: str) -> tuple[str, ...]:
 
 def _glance(compared: Comparison, claims: tuple[Claimed, ...]) -> Glance:
     rows = [row for row in compared.rows if row.bounds is not None and row.scale > 0.0]
+    because = _first(compared.verdict)
     if not rows:
-        return Glance("–", "–", _met(claims), len(claims))
+        return Glance("–", "–", _met(claims), len(claims), because)
     worst = max(rows, key=lambda row: row.difference / row.scale)
-    return Glance(percent(worst.difference / worst.scale), worst.probe.name, _met(claims), len(claims))
+    return Glance(percent(worst.difference / worst.scale), worst.probe.name, _met(claims), len(claims), because)
+
+
+def _first(verdict: Verdict) -> str:
+    return next(iter(verdict.sentences), "")
 
 
 def _met(claims: tuple[Claimed, ...]) -> int:

@@ -169,8 +169,9 @@ def test_a_size_that_is_refused_is_left_out_and_the_rest_goes_on(bent):
     refused = SceneError([Mistake("contacts.contact.paper", "2 joints", "3")])
     found = Clock(bent, paper=lambda n: refused if n == 40 else power(1.0)(n)).benchmark(repeat=2)
     assert [timing.n for timing in found.timings] == [80, 160]
-    assert [(one.count, one.why) for one in found.left_out] == [(40, "contacts.contact.paper: found 2 joints")]
-    assert ("paper", "40", "contacts.contact.paper: found 2 joints") in told.sheets(found)[-1].rows
+    why = "contacts.contact.paper: found 2 joints; allowed: 3"
+    assert [(one.count, one.why) for one in found.left_out] == [(40, why)]
+    assert ("paper", "40", why) in told.sheets(found)[-1].rows
 
 
 def test_what_everybody_refuses_is_refused(bent):

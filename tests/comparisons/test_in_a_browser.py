@@ -9,7 +9,7 @@ from comparisons.pairing import Solvers
 from tests.comparisons.browser import WANTED, browser, found
 from tests.comparisons.made_up import MadeUp
 
-WIDTHS = (1280, 390)
+WIDTHS = (1280, 1024, 900, 768, 390)
 
 
 @pytest.fixture(scope="module")

@@ -1,11 +1,14 @@
 """Figures of what is stepped back and forth: which there are, and what is in them."""
 
+from collections import namedtuple
+
 import numpy as np
 import pytest
 
 from comparisons import cases, figures, paths_drawn, reactions_drawn
 from comparisons.bodies_drawn import draw_stops, places_at
 from comparisons.choices import Choices
+from comparisons.framing import frame
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict import compared
 from scene import Stage
@@ -79,3 +82,31 @@ def test_a_stop_of_a_body_whose_rotation_is_not_known_is_not_drawn(comparison):
         axes = figure.add_subplot()
         draw_stops(axes, comparison.scene, {"B": (0.0, 0.0)})
         assert axes.get_lines() == []
+
+
+def test_one_station_alone_is_no_curve(hinge, right):
+    """Of a point there is nothing to see, on axes that must have a length."""
+
+    def of(*stations):
+        stage = hinge.stages[0].model_copy(update={"stations": stations, "shown": stations[-1:]})
+        scene = hinge.model_copy(update={"stages": (stage,), "claims": ()})
+        return compared(scene, paired(scene, Choices(), right))
+
+    assert paths_drawn.of_every_way(of(0.3)) == ()
+    assert [each.name for each in paths_drawn.of_every_way(of(0.3, 0.6))] == ["path-M"]
+
+
+def test_a_mechanism_that_draws_itself_together_is_shown_as_large_as_it_is():
+    """A line of 240 mm rolled to 60 x 50 mm has a window of its own; one of 60 x 40 mm stands beside the whole line."""
+    shape = namedtuple("Shape", "x y")
+    for across, high, most in ((0.03, 0.025, 60.0), (0.13, 0.04, 300.0)):
+        turn = np.linspace(0.0, 2.0 * np.pi, 30)
+        loaded = namedtuple("Station", "shapes")({"strip": shape(across * np.cos(turn), high * np.sin(turn))})
+        with figures.canvas(4.0, 4.0) as figure:
+            axes = figure.add_subplot()
+            axes.plot([0.0, 240.0], [0.0, 0.0])
+            axes.plot(1e3 * loaded.shapes["strip"].x, 1e3 * loaded.shapes["strip"].y)
+            frame(axes, loaded)
+            assert np.ptp(axes.get_xlim()) < 1.7 * most
+            assert axes.get_xlim()[0] < -1e3 * across
+            assert (axes.get_xlim()[1] > 240.0) == (across > 0.1)

@@ -266,7 +266,7 @@ def solved():
     choices = Choices(links=13, elements=12, kinematics="bending")
     answers = cprbm_answer(hinge, choices), fea_answer(hinge, choices)
     runs = Runs("bending", (answers[0], answers[0]), {"bending": (answers[1], answers[1])})
-    return Comparison(hinge, runs, (), Verdict(Word.UNDECIDED, "", (), completed=False))
+    return Comparison(hinge, runs, (), Verdict(Word.UNDECIDED, (), (), completed=False))
 
 
 def test_points_stand_where_the_answer_says_that_they_went(solved):

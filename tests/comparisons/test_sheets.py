@@ -9,6 +9,7 @@ from comparisons import cases, sheets, tables
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.paper_sheets import of_paper
+from comparisons.sheet import Sheet, without_empty
 from comparisons.verdict import compared
 from scene import Ending
 from tests.comparisons.made_up import MadeUp
@@ -124,3 +125,8 @@ def test_a_table_keeps_to_its_width(comparison):
     for sheet in sheets.of_comparison(comparison):
         lines = plain.sub("", tables.drawn(sheet, width=100)).splitlines()
         assert max(map(len, lines)) <= 100
+
+
+def test_a_column_without_any_value_is_left_out():
+    found = without_empty(Sheet("ratios", ("N", "IPOPT", "ours"), (("10", "–", "1.3"), ("20", "–", "–")), "medians"))
+    assert found == Sheet("ratios", ("N", "ours"), (("10", "1.3"), ("20", "–")), "medians")
