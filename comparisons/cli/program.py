@@ -15,8 +15,11 @@ def main() -> None:
         signals.heed()
         _fill_gaps()
         os.environ.update(ONE_THREAD)  # before anything loads a BLAS; for the processes that share the work as well
-        from comparisons.cli.main import run
+        from comparisons.cli.completing import VARIABLE
+        from comparisons.cli.main import commands, run
 
+        if VARIABLE in os.environ:
+            commands.main(prog_name="cprbm", complete_var=VARIABLE)
         code = run(sys.argv[1:])
         signals.ignore()
     except KeyboardInterrupt as stop:  # as modules were loaded, or as another signal was being told of
