@@ -7,6 +7,7 @@ from concurrent.futures.process import BrokenProcessPool
 from difflib import get_close_matches
 from pathlib import Path
 
+from comparisons.processes import AloneError
 from scene import Mistake, SceneError
 
 WRONG_QUESTION = 2
@@ -24,6 +25,8 @@ def told(error: Exception) -> tuple[str, int] | None:
                 "A process that was solving ended by force, perhaps for want of memory; what was finished stands.",
                 NOT_FINISHED,
             )
+        case AloneError():
+            return f"This machine has {error}.", WRONG_QUESTION
         case MemoryError():
             return "There is not enough memory for this; what was finished stands.", NOT_FINISHED
         case ImportError() if _of_others(error.name):

@@ -12,6 +12,7 @@ import pytest
 import cprbm
 from comparisons import cases
 from comparisons.cli.main import run
+from comparisons.pairing import ALONE, crew_of
 from comparisons.starting import present
 from comparisons.starting.begun import SCHEMA, text
 from scene import read
@@ -124,6 +125,53 @@ def test_a_library_that_wants_one_of_the_system_is_told_with_what_installs_it(tm
     monkeypatch.setattr(present, "version", lambda name: "4.0")
     assert run(["doctor"]) == 0
     assert "what it wants: apt-get install --yes --no-install-recommends libgl1 libglu1-mesa" in capsys.readouterr().out
+
+
+@pytest.fixture
+def no_semaphores(monkeypatch):
+    """A machine whose ``/dev/shm`` nobody may write to: what Python says there."""
+
+    def refused(*given, **named):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("multiprocessing.synchronize.SemLock.__init__", refused)
+
+
+def test_where_no_process_can_work_beside_this_one_it_does_all_of_the_work(no_semaphores, caplog):
+    with caplog.at_level("INFO", "comparisons"), crew_of(2) as crew:
+        assert crew == ALONE
+    assert "one process does all of the work: no processes beside this one ([Errno 13]" in caplog.text
+
+
+def test_the_doctor_says_whether_processes_can_share_the_work(no_semaphores, monkeypatch, capsys):
+    monkeypatch.setattr(present, "LIBRARIES", present.LIBRARIES[:1])
+    assert run(["doctor"]) == 0
+    assert "processes      one          does all of the work: no processes beside this one ([Errno 13]" in (
+        capsys.readouterr().out
+    )
+
+
+def test_what_needs_a_process_of_its_own_says_so_where_there_can_be_none(no_semaphores, tmp_path, capsys):
+    (tmp_path / "frame.geo").write_text("Point(1) = {0, 0, 0};", encoding="utf-8")
+    assert run(["import", str(tmp_path / "frame.geo"), "--thickness", "1", "--width", "9"]) == 2
+    assert "they need a writable /dev/shm" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("found", "said"),
+    [
+        ((), "Everything is there."),
+        (("casadi", "pyvista"), "reports need; casadi, pyvista: only for what stands beside the name."),
+        (("numpy", "casadi"), "Without what is missing above nothing works; the lines beside it install it."),
+    ],
+)
+def test_the_doctor_s_last_line_sums_up(found, said, monkeypatch, capsys):
+    states = [present.State(each, "" if each.name in found else "9.9", "") for each in present.LIBRARIES]
+    # whether VTK draws is tried where PyVista is there, and another test's concern
+    states = [each for each in states if each.library.name != "pyvista" or not each.there]
+    monkeypatch.setattr(present, "looked_for", lambda: iter(states))
+    assert run(["doctor"]) == ("numpy" in found)
+    assert capsys.readouterr().out.splitlines()[-1].endswith(said)
 
 
 def test_a_library_that_ends_the_process_is_no_end_of_the_doctor(tmp_path, monkeypatch):
