@@ -61,7 +61,7 @@ LIBRARIES = (
     Library(
         "threadpoolctl",
         "threadpoolctl",
-        "one thread of linear algebra where solvers are called from Python",
+        "linear algebra in one thread, where Python calls the solvers",
         ">=3.5",
         "threads",
     ),
