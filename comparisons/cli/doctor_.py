@@ -32,7 +32,7 @@ def command(quiet: bool) -> int:  # noqa: FBT001 - click hands it over by name
         elif state.version:
             said = f"{state.version:<12} cannot be imported ({state.trouble}); for {library.needed_for}"
             line = line_for(library.name, state.trouble)
-            said += f"; on Debian and Ubuntu install what it wants: {line}" if line else ""
+            said += f"; on Debian and Ubuntu install what it wants, as root: {line}" if line else ""
         else:
             said = f"{'missing':<12} for {library.needed_for}; install it: {library.line}"
         if not state.there and library.extra:
@@ -52,7 +52,7 @@ def command(quiet: bool) -> int:  # noqa: FBT001 - click hands it over by name
         trouble = tried()
         said = "works        for pictures in space by 'view'"
         if trouble:
-            said = f"{'impossible':<12} ({trouble}); on Debian and Ubuntu install what draws: {WHAT_DRAWS}"
+            said = f"{'impossible':<12} ({trouble}); on Debian and Ubuntu install what draws, as root: {WHAT_DRAWS}"
         click.echo(f"{'drawing':<14} {said}")
     click.echo(
         _in_sum(left) if whole else "Without what is missing above nothing works; the lines beside it install it."

@@ -124,7 +124,10 @@ def test_a_library_that_wants_one_of_the_system_is_told_with_what_installs_it(tm
     monkeypatch.setattr(present, "LIBRARIES", (library,))
     monkeypatch.setattr(present, "version", lambda name: "4.0")
     assert run(["doctor"]) == 0
-    assert "what it wants: apt-get install --yes --no-install-recommends libgl1 libglu1-mesa" in capsys.readouterr().out
+    assert (
+        "what it wants, as root: apt-get install --yes --no-install-recommends libgl1 libglu1-mesa"
+        in capsys.readouterr().out
+    )
 
 
 @pytest.fixture
