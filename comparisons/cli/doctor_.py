@@ -32,7 +32,8 @@ def command(quiet: bool) -> int:  # noqa: FBT001 - click hands it over by name
         elif state.version:
             said = f"{state.version:<12} cannot be imported ({state.trouble}); for {library.needed_for}"
             line = line_for(library.name, state.trouble)
-            said += f"; on Debian and Ubuntu install what it wants, as root: {line}" if line else ""
+            anew = f"install it anew: {library.line} --force-reinstall"
+            said += f"; on Debian and Ubuntu install what it wants, as root: {line}" if line else f"; {anew}"
         else:
             said = f"{'missing':<12} for {library.needed_for}; install it: {library.line}"
         if not state.there and library.extra:

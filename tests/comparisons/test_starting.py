@@ -2,6 +2,8 @@
 
 import copy
 import json
+import os
+import subprocess
 import sys
 import tomllib
 from pathlib import Path
@@ -197,3 +199,45 @@ def test_a_quiet_doctor_says_what_is_needed_and_missing_alone(monkeypatch, capsy
     assert run(["doctor", "--quiet"]) == 1
     (line,) = capsys.readouterr().out.splitlines()
     assert line.split()[:2] == [gone.name, "missing"]
+
+
+@pytest.mark.parametrize(
+    ("library", "asked", "said"),
+    [
+        ("click", ["doctor"], "The library click cannot be loaded"),
+        ("numpy", ["solve", "hinge"], "The library numpy cannot be loaded"),
+        ("pydantic", ["solve", "hinge"], "The library pydantic cannot be loaded"),
+        ("skfem", ["solve", "hinge", "--solver", "fea"], "The library skfem cannot be loaded"),
+    ],
+)
+def test_a_library_of_the_core_that_is_wanting_is_a_sentence(tmp_path, library, asked, said):
+    """It stands in the way of its own name, as NumPy's does where a library of the system is wanting."""
+    (tmp_path / f"{library}.py").write_text('raise ImportError("\\n\\nPLEASE READ THIS\\n\\nlong advice")\n', "utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "comparisons", *asked],
+        env=os.environ | {"PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert done.stdout == ""
+    distribution = {"skfem": "scikit-fem"}.get(library, library)
+    install = f"{sys.executable} -m pip install --upgrade --force-reinstall {distribution}"
+    assert done.stderr == f"cprbm: {said} (PLEASE READ THIS); this installs what is needed: {install}\n"
+
+
+def test_the_doctor_can_be_asked_where_numpy_is_wanting(tmp_path):
+    (tmp_path / "numpy.py").write_text('raise ImportError("broken")\n', "utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "comparisons", "doctor", "--quiet"],
+        env=os.environ | {"PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1
+    numpy = done.stdout.splitlines()[0]
+    assert "cannot be imported (ImportError: broken); for every number; install it anew: " in numpy
+    assert numpy.endswith('-m pip install "numpy>=2.0" --force-reinstall')
+    assert done.stderr == ""
