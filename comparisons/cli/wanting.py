@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 
 WRONG_QUESTION = 2
@@ -18,7 +19,7 @@ def told(error: ImportError) -> tuple[str, int] | None:
     distribution = {"skfem": "scikit-fem"}.get(library, library)
     return (
         f"The library {library} cannot be loaded ({lines[0]}); this installs what is needed: "
-        f"{sys.executable} -m pip install --upgrade --force-reinstall {distribution}",
+        f"{shlex.quote(sys.executable)} -m pip install --upgrade --force-reinstall {distribution}",
         WRONG_QUESTION,
     )
 

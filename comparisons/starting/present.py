@@ -5,6 +5,7 @@ Each is imported in a process of its own: one that wants a library of the system
 
 from __future__ import annotations
 
+import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -31,7 +32,7 @@ class Library:
     @property
     def line(self) -> str:
         """What installs it for the Python that runs."""
-        return f'{sys.executable} -m pip install "{self.name}{self.least}"'
+        return f'{shlex.quote(sys.executable)} -m pip install "{self.name}{self.least}"'
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 import copy
 import json
 import os
+import shlex
 import subprocess
 import sys
 import tomllib
@@ -225,6 +226,12 @@ def test_a_library_of_the_core_that_is_wanting_is_a_sentence(tmp_path, library, 
     distribution = {"skfem": "scikit-fem"}.get(library, library)
     install = f"{sys.executable} -m pip install --upgrade --force-reinstall {distribution}"
     assert done.stderr == f"cprbm: {said} (PLEASE READ THIS); this installs what is needed: {install}\n"
+
+
+def test_the_line_that_installs_is_one_for_a_shell(monkeypatch):
+    """A folder's name may have a space."""
+    monkeypatch.setattr(sys, "executable", "/home/ada/my own/python")
+    assert shlex.split(present.LIBRARIES[0].line)[0] == "/home/ada/my own/python"
 
 
 def test_the_doctor_can_be_asked_where_numpy_is_wanting(tmp_path):
