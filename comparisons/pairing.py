@@ -28,7 +28,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
+from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Protocol
 
@@ -37,6 +37,7 @@ from pydantic import ValidationError
 from comparisons.choices import KINEMATICS, Choices, Count, Kinematics, check
 from comparisons.listening import heard_from, listen
 from comparisons.nearby import nearby
+from comparisons.processes import AloneError, pool
 from scene import Answer, Mistake, RigidContact, Scene, SceneError, Spacing
 from scene.answer import Array
 from scene.frozendict import frozendict
@@ -332,23 +333,28 @@ ALONE = Crew()
 def crew_of(workers: int) -> Iterator[Crew]:
     """A crew of so many processes, which end with the context; one worker is this process itself.
 
-    They end at once if the context is left by an error, or this process by force.
+    They end at once if the context is left by an error, or this process by force.  Where the system lets none work
+    beside this one, this one does all of it.
     """
     if workers <= 1:
         yield ALONE
         return
-    context = get_context("spawn")
-    listening, held = context.Pipe(duplex=False)
-    pool = ProcessPoolExecutor(
-        workers, mp_context=context, initializer=_prepared_worker, initargs=(listening, heard_from())
-    )
+    listening, held = Pipe(duplex=False)
     try:
-        yield Crew(pool)
+        shared = pool(workers, _prepared_worker, listening, heard_from())
+    except AloneError as alone:
+        _SAYS.info("one process does all of the work: %s", alone)
+        listening.close()
+        held.close()
+        yield ALONE
+        return
+    try:
+        yield Crew(shared)
     except BaseException:
         held.close()  # what they still solve nobody waits for
         raise
     finally:
-        pool.shutdown(cancel_futures=True)
+        shared.shutdown(cancel_futures=True)
         held.close()
         listening.close()
 

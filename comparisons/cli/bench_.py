@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from comparisons.choices import KINEMATICS, Kinematics
+from comparisons.cli.completing import offered
 from comparisons.cli.options import count, counts, folder, output, timed
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ def _named(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -
 
 
 @click.command("bench")
-@click.argument("case", metavar="CASE|FILE.toml")
+@click.argument("case", metavar="CASE|FILE.toml", shell_complete=offered)
 @click.option(
     "--sizes",
     callback=counts,

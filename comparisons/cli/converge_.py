@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from comparisons.choices import Kinematics
+from comparisons.cli.completing import offered
 from comparisons.cli.options import family_sizes, folder, opinions, output, variants
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ NOT_COMPLETED = 1
 
 
 @click.command("converge")
-@click.argument("asked", nargs=-1, required=True, metavar="CASE|FILE.toml...|all")
+@click.argument("asked", nargs=-1, required=True, metavar="CASE|FILE.toml...|all", shell_complete=offered)
 @click.option("--solver", "asking_solid", callback=opinions, default="cprbm,fea", show_default=True, metavar="SOLVERS",
               help="Who answers: 'cprbm,fea', or 'cprbm,fea,solid' for what the beam theories miss.")  # fmt: skip
 @click.option(

@@ -135,15 +135,24 @@ def run(arguments: Sequence[str], solvers: Solvers | None = None) -> int:
     except BrokenPipeError:
         _give_up_output()
         return _said("Standard output was closed before everything was written.")
-    except Exception as error:
-        from comparisons.cli.troubles import told
+    except ImportError as error:
+        # what tells of other troubles loads libraries, of which the one that is wanting may be one
+        from comparisons.cli import wanting
 
-        _give_up_output()
-        trouble = told(error)
-        if trouble is None:
-            raise
-        return _said(*trouble)
+        return _in_trouble(error, wanting.told(error))
+    except Exception as error:
+        from comparisons.cli import troubles
+
+        return _in_trouble(error, troubles.told(error))
     return code if isinstance(code, int) else 0
+
+
+def _in_trouble(error: Exception, told: tuple[str, int] | None) -> int:
+    """Say what is told of an error; one of which nothing is told is ours, and raised again."""
+    _give_up_output()
+    if told is None:
+        raise error
+    return _said(*told)
 
 
 def _sentence(text: str) -> str:

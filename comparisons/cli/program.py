@@ -15,10 +15,21 @@ def main() -> None:
         signals.heed()
         _fill_gaps()
         os.environ.update(ONE_THREAD)  # before anything loads a BLAS; for the processes that share the work as well
-        from comparisons.cli.main import run
+        from comparisons.cli.completing import VARIABLE
+        from comparisons.cli.main import commands, run
 
+        if VARIABLE in os.environ:
+            commands.main(prog_name="cprbm", complete_var=VARIABLE)
         code = run(sys.argv[1:])
         signals.ignore()
+    except ImportError as error:  # of click, without which there is no command line at all
+        from comparisons.cli.wanting import told
+
+        trouble = told(error)
+        if trouble is None:
+            raise
+        sentence, code = trouble
+        _say(sentence)
     except KeyboardInterrupt as stop:  # as modules were loaded, or as another signal was being told of
         code = getattr(stop, "code", 130)
         _say(getattr(stop, "sentence", "Interrupted") + ".")

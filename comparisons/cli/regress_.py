@@ -7,13 +7,14 @@ from pathlib import Path
 
 import click
 
+from comparisons.cli.completing import offered
 from comparisons.cli.options import verbose
 
 DEPARTED = 1
 
 
 @click.command("regress")
-@click.argument("asked", metavar="CASE|all")
+@click.argument("asked", metavar="CASE|all", shell_complete=offered)
 @click.option("--accept", "reason", metavar="REASON", help="Make today's numbers the file's own, and say why.")
 @click.option("--date", "day", metavar="YYYY-MM-DD", help="The date of the reason; needed with --accept.")
 @click.option(

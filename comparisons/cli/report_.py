@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import click
 
 from comparisons.choices import Kinematics
+from comparisons.cli.completing import offered
 from comparisons.cli.options import family_sizes, folder, output, sized, variants
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ PARTS = ("convergence", "times")
 
 
 @click.command("report")
-@click.argument("asked", nargs=-1, metavar="[CASE|FILE.toml...|all]")
+@click.argument("asked", nargs=-1, metavar="[CASE|FILE.toml...|all]", shell_complete=offered)
 @sized
 @variants
 @click.option("--sizes", callback=family_sizes, metavar="N,N,...", default="10,20,40,80", show_default=True,

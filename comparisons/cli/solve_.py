@@ -10,11 +10,12 @@ import click
 
 from comparisons.choices import Kinematics
 from comparisons.cli.answering import SOLVERS, SolverName, answered, told
+from comparisons.cli.completing import offered
 from comparisons.cli.options import numerical, one_of_both, output
 
 
 @click.command("solve")
-@click.argument("case", metavar="CASE|FILE.toml")
+@click.argument("case", metavar="CASE|FILE.toml", shell_complete=offered)
 @click.option("--solver", type=click.Choice(SOLVERS), default="cprbm", show_default=True)
 @numerical
 @output

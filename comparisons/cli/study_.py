@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 import click
 
 from comparisons.cli.commands import Commands
+from comparisons.cli.completing import offered
 from comparisons.cli.options import count, folder, output, timed
 
 if TYPE_CHECKING:
@@ -136,7 +137,7 @@ def table1(
 
 
 @command.command("relations")
-@click.argument("scenes", nargs=-1, metavar="[CASE]...")
+@click.argument("scenes", nargs=-1, metavar="[CASE]...", shell_complete=offered)
 @click.option("-n", "links", callback=count, metavar="COUNT", default="20", show_default=True,
               help="CPRBM links per beam: one number or beam1=30,beam2=40.")  # fmt: skip
 @click.option("--elements", callback=count, metavar="COUNT", default="20", show_default=True,

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 from concurrent.futures.process import BrokenProcessPool
 from difflib import get_close_matches
 from pathlib import Path
 
+from comparisons.processes import AloneError
 from scene import Mistake, SceneError
 
 WRONG_QUESTION = 2
@@ -24,14 +24,10 @@ def told(error: Exception) -> tuple[str, int] | None:
                 "A process that was solving ended by force, perhaps for want of memory; what was finished stands.",
                 NOT_FINISHED,
             )
+        case AloneError():
+            return f"This machine has {error}.", WRONG_QUESTION
         case MemoryError():
             return "There is not enough memory for this; what was finished stands.", NOT_FINISHED
-        case ImportError() if _of_others(error.name):
-            return (
-                f"The library {error.name} cannot be loaded ({error}); this installs what is needed: "
-                f"{sys.executable} -m pip install --upgrade --force-reinstall {_distribution(error.name)}",
-                WRONG_QUESTION,
-            )
         case OSError():
             return f"Cannot write {error.filename or 'the output'}: {error.strerror or error}.", WRONG_QUESTION
     return None
@@ -47,19 +43,3 @@ def _told(mistake: Mistake) -> str:
     return (
         f"{mistake}; {meant}'cprbm new NAME' writes a scene to start from, 'cprbm list' names those that are built in"
     )
-
-
-def _of_others(module: str | None) -> bool:
-    return module is not None and module.partition(".")[0] not in (
-        "scene",
-        "cprbm",
-        "fea_reference",
-        "exact",
-        "comparisons",
-    )
-
-
-def _distribution(module: str | None) -> str:
-    """What the library of a module is called where it is installed from."""
-    top = (module or "").partition(".")[0]
-    return {"skfem": "scikit-fem"}.get(top, top)

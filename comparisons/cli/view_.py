@@ -11,6 +11,7 @@ import click
 
 from comparisons.choices import Kinematics
 from comparisons.cli.answering import SOLVERS, SolverName, answered, told
+from comparisons.cli.completing import offered
 from comparisons.cli.options import numerical, one_of_both, verbose
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ _QUANTITIES = ("bending_stress", "combined_stress", "moment")
 
 
 @click.command("view")
-@click.argument("case", metavar="CASE|FILE.toml")
+@click.argument("case", metavar="CASE|FILE.toml", shell_complete=offered)
 @click.option("--solver", type=click.Choice(SOLVERS), default="cprbm", show_default=True)
 @click.option("--out", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE",
               help="What to write; its name's end says what it is: .png, .svg; .gif, .apng (an animation through the "

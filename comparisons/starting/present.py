@@ -5,6 +5,7 @@ Each is imported in a process of its own: one that wants a library of the system
 
 from __future__ import annotations
 
+import shlex
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -31,7 +32,7 @@ class Library:
     @property
     def line(self) -> str:
         """What installs it for the Python that runs."""
-        return f'{sys.executable} -m pip install "{self.name}{self.least}"'
+        return f'{shlex.quote(sys.executable)} -m pip install "{self.name}{self.least}"'
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,12 +54,18 @@ LIBRARIES = (
     Library("scipy", "scipy.linalg", "linear algebra", ">=1.13"),
     Library("scikit-fem", "skfem", "the finite elements", ">=12.0,<13"),
     Library("pydantic", "pydantic", "reading scenes and settings", ">=2.9"),
-    Library("click", "click", "the command line", ">=8.1"),
+    Library("click", "click", "the command line", ">=8.2"),
     Library("rich", "rich", "tables and progress", ">=13.7"),
     Library("jinja2", "jinja2", "pages", ">=3.1"),
     Library("matplotlib", "matplotlib.figure", "figures", ">=3.9"),
     Library("casadi", "casadi", "IPOPT, an optimiser that 'bench' and 'study readings' compare with", ">=3.6", "peers"),
-    Library("threadpoolctl", "threadpoolctl", "one thread of BLAS where it is loaded before", ">=3.5", "threads"),
+    Library(
+        "threadpoolctl",
+        "threadpoolctl",
+        "linear algebra in one thread, where Python calls the solvers",
+        ">=3.5",
+        "threads",
+    ),
     Library("gmsh", "gmsh", "meshes of the solid by gmsh, and 'import' of geometry", ">=4.13", "solid"),
     Library("meshio", "meshio", "those meshes, and files for ParaView", ">=5.3", "solid"),
     Library("pyvista", "pyvista", "pictures in space by 'view'", ">=0.44", "view"),

@@ -8,14 +8,13 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from multiprocessing import get_context
 from typing import ParamSpec, TypeVar
 
 import numpy as np
 
+from comparisons.processes import AloneError, pool
 from comparisons.viewing.frames import COLOURS, TINY, Bounds, Coloured
 from comparisons.viewing.solids import Block
 from scene.answer import Array
@@ -60,13 +59,15 @@ def apart(draws: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
     """What a function ``draws`` in a process of its own.
 
     Raises:
-        DrawingError: the process was ended by force.
+        DrawingError: the process was ended by force, or there can be none.
     """
-    with ProcessPoolExecutor(1, mp_context=get_context("spawn"), initializer=_be_silent) as pool:
-        try:
-            return pool.submit(draws, *arguments, **named).result()
-        except BrokenProcessPool:
-            raise DrawingError("VTK ended as it began to draw") from None
+    try:
+        with pool(1, _be_silent) as beside:
+            return beside.submit(draws, *arguments, **named).result()
+    except AloneError as alone:
+        raise DrawingError(str(alone)) from None
+    except BrokenProcessPool:
+        raise DrawingError("VTK ended as it began to draw") from None
 
 
 def tried() -> str:

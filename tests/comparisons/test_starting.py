@@ -2,6 +2,9 @@
 
 import copy
 import json
+import os
+import shlex
+import subprocess
 import sys
 import tomllib
 from pathlib import Path
@@ -12,6 +15,7 @@ import pytest
 import cprbm
 from comparisons import cases
 from comparisons.cli.main import run
+from comparisons.pairing import ALONE, crew_of
 from comparisons.starting import present
 from comparisons.starting.begun import SCHEMA, text
 from scene import read
@@ -123,7 +127,57 @@ def test_a_library_that_wants_one_of_the_system_is_told_with_what_installs_it(tm
     monkeypatch.setattr(present, "LIBRARIES", (library,))
     monkeypatch.setattr(present, "version", lambda name: "4.0")
     assert run(["doctor"]) == 0
-    assert "what it wants: apt-get install --yes --no-install-recommends libgl1 libglu1-mesa" in capsys.readouterr().out
+    assert (
+        "what it wants, as root: apt-get install --yes --no-install-recommends libgl1 libglu1-mesa"
+        in capsys.readouterr().out
+    )
+
+
+@pytest.fixture
+def no_semaphores(monkeypatch):
+    """A machine whose ``/dev/shm`` nobody may write to: what Python says there."""
+
+    def refused(*given, **named):
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("multiprocessing.synchronize.SemLock.__init__", refused)
+
+
+def test_where_no_process_can_work_beside_this_one_it_does_all_of_the_work(no_semaphores, caplog):
+    with caplog.at_level("INFO", "comparisons"), crew_of(2) as crew:
+        assert crew == ALONE
+    assert "one process does all of the work: no processes beside this one ([Errno 13]" in caplog.text
+
+
+def test_the_doctor_says_whether_processes_can_share_the_work(no_semaphores, monkeypatch, capsys):
+    monkeypatch.setattr(present, "LIBRARIES", present.LIBRARIES[:1])
+    assert run(["doctor"]) == 0
+    assert "processes      one          does all of the work: no processes beside this one ([Errno 13]" in (
+        capsys.readouterr().out
+    )
+
+
+def test_what_needs_a_process_of_its_own_says_so_where_there_can_be_none(no_semaphores, tmp_path, capsys):
+    (tmp_path / "frame.geo").write_text("Point(1) = {0, 0, 0};", encoding="utf-8")
+    assert run(["import", str(tmp_path / "frame.geo"), "--thickness", "1", "--width", "9"]) == 2
+    assert "they need a writable /dev/shm" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("found", "said"),
+    [
+        ((), "Everything is there."),
+        (("casadi", "pyvista"), "reports need; casadi, pyvista: only for what stands beside the name."),
+        (("numpy", "casadi"), "Without what is missing above nothing works; the lines beside it install it."),
+    ],
+)
+def test_the_doctor_s_last_line_sums_up(found, said, monkeypatch, capsys):
+    states = [present.State(each, "" if each.name in found else "9.9", "") for each in present.LIBRARIES]
+    # whether VTK draws is tried where PyVista is there, and another test's concern
+    states = [each for each in states if each.library.name != "pyvista" or not each.there]
+    monkeypatch.setattr(present, "looked_for", lambda: iter(states))
+    assert run(["doctor"]) == ("numpy" in found)
+    assert capsys.readouterr().out.splitlines()[-1].endswith(said)
 
 
 def test_a_library_that_ends_the_process_is_no_end_of_the_doctor(tmp_path, monkeypatch):
@@ -146,3 +200,51 @@ def test_a_quiet_doctor_says_what_is_needed_and_missing_alone(monkeypatch, capsy
     assert run(["doctor", "--quiet"]) == 1
     (line,) = capsys.readouterr().out.splitlines()
     assert line.split()[:2] == [gone.name, "missing"]
+
+
+@pytest.mark.parametrize(
+    ("library", "asked", "said"),
+    [
+        ("click", ["doctor"], "The library click cannot be loaded"),
+        ("numpy", ["solve", "hinge"], "The library numpy cannot be loaded"),
+        ("pydantic", ["solve", "hinge"], "The library pydantic cannot be loaded"),
+        ("skfem", ["solve", "hinge", "--solver", "fea"], "The library skfem cannot be loaded"),
+    ],
+)
+def test_a_library_of_the_core_that_is_wanting_is_a_sentence(tmp_path, library, asked, said):
+    """It stands in the way of its own name, as NumPy's does where a library of the system is wanting."""
+    (tmp_path / f"{library}.py").write_text('raise ImportError("\\n\\nPLEASE READ THIS\\n\\nlong advice")\n', "utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "comparisons", *asked],
+        env=os.environ | {"PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert done.stdout == ""
+    distribution = {"skfem": "scikit-fem"}.get(library, library)
+    install = f"{sys.executable} -m pip install --upgrade --force-reinstall {distribution}"
+    assert done.stderr == f"cprbm: {said} (PLEASE READ THIS); this installs what is needed: {install}\n"
+
+
+def test_the_line_that_installs_is_one_for_a_shell(monkeypatch):
+    """A folder's name may have a space."""
+    monkeypatch.setattr(sys, "executable", "/somewhere/of my own/python")
+    assert shlex.split(present.LIBRARIES[0].line)[0] == "/somewhere/of my own/python"
+
+
+def test_the_doctor_can_be_asked_where_numpy_is_wanting(tmp_path):
+    (tmp_path / "numpy.py").write_text('raise ImportError("broken")\n', "utf-8")
+    done = subprocess.run(
+        [sys.executable, "-m", "comparisons", "doctor", "--quiet"],
+        env=os.environ | {"PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 1
+    numpy = done.stdout.splitlines()[0]
+    assert "cannot be imported (ImportError: broken); for every number; install it anew: " in numpy
+    assert numpy.endswith('-m pip install "numpy>=2.0" --force-reinstall')
+    assert done.stderr == ""

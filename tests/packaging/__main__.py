@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.packaging.made import ROOT, copied, sources, wheel
+from tests.packaging.made import ROOMS, ROOT, copied, sources, wheel
 
 MINORS = (11, 12, 13, 14)
 QUICK = (
@@ -39,6 +39,9 @@ QUICK = (
 )
 """Tests of every room that take minutes together, run under each Python with warnings as errors."""
 TEST_LIBRARIES = ("pytest", "hypothesis", "jsonschema")
+IMPORTED = f"import {', '.join(ROOMS)}; comparisons.compare, cprbm.answer, fea_reference.answer"
+"""All rooms, and what is loaded only as it is asked for; under ``-W error``, so that nothing is on its way out."""
+
 COMMANDS = (
     ("--version",),
     ("list",),
@@ -50,16 +53,23 @@ COMMANDS = (
     ("solve", "hinge", "--solver", "fea", "--quiet"),
     ("compare", "hinge", "--out", "report"),
 )
+WRONG = ((), ("nothing",), ("solve",), ("solve", "nothing"), ("new", "9"))
 
 
 @dataclass(frozen=True)
 class Tried:
-    """What was done, how it ended, after how many seconds, and what it said."""
+    """What was done, how it ended and should have, after how many seconds, and what it said."""
 
     what: str
     code: int
+    wanted: int
     seconds: float
     said: str
+
+    @property
+    def failed(self) -> bool:
+        """Whether it did not end as it should."""
+        return self.code != self.wanted
 
 
 def interpreters() -> list[Path]:
@@ -88,11 +98,11 @@ def tried(python: Path, made: Path, folder: Path, *, lowest: bool) -> Iterator[T
     environment |= {"MPLBACKEND": "Agg", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     binaries = folder / "venv" / "bin"
 
-    def do(*command: str | Path, cwd: Path = aside) -> Tried:
+    def do(*command: str | Path, cwd: Path = aside, wanted: int = 0) -> Tried:
         began = time.monotonic()
         run = subprocess.run(command, cwd=cwd, env=environment, capture_output=True, text=True, check=False)
         what = " ".join(Path(part).name if isinstance(part, Path) else part for part in command)
-        return Tried(what, run.returncode, time.monotonic() - began, run.stdout + run.stderr)
+        return Tried(what, run.returncode, wanted, time.monotonic() - began, run.stdout + run.stderr)
 
     yield do(python, "-m", "venv", folder / "venv")
     if lowest:
@@ -103,10 +113,16 @@ def tried(python: Path, made: Path, folder: Path, *, lowest: bool) -> Iterator[T
     for wanted in ((*how, str(made)), TEST_LIBRARIES):
         installed = do(*install, *wanted)
         yield installed
-        if installed.code:
+        if installed.failed:
             return
+    yield do(binaries / "python", "-m", "pip", "check")
+    yield do(binaries / "python", "-W", "error", "-c", IMPORTED)
     for command in COMMANDS:
         yield do(binaries / "cprbm", *command)
+    # a mistake is told in the words of click's errors, which its releases have not all had
+    for wrong in WRONG:
+        yield do(binaries / "cprbm", *wrong, wanted=2)
+    yield do(binaries / "python", "-m", "comparisons", "list")
     yield do(binaries / "python", "-m", "pytest", "-q", "-p", "no:cacheprovider", *QUICK, cwd=ROOT)
 
 
@@ -127,7 +143,7 @@ def main() -> int:
             sys.stdout.write(f"{python}\n")
             for one in tried(python, made, folder / str(number), lowest=asked.lowest):
                 sys.stdout.write(f"  {one.code:3d} {one.seconds:7.1f} s  {one.what[:100]}\n")
-                if one.code:
+                if one.failed:
                     failed = True
                     sys.stdout.write(f"{one.said[-6000:]}\n")
                 sys.stdout.flush()
