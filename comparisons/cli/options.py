@@ -128,7 +128,7 @@ def one_of_both(found: float | None) -> None:
         click.UsageError: it was.
     """
     source = click.get_current_context().get_parameter_source
-    for name, option in (("links", "-n"), ("elements", "--elements")):
+    for name, option in (("links", "-n"), ("elements", "--elements"), ("across", "--across")):
         if found is not None and source(name) is not ParameterSource.DEFAULT:
             raise click.UsageError(f"found --tol and {option}; allowed: one of them, for --tol finds N by itself.")
 
@@ -154,7 +154,7 @@ def numerical(command: Decorated) -> Decorated:
     standard = Choices()
     command = click.option("--tol", callback=tolerance, metavar="TOL",
                            help="Find the cheapest N whose own error estimate is within this, as 0.1% or 0.001, at "
-                           "every probe and station; in the place of -n and --elements.")(command)  # fmt: skip
+                           "all probes and stations; in the place of -n, --elements and --across.")(command)  # fmt: skip
     command = click.option("--penetration", callback=fraction, default=str(standard.penetration), show_default=True,
                            help="Overlap that the finite elements may leave, over the thickness.")(command)  # fmt: skip
     command = click.option("--across", callback=whole, default=str(standard.across), show_default=True,
