@@ -153,8 +153,8 @@ def numerical(command: Decorated) -> Decorated:
     """The options that make up :class:`comparisons.choices.Choices`, and the tolerance in the place of N."""
     standard = Choices()
     command = click.option("--tol", callback=tolerance, metavar="TOL",
-                           help="Find the cheapest N whose own error estimate is within this, as 0.1% or 0.001, at every "
-                           "probe and station; in place of -n, --elements, --across.")(command)  # fmt: skip
+                           help="Find the cheapest N whose own error estimate is within this, as 0.1% or 0.001, "
+                           "at every probe and station; in place of -n, --elements, --across.")(command)  # fmt: skip
     command = click.option("--penetration", callback=fraction, default=str(standard.penetration), show_default=True,
                            help="Overlap that the finite elements may leave, over the thickness.")(command)  # fmt: skip
     command = click.option("--across", callback=whole, default=str(standard.across), show_default=True,
