@@ -159,9 +159,9 @@ class AreaOfBeam:
         return np.append(parts.ravel(), e[-1])
 
     def misplaced(self, acting: Array) -> float:
-        """How far the places of the shape are from the line of nodes, m."""
+        """How far the places of the shape are from the line of nodes, or the beam's end from its length, m."""
         off = self.shape.x + 1j * self.shape.y - self.nodes[:, len(self.inside.across) // 2]
-        return float(np.max(np.abs(off)))
+        return float(max(np.max(np.abs(off)), abs(self.inside.along[-1] - self.rest.length)))
 
 
 def _quadratics(xi: Array) -> tuple[Array, Array]:

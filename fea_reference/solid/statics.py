@@ -62,7 +62,8 @@ def _area(march: March, beam: int) -> Area:
     x, y = np.stack([places[nodes] for nodes in lines], axis=1).transpose(2, 0, 1) * model.units.length
     along = mesh.u[lines[0]] * model.lengths[beam] * model.units.length
     at = model.units.origin
-    return Area(frozen_array(along), frozen_array(layers), frozen_array(x + at[0]), frozen_array(y + at[1]))
+    across = np.array([mesh.eta[nodes[0]] for nodes in lines])  # to the last digit
+    return Area(frozen_array(along), frozen_array(across), frozen_array(x + at[0]), frozen_array(y + at[1]))
 
 
 def _one(by: str, on: str, s: float, at: Array, force: Array, moment: float) -> _Acting:
