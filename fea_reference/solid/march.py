@@ -104,7 +104,7 @@ def reach(march: March, part: int, target: float, span: float) -> None:
         StoppedError: no equilibrium is found.
     """
     march.iterations = 0
-    why = ""
+    why, blocked = "", ""
     while True:
         here = float(march.values[part])
         left = target - here
@@ -113,6 +113,7 @@ def reach(march: March, part: int, target: float, span: float) -> None:
         step = left if abs(left) < _WHOLE * march.step else float(np.copysign(march.step, left))
         if abs(step) < _SMALLEST * span and abs(step) < abs(left):
             name, unit = march.model.stepped[part].name, march.model.stepped[part].unit
+            why += f"; in a longer step {blocked}" if blocked and blocked != why else ""
             raise StoppedError(
                 Ending.STEP_TOO_SMALL, f"beyond {name} = {here * unit:.6g} no equilibrium is found: {why}"
             )
@@ -122,7 +123,8 @@ def reach(march: March, part: int, target: float, span: float) -> None:
         found = march.look(values, march.system.z, march.penalties)
         through = "" if found.system is None else passed(march.model, march.penalties, march.system.z, found.system.z)
         if found.system is None or through:
-            why = f"a beam passes through what it may touch in {through}" if through else found.why
+            blocked = f"a beam passes through what it may touch in {through}" if through else blocked
+            why = blocked if through else found.why
             march.step = _CUT * abs(step)
             continue
         _note_closings(march, part, here, goal, found.system)

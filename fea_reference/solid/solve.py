@@ -16,6 +16,7 @@ from fea_reference.solid.model import build
 from fea_reference.solid.probes import probed, shapes, touching
 from fea_reference.solid.refusals import refuse
 from fea_reference.solid.settings import Settings
+from fea_reference.solid.statics import statics
 from scene.answer import Answer, Ending, Event, StationAnswer
 from scene.statement import Scene, Stage
 from scene.threads import one_thread
@@ -130,4 +131,5 @@ def _certified(scene: Scene, march: March, stage: Stage, station: float) -> Stat
         shapes=shapes(march),
         touching=touching(march),
         certificate=certificate,
+        statics=statics(scene, march),
     )
