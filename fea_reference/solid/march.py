@@ -18,9 +18,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fea_reference.solid.contacts import Pair
 from fea_reference.solid.model import Model
 from fea_reference.solid.newton import Found, equilibrium
+from fea_reference.solid.pairs import Pair
 from fea_reference.solid.passing import passed
 from fea_reference.solid.settings import Settings
 from fea_reference.solid.system import System, assemble

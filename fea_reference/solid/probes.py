@@ -7,6 +7,8 @@ import numpy as np
 from fea_reference.solid.beam_loads import AreaLoad
 from fea_reference.solid.contacts import Touch, closed
 from fea_reference.solid.march import March
+from fea_reference.solid.pairs import Tip
+from fea_reference.solid.skin import Skin
 from fea_reference.solid.stress import bending_and_membrane
 from fea_reference.solid.supports import Wrench, grounded, held, support
 from scene.answer import Array, Shape, frozen_array
@@ -84,10 +86,23 @@ def _touches(march: March, name: str) -> tuple[Touch, ...]:
     return found if force > _NOTHING * march.system.scale else ()
 
 
-def _arc_lengths(march: March, one: Touch, zeta: Array) -> Array:
-    """Arc lengths (k,), m, on the neutral line of the edge that is integrated over."""
-    skin = one.pair.skin
-    return skin.at(skin.u, zeta) * march.model.lengths[skin.beam] * march.model.units.length
+def _arc_lengths(march: March, one: Touch, zeta: Array, facing: Array) -> Array:
+    """Arc lengths (k,), m, on the neutral line of the edge that is integrated over; of a beam that touches itself those
+    of the earlier of both places, the other being at ``facing`` (k,).
+    """
+    skin, other = one.pair.skin, one.pair.other
+    u = skin.at(skin.u, zeta)
+    if one.pair.way:
+        partner = other if isinstance(other, Skin) else other.skin if isinstance(other, Tip) else skin
+        u = np.minimum(u, partner.at(partner.u, facing))
+    return u * march.model.lengths[skin.beam] * march.model.units.length
+
+
+def _ends_of(march: March, one: Touch) -> Array:
+    """Arc lengths of the ends of a pair's zones; of a beam that touches itself of the points next to them."""
+    if one.pair.way:
+        return _arc_lengths(march, one, one.zeta, one.facing)
+    return _arc_lengths(march, one, one.zones.zones.ravel(), np.empty(0))
 
 
 def _centre(scene: Scene, march: March, name: str) -> Array:
@@ -95,7 +110,7 @@ def _centre(scene: Scene, march: March, name: str) -> Array:
     if not found:
         return np.empty(0)
     weights = np.concatenate([np.hypot(*one.push.T) for one in found])
-    places = np.concatenate([_arc_lengths(march, one, one.zeta) for one in found])
+    places = np.concatenate([_arc_lengths(march, one, one.zeta, one.facing) for one in found])
     return np.array([weights @ places / weights.sum()])
 
 
@@ -103,7 +118,7 @@ def _ends(scene: Scene, march: March, name: str) -> Array:
     found = _touches(march, name)
     if not found:
         return np.empty(0)
-    places = np.concatenate([_arc_lengths(march, one, one.zones.zones.ravel()) for one in found])
+    places = np.concatenate([_ends_of(march, one) for one in found])
     return np.array([places.min(), places.max()])
 
 

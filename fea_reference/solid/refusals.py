@@ -7,7 +7,6 @@ from scene.mistakes import Mistake, SceneError
 from scene.statement import (
     BeamMoment,
     Scene,
-    SelfContact,
 )
 
 
@@ -22,9 +21,7 @@ def refuse(scene: Scene) -> None:
         if isinstance(load, BeamMoment):
             mistakes.append(Mistake(f"loads.{name}", "a moment on a beam", "for the solid, forces on beams"))
     for name, contact in scene.contacts.items():
-        if isinstance(contact, SelfContact):
-            mistakes.append(Mistake(f"contacts.{name}", repr(contact.kind), "for the solid, beams that touch others"))
-        elif not contact.thick:
+        if not contact.thick:
             mistakes.append(Mistake(f"contacts.{name}", "lines that touch", "for the solid, edges: thick = true"))
     if scene.assembly is not None:
         mistakes.append(Mistake("assembly", "ends drawn apart", "for the solid, beams drawn as they are joined"))

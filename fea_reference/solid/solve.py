@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from fea_reference.solid.certificates import certify
-from fea_reference.solid.contacts import pairs_of
 from fea_reference.solid.march import March, StoppedError, begin, leave_stage, reach
 from fea_reference.solid.meshing import chosen
 from fea_reference.solid.model import build
+from fea_reference.solid.pairs import pairs_of
 from fea_reference.solid.probes import probed, shapes, touching
 from fea_reference.solid.refusals import refuse
 from fea_reference.solid.settings import Settings

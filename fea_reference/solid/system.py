@@ -17,9 +17,10 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from fea_reference.solid.beam_loads import AreaLoad
 from fea_reference.solid.bodies import across, turned
-from fea_reference.solid.contacts import Foreseen, Pair, Touch, least_gap, touch
+from fea_reference.solid.contacts import Foreseen, Touch, least_gap, touch
 from fea_reference.solid.elements import Strained
 from fea_reference.solid.model import DrivePart, LoadPart, Model
+from fea_reference.solid.pairs import Pair
 from fea_reference.solid.stops import STIFFNESS
 from scene.answer import Array
 
