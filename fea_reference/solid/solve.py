@@ -6,8 +6,6 @@ import logging
 import time
 from dataclasses import dataclass
 
-import numpy as np
-
 from fea_reference.solid.certificates import certify
 from fea_reference.solid.march import March, StoppedError, begin, leave_stage, reach
 from fea_reference.solid.meshing import chosen
@@ -53,9 +51,8 @@ class Prepared:
                     leave_stage(march)
                     part = [one.name for one in model.stepped].index(stage.steps)
                     unit = model.stepped[part].unit
-                    span = float(np.ptp([march.values[part], *(station / unit for station in stage.stations)])) or 1.0
                     for station in stage.stations:
-                        reach(march, part, station / unit, span)
+                        reach(march, part, station / unit)
                         events += [
                             Event(stage.name, name, "closes", closing)
                             for name, closing in march.closing.items()
