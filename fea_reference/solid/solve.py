@@ -6,6 +6,7 @@ import logging
 import time
 from dataclasses import dataclass
 
+from fea_reference.solid.assembly import assemble_ends
 from fea_reference.solid.certificates import certify
 from fea_reference.solid.march import March, StoppedError, begin, leave_stage, reach
 from fea_reference.solid.meshing import chosen
@@ -38,19 +39,24 @@ class Prepared:
     notes: tuple[str, ...]
 
     def answer(self) -> Answer:
-        """March, and hand back what :func:`answer` does."""
+        """March, and hand back what :func:`answer` does.
+
+        Raises:
+            SceneError: a stop forbids the assembly.
+        """
         began = time.perf_counter()
-        scene, march, model = self.scene, self.march, self.march.model
+        scene, march = self.scene, self.march
         stations: list[StationAnswer] = []
         events: list[Event] = []
         ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
         with one_thread():
             try:
                 known: set[str] = set()
+                assemble_ends(scene, march)
                 for stage in scene.stages:
                     leave_stage(march)
-                    part = [one.name for one in model.stepped].index(stage.steps)
-                    unit = model.stepped[part].unit
+                    part = [one.name for one in march.model.stepped].index(stage.steps)
+                    unit = march.model.stepped[part].unit
                     for station in stage.stations:
                         reach(march, part, station / unit)
                         events += [
@@ -102,7 +108,8 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     An answer that ends early holds the stations reached before.
 
     Raises:
-        SceneError: the settings do not fit the scene, or the solid does not offer what it asks.
+        SceneError: the settings do not fit the scene, the solid does not offer what it asks, or a stop forbids the
+            assembly.
     """
     return prepared(scene, settings).answer()
 
