@@ -66,7 +66,7 @@ def _loose(model: Model) -> Model:
 
 
 def _caught(model: Model, z: Array) -> Model:
-    """The mechanism whose ends are held where they are in a state ``z`` in which they were free; the way stands at one."""
+    """The mechanism whose ends are held where they are in a state ``z`` in which they were free: the way is at one."""
     rows = tuple(replace(row, way=row.violation(model.bodies, z)) if row.point else row for row in model.rows)
     return replace(model, rows=rows)
 

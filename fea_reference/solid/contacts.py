@@ -240,6 +240,13 @@ def _place_of(tip: Tip, pointed: Skin) -> float:
     return pointed.nodes.size - 1.0 if tip.last else 0.0
 
 
+def _comes_back(pair: Pair, other: Skin, x: Array, y: Array, reach: float) -> bool:
+    """Whether of two edges of one beam, with nodes ``x`` and ``y`` (N, 2), any node of one is near one of the other."""
+    nodes = np.arange(float(pair.skin.nodes.size))
+    outward = pair.skin.outward(pair.skin.curve(x, nodes)[1])
+    return bool(facing.nearest(other, y, x, outward, reach, _beside(pair, nodes))[1].any())
+
+
 def _in_one_place(g: float, at: float) -> Zones:
     return Zones(np.full((2, 1 if g < 0.0 else 0), at), g, at)
 
@@ -305,6 +312,8 @@ def _gap(model: Model, pair: Pair, other: Skin | Shape, places: Array, z: Array)
         reach = _REACH * (skin.thickness + other.thickness) + apart
         low, high = x.min(axis=0) - reach, x.max(axis=0) + reach
         if np.any(y.min(axis=0) > high) or np.any(y.max(axis=0) < low):
+            return None
+        if pair.way and not _comes_back(pair, other, x, y, reach):
             return None
 
         def to_edge(zeta: Array) -> Array:

@@ -60,7 +60,7 @@ def gaps(skin: Skin, x: Array, points: Array, normals: Array, reach: float, own:
     points' ``own`` beam, the places beside a point look its way, and those across from it lie a thickness behind it: by
     that neither is near.
     """
-    node, near = _nearest(skin, x, points, normals, reach, own)
+    node, near = nearest(skin, x, points, normals, reach, own)
     gap, zeta, faced = np.full(len(points), np.inf), np.zeros(len(points)), np.zeros(len(points), dtype=bool)
     if not near.any():
         return Gaps(gap, zeta, faced)
@@ -88,7 +88,7 @@ def gaps(skin: Skin, x: Array, points: Array, normals: Array, reach: float, own:
     return Gaps(gap, zeta, faced)
 
 
-def _nearest(skin: Skin, x: Array, points: Array, normals: Array, reach: float, own: Own | None) -> tuple[Ints, Flags]:
+def nearest(skin: Skin, x: Array, points: Array, normals: Array, reach: float, own: Own | None) -> tuple[Ints, Flags]:
     """The node from which the nearest place is looked for (k,), and whether there is one (k,)."""
     if own is None:
         distance, node = cKDTree(x).query(points, distance_upper_bound=reach)
