@@ -1,7 +1,7 @@
 """Where a stress along a beam is compared, and where it is only shown.
 
-Next to a held end, to a contact in a point and to either end of a zone of contact the two methods spread a
-concentrated force over lengths of their own: over a link there, over an element and the contact's own width
+Next to a held end, to a moment on the beam, to a contact in a point and to either end of a zone of contact the methods
+spread what is concentrated over lengths of their own: over a link there, over an element and the contact's own width
 here.  By Saint-Venant's principle that is a matter of about one thickness, and so far these places take no part
 in the difference.  Inside a zone the pressure is spread over the beam, the stress is smooth, and it is compared.
 
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from comparisons.geometry import length, nearest, nearest_of_two_laps
 from scene import Scene, StationAnswer
 from scene.answer import Array
-from scene.statement import FreeEnd, SelfContact
+from scene.statement import BeamMoment, FreeEnd, SelfContact
 
 _STEPS_APART = 3.0
 """Largest distance of neighbours in a zone, in steps of the coarsest line that an answer draws of the beam."""
@@ -32,7 +32,7 @@ _NOWHERE = np.empty((0, 2))
 def clear_of_spots(
     scene: Scene, beam: str, arc_length: Array, stations: tuple[StationAnswer, ...]
 ) -> NDArray[np.bool_]:
-    """Which places (k,) of a beam lie at least one thickness from its held ends and from where contacts end.
+    """Which places (k,) of a beam lie at least one thickness from its held ends, from moments and where contacts end.
 
     Args:
         scene: the question.
@@ -46,6 +46,8 @@ def clear_of_spots(
         spots.append(0.0)
     if not isinstance(record.end, FreeEnd):
         spots.append(length(record.curve))
+    moments = [load for load in scene.loads.values() if isinstance(load, BeamMoment) and load.beam == beam]
+    spots += [load.at * length(record.curve) for load in moments]
     coarsest = max(float(np.max(np.diff(station.shapes[beam].s))) for station in stations)
     for name, contact in scene.contacts.items():
         if beam in contact.beams:

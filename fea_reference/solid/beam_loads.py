@@ -51,13 +51,13 @@ def on_area(
         at = (fence[:-1] + half + half * _POINTS[:, None]).ravel()
         own = arc_length(scene.beams[load.beam].curve) / length
         share, unit = (half * _WEIGHTS[:, None]).ravel() * own, force / length
-    nodes, values = _section(mesh, beam, at)
+    nodes, values = section(mesh, beam, at)
     weights = (values * share[:, None]).ravel()
     kept, place = np.unique(nodes.ravel(), return_inverse=True)
     return AreaLoad(name, kept, np.bincount(place, weights)[:, None] * direction, unit)
 
 
-def _section(mesh: Mesh, beam: int, u: Array) -> tuple[Ints, Array]:
+def section(mesh: Mesh, beam: int, u: Array) -> tuple[Ints, Array]:
     """Nodes (k, j) and shape functions' means over the thickness (k, j) at sections ``u`` (k,)."""
     layers = np.unique(np.round(mesh.eta[mesh.beams == beam], 9))
     lines = [mesh.line(beam, float(eta)) for eta in layers]

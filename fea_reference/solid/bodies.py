@@ -13,7 +13,8 @@ u       displacement of a node
 
 A welded end's whole face moves with the body, u = X + (R(φ) − I) r; a pinned end's face is rigid and turns about
 its middle, which moves with the body, u = X + (R(φ) − I) a + (R(ψ) − I) o with a from the centre to the pin.  Both are
-built into the unknowns: no node of a face has one of its own, and nothing of a tie can be violated.
+built into the unknowns: no node of a face has one of its own, and nothing of a tie can be violated.  The face of an end
+that is drawn apart from its point is a body of its own, which rows pin to that point once it is there.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from scene.answer import Array, Ints
+from scene.statement import Scene
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +71,11 @@ class Tie:
     pin: Array
     offsets: Array
     psi: int | None
+
+
+def is_own(tie: Tie, scene: Scene) -> bool:
+    """Whether a tie's body is the face alone, of an end that is drawn apart from its point."""
+    return tie.body >= len(scene.bodies)
 
 
 def turned(r: Array, phi: float) -> Array:

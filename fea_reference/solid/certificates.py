@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from fea_reference.solid.contacts import Pair, touch
+from fea_reference.solid.contacts import touch
 from fea_reference.solid.curvature import smallest_curvature
 from fea_reference.solid.march import March
+from fea_reference.solid.pairs import Butt, Pair
+from fea_reference.solid.rigid import seen
 from fea_reference.solid.skin import Skin
 from fea_reference.solid.stops import STIFFNESS
 from fea_reference.solid.supports import balance
@@ -23,7 +25,8 @@ def certify(march: March) -> Certificate:
     """Look at the state that the march has reached, summed up anew.
 
     Between two beams the gap is held at places of the first one's edge; the certificate looks from the second one's
-    as well, where an end's corner would show that presses on the first one's side.
+    as well, where an end's corner would show that presses on the first one's side.  Of an end against what is rigid
+    both corners are held; it looks at the face between them.
     """
     model, settings = march.model, march.settings
     march.system = assemble(model, march.penalties, settings.quadrature, march.values, march.system.z)
@@ -76,8 +79,19 @@ def certify(march: March) -> Certificate:
 
 def _other_way(march: March, pair: Pair) -> float:
     """Penetration of two edges as found from the other one, over the mean thickness."""
+    if isinstance(pair.other, Butt):
+        return _face(march, pair, pair.other)
     if not isinstance(pair.other, Skin):
         return 0.0
-    turned = Pair(pair.name, pair.other, pair.skin, -1, pair.measure)
+    turned = Pair(pair.name, pair.other, pair.skin, -1, pair.measure, -pair.way)
     system = march.system
     return touch(march.model, turned, 1.0, march.settings.quadrature, system.q, system.z).penetration / pair.measure
+
+
+def _face(march: March, pair: Pair, butt: Butt) -> float:
+    """Penetration of an end's face into what is rigid, over the thickness."""
+    model, system = march.model, march.system
+    nodes = model.mesh.face(pair.skin.beam, 1.0 if butt.last else 0.0)
+    places = (model.mesh.places + system.q.reshape(-1, 2))[nodes]
+    g, _, _ = butt.shape.measured(seen(model.bodies[pair.body], places, system.z))
+    return max(0.0, -float(g.min())) / pair.measure

@@ -9,9 +9,9 @@ p       pressure, ε max(−g, 0)
 w, ds   width, and length of the edge without stress
 ======  ===============================================================================
 
-The energy is ½ ∫ ε w g² ds over the places with g < 0; force and tangent are its derivatives.  A pair is every edge
-of the first beam with every one of the second, or with what is rigid.  A rigid corner that juts out presses in a point
-of the edge, with ε over an element's length there, and so does the corner of either beam's free end.
+The energy is ½ ∫ ε w g² ds over the places with g < 0; force and tangent are its derivatives.  A rigid corner that
+juts out presses in a point of the edge, with ε over an element's length there, and so does the corner of a beam's end,
+held or free: without it the end would be held by a wedge of its edge alone, that grows and shrinks with the depth.
 
 In the course of Newton's iterations the part ε w g ∂²g of the tangent takes the g that the last step foresaw: where an
 edge has gone too deep the pressure of that state, which is far too large, has no say in what is stable.  A corner that
@@ -22,53 +22,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
-from fea_reference.solid import edges, facing, pricking, rigid
-from fea_reference.solid.bodies import BodyPart, turned
+from fea_reference.solid import facing, pricking, rigid
+from fea_reference.solid.bodies import turned
 from fea_reference.solid.edges import Broken, Corner, Graph
 from fea_reference.solid.model import Model
-from fea_reference.solid.rigid import Half, Round, Shape
+from fea_reference.solid.pairs import Butt, Pair, Tip
+from fea_reference.solid.rigid import Shape
 from fea_reference.solid.skin import STENCIL, Skin
 from fea_reference.solid.zones import NOWHERE, Gap, Zones, least, zones
 from scene.answer import Array, Ints
-from scene.statement import BeamContact, CircleContact, FreeEnd, FunctionContact, HalfPlaneContact, LineContact, Scene
 
 _REACH = 1.0  # thicknesses that gaps are looked for in, and a few nodes
 _FLAT = -0.9  # cosine between a beam's normal and a side's: what leans more on an edge with corners is on a corner
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Pair:
-    """An edge that is integrated over, and what it may touch: another edge, or a shape on the body of a number, or a
-    corner of one.
-
-    ``name`` is the contact's; ``measure`` the mean thickness.
-    """
-
-    name: str
-    skin: Skin
-    other: Skin | Shape | Corner | Tip
-    body: int
-    measure: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Tip:
-    """The corner of a free end: the ``last`` or first place of an edge, that may press into the other one of a pair.
-
-    It is the pair's own edge if ``own``, and ``skin`` is what it may press into; else it is ``skin`` that has it.
-    """
-
-    skin: Skin
-    own: bool
-    last: bool
-
-    def roles(self, pair: Pair) -> tuple[Skin, Skin]:
-        """The edge that has the corner, and what it presses into."""
-        return (pair.skin, self.skin) if self.own else (self.skin, pair.skin)
 
 
 Foreseen = tuple[Array, Array]
@@ -116,82 +84,6 @@ class Touch:
         return max(0.0, -self.zones.least)
 
 
-def pairs_of(scene: Scene, model: Model) -> tuple[Pair, ...]:
-    """The pairs of a scene's contacts."""
-    found: list[Pair] = []
-    number = {body.name: i for i, body in enumerate(model.bodies)}
-    for name, contact in scene.contacts.items():
-        match contact:
-            case BeamContact():
-                one, other = (_skins(scene, model, beam) for beam in contact.between)
-                for a, b in product(one, other):
-                    tips = _tips(scene, contact, b)
-                    measure = 0.5 * (a.thickness + b.thickness)
-                    found += [Pair(name, a, b, -1, measure), *(Pair(name, a, tip, -1, measure) for tip in tips)]
-            case CircleContact() | HalfPlaneContact() | LineContact() | FunctionContact():
-                found += [
-                    Pair(name, skin, shape, number[contact.body], skin.thickness)
-                    for shape in _shapes(contact, model.bodies[number[contact.body]], model)
-                    for skin in _skins(scene, model, contact.beam)
-                ]
-    return tuple(found)
-
-
-def _tips(scene: Scene, contact: BeamContact, b: Skin) -> list[Tip]:
-    """The corners of both beams' free ends, for an edge of the second."""
-    return [
-        Tip(b, own, last)
-        for own, name in ((True, contact.between[0]), (False, contact.between[1]))
-        for last, end in ((False, scene.beams[name].start), (True, scene.beams[name].end))
-        if isinstance(end, FreeEnd)
-    ]
-
-
-def _skins(scene: Scene, model: Model, name: str) -> tuple[Skin, Skin]:
-    beam, i, mesh = scene.beams[name], model.mesh.names.index(name), model.mesh
-    E = scene.materials[beam.material].youngs_modulus * model.units.width * model.units.length / model.units.force
-    skins = []
-    for side in (1.0, -1.0):
-        nodes = mesh.line(i, side)
-        places = mesh.places[nodes]
-        apart = np.hypot(*np.diff(places, axis=0).T)
-        h = apart[0::2] + apart[1::2]  # of elements
-        u = mesh.u[nodes]
-        skins.append(
-            Skin(
-                i,
-                side,
-                nodes,
-                places,
-                u,
-                beam.width_at(u) / model.units.width,
-                beam.thinnest / model.units.length,
-                np.concatenate([np.repeat(E / h, 2), [E / h[-1]]]),
-            )
-        )
-    return skins[0], skins[1]
-
-
-def _shapes(
-    contact: CircleContact | HalfPlaneContact | LineContact | FunctionContact, body: BodyPart, model: Model
-) -> tuple[Shape | Corner, ...]:
-    """What is rigid, as its body sees it from its centre."""
-    unit = model.units.length
-    origin = model.units.origin + body.centre * unit
-    match contact:
-        case CircleContact():
-            return (Round((np.array(contact.center) - origin) / unit, contact.radius / unit),)
-        case HalfPlaneContact():
-            normal = np.array(contact.normal) / np.hypot(*contact.normal)
-            return (Half((np.array(contact.point) - origin) / unit, normal),)
-        case LineContact():
-            sides, corners = edges.broken(contact, origin, unit)
-            return (sides, *corners)
-        case FunctionContact():
-            bent, corners = edges.graph(contact, origin, unit)
-            return (bent, *corners)
-
-
 def touch(
     model: Model, pair: Pair, factor: float, quadrature: int, q: Array, z: Array, foreseen: Foreseen | None = None
 ) -> Touch:
@@ -212,6 +104,8 @@ def touch(
         return _pricked(model, pair, other, factor, places, z, foreseen)
     if isinstance(other, Tip):
         return _prodded(model, pair, other, factor, places, foreseen)
+    if isinstance(other, Butt):
+        return _butted(model, pair, other, factor, places, z, foreseen)
     x = places[skin.nodes]
     found = overlap(model, pair, places, z)
     zeta, weights = found.points(quadrature)
@@ -222,7 +116,8 @@ def touch(
     own = skin.nodes[nodes]
     dofs = np.stack([2 * own, 2 * own + 1], axis=2).reshape(-1, 2 * STENCIL)
     if isinstance(other, Skin):
-        there = facing.gaps(other, places[other.nodes], here, skin.outward(skin.curve(x, zeta)[1]), np.inf)
+        outward = skin.outward(skin.curve(x, zeta)[1])
+        there = facing.gaps(other, places[other.nodes], here, outward, np.inf, _beside(pair, zeta))
         opposite = there.zeta
         g, first, second = facing.variations(other, places[other.nodes], here, N, opposite)
         g = np.where(there.faced, g, 0.0)
@@ -278,7 +173,7 @@ def _prodded(model: Model, pair: Pair, tip: Tip, factor: float, places: Array, f
     g_least, zeta = _tip_gap(pair, tip, places)
     own, y = _place_of(tip, pointed), places[pressed.nodes]
     at = np.array([own if tip.own else zeta])
-    found = Zones(np.full((2, 1 if g_least < 0.0 else 0), at[0]), g_least, float(at[0]))
+    found = _in_one_place(g_least, float(at[0]))
     if not _holds(g_least, foreseen):
         return _open(pair, found)
     there = np.array([zeta])
@@ -292,10 +187,35 @@ def _prodded(model: Model, pair: Pair, tip: Tip, factor: float, places: Array, f
     gradient = (penalty * g)[:, None] * first
     hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
     on_corner = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
-    push = on_corner if tip.own else -on_corner
+    push = on_corner if tip.own and pair.way < 1 else -on_corner
     energy = 0.5 * float((penalty * g**2).sum())
     opposite = there if tip.own else np.array([own])
     return Touch(pair, found, at, opposite, here, push, dofs, gradient, hessian, g, first, energy)
+
+
+def _butted(
+    model: Model, pair: Pair, butt: Butt, factor: float, places: Array, z: Array, foreseen: Foreseen | None
+) -> Touch:
+    """The corner of an end and what is rigid, as of :func:`touch` with the nodes at ``places`` (N, 2)."""
+    skin, body = pair.skin, model.bodies[pair.body]
+    g_least, at = _butt_gap(model, pair, butt, places, z)
+    found = _in_one_place(g_least, at)
+    if not _holds(g_least, foreseen):
+        return _open(pair, found)
+    there = np.array([at])
+    numbers, N, _, _ = skin.shapes(there)
+    own = skin.nodes[numbers]
+    here = (N[:, None] @ places[own])[:, 0]
+    g, first, second = rigid.variations(butt.shape, body, here, N, z)
+    bent = g if foreseen is None else np.array([foreseen[1].min(initial=0.0)])
+    moved = 2 * len(places) + 3 * pair.body + np.arange(3)
+    dofs = np.concatenate([np.stack([2 * own, 2 * own + 1], axis=2).reshape(1, -1), moved[None]], axis=1)
+    penalty = factor * _in_a_point(skin, there)
+    gradient = (penalty * g)[:, None] * first
+    hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
+    push = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
+    energy = 0.5 * float((penalty * g**2).sum())
+    return Touch(pair, found, there, np.empty(0), here, push, dofs, gradient, hessian, g, first, energy)
 
 
 def _holds(g: float, foreseen: Foreseen | None) -> bool:
@@ -320,6 +240,29 @@ def _place_of(tip: Tip, pointed: Skin) -> float:
     return pointed.nodes.size - 1.0 if tip.last else 0.0
 
 
+def _comes_back(pair: Pair, other: Skin, x: Array, y: Array, reach: float) -> bool:
+    """Whether of two edges of one beam, with nodes ``x`` and ``y`` (N, 2), any node of one is near one of the other."""
+    nodes = np.arange(float(pair.skin.nodes.size))
+    outward = pair.skin.outward(pair.skin.curve(x, nodes)[1])
+    return bool(facing.nearest(other, y, x, outward, reach, _beside(pair, nodes))[1].any())
+
+
+def _in_one_place(g: float, at: float) -> Zones:
+    return Zones(np.full((2, 1 if g < 0.0 else 0), at), g, at)
+
+
+def _beside(pair: Pair, zeta: Array) -> facing.Own | None:
+    """Of an edge whose beam touches itself, where along the beam the points at ζ (k,) are."""
+    return None if pair.way == 0 else facing.Own(pair.skin.at(pair.skin.u, zeta), pair.way)
+
+
+def _butt_gap(model: Model, pair: Pair, butt: Butt, places: Array, z: Array) -> tuple[float, float]:
+    """g of the corner of an end, infinite where no side has it, and its ζ."""
+    at = pair.skin.nodes.size - 1 if butt.last else 0
+    there = rigid.seen(model.bodies[pair.body], places[pair.skin.nodes[[at]]], z)
+    return float(butt.shape.measured(there)[0][0]), float(at)
+
+
 def _tip_gap(pair: Pair, tip: Tip, places: Array) -> tuple[float, float]:
     """g of the corner of an end, infinite where nothing near faces it, and ζ of the other edge."""
     pointed, pressed = tip.roles(pair)
@@ -328,16 +271,15 @@ def _tip_gap(pair: Pair, tip: Tip, places: Array) -> tuple[float, float]:
     out = pointed.outward(slope) + (1.0 if tip.last else -1.0) * slope / np.hypot(*slope.T)[:, None]
     y = places[pressed.nodes]
     reach = _REACH * pressed.thickness + float(np.hypot(*np.diff(y, axis=0).T).max())
-    found = facing.gaps(pressed, y, here, out / np.sqrt(2.0), reach)
+    found = facing.gaps(pressed, y, here, out / np.sqrt(2.0), reach, _beside(pair, at))
     return float(found.gap[0]), float(found.zeta[0])
 
 
 def overlap(model: Model, pair: Pair, places: Array, z: Array) -> Zones:
     """Where a pair overlaps, with the nodes at ``places`` (N, 2)."""
     if isinstance(pair.other, Corner):
-        g, at = _corner_gap(model, pair, pair.other, places, z)
-        return Zones(np.full((2, 1 if g < 0.0 else 0), at), g, at)
-    assert not isinstance(pair.other, Tip)  # which has no extent
+        return _in_one_place(*_corner_gap(model, pair, pair.other, places, z))
+    assert not isinstance(pair.other, Tip | Butt)  # which have no extent
     gap = _gap(model, pair, pair.other, places, z)
     return NOWHERE if gap is None else zones(gap, pair.skin.nodes.size)
 
@@ -348,6 +290,8 @@ def least_gap(model: Model, pair: Pair, places: Array, z: Array) -> float:
         return _corner_gap(model, pair, pair.other, places, z)[0]
     if isinstance(pair.other, Tip):
         return _tip_gap(pair, pair.other, places)[0]
+    if isinstance(pair.other, Butt):
+        return _butt_gap(model, pair, pair.other, places, z)[0]
     gap = _gap(model, pair, pair.other, places, z)
     return np.inf if gap is None else least(gap, pair.skin.nodes.size)
 
@@ -369,10 +313,12 @@ def _gap(model: Model, pair: Pair, other: Skin | Shape, places: Array, z: Array)
         low, high = x.min(axis=0) - reach, x.max(axis=0) + reach
         if np.any(y.min(axis=0) > high) or np.any(y.max(axis=0) < low):
             return None
+        if pair.way and not _comes_back(pair, other, x, y, reach):
+            return None
 
         def to_edge(zeta: Array) -> Array:
             here, slope, _ = skin.curve(x, zeta)
-            return facing.gaps(other, y, here, skin.outward(slope), reach).gap
+            return facing.gaps(other, y, here, skin.outward(slope), reach, _beside(pair, zeta)).gap
 
         return to_edge
     flat = _FLAT if isinstance(other, Broken | Graph) else 0.0

@@ -10,7 +10,8 @@ h, H    ∂g/∂ξ, the side's normal, and ∂²g/∂ξ² = κ/(1 + κ g) τ τ�
 ======  ========================================================================================
 
 A point counts for the side behind which it lies least deep.  What is rigid ends where its edge does and goes straight
-back from there, by two more sides.  In front of a corner that juts out no side has the point: there the corner itself
+back from there, by two more sides, which go on without end but to where they meet each other, in a corner, or come to
+the edge from behind.  In front of a corner that juts out no side has the point: there the corner itself
 is held against the smooth edge of the beam, see :mod:`fea_reference.solid.pricking`.
 """
 
@@ -26,6 +27,7 @@ from scene.statement import FunctionContact, LineContact
 
 _SAMPLES = 257  # of a graph, from which the nearest place is sought
 _NEWTON_STEPS = 20
+_SAME = 1e-12  # of a length: a place on a side, or where that begins
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,7 +125,7 @@ def broken(contact: LineContact, origin: Array, unit: float) -> tuple[Broken, tu
     first, low, high = points[:-1], np.zeros_like(length), length
     if contact.closed:
         return Broken(first, tangent, low, high), corners(first, np.roll(tangent, 1, axis=0), tangent)
-    back = ends(points[[0, -1]], tangent[[0, -1]])
+    back, meeting = ends(points, tangent[[0, -1]])
     before = np.vstack([back.tangent[:1], tangent])
     behind = np.vstack([tangent, back.tangent[1:]])
     return (
@@ -133,7 +135,7 @@ def broken(contact: LineContact, origin: Array, unit: float) -> tuple[Broken, tu
             np.concatenate([low, back.low]),
             np.concatenate([high, back.high]),
         ),
-        corners(points, before, behind),
+        (*corners(points, before, behind), *meeting),
     )
 
 
@@ -146,15 +148,40 @@ def graph(contact: FunctionContact, origin: Array, unit: float) -> tuple[Graph, 
     forwards = (contact.side == "above") != across
     bare = Graph(f, (low, high), across, forwards, Broken(*np.empty((2, 0, 2)), *np.empty((2, 0))))
     points, tangent, _ = bare.at(np.array([low, high] if forwards else [high, low]))
-    back = ends(points, tangent)
+    along, _, _ = bare.at(np.linspace(*((low, high) if forwards else (high, low)), _SAMPLES))
+    back, meeting = ends(along, tangent)
     before, behind = np.stack([back.tangent[0], tangent[1]]), np.stack([tangent[0], back.tangent[1]])
-    return Graph(f, (low, high), across, forwards, back), corners(points, before, behind)
+    return Graph(f, (low, high), across, forwards, back), (*corners(points, before, behind), *meeting)
 
 
-def ends(points: Array, tangents: Array) -> Broken:
-    """The sides straight back from the first and the last of ``points`` (2, 2) with ``tangents`` (2, 2) there."""
-    out = left(tangents)
-    return Broken(points, np.stack([out[0], -out[1]]), np.array([-np.inf, 0.0]), np.array([0.0, np.inf]))
+def ends(points: Array, tangents: Array) -> tuple[Broken, tuple[Corner, ...]]:
+    """The sides straight back from the first and the last of ``points`` (k, 2) with ``tangents`` (2, 2) there, and the
+    corner in which they meet, if they do.
+    """
+    out, both, pieces = left(tangents), points[[0, -1]], np.diff(points, axis=0)
+    far = np.full(2, np.inf)
+    for i in (0, 1):
+        share, along = _crossing(both[i], -out[i], points[:-1], pieces)
+        far[i] = share[(share > _SAME) & (along >= 0.0) & (along <= 1.0)].min(initial=np.inf)
+    (one,), (other,) = _crossing(both[0], -out[0], both[1:], -out[1:])
+    meet = _SAME < one < far[0] and _SAME < other < far[1]
+    if meet:
+        far = np.array([one, other])
+    back = Broken(both, np.stack([out[0], -out[1]]), np.array([-far[0], 0.0]), np.array([0.0, far[1]]))
+    meeting = both[1:] - far[1] * out[1:]
+    return back, corners(meeting, back.tangent[1:], back.tangent[:1]) if meet else ()
+
+
+def _crossing(place: Array, way: Array, places: Array, ways: Array) -> tuple[Array, Array]:
+    """How many ``way`` (2,) from a ``place`` (2,) other straight lines are, and how many of their ``ways`` (k, 2) from
+    their ``places`` (k, 2) that is; infinite where they are parallel.
+    """
+    across = way[0] * ways[:, 1] - way[1] * ways[:, 0]
+    parallel = np.abs(across) <= _SAME * np.hypot(*ways.T)
+    x, y = (places - place).T
+    shares = (x * ways[:, 1] - y * ways[:, 0], x * way[1] - y * way[0])
+    far, along = (np.where(parallel, np.inf, share / np.where(parallel, 1.0, across)) for share in shares)
+    return far, along
 
 
 def corners(points: Array, before: Array, behind: Array) -> tuple[Corner, ...]:

@@ -27,7 +27,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from fea_reference.solid.skin import Skin
-from scene.answer import Array, Flags
+from scene.answer import Array, Flags, Ints
 
 _ITERATIONS = 12
 _ARRIVED = 1e-12  # of a node's distance
@@ -43,13 +43,24 @@ class Gaps:
     faced: Flags
 
 
-def gaps(skin: Skin, x: Array, points: Array, normals: Array, reach: float) -> Gaps:
+@dataclass(frozen=True, slots=True)
+class Own:
+    """Of points of the same beam their fractions ``u`` (k,) of its arc length, and the ``way``: −1 where partners are
+    looked for that are earlier, 1 for later ones.
+    """
+
+    u: Array
+    way: int
+
+
+def gaps(skin: Skin, x: Array, points: Array, normals: Array, reach: float, own: Own | None = None) -> Gaps:
     """How far ``points`` (k, 2) with outward ``normals`` (k, 2) are from an edge with nodes ``x`` (N, 2).
 
-    Farther than ``reach`` nothing is looked for, nor deeper than half of the thickness.
+    Farther than ``reach`` nothing is looked for, nor deeper than half of the thickness.  Of edges of the
+    points' ``own`` beam, the places beside a point look its way, and those across from it lie a thickness behind it: by
+    that neither is near.
     """
-    distance, node = cKDTree(x).query(points, distance_upper_bound=reach)
-    near = np.isfinite(distance)
+    node, near = nearest(skin, x, points, normals, reach, own)
     gap, zeta, faced = np.full(len(points), np.inf), np.zeros(len(points)), np.zeros(len(points), dtype=bool)
     if not near.any():
         return Gaps(gap, zeta, faced)
@@ -75,6 +86,20 @@ def gaps(skin: Skin, x: Array, points: Array, normals: Array, reach: float) -> G
     gap[near] = np.where(facing, found, np.inf)
     zeta[near], faced[near] = place, facing
     return Gaps(gap, zeta, faced)
+
+
+def nearest(skin: Skin, x: Array, points: Array, normals: Array, reach: float, own: Own | None) -> tuple[Ints, Flags]:
+    """The node from which the nearest place is looked for (k,), and whether there is one (k,)."""
+    if own is None:
+        distance, node = cKDTree(x).query(points, distance_upper_bound=reach)
+        return node, np.isfinite(distance)
+    n = skin.outward(skin.curve(x, np.arange(float(skin.nodes.size)))[1])
+    away = points[:, None] - x
+    distance = np.hypot(away[..., 0], away[..., 1])
+    meets = (normals @ n.T < _OPPOSED) & ((away * n).sum(axis=2) > -0.5 * skin.thickness) & (distance < reach)
+    meets &= own.way * (skin.u - own.u[:, None]) > 0.0
+    distance = np.where(meets, distance, np.inf)
+    return distance.argmin(axis=1), meets.any(axis=1)
 
 
 def variations(skin: Skin, x: Array, points: Array, shapes: Array, zeta: Array) -> tuple[Array, Array, Array]:

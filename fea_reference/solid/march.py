@@ -10,6 +10,11 @@ z(λ)    equilibrium
 A step begins at the last equilibrium, whose tangent is the first iteration's, and ends in another, or is cut; an
 easy one is doubled.  (The line through the last two equilibria is no better a beginning: along it what turns is
 stretched.)  Where a contact closes on the way, the λ at which its gap vanishes is looked for between open states.
+
+Where beams are slender, a penalty by their Young's modulus holds an edge to a millionth of the depth that is asked, and
+Newton's iterations find no way along which such a contact travels, opens or goes from an end's corner to the edge
+beside it.  A step that fails therefore leaves the march with looser penalties, as long as what they leave is no deeper
+than asked; at a station they are brought back to what they were.
 """
 
 from __future__ import annotations
@@ -18,20 +23,24 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from fea_reference.solid.contacts import Pair
 from fea_reference.solid.model import Model
 from fea_reference.solid.newton import Found, equilibrium
+from fea_reference.solid.pairs import Pair
 from fea_reference.solid.passing import passed
 from fea_reference.solid.settings import Settings
 from fea_reference.solid.system import System, assemble
 from scene.answer import Array, Ending
 
-_SMALLEST = 1.0 / 4096.0  # of a stage's span
+_CUTS = 10  # in a row: from an equilibrium no step is found that is a millionth of the one by which it was reached
 _EASY = 9  # iterations in which a step that may be doubled arrives
 _CUT = 0.3  # of a step that was too long
 _WHOLE = 1.01  # of a step: what is left goes with it
 _STIFFER = 4.0
 _STIFFEST = 1e4  # of the factor at first
+_LOOSER = 0.1
+_LOOSEST = 1e-4  # of the factors asked
+_TIGHTER = 10.0
+_GENTLY = 1.2
 _CLOSING = 1e-9  # gap at which a contact is found closed, of the longest beam
 _SAME = 1e-12  # of a step: two values that are one
 _LOOKS = 60
@@ -54,7 +63,7 @@ class March:
     Attributes:
         model: the mechanism.
         settings: how.
-        penalties: ρ by pair.
+        penalties: ρ by pair, on the way; ``asked`` are those of a station.
         values: of all that is stepped, no units.
         system: the equilibrium reached.
         closing: by contact, the value (SI) at which it first closed.
@@ -65,6 +74,7 @@ class March:
     model: Model
     settings: Settings
     penalties: dict[Pair, float]
+    asked: dict[Pair, float]
     values: Array
     system: System
     closing: dict[str, float] = field(default_factory=dict)
@@ -83,6 +93,12 @@ class March:
             raise StoppedError(Ending.STEP_TOO_SMALL, f"{self.settings.iteration_limit} iterations were not enough")
         return found
 
+    def loosen(self) -> None:
+        """Make penalties looser, if they are not yet as loose as may be."""
+        self.penalties = {
+            pair: max(_LOOSER * rho, min(rho, _LOOSEST * self.asked[pair])) for pair, rho in self.penalties.items()
+        }
+
 
 def begin(model: Model, settings: Settings, pairs: tuple[Pair, ...]) -> March:
     """At rest."""
@@ -92,26 +108,30 @@ def begin(model: Model, settings: Settings, pairs: tuple[Pair, ...]) -> March:
         model,
         settings,
         penalties,
+        penalties,
         values,
         assemble(model, penalties, settings.quadrature, values, np.zeros(model.size)),
     )
 
 
-def reach(march: March, part: int, target: float, span: float) -> None:
-    """Step the value of a number ``part`` to a ``target``, both without units; a stage goes over ``span`` in all.
+def reach(march: March, part: int, target: float) -> None:
+    """Step the value of a number ``part`` to a ``target``, both without units.
+
+    How short a step may be is no share of what a stage asks: that would end a solve by where its stations lie.  As with
+    the beams a step is cut so often in a row, and the station's iterations are counted.
 
     Raises:
         StoppedError: no equilibrium is found.
     """
     march.iterations = 0
-    why, blocked = "", ""
+    why, blocked, cuts = "", "", 0
     while True:
         here = float(march.values[part])
         left = target - here
         if left == 0.0:
             break
         step = left if abs(left) < _WHOLE * march.step else float(np.copysign(march.step, left))
-        if abs(step) < _SMALLEST * span and abs(step) < abs(left):
+        if cuts > _CUTS or here + step == here:
             name, unit = march.model.stepped[part].name, march.model.stepped[part].unit
             why += f"; in a longer step {blocked}" if blocked and blocked != why else ""
             raise StoppedError(
@@ -125,11 +145,16 @@ def reach(march: March, part: int, target: float, span: float) -> None:
         if found.system is None or through:
             blocked = f"a beam passes through what it may touch in {through}" if through else blocked
             why = blocked if through else found.why
-            march.step = _CUT * abs(step)
+            march.step, cuts = _CUT * abs(step), cuts + 1
+            march.loosen()
             continue
+        cuts = 0
         _note_closings(march, part, here, goal, found.system)
         march.values, march.system = values, found.system
         march.step *= 2.0 if found.iterations <= _EASY else 1.0
+        if march.penalties is not march.asked:
+            _tighten(march)
+    _fasten(march)
     _tighten(march)
     _polish(march)
 
@@ -167,6 +192,26 @@ def _tighten(march: March) -> None:
         if found.system is None:
             raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact cannot be made as stiff as asked: {found.why}")
         march.penalties, march.system = penalties, found.system
+        march.asked = {pair: max(rho, penalties[pair]) for pair, rho in march.asked.items()}
+
+
+def _fasten(march: March) -> None:
+    """Bring penalties back to those that are asked, by smaller factors where a large one leads nowhere.
+
+    Raises:
+        StoppedError: none does.
+    """
+    factor = _TIGHTER
+    while march.penalties != march.asked:
+        penalties = {pair: min(factor * rho, march.asked[pair]) for pair, rho in march.penalties.items()}
+        found = march.look(march.values, march.system.z, penalties)
+        if found.system is not None:
+            march.penalties, march.system = penalties, found.system
+            continue
+        factor = float(np.sqrt(factor))
+        if factor < _GENTLY:
+            raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact cannot be made as stiff as asked: {found.why}")
+    march.penalties = march.asked
 
 
 def _note_closings(march: March, part: int, here: float, goal: float, there: System) -> None:

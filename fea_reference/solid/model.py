@@ -15,16 +15,19 @@ from scipy.sparse import csr_matrix
 
 from fea_reference.solid.areas import longest
 from fea_reference.solid.beam_loads import AreaLoad, on_area
-from fea_reference.solid.bodies import BodyPart, Tie, across, displaced, turned
+from fea_reference.solid.beam_moments import CouplePart, couple
+from fea_reference.solid.bodies import BodyPart, Tie, across, displaced, is_own, turned
 from fea_reference.solid.elements import Elements, Strained, built, plane_stress, strained
 from fea_reference.solid.mesh import Mesh, Rectangle, meshed, plain_rectangle
-from fea_reference.solid.rows import Row, rows_of
+from fea_reference.solid.rows import Row, brought, rows_of
 from fea_reference.solid.settings import Settings
 from fea_reference.solid.stops import StopPart, stops_of
 from scene.answer import Array, Ints
+from scene.check_shapes import is_apart
 from scene.geometry import arc_length
 from scene.statement import (
     BeamForce,
+    BeamMoment,
     DisplacementDrive,
     DistributedLoad,
     Force,
@@ -75,6 +78,20 @@ class DrivePart:
 
 
 @dataclass(frozen=True, slots=True)
+class SharePart:
+    """The share of the assembly's moments: ``moments`` (k,) of value one by the unknowns ``dofs`` (k,), rotations."""
+
+    dofs: Ints
+    moments: Array
+    name: str = "share of the assembly's moments"
+    unit: float = 1.0
+
+
+WAY = DrivePart("share of the way of ends to their points", 1.0)
+"""What steps the rows of ends that are assembled."""
+
+
+@dataclass(frozen=True, slots=True)
 class Model:
     """Everything the mechanics needs to know of a scene.
 
@@ -88,14 +105,19 @@ class Model:
     bodies: tuple[BodyPart, ...]
     ties: tuple[Tie, ...]
     rows: tuple[Row, ...]
-    loads: tuple[LoadPart | AreaLoad, ...]
+    loads: tuple[LoadPart | AreaLoad | CouplePart | SharePart, ...]
     drives: tuple[DrivePart, ...]
     stops: tuple[StopPart, ...]
     free: Ints
     size: int
 
     @property
-    def stepped(self) -> tuple[LoadPart | AreaLoad | DrivePart, ...]:
+    def apart(self) -> tuple[Row, ...]:
+        """The rows of ends that are drawn apart from their points, the last ones."""
+        return tuple(row for row in self.rows if row.point)
+
+    @property
+    def stepped(self) -> tuple[LoadPart | AreaLoad | CouplePart | SharePart | DrivePart, ...]:
         """What has a value that is stepped, in the order of the values: loads, drives."""
         return (*self.loads, *self.drives)
 
@@ -188,9 +210,10 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
     free = np.flatnonzero(~np.repeat(held, 2))
     size = free.size
     psis: list[int | None] = []
-    for _, _, end, _ in joints:
-        psis.append(size if isinstance(end, PinnedEnd) else None)
-        size += isinstance(end, PinnedEnd)
+    for i, which, end, _ in joints:
+        turns = isinstance(end, PinnedEnd) and not (which == "end" and is_apart(scene, beams[i]))
+        psis.append(size if turns else None)
+        size += turns
     bodies = []
     for name, body in scene.bodies.items():
         points = {key: (np.array(at) - units.origin) / length for key, at in body.points.items()}
@@ -203,8 +226,13 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
     for (i, which, end, nodes), psi in zip(joints, psis, strict=True):
         b = number[scene.body_of(end.point)]
         middle = 0.5 * (mesh.places[nodes[0]] + mesh.places[nodes[-1]])
+        if which == "end" and is_apart(scene, beams[i]):  # its face is a body of its own until it is where it belongs
+            b = len(bodies)
+            bodies.append(BodyPart(f"end of {mesh.names[i]}", middle, {}, np.arange(size, size + 3)))
+            size += 3
         ties.append(Tie(i, which, end.point, b, nodes, middle - bodies[b].centre, mesh.places[nodes] - middle, psi))
     rows = rows_of(scene, tuple(bodies), size)
+    rows += brought(scene, ties, tuple(bodies), number, size + len(rows), WAY.name)
     return Model(
         units,
         mesh,
@@ -213,10 +241,13 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
         tuple(bodies),
         tuple(ties),
         rows,
-        tuple(_loads(scene, mesh, bodies, number, units)),
-        tuple(
-            DrivePart(name, units.length if isinstance(drive, DisplacementDrive) else 1.0)
-            for name, drive in scene.drives.items()
+        (*_loads(scene, mesh, bodies, number, units), *_shares(scene, mesh, ties, bodies, units)),
+        (
+            *(
+                DrivePart(name, units.length if isinstance(drive, DisplacementDrive) else 1.0)
+                for name, drive in scene.drives.items()
+            ),
+            *([WAY] if any(row.point for row in rows) else []),
         ),
         stops_of(scene, bodies, ties),
         free,
@@ -226,8 +257,8 @@ def build(scene: Scene, settings: Settings, rectangle: Rectangle = plain_rectang
 
 def _loads(
     scene: Scene, mesh: Mesh, bodies: Sequence[BodyPart], number: dict[str, int], units: Units
-) -> list[LoadPart | AreaLoad]:
-    found: list[LoadPart | AreaLoad] = []
+) -> list[LoadPart | AreaLoad | CouplePart]:
+    found: list[LoadPart | AreaLoad | CouplePart] = []
     for name, load in scene.loads.items():
         match load:
             case Moment():
@@ -238,4 +269,17 @@ def _loads(
                 found.append(LoadPart(name, b, bodies[b].arm(load.point), direction, units.force))
             case BeamForce() | DistributedLoad():
                 found.append(on_area(name, load, scene, mesh, units.force, units.length))
+            case BeamMoment():
+                from_end = isinstance(scene.beams[load.beam].start, FreeEnd)
+                found.append(couple(name, load, mesh, units.moment, from_end=from_end))
     return found
+
+
+def _shares(scene: Scene, mesh: Mesh, ties: Sequence[Tie], bodies: Sequence[BodyPart], units: Units) -> list[SharePart]:
+    """The share of the assembly's moments, if there is an assembly."""
+    if scene.assembly is None:
+        return []
+    on = [tie for tie in ties if is_own(tie, scene) and mesh.names[tie.beam] in scene.assembly.moments]
+    dofs = [int(dofs[2]) for tie in on if (dofs := bodies[tie.body].dofs) is not None]
+    moments = [scene.assembly.moments[mesh.names[tie.beam]] / units.moment for tie in on]
+    return [SharePart(np.array(dofs, dtype=np.intp), np.array(moments))]

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea_reference.solid.contacts import Pair
 from fea_reference.solid.model import Model
+from fea_reference.solid.pairs import Pair
 from fea_reference.solid.settings import Settings
 from fea_reference.solid.system import Outlook, System, assemble, deepest
 from scene.answer import Array

@@ -14,9 +14,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from fea_reference.solid.contacts import Pair
 from fea_reference.solid.edges import Corner
 from fea_reference.solid.model import Model
+from fea_reference.solid.pairs import Pair
 from fea_reference.solid.rigid import Round, seen
 from fea_reference.solid.skin import Skin
 from scene.answer import Array

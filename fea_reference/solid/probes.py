@@ -5,10 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from fea_reference.solid.beam_loads import AreaLoad
+from fea_reference.solid.beam_moments import CouplePart
 from fea_reference.solid.contacts import Touch, closed
 from fea_reference.solid.march import March
+from fea_reference.solid.model import SharePart
+from fea_reference.solid.pairs import Tip
+from fea_reference.solid.skin import Skin
 from fea_reference.solid.stress import bending_and_membrane
-from fea_reference.solid.supports import Wrench, grounded, held, support
+from fea_reference.solid.supports import Wrench, cross, grounded, held, place, support
 from scene.answer import Array, Shape, frozen_array
 from scene.statement import DisplacementDrive, Probe, Scene, TurningBody
 
@@ -52,6 +56,8 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
         case "angle":
             return frozen_array(next(stop for stop in model.stops if stop.name == probe.of).angle(z))
         case "moment":
+            if probe.of in scene.contacts:
+                return frozen_array(abs(_about_its_pin(scene, march, probe.of)) * units.moment)
             return frozen_array(next(stop for stop in model.stops if stop.name == probe.of).moment(z) * units.moment)
 
 
@@ -84,10 +90,42 @@ def _touches(march: March, name: str) -> tuple[Touch, ...]:
     return found if force > _NOTHING * march.system.scale else ()
 
 
-def _arc_lengths(march: March, one: Touch, zeta: Array) -> Array:
-    """Arc lengths (k,), m, on the neutral line of the edge that is integrated over."""
-    skin = one.pair.skin
-    return skin.at(skin.u, zeta) * march.model.lengths[skin.beam] * march.model.units.length
+def _arc_lengths(march: March, one: Touch, zeta: Array, facing: Array) -> Array:
+    """Arc lengths (k,), m, on the neutral line of the edge that is integrated over; of a beam that touches itself those
+    of the earlier of both places, the other being at ``facing`` (k,).
+    """
+    skin, other = one.pair.skin, one.pair.other
+    u = skin.at(skin.u, zeta)
+    if one.pair.way:
+        partner = other if isinstance(other, Skin) else other.skin if isinstance(other, Tip) else skin
+        u = np.minimum(u, partner.at(partner.u, facing))
+    return u * march.model.lengths[skin.beam] * march.model.units.length
+
+
+def _ends_of(march: March, one: Touch) -> Array:
+    """Arc lengths of the ends of a pair's zones; of a beam that touches itself of the points next to them."""
+    if one.pair.way:
+        return _arc_lengths(march, one, one.zeta, one.facing)
+    return _arc_lengths(march, one, one.zones.zones.ravel(), np.empty(0))
+
+
+def _about_its_pin(scene: Scene, march: March, name: str) -> float:
+    """Moment of a contact's forces on the beam about the first of its pins on what it touches."""
+    model, moment = march.model, 0.0
+    for one in _touches(march, name):
+        body = model.bodies[one.pair.body].name
+        pins = (tie for tie in model.ties if tie.beam == one.pair.skin.beam and _goes_with(scene, tie.point, body))
+        tie = next(pins, None)
+        if tie is not None:
+            moment += float(cross(one.points - place(model, march.system, tie), one.push).sum())
+    return moment
+
+
+def _goes_with(scene: Scene, point: str, body: str) -> bool:
+    """Whether a point is the body's, or pinned to one of it; bodies that do not move are one."""
+    points = {point}.union(*(pin.points for pin in scene.pins.values() if point in pin.points))
+    fixed = {name for name, one in scene.bodies.items() if one.motion == "fixed"}
+    return any(scene.body_of(each) in (fixed if body in fixed else {body}) for each in points)
 
 
 def _centre(scene: Scene, march: March, name: str) -> Array:
@@ -95,7 +133,7 @@ def _centre(scene: Scene, march: March, name: str) -> Array:
     if not found:
         return np.empty(0)
     weights = np.concatenate([np.hypot(*one.push.T) for one in found])
-    places = np.concatenate([_arc_lengths(march, one, one.zeta) for one in found])
+    places = np.concatenate([_arc_lengths(march, one, one.zeta, one.facing) for one in found])
     return np.array([weights @ places / weights.sum()])
 
 
@@ -103,7 +141,7 @@ def _ends(scene: Scene, march: March, name: str) -> Array:
     found = _touches(march, name)
     if not found:
         return np.empty(0)
-    places = np.concatenate([_arc_lengths(march, one, one.zones.zones.ravel()) for one in found])
+    places = np.concatenate([_ends_of(march, one) for one in found])
     return np.array([places.min(), places.max()])
 
 
@@ -111,14 +149,28 @@ def _potential_energy(march: March) -> float:
     model, system = march.model, march.system
     energy = system.strained.energy
     for part, value in zip(model.loads, march.values[: len(model.loads)], strict=True):
-        if isinstance(part, AreaLoad):
-            moved = (part.forces * system.q.reshape(-1, 2)[part.nodes]).sum()
+        if isinstance(part, SharePart):
+            continue  # which is at nothing wherever somebody asks
+        if isinstance(part, CouplePart):
+            moved = _turned(march, part)
+        elif isinstance(part, AreaLoad):
+            moved = float((part.forces * system.q.reshape(-1, 2)[part.nodes]).sum())
         elif part.direction is None:
-            moved = model.bodies[part.body].state(system.z)[2]
+            moved = float(model.bodies[part.body].state(system.z)[2])
         else:
-            moved = part.direction @ model.bodies[part.body].motion(part.arm, system.z)
-        energy -= float(value * moved)
+            moved = float(part.direction @ model.bodies[part.body].motion(part.arm, system.z))
+        energy -= float(value) * moved
     return energy
+
+
+def _turned(march: March, part: CouplePart) -> float:
+    """By how much the section of a moment has turned, with its full turns."""
+    model, z = march.model, march.system.z
+    beam = int(model.mesh.beams[part.nodes[0]])
+    held = next(tie for tie in model.ties if tie.beam == beam)  # the start's comes first
+    start = float(model.bodies[held.body].state(z)[2]) if held.psi is None else float(z[held.psi])
+    drawn = model.mesh.places
+    return part.turned(drawn, drawn + march.system.q.reshape(-1, 2), start)
 
 
 def _holding(scene: Scene, march: March, name: str) -> list[Wrench]:
@@ -129,7 +181,12 @@ def _holding(scene: Scene, march: March, name: str) -> list[Wrench]:
         support(model, system, tie) for tie in model.ties if tie.point == name and model.bodies[tie.body].dofs is None
     ]
     for row in model.rows:
-        if row.drive is not None:
+        if row.point:
+            if row.point == name and (i := grounded(model, row)) is not None:
+                direction = row.shares[i].direction
+                assert direction is not None
+                found.append((-float(system.z[row.multiplier]) * direction, 0.0))
+        elif row.drive is not None:
             drive = scene.drives[row.drive]
             if name == (drive.point if isinstance(drive, DisplacementDrive) else drive.body):
                 found.append(held(row, system))

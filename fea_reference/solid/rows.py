@@ -4,18 +4,19 @@
 symbol  meaning
 ======  ===================================================================
 d, r    direction and arm of a part on one body; without d it is φ
-c       Σ d·(X + (R(φ) − I) r) − value, or Σ φ − value
+c       Σ d·(X + (R(φ) − I) r) − value, or Σ φ − value; of an end that is assembled, + apart − value × way
 μ       multiplier, added to the energy as μ c
 ======  ===================================================================
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from fea_reference.solid.bodies import BodyPart, across, turned
+from fea_reference.solid.bodies import BodyPart, Tie, across, is_own, turned
 from scene.answer import Array, Ints
 from scene.statement import BodyPin, DisplacementDrive, Drive, Scene, SlidingBody, TurningBody
 
@@ -31,16 +32,23 @@ class Share:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One row: of what (``name``), its ``shares``, its multiplier's place, and the ``drive`` that steps it."""
+    """One row: of what (``name``), its ``shares``, its multiplier's place, and the ``drive`` that steps it.
+
+    Of an end that is assembled ``point`` is where it goes, ``apart`` how far it is drawn from there along the row, and
+    ``way`` what is left of that where it was caught.
+    """
 
     name: str
     shares: tuple[Share, ...]
     multiplier: int
     drive: str | None = None
+    point: str = ""
+    apart: float = 0.0
+    way: float = 1.0
 
     def violation(self, bodies: tuple[BodyPart, ...], z: Array) -> float:
         """c for the value zero."""
-        found = 0.0
+        found = self.apart
         for share in self.shares:
             body = bodies[share.body]
             found += (
@@ -108,3 +116,20 @@ def _driven(drive: Drive, scene: Scene, bodies: tuple[BodyPart, ...], number: di
         i = number[scene.body_of(drive.point)]
         return Share(i, np.array(drive.direction) / np.hypot(*drive.direction), bodies[i].arm(drive.point))
     return Share(number[drive.body], None, np.zeros(2))
+
+
+def brought(
+    scene: Scene, ties: Sequence[Tie], bodies: tuple[BodyPart, ...], number: Mapping[str, int], first: int, drive: str
+) -> tuple[Row, ...]:
+    """Pins of ends that are drawn apart from their points, stepped by a ``drive``; multipliers begin at ``first``."""
+    found: list[Row] = []
+    for tie in ties:
+        if not is_own(tie, scene):
+            continue
+        other = number[scene.body_of(tie.point)]
+        arm = bodies[other].arm(tie.point)
+        apart = bodies[tie.body].centre - bodies[other].centre - arm
+        for e in np.eye(2):
+            shares = (Share(tie.body, e, np.zeros(2)), Share(other, -e, arm))
+            found.append(Row(tie.point, shares, first + len(found), drive, tie.point, float(e @ apart)))
+    return tuple(found)

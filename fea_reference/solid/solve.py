@@ -6,13 +6,12 @@ import logging
 import time
 from dataclasses import dataclass
 
-import numpy as np
-
+from fea_reference.solid.assembly import assemble_ends
 from fea_reference.solid.certificates import certify
-from fea_reference.solid.contacts import pairs_of
 from fea_reference.solid.march import March, StoppedError, begin, leave_stage, reach
 from fea_reference.solid.meshing import chosen
 from fea_reference.solid.model import build
+from fea_reference.solid.pairs import pairs_of
 from fea_reference.solid.probes import probed, shapes, touching
 from fea_reference.solid.refusals import refuse
 from fea_reference.solid.settings import Settings
@@ -41,22 +40,26 @@ class Prepared:
     notes: tuple[str, ...]
 
     def answer(self) -> Answer:
-        """March, and hand back what :func:`answer` does."""
+        """March, and hand back what :func:`answer` does.
+
+        Raises:
+            SceneError: a stop forbids the assembly.
+        """
         began = time.perf_counter()
-        scene, march, model = self.scene, self.march, self.march.model
+        scene, march = self.scene, self.march
         stations: list[StationAnswer] = []
         events: list[Event] = []
         ending, sentence = Ending.COMPLETED, Ending.COMPLETED.value
         with one_thread():
             try:
                 known: set[str] = set()
+                assemble_ends(scene, march)
                 for stage in scene.stages:
                     leave_stage(march)
-                    part = [one.name for one in model.stepped].index(stage.steps)
-                    unit = model.stepped[part].unit
-                    span = float(np.ptp([march.values[part], *(station / unit for station in stage.stations)])) or 1.0
+                    part = [one.name for one in march.model.stepped].index(stage.steps)
+                    unit = march.model.stepped[part].unit
                     for station in stage.stations:
-                        reach(march, part, station / unit, span)
+                        reach(march, part, station / unit)
                         events += [
                             Event(stage.name, name, "closes", closing)
                             for name, closing in march.closing.items()
@@ -106,7 +109,8 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
     An answer that ends early holds the stations reached before.
 
     Raises:
-        SceneError: the settings do not fit the scene, or the solid does not offer what it asks.
+        SceneError: the settings do not fit the scene, the solid does not offer what it asks, or a stop forbids the
+            assembly.
     """
     return prepared(scene, settings).answer()
 

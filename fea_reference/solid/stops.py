@@ -67,13 +67,18 @@ def stops_of(scene: Scene, bodies: Sequence[BodyPart], ties: Sequence[Tie]) -> t
         end = beam.start if stop.end == "start" else beam.end
         tie = next(tie for tie in ties if (names[tie.beam], tie.end) == (stop.beam, stop.end))
         assert isinstance(end, PinnedEnd)
-        assert tie.psi is not None
+        psi = tie.psi
+        if psi is None:  # of an end that is assembled
+            face = bodies[tie.body].dofs
+            assert face is not None
+            psi = int(face[2])
         u, way = (0.0, 1.0) if stop.end == "start" else (1.0, -1.0)
         leaving = way * tangents_on(beam.curve, np.array([u]))[0]
         line = np.array(scene.place_of(stop.towards)) - np.array(scene.place_of(end.point))
         turn = float(np.arctan2(line[0] * leaving[1] - line[1] * leaving[0], line @ leaving))
         turn += 2.0 * np.pi if turn < -np.pi + _ROUNDED else 0.0
-        dofs = bodies[tie.body].dofs
+        carrier = next(i for i, body in enumerate(bodies) if end.point in body.points)
+        dofs = bodies[carrier].dofs
         least, most = (-np.inf if stop.least is None else stop.least), (np.inf if stop.most is None else stop.most)
-        found.append(StopPart(name, tie.psi, tie.body, None if dofs is None else int(dofs[2]), turn, least, most))
+        found.append(StopPart(name, psi, carrier, None if dofs is None else int(dofs[2]), turn, least, most))
     return tuple(found)

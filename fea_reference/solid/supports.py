@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from fea_reference.solid.beam_loads import AreaLoad
+from fea_reference.solid.beam_moments import CouplePart
 from fea_reference.solid.bodies import Tie, turned
-from fea_reference.solid.model import Model
+from fea_reference.solid.model import Model, SharePart
 from fea_reference.solid.rows import Row
 from fea_reference.solid.system import System
 from scene.answer import Array
@@ -66,7 +67,11 @@ def balance(model: Model, system: System, values: Array) -> tuple[float, float]:
             else:
                 enter(pull * share.direction, body.carried(share.arm, z))
     for part, value in zip(model.loads, values[: len(model.loads)], strict=True):
-        if isinstance(part, AreaLoad):
+        if isinstance(part, CouplePart):
+            moments.append(float(value))
+        elif isinstance(part, SharePart):
+            moments.append(float(value * part.moments.sum()))
+        elif isinstance(part, AreaLoad):
             places = (model.mesh.places + system.q.reshape(-1, 2))[part.nodes]
             forces.append(value * part.forces.sum(axis=0))
             moments.append(float(cross(places, value * part.forces).sum()))

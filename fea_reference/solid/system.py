@@ -16,10 +16,12 @@ from scipy.sparse import block_diag, coo_matrix, csc_matrix, csr_matrix, vstack
 from scipy.sparse.linalg import SuperLU, splu
 
 from fea_reference.solid.beam_loads import AreaLoad
+from fea_reference.solid.beam_moments import CouplePart
 from fea_reference.solid.bodies import across, turned
-from fea_reference.solid.contacts import Foreseen, Pair, Touch, least_gap, touch
+from fea_reference.solid.contacts import Foreseen, Touch, least_gap, touch
 from fea_reference.solid.elements import Strained
-from fea_reference.solid.model import DrivePart, LoadPart, Model
+from fea_reference.solid.model import LoadPart, Model, SharePart
+from fea_reference.solid.pairs import Pair
 from fea_reference.solid.stops import STIFFNESS
 from scene.answer import Array
 
@@ -112,6 +114,7 @@ def assemble(
     )
     local = elements.gradient
     m, nodes = len(model.bodies), q.size
+    places = model.mesh.places + q.reshape(-1, 2)
     # the mesh's q and behind them three of every body, as if all moved
     forces: Array = np.bincount(model.elements.dofs.ravel(), local.ravel(), nodes + 3 * m).astype(float)
     rows, columns, entries = [], [], []
@@ -123,9 +126,15 @@ def assemble(
             columns.append(wide.transpose(0, 2, 1).ravel())
             entries.append(one.hessian.ravel())
     for part, value in zip(model.loads, values[: len(model.loads)], strict=True):
-        if isinstance(part, AreaLoad):
-            forces[2 * part.nodes] -= value * part.forces[:, 0]
-            forces[2 * part.nodes + 1] -= value * part.forces[:, 1]
+        if isinstance(part, AreaLoad | CouplePart):
+            acting = part.forces if isinstance(part, AreaLoad) else part.forces(places)
+            forces[2 * part.nodes] -= value * acting[:, 0]
+            forces[2 * part.nodes + 1] -= value * acting[:, 1]
+        if isinstance(part, CouplePart):
+            moved, bent = part.tangent(places)
+            rows.append(np.repeat(moved, moved.size))
+            columns.append(np.tile(moved, moved.size))
+            entries.append(-value * bent.ravel())
     carried = vstack([model.chain(z), _moving(model)], format="csr")
     stiffness = model.elements.pattern.matrix(
         elements.hessian(elements.stress if foreseen is None else foreseen.stress)
@@ -143,11 +152,14 @@ def assemble(
             dofs = model.bodies[part.body].dofs
             if part.direction is not None and dofs is not None:
                 diagonal.append((int(dofs[2]), value * float(turned(part.arm, z[dofs[2]]) @ part.direction)))
+        elif isinstance(part, SharePart):
+            residual -= value * load_direction(model, part, z)
     prescribed = dict(zip((part.name for part in model.drives), values[len(model.loads) :], strict=True))
     for row in model.rows:
         dofs, slopes = row.gradient(model.bodies, z)
         mu = float(z[row.multiplier])
-        residual[row.multiplier] += row.violation(model.bodies, z) - (prescribed[row.drive] if row.drive else 0.0)
+        goal = row.way * prescribed[row.drive] if row.drive else 0.0
+        residual[row.multiplier] += row.violation(model.bodies, z) - goal
         np.add.at(residual, dofs, mu * slopes)
         for dof, slope in zip(dofs, slopes, strict=True):
             more_rows += [row.multiplier, int(dof)]
@@ -184,16 +196,12 @@ def deepest(model: Model, pairs: Iterable[Pair], z: Array) -> float:
     return max((-least_gap(model, pair, places, z) / pair.measure for pair in pairs), default=0.0)
 
 
-def load_direction(model: Model, part: LoadPart | AreaLoad | DrivePart, z: Array) -> Array:
-    """What a load or drive of value one adds to the right-hand side (size,): of a drive one in its row."""
+def load_direction(model: Model, part: LoadPart | SharePart, z: Array) -> Array:
+    """What a load of value one that acts on bodies adds to the right-hand side (size,)."""
     f = np.zeros(model.size)
-    if isinstance(part, DrivePart):
-        f[next(row.multiplier for row in model.rows if row.drive == part.name)] = 1.0
+    if isinstance(part, SharePart):
+        f[part.dofs] = part.moments
         return f
-    if isinstance(part, AreaLoad):
-        q = np.zeros(2 * len(model.mesh.places))
-        q[2 * part.nodes], q[2 * part.nodes + 1] = part.forces.T
-        return np.asarray(model.chain(z).T @ q)
     dofs = model.bodies[part.body].dofs
     if dofs is None:
         return f

@@ -18,12 +18,13 @@ from scene import Answer, Ending, SceneError
 from scene.answer import Array
 from scene.geometry import arc_length
 from scene.reading import scene_from
-from scene.statement import STRESSES
+from scene.statement import STRESSES, SelfContact
 from tests.together.features import FEATURES, SOLVERS, Feature
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "features.md"
 LINKS, ELEMENTS = {"auto": 40, "paper": 120}, 16
 SOLID, PRESSED = 32, 10  # elements of the solid along a beam, and where there is contact and no stress is asked
+ROLLED = 44  # and of a beam that is rolled up onto itself: longer ones are bent too far to be slender
 TOLERANCE = {"auto": 0.02, "paper": 0.05, "fea": 0.005, "solid": 0.05}  # of a probe's size, by the discretisation
 CELLS = [(feature, solver) for feature in FEATURES for solver in SOLVERS]
 NAMES = [f"{feature.group}: {feature.said}: {solver}" for feature, solver in CELLS]
@@ -34,7 +35,9 @@ def answered(number: int, solver: str) -> Answer:
     scene = scene_from(FEATURES[number].data)
     if solver == "solid":
         coarse = scene.contacts and not any(probe.quantity in STRESSES for probe in scene.probes)
-        return solid.answer(scene, solid.Settings(elements=PRESSED if coarse else SOLID, across=1))
+        rolled = any(isinstance(contact, SelfContact) for contact in scene.contacts.values())
+        elements = ROLLED if rolled else PRESSED if coarse else SOLID
+        return solid.answer(scene, solid.Settings(elements=elements, across=1))
     if solver == "shear":  # the beam theory that a solid is nearest to
         return fea_reference.answer(scene, fea_reference.Settings(elements=ELEMENTS, kinematics="shear"))
     if solver == "fea":

@@ -1,0 +1,85 @@
+"""Before the first stage: ends that are drawn apart are brought to their points.
+
+Moments grow on the faces of the ends while these are free; the faces are caught where they are and their middles go
+straight to their points; the moments go away.  Stops act as soon as the ends have arrived.  While ends are free the
+mechanism is one without their rows, which are the last ones.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from fea_reference.solid.march import March, StoppedError, reach
+from fea_reference.solid.model import WAY, Model, SharePart
+from fea_reference.solid.stops import StopPart
+from fea_reference.solid.system import assemble
+from scene.answer import Array
+from scene.mistakes import Mistake, SceneError
+from scene.statement import Scene
+
+_BEYOND = 1e-9  # rad
+
+
+def assemble_ends(scene: Scene, march: March) -> None:
+    """Assemble what there is to assemble.
+
+    Raises:
+        SceneError: a stop forbids it.
+        StoppedError: it cannot be carried out.
+    """
+    whole = march.model
+    if not whole.apart:
+        return
+    moments = next(i for i, part in enumerate(whole.stepped) if isinstance(part, SharePart))
+    way = whole.stepped.index(WAY)
+    try:
+        _stand(march, _loose(whole), march.values[:-1], march.system.z[: -len(whole.apart)])
+        reach(march, moments, 1.0)
+        caught = _caught(whole, march.system.z)
+        unheld = np.concatenate([march.system.z, np.zeros(len(whole.apart))])
+        _stand(march, replace(caught, stops=()), np.append(march.values, 1.0), unheld)
+        reach(march, way, 0.0)
+        forbidden = [mistake for stop in whole.stops for mistake in _forbidden(march, stop, scene)]
+        if forbidden:
+            raise SceneError(forbidden)
+        _stand(march, caught, march.values, march.system.z)
+        reach(march, moments, 0.0)
+    except StoppedError as stopped:
+        raise StoppedError(stopped.ending, f"during the assembly: {stopped.sentence}") from stopped
+    # what closed meanwhile is closed before anything of the scene is loaded or driven
+    march.closing = dict.fromkeys(march.closing, 0.0)
+
+
+def _stand(march: March, model: Model, values: Array, z: Array) -> None:
+    """Let a march go on with another mechanism."""
+    march.model, march.values, march.step = model, values, np.inf
+    march.system = assemble(model, march.penalties, march.settings.quadrature, values, z)
+
+
+def _loose(model: Model) -> Model:
+    """The mechanism whose ends are free, without stops."""
+    held = tuple(row for row in model.rows if not row.point)
+    drives = tuple(part for part in model.drives if part is not WAY)
+    return replace(model, rows=held, drives=drives, stops=(), size=model.size - len(model.apart))
+
+
+def _caught(model: Model, z: Array) -> Model:
+    """The mechanism whose ends are held where they are in a state ``z`` in which they were free: the way is at one."""
+    rows = tuple(replace(row, way=row.violation(model.bodies, z)) if row.point else row for row in model.rows)
+    return replace(model, rows=rows)
+
+
+def _forbidden(march: March, stop: StopPart, scene: Scene) -> list[Mistake]:
+    """That an assembled end is beyond a limit of its stop, if it is."""
+    angle = stop.angle(march.system.z)
+    for key, limit, beyond in (("least", stop.least, stop.least - angle), ("most", stop.most, angle - stop.most)):
+        if beyond > _BEYOND:
+            found = (
+                f"{limit:g} rad: a stop that forbids the assembly, by which {scene.stops[stop.name].beam!r} comes to "
+                f"stand at {angle:.4g} rad"
+            )
+            allowed = "limits that the assembled beam keeps, or other moments"
+            return [Mistake(f"stops.{stop.name}.{key}", found, allowed, scene.file)]
+    return []

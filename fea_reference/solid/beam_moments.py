@@ -1,0 +1,87 @@
+"""A moment on a beam: a couple by a traction that goes straight over the section, and turns with it.
+
+======  ====================================================================================
+symbol  meaning
+======  ====================================================================================
+x_j     nodes about the section, η_j their places across, N_j its shape functions
+w_j     weights, 3/2 ∫ N_j η dη: zero in all, and Σ w_j η_j = 1
+d       Σ w_j x_j, half of the section from its line to its left as the straight line nearest to it has it
+θ       angle by which d has turned since it was drawn
+M       moment, counter-clockwise
+======  ====================================================================================
+
+The work is M θ.  Its forces f_j = M w_j S d/|d|² are the traction M η across d: without resultant, and of the moment
+Σ x_j × f_j = M however the section lies.  The second derivative is
+
+    ∂²θ/∂d² = −(n τᵀ + τ nᵀ)/|d|²,    n = d/|d|,  τ = S n.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from fea_reference.solid.beam_loads import section
+from fea_reference.solid.bodies import across
+from fea_reference.solid.mesh import Mesh
+from scene.answer import Array, Ints
+from scene.statement import BeamMoment
+
+
+@dataclass(frozen=True, slots=True)
+class CouplePart:
+    """A moment of value one on a section.
+
+    Attributes:
+        name: of the load.
+        nodes: about the section (k,).
+        weights: w (k,).
+        way: nodes (m, 2) on the right and on the left of sections from a held end to this one, by whose directions
+            full turns are counted.
+        unit: N·m.
+    """
+
+    name: str
+    nodes: Ints
+    weights: Array
+    way: Ints
+    unit: float
+
+    def forces(self, places: Array) -> Array:
+        """Forces (k, 2) on the nodes, at ``places`` (N, 2) of all."""
+        d = self.weights @ places[self.nodes]
+        return np.asarray(self.weights[:, None] * across(d) / (d @ d))
+
+    def tangent(self, places: Array) -> tuple[Ints, Array]:
+        """Unknowns (2k,) among the nodes' and the second derivative of θ by them (2k, 2k)."""
+        d = self.weights @ places[self.nodes]
+        n, tau = d / np.hypot(*d), across(d) / np.hypot(*d)
+        bent = -(np.outer(n, tau) + np.outer(tau, n)) / (d @ d)
+        dofs = np.stack([2 * self.nodes, 2 * self.nodes + 1], axis=1).ravel()
+        return dofs, np.asarray(np.kron(np.outer(self.weights, self.weights), bent), dtype=float)
+
+    def turned(self, drawn: Array, places: Array, start: float) -> float:
+        """θ, rad, of nodes ``drawn`` and now at ``places`` (N, 2); the way's first section has turned by ``start``."""
+        leaning = [self._directions(x) for x in (drawn, places)]
+        turns = np.angle(leaning[1] / leaning[0])
+        turns = np.unwrap(np.concatenate([[start], turns]))
+        return float(turns[-1])
+
+    def _directions(self, places: Array) -> Array:
+        """Of the way's sections and of this one, as complex numbers (m + 1,)."""
+        apart = places[self.way[:, 1]] - places[self.way[:, 0]]
+        both = np.vstack([apart, self.weights @ places[self.nodes]])
+        return np.asarray(both[:, 0] + 1j * both[:, 1])
+
+
+def couple(name: str, load: BeamMoment, mesh: Mesh, unit: float, *, from_end: bool) -> CouplePart:
+    """A moment on a beam, whose end is held if ``from_end``, and else its start."""
+    beam = mesh.names.index(load.beam)
+    nodes, values = section(mesh, beam, np.array([load.at]))
+    weights = 3.0 * values[0] * mesh.eta[nodes[0]]
+    right, left = mesh.line(beam, -1.0), mesh.line(beam, 1.0)
+    before = mesh.u[right] >= load.at if from_end else mesh.u[right] <= load.at
+    way = np.stack([right[before], left[before]], axis=1)
+    kept = weights != 0.0
+    return CouplePart(name, nodes[0][kept], weights[kept], way[::-1] if from_end else way, unit)

@@ -1,0 +1,165 @@
+"""What may touch what: the pairs of a scene's contacts.
+
+A pair is every edge of the first beam with every one of the second, or with what is rigid; of a beam that touches
+itself every edge with every one, seen from the place that is later along it.  Beside these are what presses in a point:
+rigid corners that jut out into an edge, and the corners of beams' ends into edges and what is rigid.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from fea_reference.solid import edges
+from fea_reference.solid.bodies import BodyPart
+from fea_reference.solid.edges import Corner
+from fea_reference.solid.model import Model
+from fea_reference.solid.rigid import Half, Round, Shape, seen
+from fea_reference.solid.skin import Skin
+from scene.statement import (
+    BeamContact,
+    CircleContact,
+    FunctionContact,
+    HalfPlaneContact,
+    LineContact,
+    Scene,
+    SelfContact,
+    WeldedEnd,
+)
+
+RigidContacts = CircleContact | HalfPlaneContact | LineContact | FunctionContact
+
+_INSIDE = 1e-9  # of the longest beam: an end whose corner is drawn so deep inside what it may touch begins there
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pair:
+    """An edge that is integrated over, and what it may touch: another edge, or a shape on the body of a number, or a
+    corner of one; or a corner of an end and what that may touch.
+
+    ``name`` is the contact's; ``measure`` the mean thickness.  Of two edges of one beam, ``way`` says whether places
+    are looked for that are earlier along it, −1, or later, 1; of different beams it is 0.
+    """
+
+    name: str
+    skin: Skin
+    other: Skin | Shape | Corner | Tip | Butt
+    body: int
+    measure: float
+    way: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Tip:
+    """The corner of an end: the ``last`` or first place of an edge, that may press into the other one of a pair.
+
+    It is the pair's own edge if ``own``, and ``skin`` is what it may press into; else it is ``skin`` that has it.
+    """
+
+    skin: Skin
+    own: bool
+    last: bool
+
+    def roles(self, pair: Pair) -> tuple[Skin, Skin]:
+        """The edge that has the corner, and what it presses into."""
+        return (pair.skin, self.skin) if self.own else (self.skin, pair.skin)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Butt:
+    """The corner of an end, the ``last`` or first place of the pair's edge, that may press on a rigid ``shape``."""
+
+    shape: Shape
+    last: bool
+
+
+def pairs_of(scene: Scene, model: Model) -> tuple[Pair, ...]:
+    """The pairs of a scene's contacts."""
+    found: list[Pair] = []
+    number = {body.name: i for i, body in enumerate(model.bodies)}
+    for name, contact in scene.contacts.items():
+        match contact:
+            case BeamContact():
+                one, other = (_skins(scene, model, beam) for beam in contact.between)
+                for a, b in product(one, other):
+                    measure = 0.5 * (a.thickness + b.thickness)
+                    found.append(Pair(name, a, b, -1, measure))
+                    found += [
+                        Pair(name, a, Tip(b, own, last), -1, measure)
+                        for own, last in product((True, False), (False, True))
+                    ]
+            case SelfContact():
+                own_edges = _skins(scene, model, contact.beam)
+                for a, b in product(own_edges, own_edges):
+                    found.append(Pair(name, a, b, -1, a.thickness, -1))
+                    found += [
+                        Pair(name, a, Tip(b, own=True, last=last), -1, a.thickness, way)
+                        for last, way in ((False, 1), (True, -1))
+                    ]
+            case CircleContact() | HalfPlaneContact() | LineContact() | FunctionContact():
+                body = model.bodies[number[contact.body]]
+                for shape, skin in product(_shapes(contact, body, model), _skins(scene, model, contact.beam)):
+                    found.append(Pair(name, skin, shape, number[contact.body], skin.thickness))
+                    if not isinstance(shape, Corner):
+                        found += [
+                            Pair(name, skin, butt, number[contact.body], skin.thickness)
+                            for butt in (Butt(shape, last=False), Butt(shape, last=True))
+                            if _comes_from_outside(scene, contact, model, skin, butt)
+                        ]
+    return tuple(found)
+
+
+def _comes_from_outside(scene: Scene, contact: RigidContacts, model: Model, skin: Skin, butt: Butt) -> bool:
+    """Whether an end's corner may come to press on a shape: not one that is part of its body or is drawn within it."""
+    beam = scene.beams[contact.beam]
+    end = beam.end if butt.last else beam.start
+    if isinstance(end, WeldedEnd) and scene.body_of(end.point) == contact.body:
+        return False
+    body = next(body for body in model.bodies if body.name == contact.body)
+    there = seen(body, skin.places[[-1 if butt.last else 0]], np.zeros(model.size))
+    return float(butt.shape.measured(there)[0][0]) > -_INSIDE
+
+
+def _skins(scene: Scene, model: Model, name: str) -> tuple[Skin, Skin]:
+    beam, i, mesh = scene.beams[name], model.mesh.names.index(name), model.mesh
+    E = scene.materials[beam.material].youngs_modulus * model.units.width * model.units.length / model.units.force
+    skins = []
+    for side in (1.0, -1.0):
+        nodes = mesh.line(i, side)
+        places = mesh.places[nodes]
+        apart = np.hypot(*np.diff(places, axis=0).T)
+        h = apart[0::2] + apart[1::2]  # of elements
+        u = mesh.u[nodes]
+        skins.append(
+            Skin(
+                i,
+                side,
+                nodes,
+                places,
+                u,
+                beam.width_at(u) / model.units.width,
+                beam.thinnest / model.units.length,
+                np.concatenate([np.repeat(E / h, 2), [E / h[-1]]]),
+            )
+        )
+    return skins[0], skins[1]
+
+
+def _shapes(contact: RigidContacts, body: BodyPart, model: Model) -> tuple[Shape | Corner, ...]:
+    """What is rigid, as its body sees it from its centre."""
+    unit = model.units.length
+    origin = model.units.origin + body.centre * unit
+    match contact:
+        case CircleContact():
+            return (Round((np.array(contact.center) - origin) / unit, contact.radius / unit),)
+        case HalfPlaneContact():
+            normal = np.array(contact.normal) / np.hypot(*contact.normal)
+            return (Half((np.array(contact.point) - origin) / unit, normal),)
+        case LineContact():
+            sides, corners = edges.broken(contact, origin, unit)
+            return (sides, *corners)
+        case FunctionContact():
+            bent, corners = edges.graph(contact, origin, unit)
+            return (bent, *corners)
