@@ -51,6 +51,9 @@ def certify(march: March) -> Certificate:
         press = stop.press(system.z, limit)
         if not press >= -_PULLS * max(1.0, system.scale):
             failures.append(f"{stop.known_as} holds with {press * model.units.moment:.1e} N·m on the wrong side")
+    if system.lost:
+        left = system.floor * model.units.force
+        failures.append(f"what is loaded is too little to be told from round-off, which leaves forces of {left:.1e} N")
     for one in system.touches:
         allowed = settings.penetration if isinstance(one.pair, Pair) else max(settings.penetration, _RESOLVED)
         overlap = one.penetration / (one.pair.scale if isinstance(one.pair, Pair) else one.pair.measure)

@@ -29,7 +29,7 @@ _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _TIGHTENINGS = 25
 _SETTLINGS = 8
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
-_NEARBY = (1e-3, 1e-2, 1e-1)  # of a step: where to look for a closing under tighter penalties
+_NEARBY = (1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0)  # of a step: where to look for a closing under tighter penalties
 _DEEPER = 1e-3  # of the shortest element: by how much a contact sinks that is about to be passed
 _THROUGH = 0.5  # of the thickness: a way on which nothing passes through it unseen
 _CLOSED = 1e-9  # of the thickness, a gap that is none
@@ -243,7 +243,9 @@ class March:
         for pair in (*self.open, *self.penalties):
             if isinstance(pair, Face):
                 continue  # its straight way is one in the frame of its body
-            if pair in pressing or zones_of(self.model, pair, system.z).least <= _CLOSED * pair.scale:
+            least, touching = zones_of(self.model, pair, system.z).least, _CLOSED * pair.scale
+            # of what does not press yet an overlap is on its way to be closed; of what has pressed, it has gone through
+            if pair in pressing or (abs(least) if pair in self.penalties else least) <= touching:
                 continue
             if self._overlapped_between(pair, before, system.z):
                 return Ending.BEAMS_CROSSED, f"{where} what may touch in {pair.name} passes through each other"

@@ -29,6 +29,7 @@ from fea_reference.settings import Settings
 from fea_reference.state import Complex, State
 from fea_reference.stops import StopPart, stops_of
 from fea_reference.touch import Contact, Penalty, Touch
+from fea_reference.upright import upright
 from fea_reference.zones import Zones
 from scene.answer import Array
 from scene.check_shapes import is_apart
@@ -393,7 +394,7 @@ def build(scene: Scene, settings: Settings) -> Model:
         points.append((where - units.origin) / units.length)
         tangents.append(angle)
         cells.append(node + np.stack([np.arange(n), np.arange(1, n + 1)]))
-        compliances.append(compliance(beam, material, lengths[name], n))
+        compliances.append(compliance(beam, material, lengths[name], n, upright(scene, name)))
         t = beam.thickest / units.length
         nodes_here, elements_here = slice(node, node + n + 1), slice(cell, cell + n)
         beams.append(BeamPart(name, nodes_here, elements_here, own_length, t, beam, material, units.bending))

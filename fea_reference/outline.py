@@ -281,16 +281,16 @@ class Graph:
         unit = away / np.where(past, r, 1.0)
         distance, normal = np.where(past, r, d), np.where(past, unit, side)
         bend = np.where(past, 1.0 / np.where(past, r, 1.0), kappa / (1.0 + kappa * d))
-        # behind the edge the sides straight back may be nearer
-        if (behind := ~past & (d < 0.0)).any():
-            corners = self.corners
+        # behind the edge the sides straight back may be nearer, and beyond its ends they are
+        if (behind := d < 0.0).any():
+            corners, end = self.corners, np.stack([at == first, at == last])
             for i, back in ((0, corners.normals[0]), (1, corners.normals[1])):
                 beside = back[:, i] @ (y - corners.points[:, i, None])
-                nearer = behind & (beside > d) & (beside <= 0.0)
+                nearer = behind & np.where(past, end[i], (beside > d) & (beside <= 0.0))
                 distance = np.where(nearer, beside, distance)
                 normal = np.where(nearer, back[:, i, None], normal)
                 bend = np.where(nearer, 0.0, bend)
-        return Near(distance, normal, bend, past)
+        return Near(distance, normal, bend, past & ~behind)
 
     def _nearest(self, y: Array) -> Array:
         """Where along the axis that place of the edge is, (k,), which is nearest to places (2, k)."""

@@ -8,12 +8,13 @@ t, w    thickness and width; A = w t, I = w t³/12
 m       moments at an element's ends that turn them by Δ, (m₁, m₂)
 M, Q    bending moment and shear force: M = −(1 − ξ) m₁ + ξ m₂, Q = −(m₁ + m₂)/L
 N       axial force
+f       share of 1/(GA) by which a section leans: one, but beside some held ends (:mod:`fea_reference.upright`)
 ======  =====================================================================================
 
 An element that carries no load between its nodes has a moment that goes straight, whatever its section does.  By
 Castigliano's theorem Δ = F m with
 
-    F = ∫ b bᵀ/(EI) ds + (1/L²) (1, 1)ᵀ(1, 1) ∫ ds/(GA),     b = (−(1 − ξ), ξ),
+    F = ∫ b bᵀ/(EI) ds + (1/L²) (1, 1)ᵀ(1, 1) ∫ f ds/(GA),     b = (−(1 − ξ), ξ),
 
 and the element stretches by N ∫ ds/(EA): an element is exact for small deflections however coarse it is, also where
 thickness or width have a kink within it (Przemieniecki, Theory of Matrix Structural Analysis, ch. 5, for the even
@@ -31,13 +32,14 @@ from scene.statement import Beam, Material
 
 SHEAR_FACTOR = 5.0 / 6.0  # of a rectangle
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+_GRADED = np.array([1.0, 2.0, 4.0, 8.0, 16.0])  # layers, beyond which f is one but for 1e-9
 
 
 @dataclass(frozen=True, slots=True)
 class Compliance:
     """Of n even elements of one beam, N·m and metres: of bending F without shear (2, 2, n), axial and of shear (n,).
 
-    ``axial`` and ``shear`` are ∫ ds/(EA) and ∫ ds/(GA), the latter with the shear factor.
+    ``axial`` and ``shear`` are ∫ ds/(EA) and ∫ f ds/(GA), the latter with the shear factor.
     """
 
     bending: Array
@@ -59,9 +61,13 @@ def bending_stiffness_second(beam: Beam, material: Material, u: Array) -> Array:
     return np.asarray(0.5 * material.youngs_modulus * t * t1 * (w * t1 + w1 * t))
 
 
-def compliance(beam: Beam, material: Material, length: float, n: int) -> Compliance:
-    """Integrate over ``n`` even elements of a beam of a ``length`` in metres."""
-    edges = _pieces(beam, n)
+def compliance(beam: Beam, material: Material, length: float, n: int, upright: tuple[float, float]) -> Compliance:
+    """Integrate over ``n`` even elements of a beam of a ``length`` in metres.
+
+    Beside its start and its end sections stay ``upright`` over such lengths (m), zero where nothing holds them so.
+    """
+    grades = [_graded(layer / length) for layer in upright]
+    edges = np.unique(np.concatenate([_pieces(beam, n), grades[0], 1.0 - grades[1]]))
     half = 0.5 * np.diff(edges)
     u = 0.5 * (edges[1:] + edges[:-1]) + half * _POINTS[:, None]
     element = np.minimum((0.5 * (edges[1:] + edges[:-1]) * n).astype(np.int64), n - 1)
@@ -72,11 +78,26 @@ def compliance(beam: Beam, material: Material, length: float, n: int) -> Complia
         return np.asarray(np.bincount(element, weights=(integrand * ds).sum(axis=0), minlength=n), dtype=float)
 
     area = beam.width_at(u) * beam.thickness_at(u)
-    axial = summed(1.0 / (material.youngs_modulus * area))
+    axial = 1.0 / (material.youngs_modulus * area)
     b = np.stack([xi - 1.0, xi])
     EI = bending_stiffness(beam, material, u)
     bending = np.array([[summed(b[i] * b[j] / EI) for j in range(2)] for i in range(2)])
-    return Compliance(bending, axial, axial * 2.0 * (1.0 + material.poisson_ratio) / SHEAR_FACTOR)
+    shear = axial * 2.0 * (1.0 + material.poisson_ratio) / SHEAR_FACTOR
+    for layer, away in zip(upright, (u, 1.0 - u), strict=True):
+        if layer:
+            shear = shear * leaning(away * length / layer)
+    return Compliance(bending, summed(axial), summed(shear))
+
+
+def leaning(x: Array) -> Array:
+    """f at ``x`` (k,) layers a from a held section: tanh²(x/√2)."""
+    return np.asarray(np.tanh(x / np.sqrt(2.0)) ** 2)
+
+
+def _graded(layer: float) -> Array:
+    """Ends of pieces (k,) in which f is smooth, of a beam of length one beside an end with a ``layer``."""
+    places = layer * _GRADED
+    return np.asarray(places[(places > 0.0) & (places < 1.0)])
 
 
 def _pieces(beam: Beam, n: int) -> Array:

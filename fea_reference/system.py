@@ -46,6 +46,7 @@ class System:
             tangents and its chord; the chord's own angle is rounded, and so the force is to 12 EI/h² times the
             spacing of machine numbers there.  A penalty ε adds ε times an element's share of the zone,
             times what the gap is rounded to.
+        lost: whether something is loaded, and all that balances is no more than round-off.
     """
 
     z: State
@@ -57,6 +58,7 @@ class System:
     loads: tuple[BeamLoad, ...]
     scale: float
     floor: float
+    lost: bool
 
     def solve(self, right: Array) -> Array | None:
         """What the tangent makes ``right`` (size,) of; None where it is exactly singular or as good as that."""
@@ -142,8 +144,9 @@ def assemble(
     angle = max(1.0, float(np.abs(z[model.node_dofs[2]]).max()))
     floor = _ROUND_OFF * model.stiffest * float(np.spacing(angle))
     floor += sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
-    scale = largest if largest > _NOTHING * floor else 1.0
-    return System(z, acting, residual, tangent, elements, touches, loads, scale, floor)
+    told = largest > _NOTHING * floor
+    lost = not told and bool(values[: len(model.loads)].any())
+    return System(z, acting, residual, tangent, elements, touches, loads, largest if told else 1.0, floor, lost)
 
 
 def _pushes(one: Touch, foreseen: Array | None) -> Array:

@@ -64,6 +64,11 @@ def corners_of(points: Complex) -> Corners:
     return Corners(places[out], before[out], behind[out])
 
 
+def ends_of(places: Complex, along: Complex) -> Corners:
+    """Of a line from one to the other of two places (2,), whose unit tangents there are ``along`` (2,)."""
+    return Corners(places, np.array([-along[0], 1j * along[1]]), np.array([1j * along[0], along[1]]))
+
+
 def leaning(tangents: Complex, forces: Complex) -> float:
     """Sine by which forces (m,) together lean from the normal of a line, (m,) tangents where they act."""
     whole = complex(forces.sum())

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from comparisons.audit import edges
-from comparisons.audit.corners import Corners, corners_of, leaning
+from comparisons.audit.corners import Corners, corners_of, ends_of, leaning
 from comparisons.audit.rest import Complex
 from comparisons.audit.seen import AnyBeam, Seen
 from scene.answer import Array, Flags, Ints
@@ -160,9 +160,10 @@ def _of_rigid(
     on = np.zeros(len(s), dtype=bool)
     if s.size and not contact.thick and isinstance(contact, LineContact | FunctionContact):
         corners = _standing_out(contact).moved(first, moved, turn)
-        number, on = corners.standing(places, SUNK * seen.longest)
-        on &= corners.allow(forces, number)
-        yield from _on_corners(name, A, s, forces, np.where(on, number, -1))
+        number, beside = corners.standing(places, SUNK * seen.longest)
+        on = beside & corners.allow(forces, number)
+        # a part of what presses there may be normal to the edge beside the corner
+        yield from _on_corners(name, A, s, forces, np.where(beside & np.isin(number, number[on]), number, -1))
     yield from _pressing(seen, name, a, surface(places), None, thick=contact.thick, on_corners=on)
 
 
@@ -327,13 +328,16 @@ def _left(contact: LineContact | FunctionContact) -> bool:
 
 
 def _standing_out(contact: LineContact | FunctionContact) -> Corners:
-    """Corners and ends; of a graph its ends alone."""
-    points = _corners(contact)
-    found = corners_of(points if _left(contact) else points[::-1])
+    """Corners and ends; of a graph its ends alone, with its own tangents there and not those of its chords."""
+    points, left = _corners(contact), _left(contact)
     if isinstance(contact, LineContact):
-        return found
-    ends = np.isin(found.places, points[[0, -1]])
-    return Corners(found.places[ends], found.before[ends], found.behind[ends])
+        return corners_of(points if left else points[::-1])
+    v = np.array(contact.range)
+    slope = np.polynomial.polynomial.polyval(v, np.polynomial.polynomial.polyder(contact.coefficients))
+    along = np.diff(v)[0] * (1.0 + 1j * slope if contact.axis == "x" else slope + 1j)
+    along /= np.abs(along)
+    ends = points[[0, -1]]
+    return ends_of(ends, along) if left else ends_of(ends[::-1], -along[::-1])
 
 
 def _corners(contact: LineContact | FunctionContact) -> Complex:

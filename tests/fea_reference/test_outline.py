@@ -69,3 +69,23 @@ def test_a_side_ends_where_it_comes_to_the_edge_from_behind():
     # straight back from (0.1, 0.9), downwards, it comes to the first piece at (0.1, 0)
     beyond = edge.near(np.array([[0.1, 0.14, 0.07], [-0.5, -0.7, -0.61]]))
     assert np.abs(beyond.distance) == pytest.approx([0.5, 0.7, 0.61])
+
+
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_beyond_its_ends_a_graph_goes_straight_back(axis):
+    """Behind the edge and beside it its end is as far as that face; in front of it as far as the corner."""
+    contact = FunctionContact(
+        kind="beam-function", beam="b", body="g", axis=axis, coefficients=COEFFICIENTS, range=SPAN, side="above"
+    )
+    outline = outline_of(contact, np.zeros(2), 0.37)
+    f, beyond = np.polynomial.Polynomial(COEFFICIENTS), 0.023
+    for v, outwards in zip(SPAN, (-1.0, 1.0), strict=True):
+        tangent = outwards * np.array([1.0, f.deriv()(v)]) / np.hypot(1.0, f.deriv()(v))
+        up = outwards * np.array([-tangent[1], tangent[0]])
+        end = np.array([v, f(v)]) + beyond * tangent
+        y = np.stack([end - 0.031 * up, end + 0.031 * up], axis=1)
+        near = outline.near((y if axis == "x" else y[::-1]) / 0.37)
+        assert near.distance * 0.37 == pytest.approx([beyond, np.hypot(beyond, 0.031)], rel=1e-12)
+        assert near.normal[:, 0] == pytest.approx(tangent if axis == "x" else tangent[::-1], abs=1e-12)
+        assert near.bend[0] == 0.0
+        assert near.corner.tolist() == [False, True]

@@ -51,3 +51,17 @@ def test_what_presses_goes_through(share, kinematics):
     values = found.stations[0].values
     assert values["k.force"][0] == pytest.approx(share * UNIT, rel=1e-2)
     assert abs(values["tip.rotation"][0]) < 1e-2 * share
+
+
+@pytest.mark.parametrize("share", [1.3e-9, 1e-12])
+def test_what_round_off_drowns_is_no_answer(share):
+    """At 80 elements round-off leaves forces of 3e-8 EI/L²: what would press is that, 2.2 and 2314 times the load."""
+    found = answer(pressed(share), Settings(elements=80, kinematics="bending"))
+    assert found.ending is Ending.NOT_CERTIFIED
+    assert "too little to be told from round-off" in found.sentence
+
+
+def test_no_load_is_told():
+    found = answer(pressed(0.0), Settings(elements=80, kinematics="bending"))
+    assert found.ending is Ending.COMPLETED, found.sentence
+    assert found.stations[0].values["k.force"][0] == 0.0

@@ -15,7 +15,7 @@ import cprbm
 import fea_reference
 from comparisons.audit import audit, audited
 from comparisons.audit.corners import corners_of
-from comparisons.audit.gaps import _surface
+from comparisons.audit.gaps import _standing_out, _surface
 from comparisons.cases import opened
 from scene import Ending
 from scene.answer import frozen_array
@@ -334,3 +334,23 @@ def test_a_symmetric_arch_that_should_tilt_is_no_minimum(solve):
         assert [("no minimum" in sentence) for sentence in said] == ([True] if unstable else []), said
         if unstable:
             assert solve(free).ending is Ending.BRANCH_ENDS
+
+
+@pytest.mark.parametrize(("axis", "side"), [("x", "above"), ("x", "below"), ("y", "above"), ("y", "below")])
+def test_the_ends_of_a_graph_press_between_its_own_normals_there(axis, side):
+    # its chords lean from its tangents by κ/2 times their length, more than forces are allowed to
+    coefficients, span = (0.011, -0.37, 6.1), (-0.031, 0.043)
+    contact = FunctionContact(
+        kind="beam-function", beam="b", body="w", axis=axis, coefficients=coefficients, range=span, side=side
+    )
+    f = np.polynomial.Polynomial(coefficients)
+    corners = _standing_out(contact)
+    for v, outwards in zip(span, (-1.0, 1.0), strict=True):
+        place, along = v + 1j * f(v), outwards * (1.0 + 1j * f.deriv()(v))
+        free = (1j if side == "above" else -1j) * outwards * along  # above the graph, or below it
+        if axis == "y":
+            place, along, free = (1j * each.conjugate() for each in (place, along, free))
+        forces = 0.7 * np.array([free, along, free + along, free - 1e-4 * along, along - 1e-4 * free, -free])
+        number, near = corners.standing(np.full(len(forces), place), 1e-9)
+        assert near.all()
+        assert corners.allow(forces, number).tolist() == [True, True, True, False, False, False]

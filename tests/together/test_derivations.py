@@ -109,7 +109,7 @@ def test_how_elements_of_a_varying_section_turn():
         chain = model.chains[0]
         ours = chain.section.flexibility(chain.borders) / model.unit_moment
         length = curves.length(beam.curve)
-        F = compliance(beam, material, length, n).bending
+        F = compliance(beam, material, length, n, (0.0, 0.0)).bending
         assert ours == pytest.approx(F[0, 0] - 2.0 * F[0, 1] + F[1, 1], rel=1e-13)
         # a third derivation: many small steps, each with the section of its middle
         u = (np.arange(n * 30_000) + 0.5) / (n * 30_000)
