@@ -463,7 +463,7 @@ class Edge:
         They are behind both of the corner's pieces and, as beyond a thin one they are in the open again, nearer to the
         corner than to what else there is.  A sharp corner's normals are those of lines, too, that pass it on one side.
         """
-        inside = (r @ np.array(corner.before) < 0.0) & (r @ np.array(corner.behind) < 0.0)
+        inside: Flags = np.asarray((r @ np.array(corner.before) < 0.0) & (r @ np.array(corner.behind) < 0.0))
         if not inside.any():
             return inside
         place, depth = np.array(corner.place), np.hypot(r[:, 0], r[:, 1]) - NEAREST
