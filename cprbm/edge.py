@@ -451,8 +451,30 @@ class Edge:
         settled = (F_s > LEAST_CURVATURE) & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
         settled &= (s > 0.0) & (s < self.a.s[-1]) & ~self._ruled(s) & ~self._beside(s, taken)
         s = np.unique(s[settled])
-        facing = corner.beyond(frame.turned(self._away(corner, line.at(s), frame), -frame.phi))
-        return np.asarray(s[facing >= -FACING])
+        A = line.at(s)
+        m, r = self._away(corner, A, frame), self._from(corner, A, frame)
+        faced = corner.beyond(frame.turned(m, -frame.phi)) >= -FACING
+        faced &= (np.sum(m * r, axis=1) >= 0.0) | self._inside(corner, frame.turned(r, -frame.phi))
+        return np.asarray(s[faced])
+
+    def _inside(self, corner: Corner, r: Array) -> Flags:
+        """Which places, ``r`` (k, 2) from a corner as the body sees it, are in what is rigid there.
+
+        They are behind both of the corner's pieces and, as beyond a thin one they are in the open again, nearer to the
+        corner than to what else there is.  A sharp corner's normals are those of lines, too, that pass it on one side.
+        """
+        inside: Flags = np.asarray((r @ np.array(corner.before) < 0.0) & (r @ np.array(corner.behind) < 0.0))
+        if not inside.any():
+            return inside
+        place, depth = np.array(corner.place), np.hypot(r[:, 0], r[:, 1]) - NEAREST
+        q = r + place
+        for face in self.faces:
+            if not any(end is not None and np.hypot(*(end - place)) <= SAME for end in face.ends):
+                seen = face.seen(q)
+                inside &= ~seen.within | (np.abs(seen.distance) >= depth)
+        for tip in self.tips:
+            inside &= np.hypot(*(q - tip).T) >= depth
+        return inside
 
     def _nearest(self, A: smooth.Points, frame: Frame) -> tuple[Array, Array, Array]:
         """Of the pieces that some points face, the nearest: D (k,), infinite where there is none, n (k, 2), k (k,)."""

@@ -14,8 +14,12 @@ opposite, so that what goes before s carries nothing of them, to the last digit.
 Rows stand at the minima of D along the nearer place s, at the joints there where strands lie on each other, and where
 an end of the beam faces a part of it.  Arc lengths of the contact are those of s.
 
-Ends that meet head-on have no row: neither has a place of the other's side before it.  They count for the least gap, so
-that an answer in which they overlap is none.
+Ends that meet head-on face no side of each other: each is before the other's end.  Round ends that touch are as far
+apart as the beam is thick, and have a row for that,
+
+    d = |r|,  r = C(L) − C(0),  e = r/d;    c = t − d,    ∂d/∂C(L) = e = −∂d/∂C(0),    ∂²d/∂C(L)² = (1 − e eᵀ)/d
+
+until the one comes beside the other: there d is D.
 """
 
 from __future__ import annotations
@@ -25,7 +29,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cprbm.contact import Group
+from cprbm.contact import Blocks, Group
 from cprbm.crossing import own_crossings
 from cprbm.gathering import gathered
 from cprbm.kinematics import Positions, State
@@ -51,6 +55,8 @@ from scene.answer import Array, Flags
 LEVEL = 1.0 / 16.0  # h² times curvatures, 1/ℓ added: lines that lie on each other cross no more deeply; it is twice
 # as much as chords of two arcs cross by, each over half an element
 
+MEETING, MET = 2.0, 1e-6  # thicknesses: ends that have met and are closer are known to go past each other on the side
+# where they are; those that are apart by less than the second have met
 DEEPER = 2.0  # times the depth by which the line crosses itself, which is about that by which parts lie beyond others
 
 
@@ -72,6 +78,16 @@ class Tip:
     def across(self) -> float:
         """a: about an even number of half turns both run the same way."""
         return -self.side if self.turns % 2 == 0 else self.side
+
+
+@dataclass(frozen=True, slots=True)
+class HeadOn:
+    """The beam's ends before each other: d, e (2,), the ``thickness`` of both together, and a of the start."""
+
+    distance: float
+    along: Array
+    thickness: float
+    side: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,7 +200,26 @@ class Itself:
             distance, sigma = self._by_edges(lines, s, sigma, side)
         if tip is not None:
             faces, fresh = faces.joined(tip.s, float(G.s[-1]), -tip.side), min(fresh, tip.fresh)
+        end = self._head_on(lines)
+        if end is not None and end.distance < MEETING * end.thickness and self.known.know(*self._ends)[0][0]:
+            faces = faces.joined(0.0, float(G.s[-1]), end.side)
         return Facing(lines, strands(G.s, here, sigma, distance, turn, side), tip, faces, fresh)
+
+    @property
+    def _ends(self) -> tuple[Array, Array]:
+        """Arc lengths of the beam's ends, as of one place and what faces it."""
+        return self.a.s[:1], self.a.s[-1:]
+
+    def met(self, facing: Facing) -> Faces:
+        """What is known of a state's faces from there on, that ends which have met head-on did so among it.
+
+        From a state in which they touch they go past each other on the side where they are; from one where they are
+        apart they may have gone through each other.
+        """
+        end = self._head_on(facing.lines)
+        if end is None or end.distance > (1.0 + MET) * end.thickness or facing.faces.know(*self._ends)[0][0]:
+            return facing.faces
+        return facing.faces.joined(0.0, float(self.a.s[-1]), end.side)
 
     def _by_edges(self, lines: Lines, s: Array, sigma: Array, side: Array) -> tuple[Array, Array]:
         """aD and σ (k,) from those of the neutral lines."""
@@ -200,7 +235,7 @@ class Itself:
         """The beam's end, if it faces a part of the beam: of several the nearest; ``depth`` is that of a crossing."""
         G, last = lines[0].sampled, len(lines[0].sampled.s) - 1
         d = np.hypot(G.x - G.x[last], G.y - G.y[last])
-        low = 1 + np.flatnonzero((d[1:-1] <= d[:-2]) & (d[1:-1] < d[2:]))
+        low = np.flatnonzero((d[:-1] <= np.append(np.inf, d[:-2])) & (d[:-1] < d[1:]))
         low = low[turned_enough(G.psi[last] - G.psi[low])]
         if not low.size:
             return None
@@ -271,7 +306,53 @@ class Itself:
             key = np.array([self.a.n + 3])
             rows = gathered(self.name, (self.a, self.a), at, touches.exchanged(), np.ones((1, 1)), key, ends)
             found.append(self._own(rows, tip.turns, tip.side))
+        end = self._head_on(lines)
+        if end is not None and end.distance < end.thickness + REACH and not held_together(self.a, self.a, -1, 0.0):
+            found.append(self._between_ends(end))
         return tuple(found)
+
+    def _head_on(self, lines: Lines) -> HeadOn | None:
+        """How the beam's ends are before each other; None where one has a side of the other's before it, or no end."""
+        G = lines[0].sampled
+        if self.offset == 0.0 or not turned_enough(G.psi[-1:] - G.psi[:1])[0]:
+            return None
+        r = np.array((G.x[-1] - G.x[0], G.y[-1] - G.y[0]))
+        psi = G.psi[[0, -1]]
+        before = np.cos(psi) * r[0] + np.sin(psi) * r[1]
+        distance = float(np.hypot(*r))
+        if np.any(before >= 0.0) or distance == 0.0:
+            return None
+        thickness = self.offset + float(np.max(self._sided(1.0, 1.0).wider(G.s[:1], G.s[-1:])))
+        on_left = np.sin(psi[1]) * r[0] - np.cos(psi[1]) * r[1] >= 0.0
+        return HeadOn(distance, r / distance, thickness, 1.0 if on_left else -1.0)
+
+    def _chord(self, at: Positions) -> Array:
+        """C(L) − C(0) (2,)."""
+        first, last = self.a.first_joint, self.a.joints.stop - 1
+        return np.array((at.x[last] - at.x[first], at.y[last] - at.y[first]))
+
+    def _between_ends(self, end: HeadOn) -> Group:
+        """The row that holds ends apart which are before each other."""
+        joints, none = np.array([[self.a.first_joint, self.a.joints.stop - 1]]), np.zeros((1, 0), dtype=np.intp)
+        ends = np.array((-1.0, 1.0))
+        # over x of both joints, then y: of C(L) − C(0)
+        over = np.kron((np.eye(2) - np.outer(end.along, end.along)) / end.distance, np.outer(ends, ends))
+
+        def curvature(multipliers: Array) -> Blocks:
+            pressing = np.flatnonzero(multipliers)
+            return Blocks(joints[pressing], none[pressing], -multipliers[pressing, None, None] * over)
+
+        return Group(
+            contact=self.name,
+            values=np.array([end.thickness - end.distance]),
+            joints=joints,
+            angles=none,
+            slopes=-np.kron(end.along, ends)[None],
+            curvature=curvature,
+            keys=(self.a.n + 4,),
+            arc=np.zeros(1),
+            itself=True,
+        )
 
     def _own(self, group: Group, turns: int, side: float) -> Group:
         """A group of one strand, with keys of its own."""
@@ -296,19 +377,31 @@ class Itself:
         return float(min(least, -depth) if depth > 0.0 else least) - self.offset
 
     def _ends_apart(self, lines: Lines) -> float:
-        """The distance of the beam's ends, which meet head-on where neither has a place of the other before it."""
+        """The distance of the beam's ends, less by what they are thicker; also where no foot of theirs was seen."""
         G = lines[0].sampled
         if self.offset == 0.0 or not turned_enough(G.psi[-1:] - G.psi[:1])[0]:
             return np.inf
         wider = np.max(self._sided(1.0, 1.0).wider(G.s[:1], G.s[-1:]))
         return float(np.hypot(G.x[-1] - G.x[0], G.y[-1] - G.y[0]) - wider)
 
-    def passed(self, way: Iterable[tuple[State, Positions]], end: tuple[State, Positions], allowed: float) -> bool:
-        """Whether the beam went through itself on a ``way`` from where its faces are known to an ``end``.
+    def passed(
+        self,
+        start: tuple[State, Positions],
+        way: Iterable[tuple[State, Positions]],
+        end: tuple[State, Positions],
+        allowed: float,
+    ) -> bool:
+        """Whether the beam went through itself on a ``way`` from a ``start``, where its faces are known, to an ``end``.
 
         The way is known to ``allowed``.  Parts that begin to face each other at less than that, edge from edge, may
-        have met in it: such as ends of which neither lies inside the other.
+        have met in it: such as ends of which neither lies inside the other.  Ends that have met may slip off each other
+        where the branch itself ends: they go by no more than what the beam is thick.
         """
+        met = self._head_on(self._sided(1.0, 1.0).lines(*start))
+        if met is not None and met.distance <= (1.0 + MET) * met.thickness:
+            before, after = (self._chord(at) for _, at in (start, end))
+            if np.hypot(*(after - before)) > met.thickness:
+                return True
         here, close = self, self.offset + allowed
         for state, at in way:
             facing = here.facing(state, at)
@@ -338,6 +431,8 @@ class Itself:
             at_tip = (np.abs(s - facing.tip.s) <= SAME * self.a.h) & (least >= facing.tip.D - SAME * self.a.h)
             sigma = np.where(at_tip, self.a.s[-1], sigma)
             side = np.where(at_tip, facing.tip.across, side)
+        if self._head_on(facing.lines) is not None:
+            sigma = np.where((s == 0.0) & np.isinf(least), self.a.s[-1], sigma)
         return side, sigma
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:

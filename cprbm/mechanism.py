@@ -131,7 +131,7 @@ class Mechanism:
                 across = self._crossed_between(pair, before, after, way, EDGE_WAY)
             elif isinstance(pair, Itself):
                 allowed = WAY * most_turned(before.state, after.state) ** 2
-                across = pair.passed(way(), end, allowed)
+                across = pair.passed(start, way(), end, allowed)
             else:
                 # without having been there a beam comes to lie beyond another by its end or through it
                 gone = may_be_beyond(pair, *end) and pair.gone_round(*end)
@@ -256,7 +256,7 @@ def _formulation(
         faces = {}
         for name, pair in watched.items():
             facing = pair.seen(before.faces.get(name, NO_FACES)).facing(state, at)
-            faces[name] = facing.faces
+            faces[name] = pair.met(facing)
             if name not in idle:
                 groups += pair.rows(facing, at)
         return Rows(tuple(groups), faces)

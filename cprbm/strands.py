@@ -112,6 +112,8 @@ def facing_samples(x: Array, y: Array) -> tuple[Ints, Ints]:
     d = np.hypot(x[:, None] - x, y[:, None] - y)
     low = np.zeros(d.shape, dtype=bool)
     low[:, 1:-1] = (d[:, 1:-1] <= d[:, :-2]) & (d[:, 1:-1] < d[:, 2:])
+    # where the start faces the last half of an element the end is closest, of the samples
+    low[0, -1] = d[0, -1] <= d[0, -2]
     here, there = np.nonzero(np.triu(low, 2))
     return here, there
 

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea_reference.solid.contacts import Tip, Touch
+from fea_reference.solid.contacts import Touch
 from fea_reference.solid.march import March
+from fea_reference.solid.pairs import Tip
 from fea_reference.solid.skin import Skin
 from fea_reference.solid.supports import place, support
 from scene.answer import Area, Array, Statics, frozen_array

@@ -84,6 +84,11 @@ def hooked(s):
     return 5.8 * np.maximum(s - 0.3, 0.0) ** 1.2 / 0.7**1.2
 
 
+def nearly_closed(s):
+    """Its ends are before each other."""
+    return 5.9 * s
+
+
 def roll(stations, narrows=NARROWS, *, thick=True, backwards=False):
     """A scene of a strip of length one, its end turned to ``stations``, rad; ``backwards`` drawn from that end."""
     at, shares = narrows

@@ -8,7 +8,10 @@ import pytest
 import cprbm
 from cprbm import newton
 from cprbm.corner import corners_of
+from cprbm.edge import REACH
 from cprbm.faces import faces_of, sides_of
+from cprbm.kinematics import positions, rest_state
+from cprbm.mechanism import mechanism_of
 from scene.statement import HalfPlaneContact, LineContact
 from tests.fea_reference.on_an_edge import T, cantilever_over, scene_of
 from tests.references.cornered import Cornered
@@ -195,3 +198,51 @@ def test_what_is_rigid_behind_an_edge_ends_where_its_sides_meet():
     round_it = gable.model_copy(update={"points": (*gable.points, gable.points[0])})
     half_plane = HalfPlaneContact(kind="beam-half-plane", beam="beam", body="wall", point=(0.0, 0.0), normal=(1.0, 2.0))
     assert sides_of(faces_of(round_it, 1.0, (0.0, 0.0))) == sides_of(faces_of(half_plane, 1.0, (0.0, 0.0))) == ()
+
+
+def apart(one, other):
+    """The least distance of two segments (2, 2) that do not cross."""
+    found = []
+    for places, (begin, end) in ((one, other), (other, one)):
+        along = end - begin
+        share = np.clip((places - begin) @ along / (along @ along), 0.0, 1.0)
+        found.append(np.linalg.norm(places - begin - share[:, None] * along, axis=1).min())
+    return min(found)
+
+
+def crossing(one, other):
+    """Whether two segments (2, 2) cross."""
+
+    def sides(of, places):
+        (ux, uy), r = of[1] - of[0], places - of[0]
+        return ux * r[:, 1] - uy * r[:, 0]
+
+    return sides(one, other).prod() < 0.0 and sides(other, one).prod() < 0.0
+
+
+def test_a_beam_that_passes_a_triangle_is_as_far_from_it_as_from_its_sides():
+    # reference: the distances of segments.  A sharp corner's normals are those, too, of beams that pass another side
+    # of it; behind it they would be as deep as they are far away
+    rng = np.random.default_rng(41)
+    beam, checked, passing = np.array([[0.0, 0.0], [1.0, 0.0]]), 0, 0
+    for _ in range(100):
+        corners = rng.uniform((0.1, -0.25), (0.9, 0.25)) + 0.17 * rng.standard_normal((3, 2))
+        (ux, uy), (vx, vy) = corners[1] - corners[0], corners[2] - corners[0]
+        corners = corners if ux * vy < uy * vx else corners[::-1]  # clockwise: what is free is on the left
+        sides = [np.array(side) for side in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
+        if any(crossing(beam, side) for side in sides):
+            continue
+        points = tuple(map(tuple, [*corners.tolist(), corners[0].tolist()]))
+        scene = cantilever_over({"kind": "beam-line", "points": points, "side": "left", "thick": False})
+        made = mechanism_of(scene, cprbm.Settings(links=13))
+        rest = rest_state(made.problem.model)
+        at, edge = positions(made.problem.model, rest), made.pairs["edge"]
+        away = min(apart(beam, side) for side in sides) / edge.unit_length
+        # what is farther than any row is known by samples alone
+        assert edge.least_gap(rest, at) >= away - 1e-9
+        assert edge.least_gap(rest, at) <= away + 1e-9 or away > REACH
+        assert all(np.all(group.values <= 1e-12 - away) for group in edge.groups(rest, at))
+        checked += 1
+        passing += any(group.values.size for group in edge.groups(rest, at))
+    assert checked > 40
+    assert passing > 12

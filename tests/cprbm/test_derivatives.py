@@ -15,7 +15,7 @@ from cprbm.mechanism import mechanism_of
 from cprbm.newton import newton_step, system
 from cprbm.point import contact_gradient, contact_rows, point_at
 from cprbm.settings import Settings
-from tests.cprbm.rolled import coil, hooked, neck, strip
+from tests.cprbm.rolled import coil, hooked, nearly_closed, neck, strip
 from tests.cprbm.scenes import hinge, hinge_data
 
 STEP = 1e-6
@@ -59,6 +59,7 @@ def taper(*values):
         partial(strip, coil, taper(0.0025, 0.005), held="T"),
         partial(strip, hooked, taper(0.002, 0.001)),
         partial(strip, coil, taper(0.0025, 0.005, 0.0025)),
+        partial(strip, nearly_closed, 0.09),
     ]
 )
 def bent(request):
