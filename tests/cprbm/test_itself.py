@@ -42,6 +42,8 @@ def test_an_arc_does_not_touch_itself_however_thick(turns, links):
     chord = np.sin(np.pi * turns) / (np.pi * turns)
     expected = chord - 0.09 if turns > 0.25 else np.inf
     assert pair.least_gap(state, at) == pytest.approx(expected, abs=3.0 / links**2)
+    elsewhere = replace(at, x=at.x + 0.217, y=at.y - 0.374)
+    assert pair.least_gap(state, elsewhere) == pytest.approx(expected, abs=3.0 / links**2)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
