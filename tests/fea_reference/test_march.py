@@ -43,6 +43,23 @@ def test_what_overlaps_by_more_than_was_asked_for_is_not_left_however_often_it_w
         assert not March._will_do(march, one, 1.7, 0)
 
 
+def test_of_three_gaps_the_first_to_close_is_found_though_another_seemed_to_be():
+    # reference: where the three close, as they are written; on straight lines from 0 to 1 the first one does before the
+    # second, which in truth has closed by then, and the third is open all the while
+    def gaps(value):
+        second = 1.0 - value / 0.37 if value < 0.37 else -0.1 * (value - 0.37) / 0.63
+        return [1.0 - value / 0.53, second, 2.3 - value]
+
+    march = SimpleNamespace(
+        solve=lambda load, value, start: value,
+        gaps=gaps,
+        open=[namedtuple("Pair", "scale")(0.043)] * 3,
+        model=SimpleNamespace(stops=()),
+        _between=lambda *way: None,
+    )
+    assert March._first_touch(march, 0, {0.0: 0.0, 1.0: 1.0})[0] == pytest.approx(0.37, abs=1e-9)
+
+
 def test_where_a_contact_closes_is_not_a_matter_of_the_stations():
     """Another contact that is still under its first, loose penalty must not let the next one close too late."""
     first, second = (
