@@ -9,6 +9,7 @@ from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.local import local_step
+from cprbm.march import March
 from cprbm.mechanism import mechanism_of
 from cprbm.newton import system
 from cprbm.point import contact_gradient, contact_rows, point_at
@@ -113,6 +114,20 @@ def test_one_point_of_a_circle_under_the_beams_middle():
     values = solved(load, 60, radius=small, center=center).values
     assert values["circle.force"][0] == pytest.approx(load * (3.0 * length - a) / (2.0 * a), rel=2e-3)
     assert values["circle.centre"][0] == pytest.approx(a, abs=1e-4 * length)
+
+
+@pytest.mark.parametrize("share", [0.43, 0.71])
+def test_joints_beside_a_place_of_its_own_have_no_rows(share):
+    # reference: where the circle's middle is below a beam that is pressed on it in a point, and hardly bent
+    center = [share * BEAM["length"], -0.003 - BEAM["thickness"] / 2.0]
+    march = March(scene_of([0.007], radius=0.003, center=center), (cprbm.Settings(links=19),))
+    assert march.run()[0].name == "COMPLETED"
+    rows, lam = march.on.point.rows, march.on.point.lam
+    (pressing,) = np.flatnonzero(lam > 0.0)
+    away = np.abs(rows.arc - share) * 19
+    assert away[pressing] < 0.1
+    assert np.delete(away, pressing).min() == pytest.approx(3.0, abs=0.5)
+    assert rows.size > 3
 
 
 def test_both_forms_of_newtons_system_give_one_answer(monkeypatch, truth):
