@@ -62,7 +62,7 @@ class Circle:
         name: of the contact.
         a: the beam's chain.
         body: that the circle is fixed to, −1 for the ground; ``mark`` the number of its centre among the joints,
-            if that is a body that moves.
+            if that is a body that moves; ``frame`` the body again, or the ground where it stays.
         x, y, radius: of the circle, units of length; x and y at rest, see :meth:`placed`.
         offset: T₀, zero for a line; units of length.
         unit_length: ℓ, m.
@@ -76,6 +76,7 @@ class Circle:
     name: str
     a: Chain
     body: int
+    frame: int
     mark: int
     x: float
     y: float
@@ -241,7 +242,7 @@ class Circle:
         near = np.zeros(len(s), dtype=bool)
         near[::2] = D[::2] < _beside(self.a, self.radius)
         # an end that the circle's own body holds cannot move against it: its gap is no unknown
-        held = self.a.start.body == self.body, self.a.end is not None and self.a.end.body == self.body
+        held = tuple(end is not None and end.frame == self.frame for end in (self.a.start, self.a.end))
         near[[0, -1]] &= ~np.array(held)
         # at an end that is lowest the minimum lies within if the way to it rises
         slope = self.slope(A)
@@ -358,6 +359,7 @@ def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:
         name=name,
         a=chain,
         body=body,
+        frame=model.marks[name].frame if name in model.marks else -1,
         mark=mark,
         x=contact.center[0] / unit,
         y=contact.center[1] / unit,
@@ -367,7 +369,7 @@ def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:
         ends=_places_of_rows(chain, chain.s[-1] * fit.ends.get(name, np.zeros(0)), corners=contact.thick),
         kinks=fit.kinks.get(name, (NO_KINKS,))[0],
     )
-    start, end = (held is not None and held.body == body and held.welded for held in (chain.start, chain.end))
+    start, end = (held is not None and held.frame == circle.frame and held.welded for held in (chain.start, chain.end))
     if not (start or end):
         return circle
     touch = _in_touch(circle)

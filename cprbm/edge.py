@@ -565,7 +565,8 @@ def edge_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Edge:
     body = model.marks[name].body if moves else -1
     x, y = np.array(anchor(contact)) / model.unit_length if moves else (0.0, 0.0)
     pins = own_pins(scene, model, name)
-    held = (chain.start.body == body, chain.end is not None and chain.end.body == body)
+    frame = model.marks[name].frame if moves else -1
+    held = (chain.start.frame == frame, chain.end is not None and chain.end.frame == frame)
     welded = (chain.start.welded, chain.end is not None and chain.end.welded)
     pieces = faces_of(contact, model.unit_length, (float(x), float(y)))
     sides = sides_of(pieces)

@@ -592,7 +592,7 @@ def held_together(one: Chain, other: Chain, end: int, foot: float) -> bool:
         return False
     first, last = other.s[1], other.s[-1] - other.s[-2]
     for its, away, half in ((other.start, foot, first), (other.end, other.s[-1] - foot, last)):
-        if its is None or its.body != mine.body:
+        if its is None or its.frame != mine.frame:
             continue
         # a welded end moves with the body as far as its half element hardly bends
         if away <= (half if its.welded and mine.welded else SAME * half):

@@ -14,6 +14,7 @@ from cprbm.curves import NeutralLine, neutral_line
 from cprbm.made import Made
 from cprbm.section import Section, largest_rigidity, section_of
 from cprbm.standing import Attachment, Side, Standing, standing
+from cprbm.staying import staying
 from scene import (
     BeamContact,
     BeamEnd,
@@ -76,9 +77,12 @@ def outset_of(scene: Scene) -> Outset:
     places |= {_loose(name): scene.beams[name].curve.start for name in scene.beams if name in loose}
     number = {name: i for i, name in enumerate(places)}
 
+    stay = staying(scene, unit_length)
+
     def on(owner: str, point: tuple[float, float], *, welded: bool) -> Attachment:
         (x, y), (x0, y0) = point, places.get(owner, (0.0, 0.0))
-        return Attachment(number.get(owner, -1), ((x - x0) / unit_length, (y - y0) / unit_length), welded)
+        at = (x - x0) / unit_length, (y - y0) / unit_length
+        return Attachment(number.get(owner, -1), at, welded, stays=owner in stay)
 
     def joined(end: BeamEnd) -> Attachment | None:
         if isinstance(end, FreeEnd):

@@ -127,13 +127,13 @@ def rigid_edge(scene: Scene, model: Model, edge: Edge) -> RigidEdge:
         SceneError: it has no related joint.
     """
     joints = related_joints(scene, edge.name, edge.a, fewest=1)
-    joints = joints[~np.isin(joints, _fixed(edge.a, edge.body))]
+    joints = joints[~np.isin(joints, _fixed(edge.a, model.marks[edge.name].frame if edge.name in model.marks else -1))]
     half = 0.5 * edge.a.section.thickness_at(edge.a.s[joints]) if edge.offset > 0.0 else np.zeros(len(joints))
     return RigidEdge(edge, joints, half)
 
 
-def _fixed(chain: Chain, body: int) -> list[int]:
+def _fixed(chain: Chain, frame: int) -> list[int]:
     """Joints beside ends that are welded to a body: these do not move against it."""
     start, end = chain.start, chain.end
-    fixed = [1] if start.body == body and start.welded else []
-    return fixed + ([chain.n] if end is not None and end.body == body and end.welded else [])
+    fixed = [1] if start.frame == frame and start.welded else []
+    return fixed + ([chain.n] if end is not None and end.frame == frame and end.welded else [])

@@ -40,12 +40,18 @@ class Attachment:
     """What a beam's end is joined to: ``body`` (−1 for the ground), the point there, and whether it is welded.
 
     ``point`` is the point's position on the body: from the body's reference place for a free body,
-    absolute for the ground; units of length.
+    absolute for the ground; units of length.  A body ``stays`` that is held as the ground is (:mod:`cprbm.staying`).
     """
 
     body: int
     point: tuple[float, float]
     welded: bool
+    stays: bool = False
+
+    @property
+    def frame(self) -> int:
+        """The body again, but the ground (−1) where it stays: what is of one frame cannot move against each other."""
+        return -1 if self.stays else self.body
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,7 +161,7 @@ def _clamped(mine: tuple[_End, _End], its: tuple[_End, _End], side: float) -> tu
 
 def _together(one: _End, other: _End, side: float, number: int) -> bool:
     """Whether an end of A touches an end of B, its start or its end by ``number``, and moves with the same body."""
-    if one.held is None or other.held is None or one.held.body != other.held.body:
+    if one.held is None or other.held is None or one.held.frame != other.held.frame:
         return False
     rx, ry, wide = one.x - other.x, one.y - other.y, one.half + other.half
     if math.hypot(rx, ry) > wide + 2.0 * ON_IT:

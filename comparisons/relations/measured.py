@@ -29,7 +29,7 @@ from comparisons.measures import arc_lengths, probe_scales, round_offs
 from comparisons.pairing import Solver
 from comparisons.relations.image import Data, Image, plain
 from comparisons.relations.relations import RELATIONS, Relation
-from comparisons.relations.uncertain import Solved, solved, uncertainties
+from comparisons.relations.uncertain import Solved, critical_uncertainties, solved, uncertainties
 from comparisons.scales import norm
 from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
@@ -114,7 +114,7 @@ def _worst(first: Solved, image: Image, solver: Solver, choices: Choices) -> Dep
     found = [
         *_departures(first, image, other),
         *_by_itself(image, other),
-        *_criticals(mine, image, other),
+        *_criticals(first, image, other),
     ]
     nothing = Departure("", "", math.nan, 0.0, why=mine.sentence)
     return max(found, key=lambda each: (each.pressure, each.size), default=nothing)
@@ -183,18 +183,27 @@ def _by_itself(image: Image, other: Solved) -> Iterator[Departure]:
             yield Departure(name, stage, value, size, allowed)
 
 
-def _criticals(mine: Answer, image: Image, other: Solved) -> Iterator[Departure]:
-    """Of where branches end, as shares of the largest value of the stage."""
-    theirs = other.answer
+def _criticals(first: Solved, image: Image, other: Solved) -> Iterator[Departure]:
+    """Of where branches end, as shares of the largest value of the stage; each is known to its own uncertainty."""
+    mine, theirs = first.answer, other.answer
     if len(mine.critical) != len(theirs.critical):
         why = f"{len(mine.critical)} critical values became {len(theirs.critical)}"
         yield Departure("critical", "", math.nan, math.inf, why=why)
         return
     largest = {stage.name: max(map(abs, stage.stations)) for stage in other.scene.stages}
-    for here, there in zip(mine.critical, theirs.critical, strict=True):
-        size = abs(there.value - image.place(here.stage, here.value)) / largest[there.stage]
+    meshes = [[0.0] * len(theirs.critical)] * 2
+    if image.discretised_anew and theirs.critical:
+        meshes = [critical_uncertainties(first), critical_uncertainties(other)]
+    for here, there, *mesh in zip(mine.critical, theirs.critical, *meshes, strict=True):
+        placed = image.place(here.stage, here.value)
+        scaled = abs(placed / here.value) if here.value else 1.0
+        allowed = scaled * (here.uncertainty + mesh[0]) + there.uncertainty + mesh[1]
         yield Departure(
-            "critical", there.stage, there.value, size, max(TARGET, there.uncertainty / largest[there.stage])
+            "critical",
+            there.stage,
+            there.value,
+            abs(there.value - placed) / largest[there.stage],
+            max(TARGET, allowed / largest[there.stage]),
         )
 
 

@@ -12,9 +12,6 @@ M       a moment, N·m
 ΣF, ΣM  ΣR and Σ(M + x × R), as shares of the largest in any station
 ======  =====================================================================
 
-A beam may be clamped on what it touches, and solvers know how clamp and contact share the force there (the elements
-next to it do not say).  On a body of its own, which might move, they do not, and the answer is the same but for that.
-
 What is told of slides and of loads along beams is a force without its place, so that ΣM is asked only without them.
 """
 
@@ -43,7 +40,6 @@ from scene.statement import (
     RotationDrive,
     SlidingBody,
     TurningBody,
-    WeldedEnd,
 )
 
 
@@ -74,8 +70,7 @@ def on_drives(data: Data) -> Image:
         *((name, "force") for name in own),
     ]
     new["probes"] += [{"of": of, "quantity": q} for of, q in dict.fromkeys(wanted) if (of, q) not in asked]
-    anew = any(_beside_clamp(scene, contact) for contact in own.values())
-    return Image("rigid things held by drives", new, beyond=balance, discretised_anew=anew)
+    return Image("rigid things held by drives", new, beyond=balance)
 
 
 def balance(scene: Scene, answer: Answer) -> dict[str, dict[tuple[str, float], float]]:
@@ -167,13 +162,6 @@ def _stands_alone(scene: Scene, contact: RigidContact) -> bool:
     return not any(
         isinstance(end, PinnedEnd) for end in (scene.beams[contact.beam].start, scene.beams[contact.beam].end)
     )
-
-
-def _beside_clamp(scene: Scene, contact: RigidContact) -> bool:
-    """Whether an end of the beam is welded to the body of what is rigid."""
-    beam = scene.beams[contact.beam]
-    points = scene.bodies[contact.body].points
-    return any(isinstance(end, WeldedEnd) and end.point in points for end in (beam.start, beam.end))
 
 
 def _alone(scene: Scene, contact: RigidContact) -> bool:

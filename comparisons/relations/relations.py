@@ -10,7 +10,7 @@ from comparisons.relations.frames import MIRROR, QUARTER, Frame, has_graphs, tur
 from comparisons.relations.image import Data, Image
 from comparisons.relations.naming import backwards, other_way_round
 from comparisons.relations.reactions import on_drives
-from comparisons.relations.reversing import reversed_beam
+from comparisons.relations.reversing import may_run_back, reversed_beam
 from comparisons.relations.stepping import coarser, finer
 
 ANGLE = 2.1991
@@ -50,7 +50,8 @@ def _order(data: Data) -> Iterator[Image]:
 
 def _direction(data: Data) -> Iterator[Image]:
     for beam in data["beams"]:
-        yield reversed_beam(data, beam)
+        if may_run_back(data, beam):
+            yield reversed_beam(data, beam)
 
 
 def _modulus(data: Data) -> Iterator[Image]:

@@ -10,6 +10,19 @@ from comparisons.relations.image import Data, Image, copied
 from scene import Probe
 from scene.answer import Array
 from scene.reading import scene_from
+from scene.statement import FreeEnd
+
+ASSEMBLED = 1e-6
+"""Of a beam's length: an end that is drawn farther from its point is brought there by the assembly."""
+
+
+def may_run_back(data: Data, beam: str) -> bool:
+    """Whether a ``beam`` can be drawn from its end: one that assembly brings to its point must be an end."""
+    drawn = scene_from(data).beams[beam]
+    if isinstance(drawn.end, FreeEnd):
+        return True
+    place = np.array(scene_from(data).place_of(drawn.end.point))
+    return bool(np.hypot(*(place - drawn.curve.end)) <= ASSEMBLED * length(drawn.curve))
 
 
 def reversed_beam(data: Data, beam: str) -> Image:

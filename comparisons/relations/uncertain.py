@@ -18,7 +18,7 @@ from functools import cached_property
 
 from comparisons.choices import Choices
 from comparisons.measures import SAFETY, SHARE_OF_LARGEST, arc_lengths, probe_scales
-from comparisons.order import order_of, richardson
+from comparisons.order import USUAL, order_of, richardson
 from comparisons.pairing import Solver
 from comparisons.scales import norm
 from comparisons.spots import clear_of_spots
@@ -65,6 +65,15 @@ def uncertainties(found: Solved) -> dict[tuple[str, str, float], float]:
             least = SHARE_OF_LARGEST * max(changes.values(), default=0.0)
             uncertain |= {(probe.name, stage.name, value): max(size, least) for value, size in changes.items()}
     return uncertain
+
+
+def critical_uncertainties(found: Solved) -> list[float]:
+    """u of where each branch ends, SI; nothing where at twice the links or elements not as many end."""
+    mine, finer = found.answer.critical, found.finer.critical
+    if len(mine) != len(finer):
+        return [0.0] * len(mine)
+    factor = SAFETY * richardson(USUAL)
+    return [factor * abs(each.value - other.value) for each, other in zip(mine, finer, strict=True)]
 
 
 def _change(found: Solved, probe: Probe, station: StationAnswer) -> float:

@@ -57,6 +57,15 @@ def force(x: float, y: float) -> dict[str, Any]:
     return {"kind": "force", "point": "T", "direction": [x, y]}
 
 
+def drives_of(point: str, body: str) -> dict[str, Any]:
+    """Three drives, square to each other or not, that hold a body where it stands."""
+    return {
+        "across": {"kind": "displacement", "point": point, "direction": [0.83, 0.56]},
+        "beside": {"kind": "displacement", "point": point, "direction": [-0.31, 0.95]},
+        "turn": {"kind": "rotation", "body": body},
+    }
+
+
 MOMENT = {"kind": "moment", "body": "tip"}
 
 

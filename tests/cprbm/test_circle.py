@@ -9,12 +9,13 @@ from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.local import local_step
+from cprbm.march import March
 from cprbm.mechanism import mechanism_of
 from cprbm.newton import system
 from cprbm.point import contact_gradient, contact_rows, point_at
 from scene import Profile
 from scene.reading import scene_from
-from tests.cprbm.scenes import cantilever_data, force
+from tests.cprbm.scenes import cantilever_data, drives_of, force
 from tests.references.wrapped import Wrapped
 
 BEAM = {"length": 0.0973, "thickness": 0.00103, "width": 0.0087, "youngs_modulus": 2.03e11}
@@ -113,6 +114,20 @@ def test_one_point_of_a_circle_under_the_beams_middle():
     values = solved(load, 60, radius=small, center=center).values
     assert values["circle.force"][0] == pytest.approx(load * (3.0 * length - a) / (2.0 * a), rel=2e-3)
     assert values["circle.centre"][0] == pytest.approx(a, abs=1e-4 * length)
+
+
+@pytest.mark.parametrize("share", [0.43, 0.71])
+def test_joints_beside_a_place_of_its_own_have_no_rows(share):
+    # reference: where the circle's middle is below a beam that is pressed on it in a point, and hardly bent
+    center = [share * BEAM["length"], -0.003 - BEAM["thickness"] / 2.0]
+    march = March(scene_of([0.007], radius=0.003, center=center), (cprbm.Settings(links=19),))
+    assert march.run()[0].name == "COMPLETED"
+    rows, lam = march.on.point.rows, march.on.point.lam
+    (pressing,) = np.flatnonzero(lam > 0.0)
+    away = np.abs(rows.arc - share) * 19
+    assert away[pressing] < 0.1
+    assert np.delete(away, pressing).min() == pytest.approx(3.0, abs=0.5)
+    assert rows.size > 3
 
 
 def test_both_forms_of_newtons_system_give_one_answer(monkeypatch, truth):
@@ -325,6 +340,36 @@ def test_a_circle_that_moves_with_the_body_that_the_beam_is_clamped_to(links):
     assert values["circle.force"][0] == pytest.approx(np.hypot(*reference.contact_force), rel=rough)
     assert values["circle.centre"][0] == pytest.approx(reference.contact_centre, abs=rough * BEAM["length"])
     assert values["circle.ends"] == pytest.approx([0.0, reference.wrap_length], abs=rough * BEAM["length"])
+
+
+PLACE = {"Q": [0.013, -0.041]}
+HELD = {
+    "three drives": ({"motion": "free", "points": PLACE}, ("across", "beside", "turn")),
+    "a pivot": ({"motion": "turns", "about": "Q", "points": PLACE}, ("turn",)),
+    "a slide": ({"motion": "slides", "along": [0.6, -0.8], "points": PLACE}, ("beside",)),
+    "three forces": ({"motion": "free", "points": {"S": [0.021, 0.017], **PLACE}}, ("across", "beside", "above")),
+}
+
+
+@pytest.mark.parametrize("formulation", ["auto", "paper"])
+@pytest.mark.parametrize("how", HELD)
+def test_a_circle_on_a_body_that_is_held_where_it_stands(truth, how, formulation):
+    # reference: tests.references.wrapped; while the circle's body was taken for one of its own, the rows beside the
+    # clamp took any force, up to ten times the contact's, and the answer was certified
+    cam, names = HELD[how]
+    drives = {**drives_of("Q", "cam"), "above": {"kind": "displacement", "point": "S", "direction": [1.0, 0.0]}}
+    fixed = cprbm.answer(scene_of([truth.force]), cprbm.Settings(links=20, formulation=formulation))
+    data = scene_of([truth.force]).model_dump(mode="json", exclude_defaults=True)
+    data["bodies"]["cam"], data["contacts"]["circle"]["body"] = cam, "cam"
+    data["drives"] = {name: drives[name] for name in names}
+    answer = cprbm.answer(scene_from(data), cprbm.Settings(links=20, formulation=formulation))
+    assert answer.completed, answer.sentence
+    values, on_wall = answer.stations[-1].values, fixed.stations[-1].values
+    if formulation == "auto":
+        assert values["circle.force"][0] == pytest.approx(np.hypot(*truth.contact_force), rel=0.5 / 20**2)
+        assert values["circle.centre"][0] == pytest.approx(truth.contact_centre, abs=0.5 / 20**2 * BEAM["length"])
+    for name, value in on_wall.items():
+        assert values[name] == pytest.approx(value, rel=1e-8, abs=1e-8 * np.max(np.abs(value))), name
 
 
 def test_a_beam_never_passes_over_a_circle_whatever_the_step():

@@ -45,6 +45,8 @@ def test_an_arc_does_not_touch_itself_however_thick(turns, links):
     rows = [group.values for group in pair.groups(state, at)]
     assert len(rows) == (chord < 0.09 + REACH and turns > 0.5)
     assert rows == [] or rows[0] == pytest.approx([-expected], abs=3.0 / links**2)
+    elsewhere = replace(at, x=at.x + 0.217, y=at.y - 0.374)
+    assert pair.least_gap(state, elsewhere) == pytest.approx(expected, abs=3.0 / links**2)
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])

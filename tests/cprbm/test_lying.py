@@ -14,6 +14,7 @@ from cprbm.mechanism import mechanism_of
 from cprbm.point import point_at
 from scene.reading import scene_from
 from tests.cprbm.lagrangian import check
+from tests.cprbm.scenes import drives_of
 from tests.references.lying import Lying, Strip
 
 # elements of one length where B has four for every five of A
@@ -27,8 +28,11 @@ LIKE = {n: {"A": n, "B": 4 * n // 5} for n in (20, 40, 80, 160)}
 STEP = 1e-6
 
 
-def scene_of(tip, clamp, center, radius, load, direction, order=("A", "B"), below=PAIR.bottom, turn=0.0):
-    """An arc A from ``clamp`` to ``tip`` above a straight beam B along x, the force on A's tip; all of it turned."""
+def scene_of(tip, clamp, center, radius, load, direction, order=("A", "B"), below=PAIR.bottom, turn=0.0, block=False):
+    """An arc A from ``clamp`` to ``tip`` above a straight beam B along x, the force on A's tip; all of it turned.
+
+    B's clamp is on the wall, or on a ``block`` that drives hold.
+    """
     cos, sin = np.cos(turn), np.sin(turn)
 
     def place(x, y):
@@ -42,12 +46,15 @@ def scene_of(tip, clamp, center, radius, load, direction, order=("A", "B"), belo
     line = {"kind": "line", "start": place(0.0, 0.0), "end": place(below.length, 0.0)}
     probes = [("T", "displacement"), ("S", "displacement"), ("tip", "rotation"), ("c", "force"), ("c", "centre")]
     probes += [("c", "ends"), ("R", "reaction"), ("R", "reaction_moment"), ("scene", "potential_energy")]
+    wall, foot = {"R": place(*clamp)}, {"Q": place(0.0, 0.0)}
+    held = {"block": {"motion": "free", "points": foot}} if block else {}
     return scene_from(
         {
             "name": "lying",
             "materials": {"m": {"youngs_modulus": below.youngs_modulus, "poisson_ratio": 0.3}},
             "bodies": {
-                "wall": {"motion": "fixed", "points": {"R": place(*clamp), "Q": place(0.0, 0.0)}},
+                "wall": {"motion": "fixed", "points": wall if block else {**wall, **foot}},
+                **held,
                 "tip": {"motion": "free", "points": {"T": place(*tip)}},
                 "end": {"motion": "free", "points": {"S": place(below.length, 0.0)}},
             },
@@ -56,6 +63,7 @@ def scene_of(tip, clamp, center, radius, load, direction, order=("A", "B"), belo
                 "B": beam(line, below, "Q", "S"),
             },
             "contacts": {"c": {"kind": "beam-beam", "between": list(order)}},
+            "drives": drives_of("Q", "block") if block else {},
             "loads": {"P": {"kind": "force", "point": "T", "direction": place(*direction)}},
             "stages": [{"name": "load", "steps": "P", "stations": [load]}],
             "probes": [{"of": of, "quantity": quantity} for of, quantity in probes],
@@ -136,6 +144,13 @@ def test_force_and_centre_beside_a_common_clamp_converge(like):
         assert error["force"] < 4.0 / n**2
         assert error["centre"] < 3.0 / n**2
         assert error["reaction"] < 3.0 / n**2
+
+
+def test_a_common_clamp_is_one_too_where_drives_hold_one_of_the_beams(like):
+    # reference: tests.references.lying, as where both are clamped to the wall
+    error = errors_of(solved(lying(block=True), LIKE[20]))
+    assert error["force"] < 4.0 / 20**2
+    assert error == pytest.approx(like[20], rel=1e-6, abs=1e-9)
 
 
 @pytest.mark.parametrize(

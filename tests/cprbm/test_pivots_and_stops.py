@@ -8,7 +8,8 @@ from cprbm.contact import NO_ROWS
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import contact_rows, point_at
-from scene import Ending, SceneError
+from scene import Ending, Probe, SceneError
+from tests.cprbm.scenes import MODULUS, THICKNESS
 from tests.fea_reference.cantilever import elastica
 from tests.together.pivots import FORCE, LENGTH, MOMENT, bowed, lever, straight, wheel
 
@@ -48,6 +49,17 @@ def test_a_stop_turns_the_end_by_what_the_wheel_goes_beyond_it(end, towards, sen
     assert beyond["stop.angle"] == pytest.approx([drawn - sense * play], abs=1e-9)
     assert beyond["stop.moment"] == pytest.approx([4.0 * turn * MOMENT], rel=2e-3)
     assert beyond["wheel.reaction_moment"] == pytest.approx([sense * 4.0 * turn * MOMENT], rel=2e-3)
+
+
+def test_a_stop_bends_its_beam_and_does_not_pull_it():
+    # reference: a pinned end turned by ψ takes 4 EI ψ/L and gives the clamp 2 EI ψ/L; the shoe slides, so that the beam
+    # is pulled by nothing of the first order in ψ
+    turn, asked = 1e-3, {"of": "beam", "quantity": "combined_stress", "points": 5}
+    scene = wheel(2.0, "end", {"least": -2.3}, [[0.3 + turn]])
+    scene = scene.model_copy(update={"probes": (*scene.probes, Probe(**asked))})
+    stress = solved(scene).stations[0].values["beam.combined_stress"]
+    largest = 4.0 * turn * MODULUS * (0.5 * THICKNESS) / LENGTH
+    assert stress == pytest.approx(largest * np.abs([-0.5, -0.125, 0.25, 0.625, 1.0]), abs=3e-3 * largest)
 
 
 @pytest.mark.parametrize("end", ["start", "end"])

@@ -8,7 +8,7 @@ from cprbm.kinematics import positions, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.model import Fit
 from scene.reading import scene_from
-from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data
+from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, drives_of
 
 FORCE = 1.3 * RIGIDITY / LENGTH**2
 DRAWN_AT = 0.7
@@ -19,10 +19,11 @@ def turned(x, y):
     return [float(cos * x - sin * y), float(sin * x + cos * y)]
 
 
-def pressed(clamped, at, gap=0.0, lean=0.0, along=False):
+def pressed(clamped, at, gap=0.0, lean=0.0, along=False, block=False):
     """The cantilever with its start or its end ``clamped``, pressed at a share ``at`` of its length from there.
 
-    Or it is drawn ``gap`` above the edge, which falls by ``lean``; or pulled ``along`` itself.
+    Or it is drawn ``gap`` above the edge, which falls by ``lean``; or pulled ``along`` itself.  The edge is the wall's,
+    or that of a ``block`` which drives hold.
     """
     down = {"kind": "beam_force", "beam": "beam", "at": at if clamped == "start" else 1.0 - at}
     data = cantilever_data({**down, "direction": turned(1.0, 0.0) if along else turned(0.0, -1.0)}, [FORCE])
@@ -34,16 +35,19 @@ def pressed(clamped, at, gap=0.0, lean=0.0, along=False):
     data["beams"]["beam"] |= {"curve": line, "start": ends["start"][1], "end": ends["end"][1]}
     below = {"point": turned(0.0, -0.5 * THICKNESS - gap), "normal": turned(lean, 1.0)}
     data["contacts"] = {"edge": {"kind": "beam-half-plane", "beam": "beam", "body": "wall", **below}}
+    if block:
+        data["bodies"]["block"] = {"motion": "free", "points": {"Q": turned(0.017, -0.023)}}
+        data["contacts"]["edge"]["body"], data["drives"] = "block", drives_of("Q", "block")
     data["probes"] = [{"of": "edge", "quantity": quantity} for quantity in ("force", "centre", "ends")]
     data["probes"] += [{"of": "R", "quantity": quantity} for quantity in ("reaction", "reaction_moment")]
     return scene_from(data)
 
 
-@pytest.mark.parametrize("links", [20, 37])
+@pytest.mark.parametrize(("links", "block"), [(20, False), (37, False), (20, True)])
 @pytest.mark.parametrize("at", [0.37, 0.6])
 @pytest.mark.parametrize("clamped", ["start", "end"])
-def test_the_force_goes_straight_through(clamped, at, links):
-    answer = cprbm.answer(pressed(clamped, at), cprbm.Settings(links=links))
+def test_the_force_goes_straight_through(clamped, at, links, block):
+    answer = cprbm.answer(pressed(clamped, at, block=block), cprbm.Settings(links=links))
     assert answer.completed, answer.sentence
     values, element = answer.stations[-1].values, 1.0 / links
     place, error = at if clamped == "start" else 1.0 - at, 0.5 * (element / at) ** 2

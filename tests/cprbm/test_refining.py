@@ -1,5 +1,6 @@
 """Meshes fitted to contact over a length, coarse meshes to start from, and zones' ends."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -77,7 +78,13 @@ def test_borders_stand_where_zones_end_and_elements_are_even_between():
     model = build(march.scene, march.on.settings, fit)
     assert model.chains[0].sizes.sum() == pytest.approx(1.0)
     assert not fits(mechanism, fit)
-    assert fits(mechanism_of(march.scene, march.on.settings, fit), fit)
+    meshed = mechanism_of(march.scene, march.on.settings, fit)
+    assert fits(meshed, fit)
+    # as soon as one of its borders is to be elsewhere by more than two hundredths of an element
+    for border, moved, same in ((3, 0.023, False), (7, -0.023, False), (3, 0.017, True)):
+        other = {"beam": fit.borders["beam"].copy()}
+        other["beam"][border] += moved / (len(other["beam"]) - 1)
+        assert fits(meshed, replace(fit, borders=other)) == same
 
 
 def test_ends_much_closer_than_an_element_leave_the_elements_even():

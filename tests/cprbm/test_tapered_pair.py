@@ -8,6 +8,7 @@ from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
+from cprbm.nearest import distance_along
 from cprbm.point import point_at
 from scene import SceneError
 from scene.reading import scene_from
@@ -15,6 +16,8 @@ from scene.statement import Profile
 from tests.cprbm import necks
 from tests.cprbm.lagrangian import check
 from tests.cprbm.test_lying import bowl
+from tests.cprbm.test_nearest import beams, pair_at_rest
+from tests.cprbm.test_nearest import line as straight
 
 STEP = 1e-6
 EVEN = (1.0,)
@@ -174,6 +177,19 @@ def test_edges_touch_half_a_thickness_from_either_line():
         at = line.at(arc)
         away = np.hypot(at.x[0] - place[0], at.y[0] - place[1])
         assert away == pytest.approx(0.5 * chain.section.thickness_at(arc)[0], rel=1e-6)
+
+
+def test_what_is_across_from_a_corner_that_stands_out_has_its_foot_there():
+    # reference: plane geometry; the edge leans by 6e-3 before the corner and by −4.5e-3 behind it, and to what is above
+    # it between the two normals it is the nearest place
+    scene = beams(straight((0.0, 2.1e-3), (LENGTH, 2.1e-3)), straight((0.0, 0.0), (LENGTH, 0.0)), THICKNESS)
+    pair, *rest = pair_at_rest(tapered(scene, B=(0.6, 0.6, 1.0, 0.7)), 23)
+    corner, high = 2.0 / 3.0, 2.1e-3 / LENGTH
+    across = corner + high * np.array([-5.9e-3, -1.9e-3, 0.0, 1.4e-3, 4.4e-3])
+    D, sigma, foot = distance_along(pair, pair.lines(*rest), across)
+    assert foot.all()
+    assert sigma == pytest.approx(np.full(5, corner), abs=1e-12)
+    assert pytest.approx(np.full(5, high - 0.5 * (1.0 - 0.6) * THICKNESS / LENGTH), abs=3e-5 * high) == D
 
 
 def test_the_papers_form_refuses_edges_that_lean():

@@ -11,6 +11,7 @@ from fea_reference.march import begin
 from fea_reference.model import build
 from fea_reference.travel import Course, reach
 from tests.fea_reference.test_contact import CLOSING, two_cantilevers
+from tests.together.pivots import wheel
 
 
 @pytest.mark.parametrize("thick", [True, False])
@@ -27,3 +28,20 @@ def test_what_overlaps_by_more_than_was_asked_is_not_certified(thick):
     assert failure.endswith("; 1.0e-04 was asked")
     # as tight as the penalties are made for the penetration that was asked of them
     assert 3e-3 < float(failure.split(";")[0].rsplit(" ", 1)[1]) <= 1e-2
+
+
+@pytest.mark.parametrize(
+    ("limit", "beyond"), [({"least": -2.17}, 0.03), ({"most": -2.31}, 0.11), ({"least": -2.3}, 0.0)]
+)
+def test_an_angle_beyond_its_stop_is_not_certified(limit, beyond):
+    # reference: the stop is drawn at −2 rad, and a wheel that has turned by 0.2 leaves it at −2.2; the limit is put
+    # there afterwards, so that the march knew nothing of it
+    scene, settings = wheel(2.0, "end", {"least": -2.9}, [[0.2]]), Settings(elements=4)
+    model = build(scene, settings)
+    march = begin(model, settings, ())
+    reach(march, Course(0, 0.2), 0.2 / model.stepped[0].unit)
+    limits = {"least": None, "most": None, **limit}
+    march.model = replace(model, stops=tuple(replace(stop, **limits) for stop in model.stops))
+    failures = certify(march).failures
+    told = [f"a joint, a stop or an element's length is violated by {beyond:.1e} of the longest beam"] if beyond else []
+    assert list(failures) == told

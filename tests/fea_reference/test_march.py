@@ -1,9 +1,13 @@
 """Several contacts on the way: what closes where, and whether the march arrives."""
 
+from collections import namedtuple
+from types import SimpleNamespace
+
 import pytest
 
 from comparisons import cases
 from fea_reference import Settings, answer
+from fea_reference.march import March
 from scene.answer import Ending
 from scene.reading import scene_from
 
@@ -27,6 +31,33 @@ def test_a_little_penetration_in_few_stations_arrives():
     scene = with_stations(cases.opened("gripper"), 9.6, 16.0)
     found = answer(scene, Settings(elements=320, kinematics="bending", penetration=1e-4 / 256))
     assert found.ending is Ending.COMPLETED, found.sentence
+
+
+def test_what_overlaps_by_more_than_was_asked_for_is_not_left_however_often_it_was_tried():
+    # reference: the share of a contact's scale that Settings.penetration says, below it and beyond
+    pair = namedtuple("Pair", "scale stiffest")(0.043, 310.0)
+    march = SimpleNamespace(settings=Settings(penetration=2.3e-4), penalties={pair: SimpleNamespace(stiffness=470.0)})
+    for share, done in ((0.9, True), (1.1, False)):
+        one = SimpleNamespace(pair=pair, penetration=share * 2.3e-4 * 0.043)
+        assert March._will_do(march, one, 1.7, 40) == done
+        assert not March._will_do(march, one, 1.7, 0)
+
+
+def test_of_three_gaps_the_first_to_close_is_found_though_another_seemed_to_be():
+    # reference: where the three close, as they are written; on straight lines from 0 to 1 the first one does before the
+    # second, which in truth has closed by then, and the third is open all the while
+    def gaps(value):
+        second = 1.0 - value / 0.37 if value < 0.37 else -0.1 * (value - 0.37) / 0.63
+        return [1.0 - value / 0.53, second, 2.3 - value]
+
+    march = SimpleNamespace(
+        solve=lambda load, value, start: value,
+        gaps=gaps,
+        open=[namedtuple("Pair", "scale")(0.043)] * 3,
+        model=SimpleNamespace(stops=()),
+        _between=lambda *way: None,
+    )
+    assert March._first_touch(march, 0, {0.0: 0.0, 1.0: 1.0})[0] == pytest.approx(0.37, abs=1e-9)
 
 
 def test_where_a_contact_closes_is_not_a_matter_of_the_stations():

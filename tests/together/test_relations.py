@@ -19,7 +19,7 @@ from comparisons.relations.measured import TARGET, violations
 from comparisons.relations.relations import RELATIONS
 from comparisons.relations.reversing import reversed_beam
 from scene import Scene
-from scene.answer import frozen_array
+from scene.answer import Critical, Loss, frozen_array
 from scene.frozendict import frozendict
 from scene.geometry import points_on
 from scene.reading import scene_from
@@ -194,7 +194,37 @@ def test_an_image_that_ends_otherwise_violates_it_wholly():
     assert found.worst.why == "it was not reached"
 
 
+@pytest.mark.parametrize(("relation", "apart", "holds"), [
+    ("pair", 0.3, True), ("pair", 30.0, False), ("mirror", 1e-4, True), ("mirror", 0.3, False),
+])  # fmt: skip
+def test_where_a_branch_ends_is_known_as_well_as_both_answers_say(relation, apart, holds):
+    # each says 1e-8 of the value; of another discretised problem it is off by 1e-3/links as well, times ``apart``
+    asked = few("hinge", 0.37)
+    first = scene_from(asked)
+
+    def ending(scene, choices):
+        image = scene.bodies != first.bodies or scene.contacts["contact"].between != first.contacts["contact"].between
+        value = 0.31 * (1.0 + (1.0 + apart * image) * 1e-3 / choices.links)
+        unit = np.sign(scene.stages[0].stations[0])
+        lost = Critical("load", unit * value, 3.1e-9, Loss.FOLD, "", 0.0, -1.0, 1.7, None)
+        return replace(cprbm_answer(scene, choices), critical=(lost,))
+
+    (found,) = violations(asked, ending, COARSE, [BY_NAME[relation]])
+    assert found.holds == holds
+    if not holds:
+        assert found.worst.probe == "critical"
+
+
 # ------------------------------------------------------------------------------------------- images
+
+
+def test_a_beam_that_is_brought_to_its_point_is_not_drawn_from_there():
+    # beam1 and beam2 are drawn free of stress, their ends apart from the points that the assembly brings them to
+    assert not list(BY_NAME["direction"].images(plain(cases.data("prestressed"))))
+    assert [image.what for image in BY_NAME["direction"].images(plain(cases.data("five-bar")))] == [
+        "beam1 reversed",
+        "beam2 reversed",
+    ]
 
 
 def test_images_of_images_are_the_scene():
