@@ -12,7 +12,7 @@ import numpy as np
 
 from comparisons.documents import Plain, plain
 from scene import Answer, Certificate, Critical, Ending, Event, Loss, Shape, StationAnswer
-from scene.answer import Array, Inside, Statics, frozen_array
+from scene.answer import Area, Array, Inside, Statics, frozen_array
 from scene.frozendict import frozendict
 
 
@@ -56,7 +56,7 @@ def _packed_statics(statics: Statics) -> Plain:
     return {**_fields(statics), "inside": {name: _fields(inside) for name, inside in statics.inside.items()}}
 
 
-def _fields(record: Statics | Inside | Critical | Event | Shape | Certificate) -> Plain:
+def _fields(record: Statics | Inside | Area | Critical | Event | Shape | Certificate) -> Plain:
     return {field.name: getattr(record, field.name) for field in fields(record)}
 
 
@@ -118,15 +118,14 @@ def _unpacked_statics(data: Plain) -> Statics:
         forces=_pairs(data["forces"]),
         moments=_array(data["moments"]),
         bodies=frozendict({name: _array(values) for name, values in data["bodies"].items()}),
-        inside=frozendict(
-            {
-                name: Inside(
-                    inside["made_of"], _array(inside["borders"]), _array(inside["angles"]), _array(inside["pulls"])
-                )
-                for name, inside in data["inside"].items()
-            }
-        ),
+        inside=frozendict({name: _unpacked_inside(inside) for name, inside in data["inside"].items()}),
     )
+
+
+def _unpacked_inside(data: Plain) -> Inside | Area:
+    if "made_of" in data:
+        return Inside(data["made_of"], _array(data["borders"]), _array(data["angles"]), _array(data["pulls"]))
+    return Area(_array(data["along"]), _array(data["across"]), frozen_array(data["x"]), frozen_array(data["y"]))
 
 
 def _pairs(values: list[Any]) -> Array:

@@ -50,7 +50,7 @@ def comparison(compared: Comparison) -> Plain:
                 **_tolerance(compared.tolerances, "fea"),
             },
             **({} if compared.runs.exact is None else {"exact": solver(compared.runs.exact)}),
-            **({} if compared.runs.solid is None else {"solid": solver(compared.runs.solid[0])}),
+            **({} if compared.runs.solid is None else {"solid": _solid(compared, compared.runs.solid[-1])}),
         },
         "rows": [
             {**_row(compared.scene, row), "verdict": None if word is None else word.value}
@@ -72,6 +72,11 @@ def comparison(compared: Comparison) -> Plain:
         "work_energy": [_reaction(each) for each in compared.reactions],
         **({} if compared.runs.solid is None else {"solid": [_third(each) for each in thirds_of(compared)]}),
     }
+
+
+def _solid(compared: Comparison, finest: Answer) -> Plain:
+    """How the solid fared on its finest mesh."""
+    return {**solver(finest, compared.audits.get("solid")), **_tolerance(compared.tolerances, "solid")}
 
 
 def solution(
@@ -161,7 +166,7 @@ def _found(found: Tolerance) -> Plain:
         "asked": found.asked,
         "met": found.met,
         "links": found.n if found.solver == "cprbm" else None,
-        "elements": found.n if found.solver == "fea" else None,
+        "elements": None if found.solver == "cprbm" else found.n,
         "estimate": None if row is None else plain(row.fraction),
         "probe": None if row is None else row.probe,
         "stage": None if row is None else row.stage,

@@ -223,7 +223,8 @@ class Runs:
             over that number.
         nearby: the CPRBM at N links, answering :func:`comparisons.nearby.nearby`; nothing rests on it.
         exact: the exact answer in ``bending``, at the stations at which one is known; None if there is no such station.
-        solid: the mechanism as a solid, at n and at 2n elements, if that was asked for; nothing rests on it.
+        solid: the mechanism as a solid, if that was asked for, at n and 2n elements or on as many meshes as a tolerance
+            took, each twice as fine as the one before; nothing rests on it.
     """
 
     kinematics: Kinematics
@@ -235,7 +236,7 @@ class Runs:
     ratio: float = 1.0
     nearby: Answer | None = None
     exact: Answer | None = None
-    solid: tuple[Answer, Answer] | None = None
+    solid: tuple[Answer, ...] | None = None
 
     @property
     def reference(self) -> Answer:

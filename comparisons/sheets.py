@@ -391,7 +391,7 @@ def _steps(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
 
 
 def _certificates(compared: Comparison) -> Sheet:
-    solid = compared.runs.solid[:1] if compared.runs.solid is not None else ()
+    solid = compared.runs.solid[-1:] if compared.runs.solid is not None else ()  # its finest mesh
     names = ("cprbm", f"fea {compared.runs.kinematics}", *("solid" for _ in solid))
     answers = (compared.runs.cprbm[0], compared.runs.reference, *solid)
     found = [worst(tuple(station.certificate for station in answer.stations)) for answer in answers]
@@ -433,7 +433,7 @@ def _seconds(compared: Comparison) -> Sheet:
     runs = compared.runs
     answers = {"CPRBM": runs.cprbm[0], f"FEA ({runs.kinematics})": runs.reference}
     answers |= {} if runs.exact is None else {"exact (bending)": runs.exact}
-    answers |= {} if runs.solid is None else {"solid": runs.solid[0]}
+    answers |= {f"solid, {one.settings['elements']} along": one for one in runs.solid or ()}
     return Sheet(
         "Seconds",
         ("answer", "stations", "seconds"),

@@ -1,6 +1,6 @@
 """The third opinion: what both beam theories miss together, each held against the mechanism as a solid.
 
-The solid's value x is extrapolated from two meshes, and uncertain by u (:mod:`comparisons.extrapolated_solid`).  The
+The solid's value x is extrapolated from its meshes, and uncertain by u (:mod:`comparisons.extrapolated_solid`).  The
 distances of the beam theories from x are their errors, as far as u and their own uncertainties allow.  Nothing of
 the verdict rests on them: a beam theory that is as far from the solid as it must be is not wrong.
 """
@@ -9,19 +9,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from comparisons.extrapolated_solid import extrapolated
+from comparisons.extrapolated_solid import at_row, orders_of
 from comparisons.formats import percent, scaled_unit, vector
 from comparisons.measures import Row
 from comparisons.scales import norm
 from comparisons.sheet import Sheet
-from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
 from comparisons.verdict import Comparison
-from scene import Scene, StationAnswer
 from scene.answer import Array, Flags
-from scene.statement import STRESSES
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,34 +41,24 @@ def thirds_of(compared: Comparison) -> tuple[Third, ...]:
     if runs.solid is None or not all(answer.completed for answer in runs.solid):
         return ()
     found = []
+    orders = orders_of(scene, runs.solid)
     for row in compared.rows:
         if row.bounds is None:
             continue
-        name = row.probe.name
-        coarse, fine, bending, chosen = (
-            station_of(answer, row.stage, row.station)
-            for answer in (*runs.solid, runs.fea["bending"][0], runs.reference)
+        bending, chosen = (
+            station_of(answer, row.stage, row.station) for answer in (runs.fea["bending"][0], runs.reference)
         )
-        v, V, v_b = coarse.values[name], fine.values[name], bending.values[name]
-        if v.shape != row.fea.shape or V.shape != row.fea.shape:
+        told = at_row(scene, row, runs.solid, orders, (chosen,))
+        if told is None or not told[2].any():
             continue
-        x, off = extrapolated(scene, v, V)
-        counts = _counts(scene, row, (coarse, fine, chosen))
-        if not counts.any():
-            continue
+        x, off, counts = told
 
         def size(difference: Array, row: Row = row, counts: Flags = counts) -> float:
             return norm(row.probe.quantity, difference[counts])
 
+        v_b = bending.values[row.probe.name]
         found.append(Third(row, x, size(off), size(row.cprbm - x), size(v_b - x), size(row.fea - x)))
     return tuple(found)
-
-
-def _counts(scene: Scene, row: Row, stations: tuple[StationAnswer, ...]) -> Flags:
-    """Which components count: of a stress those that are clear of held ends and of what presses."""
-    if row.probe.quantity not in STRESSES or row.arc_length is None:
-        return np.ones(row.fea.shape, dtype=bool)
-    return clear_of_spots(scene, row.probe.of, row.arc_length, stations)
 
 
 def of_thirds(compared: Comparison) -> Sheet:
@@ -107,7 +92,7 @@ def of_thirds(compared: Comparison) -> Sheet:
             f"FEA {compared.runs.kinematics} off",
         ),
         tuple(body),
-        "The solid's values are extrapolated from two meshes, and what is off is measured from these, as above.",
+        "The solid's values are extrapolated from its meshes, and what is off is measured from these, as above.",
     )
 
 
@@ -119,6 +104,9 @@ def sentence(compared: Comparison) -> str:
     for answer in runs.solid:
         if not answer.completed:
             return f"The solid says nothing: {answer.ending.value}. {answer.sentence}"
+    found = compared.audits.get("solid")
+    if found is not None and found.complaints:
+        return f"The solid is not to be believed: its audit fails {found.complaints[0]}."
     moved = [one for one in thirds_of(compared) if one.row.probe.quantity in ("displacement", "rotation")]
     if not moved:
         return "The solid has no displacement or rotation to hold the beam theories against."

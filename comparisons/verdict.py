@@ -70,7 +70,7 @@ class Verdict:
 class Comparison:
     """A scene, all answers to it, the rows and critical values, the verdict, reactions by two ways, how N was found.
 
-    ``audits`` are of the two answers that are compared, by solver, where these are whole.
+    ``audits`` are of the two answers that are compared, and of the solid's finest, by solver, where these are whole.
     """
 
     scene: Scene
@@ -109,9 +109,10 @@ def compared(scene: Scene, runs: Runs) -> Comparison:
     if reach is not None:
         verdict = _up_to_there(verdict, rows[-1])
     audits = {answer.solver: audit(within, answer) for answer in (cut.cprbm[0], cut.reference)}
-    return Comparison(
-        scene, runs, rows, _as_audited(verdict, audits), criticals, _reactions(scene, runs), audits=audits
-    )
+    verdict = _as_audited(verdict, audits)
+    if cut.solid is not None and cut.solid[-1].completed:  # on which no verdict rests
+        audits["solid"] = audit(within, cut.solid[-1])
+    return Comparison(scene, runs, rows, verdict, criticals, _reactions(scene, runs), audits=audits)
 
 
 def _as_audited(verdict: Verdict, audits: Mapping[str, Audit]) -> Verdict:

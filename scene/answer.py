@@ -127,6 +127,27 @@ class Inside:
 
 
 @dataclass(frozen=True, slots=True)
+class Area:
+    """A beam as a solid sees it: where the nodes of its elements lie, all of second order and in rows and columns.
+
+    Attributes:
+        along: arc lengths of the nodes' sections, (2n+1,), m; every other one is where elements meet.
+        across: places across, 1 on the left edge and −1 on the right one, ascending (2m+1,).
+        x, y: where the nodes are, m (2n+1, 2m+1).
+    """
+
+    along: Array
+    across: Array
+    x: Array
+    y: Array
+
+    @property
+    def borders(self) -> Array:
+        """Arc lengths at which elements begin and end, (n+1,), m."""
+        return self.along[::2]
+
+
+@dataclass(frozen=True, slots=True)
 class Statics:
     """What acts at a station besides the scene's loads, so that others can sum it up anew; SI.
 
@@ -138,7 +159,8 @@ class Statics:
             sliding body, or of the point that is a pivot.
         on: name of the beam or body that it acts on.
         s: arc lengths of the places on beams, m; of those on bodies nan, (k,).
-        places: where, m (k, 2): of contacts on the beam's neutral line, through which the force's line goes.
+        places: where, m (k, 2): of contacts on the beam's neutral line, through which the force's line goes; of those
+            on an area half its thickness along the force from the edge that is pressed.
         forces: N (k, 2).
         moments: about the places, counter-clockwise, N·m (k,).
         bodies: of every body that moves the displacement of its first point, m, and its rotation, rad, (3,).
@@ -152,7 +174,7 @@ class Statics:
     forces: Array
     moments: Array
     bodies: Mapping[str, Array]
-    inside: Mapping[str, Inside]
+    inside: Mapping[str, Inside | Area]
 
 
 @dataclass(frozen=True, slots=True)

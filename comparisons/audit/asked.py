@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from comparisons.audit.areas import AreaOfBeam
 from comparisons.audit.balance import between_nodes, moments_beyond, near
 from comparisons.audit.seen import Seen
 from scene import Probe
@@ -64,7 +65,7 @@ def _value(seen: Seen, probe: Probe) -> tuple[Array, Array | float] | None:
             share = WITHIN if loaded else SAME
             given = sum(between_nodes(seen, name)[0] for name in seen.beams)
             return np.array([strain - work]), share * (abs(strain) + abs(work)) + given + 1e-12 * _rounded(seen)
-        case "bending_stress":
+        case "bending_stress" if not isinstance(seen.beams[of], AreaOfBeam):  # a solid's is no moment's
             return _stress(seen, probe)
         case _:
             return None

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from comparisons.audit.areas import AreaOfBeam
 from comparisons.audit.seen import Acting, AnyBeam, Seen
 from scene.statement import BeamContact, BeamMoment, SelfContact, WeldedEnd
 
@@ -57,6 +58,19 @@ def cuts(seen: Seen) -> Iterator[str]:
                 f"{name} at {arc[worst]:.4g} m bears {inside[worst]:.6g} N·m by its shape and {beyond[worst]:.6g} N·m "
                 f"by all that acts beyond"
             )
+
+
+def at_nodes(seen: Seen) -> Iterator[str]:
+    """Nodes of areas that are left with a force where nothing acts: neither in a held section nor near a contact."""
+    floor = _floor(seen)[0]
+    for name, beam in seen.beams.items():
+        if isinstance(beam, AreaOfBeam):
+            s = beam.inside.along
+            off = np.where(near(seen, name, s) > 0.0, 0.0, beam.left.max(axis=1))
+            off[[0, -1]] = 0.0
+            worst = int(np.argmax(off))
+            if not off[worst] <= floor:
+                yield f"{name} at {s[worst]:.4g} m is left with {off[worst]:.2g} N by its elements where nothing acts"
 
 
 def between_nodes(seen: Seen, name: str) -> tuple[float, float]:
@@ -105,7 +119,8 @@ def near(seen: Seen, name: str, arc: np.ndarray) -> np.ndarray:
     h = _size(beam, arc)[:, None]
     inner = (acting.s > 0.0) & (acting.s < seen.rests[name].length)
     ends = ~inner & ~np.isin(acting.by, _joints_of(seen, name))
-    reach = NEAR_SHEAR if seen.kinematics == "shear" else NEAR
+    wide = seen.kinematics == "shear" or isinstance(beam, AreaOfBeam)  # an area's edge leads a force on to neighbours
+    reach = NEAR_SHEAR if wide else NEAR
     close = (np.abs(acting.s - arc[:, None]) < reach * h) & (inner | ends)
     moments = np.array([isinstance(seen.scene.loads.get(by), BeamMoment) for by in acting.by], dtype=bool)
     return np.asarray((close * (LEVER * h * np.abs(acting.forces) + np.abs(acting.moments) * moments)).sum(axis=1))

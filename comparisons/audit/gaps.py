@@ -14,6 +14,7 @@ from itertools import combinations, pairwise
 import numpy as np
 from scipy.spatial import cKDTree
 
+from comparisons.audit import edges
 from comparisons.audit.corners import Corners, corners_of, leaning
 from comparisons.audit.rest import Complex
 from comparisons.audit.seen import AnyBeam, Seen
@@ -37,6 +38,9 @@ RUBBING = 0.2  # sine: the same at a corner
 NOTHING = 1e-6  # of a contact's largest force
 
 
+Rigid = CircleContact | LineContact | HalfPlaneContact | FunctionContact
+
+
 @dataclass(frozen=True)
 class Feet:
     """Of places (k,) what faces them: distance, the normal from there, its arc length, whether that is an end."""
@@ -50,7 +54,9 @@ class Feet:
 def contacts(seen: Seen) -> Iterator[str]:
     """Everything that is wrong with gaps and contact forces."""
     for name, contact in seen.scene.contacts.items():
-        if isinstance(contact, BeamContact):
+        if edges.areas(seen) and not isinstance(contact, SelfContact):
+            yield from _of_areas(seen, name, contact)
+        elif isinstance(contact, BeamContact):
             yield from _of_beams(seen, name, contact)
         elif isinstance(contact, SelfContact):
             yield from _of_itself(seen, name, contact)
@@ -68,6 +74,39 @@ def strangers(seen: Seen) -> Iterator[str]:
         if not _named(seen, one, other) and not _crossed_at_rest(seen, one, other):
             for at, _ in _crossings(seen, first, second):
                 yield f"{one} and {other}, which no contact names, cross at {_told(at)}"
+
+
+def _of_areas(seen: Seen, name: str, contact: BeamContact | Rigid) -> Iterator[str]:
+    """Of edges: how deep they overlap, and forces that are off them, or pull, or rub."""
+    yield from edges.pushes(seen, name)
+    if isinstance(contact, BeamContact):
+        for a, b, s, _, depth in edges.overlaps(seen):
+            if {a, b} == set(contact.between):
+                allowed = edges.DEEP * 0.5 * (seen.rests[a].beam.thickest + seen.rests[b].beam.thickest)
+                yield from _deepest(f"{a} and {b} of {name}", s, -depth, np.ones(len(s), dtype=bool), allowed)
+        return
+    A = edges.areas(seen)[contact.beam]
+    first, moved, phi = seen.motion(contact.body)
+    turn = complex(np.exp(1j * phi))
+
+    def still(places: Complex) -> Complex:
+        return np.asarray(first + (places - first - moved) / turn)
+
+    t = A.rest.thickness(A.fine)
+    for side in (0, -1):
+        places = still(A.edge(side))
+        feet, rest = _surface(contact, places), _surface(contact, A.resting_edge(side))
+        overlapping = rest.distance < -1e-12 * seen.longest
+        counted = ~feet.at_end & ~_spread(A.fine, overlapping, float(t.max())) & ~_round_an_end(contact, places, feet)
+        allowed = edges.DEEP * float(t.mean())
+        yield from _deepest(f"{contact.beam} and what is rigid in {name}", A.fine, feet.distance, counted, allowed)
+    for on, s, places, forces in edges.pressing(seen, name):
+        feet = _surface(contact, still(places))
+        off = np.abs(feet.distance) - edges.APART * A.rest.thickness(s)
+        if off.size and off.max() > 0.0:
+            worst = int(np.argmax(off))
+            gap = feet.distance[worst]
+            yield f"{name} presses {on} at {s[worst]:.4g} m with {abs(forces[worst]):.3g} N across a gap of {gap:.2g} m"
 
 
 def _of_beams(seen: Seen, name: str, contact: BeamContact) -> Iterator[str]:

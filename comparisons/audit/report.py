@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from comparisons.audit.asked import probed
-from comparisons.audit.balance import cuts, sums, unbalance
+from comparisons.audit.balance import at_nodes, cuts, sums, unbalance
+from comparisons.audit.edges import turned_inside_out
 from comparisons.audit.gaps import contacts, strangers
 from comparisons.audit.joints import held
 from comparisons.audit.path import balance
@@ -70,5 +71,5 @@ def audit(scene: Scene, answer: Answer) -> Audit:
 
 
 def _at_station(seen: Seen) -> Iterator[str]:
-    for look in (held, sums, cuts, contacts, probed):
+    for look in (held, turned_inside_out, sums, cuts, at_nodes, contacts, probed):
         yield from look(seen)

@@ -28,6 +28,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh, null_space
 
+from comparisons.audit.areas import AreaOfBeam
 from comparisons.audit.links import Links
 from comparisons.audit.rest import Complex
 from comparisons.audit.seen import Acting, AnyBeam, Seen
@@ -77,8 +78,10 @@ def saddles(seen: Seen, least: float | None) -> Iterator[str]:
 def smallest_curvature(seen: Seen) -> float | None:
     """Of δ²Π over ∫ δψ² ds, in units of the largest E·I over the square of the longest beam.
 
-    None where something presses whose curvature is not known here: a beam on itself, or on a curved edge.
+    None where something presses whose curvature is not known here: a beam on itself, or on a curved edge; and of areas.
     """
+    if any(isinstance(beam, AreaOfBeam) for beam in seen.beams.values()):
+        return None
     pressed = {by for by in seen.statics.by if by in seen.scene.contacts}
     if any(isinstance(seen.scene.contacts[name], SelfContact | FunctionContact) for name in pressed):
         return None

@@ -8,14 +8,15 @@ from functools import cached_property
 
 import numpy as np
 
+from comparisons.audit.areas import AreaOfBeam
 from comparisons.audit.elements import ElementsOfBeam
 from comparisons.audit.links import Links
 from comparisons.audit.rest import Complex, Rest
 from scene import Answer, Scene, StationAnswer
-from scene.answer import Array, Statics
+from scene.answer import Area, Array, Statics
 from scene.statement import BeamForce, BeamMoment, DistributedLoad, Force, Moment
 
-AnyBeam = Links | ElementsOfBeam
+AnyBeam = Links | ElementsOfBeam | AreaOfBeam
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 
 
@@ -54,7 +55,9 @@ class Seen:
         found: dict[str, AnyBeam] = {}
         for name, rest in self.rests.items():
             inside, shape = self.statics.inside[name], self.station.shapes[name]
-            if inside.made_of == "links":
+            if isinstance(inside, Area):
+                found[name] = AreaOfBeam(rest, inside, shape)
+            elif inside.made_of == "links":
                 found[name] = Links(rest, inside, shape)
             else:
                 found[name] = ElementsOfBeam(rest, inside, shape, self.kinematics)

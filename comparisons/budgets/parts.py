@@ -41,7 +41,7 @@ import numpy as np
 from comparisons.budgets.curved_beam import inner_edge_factor
 from comparisons.budgets.runs import DEEPER, ELEMENTS, LEVELS, TIGHTNESS, BudgetRuns
 from comparisons.converging.limits import limit
-from comparisons.extrapolated_solid import extrapolated
+from comparisons.extrapolated_solid import at_row, orders_of
 from comparisons.geometry import bentness_on, length
 from comparisons.measures import Row, bare_row, components, direction, probe_scales
 from comparisons.order import order_of
@@ -203,15 +203,12 @@ def _missed(
     """Components of L_f less the solid's value, and of what this is uncertain by; None where there is none."""
     if runs.solid is None or not all(answer.completed for answer in runs.solid):
         return None
-    stations = tuple(station_of(answer, row.stage, row.station) for answer in runs.solid)
-    v, V = (station.values[row.probe.name] for station in stations)
-    if v.shape != row.cprbm.shape or V.shape != row.cprbm.shape:
+    told = at_row(scene, row, runs.solid, orders_of(scene, runs.solid))
+    if told is None:
         return None
-    if row.arc_length is not None:  # the solid's contacts may end elsewhere
-        clear = clear_of_spots(scene, row.probe.of, row.arc_length, stations)[counts]
-        if not clear[np.abs(along) > 0.0].all():
-            return None
-    x, off = extrapolated(scene, v, V)
+    x, off, clear = told
+    if not clear[counts][np.abs(along) > 0.0].all():  # the solid's contacts may end elsewhere
+        return None
     return float(np.dot(limit_of_beams - x[counts], along)), float(np.abs(np.dot(off[counts], along)))
 
 

@@ -24,16 +24,13 @@ def answered(
     """The answer, and what the search for N within a tolerance has found where one is given.
 
     Raises:
-        click.UsageError: the solver does not take a tolerance.
         SceneError: the question is none that the solver can be asked.
     """
     from comparisons.cli import showing
     from comparisons.pairing import exact_answer, solid_answer, solvers_of
 
     solvers = solvers_of(planted)
-    if tol is not None and solver == "solid":
-        raise click.UsageError("found --tol and --solver solid; allowed: --elements and --across for the solid.")
-    if tol is not None and solver != "exact" and solver != "solid":
+    if tol is not None and solver != "exact":
         from comparisons.tolerances import tolerated
 
         with showing.current(shown=shown) as say:

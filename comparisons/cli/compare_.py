@@ -56,8 +56,6 @@ def command(
 
     one_of_both(tol)
     taking_part = with_solid(solvers_of(planted)) if asking_solid else solvers_of(planted)
-    if asking_solid and tol is not None:
-        raise click.UsageError("found --tol and a solid; allowed: --elements and --across for the solid.")
     scenes = questions(asked)
     choices = Choices(links, formulation, elements, kinematics, penetration, across)
     for scene in scenes:

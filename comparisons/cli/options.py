@@ -128,7 +128,7 @@ def one_of_both(found: float | None) -> None:
         click.UsageError: it was.
     """
     source = click.get_current_context().get_parameter_source
-    for name, option in (("links", "-n"), ("elements", "--elements")):
+    for name, option in (("links", "-n"), ("elements", "--elements"), ("across", "--across")):
         if found is not None and source(name) is not ParameterSource.DEFAULT:
             raise click.UsageError(f"found --tol and {option}; allowed: one of them, for --tol finds N by itself.")
 
@@ -153,8 +153,8 @@ def numerical(command: Decorated) -> Decorated:
     """The options that make up :class:`comparisons.choices.Choices`, and the tolerance in the place of N."""
     standard = Choices()
     command = click.option("--tol", callback=tolerance, metavar="TOL",
-                           help="Find the cheapest N whose own error estimate is within this, as 0.1% or 0.001, at "
-                           "every probe and station; in the place of -n and --elements.")(command)  # fmt: skip
+                           help="Find the cheapest N whose own error estimate is within this, as 0.1% or 0.001, "
+                           "at every probe and station; in place of -n, --elements, --across.")(command)  # fmt: skip
     command = click.option("--penetration", callback=fraction, default=str(standard.penetration), show_default=True,
                            help="Overlap that the finite elements may leave, over the thickness.")(command)  # fmt: skip
     command = click.option("--across", callback=whole, default=str(standard.across), show_default=True,

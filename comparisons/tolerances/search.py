@@ -99,6 +99,13 @@ class Estimate:
             return math.inf
         return 0.0 if self.worst is None else self.worst.fraction
 
+    def worst_of_probes(self) -> dict[str, float]:
+        """The largest f of every probe."""
+        worst: dict[str, float] = {}
+        for row in self.rows:
+            worst[row.probe] = max(row.fraction, worst.get(row.probe, 0.0))
+        return worst
+
     def growth(self, tolerance: float, before: Estimate | None, ratio: float) -> float:
         """g, at least 1.
 
@@ -221,29 +228,34 @@ class Tolerance:
         asked: the tolerance, a fraction.
         met: whether every row's stated uncertainty is within it.
         solver: whose search it was.
-        n: links or elements per beam of the answer; of an extrapolated one the finest.
+        n: links or elements per beam of the answer; of an extrapolated one the finest. Of a solid along each beam.
         worst: the row with the largest stated uncertainty; None where nothing is stated.
         trouble: why nothing is; empty otherwise.
         extrapolated: N and 2N, or nothing.
         probes: names of those whose values are extrapolated.
         solved: every N that was solved, ascending.
+        ended: why nothing finer was solved, where that is said.
     """
 
     asked: float
     met: bool
-    solver: Literal["cprbm", "fea"]
+    solver: Literal["cprbm", "fea", "solid"]
     n: int
     worst: Stated | None
     trouble: str
     extrapolated: tuple[int, ...]
     probes: tuple[str, ...]
     solved: tuple[int, ...]
+    ended: str = ""
 
     @property
     def sentence(self) -> str:
         """What it has come to."""
         what = f"{self.n} {'links' if self.solver == 'cprbm' else 'elements'} per beam"
-        if self.extrapolated:
+        if self.extrapolated and self.solver == "solid":
+            coarse, fine = self.extrapolated
+            what = f"extrapolated from {coarse} and {fine} elements along each beam"
+        elif self.extrapolated:
             coarse, fine = self.extrapolated
             what = f"{len(self.probes)} probes extrapolated from N = {coarse}, {fine}, the others at N = {fine}"
         found = self.trouble or "no row has a value"
@@ -253,4 +265,5 @@ class Tolerance:
             if not math.isfinite(row.fraction):
                 found = f"{row.probe} at {row.stage} {row.station:g} has a value at one N and none at another"
         met = "within" if self.met else "NOT within"
-        return f"{self.solver.upper()}: {met} {percent(self.asked)}: {what}; at worst {found}."
+        ended = f"; {self.ended}" if self.ended else ""
+        return f"{self.solver.upper()}: {met} {percent(self.asked)}: {what}; at worst {found}{ended}."

@@ -1,21 +1,26 @@
 """A scene answered within a tolerance: by one solver, or by both for a comparison.
 
 The finite elements are asked first, in every theory whose uncertainty a row states (the chosen one and ``bending``);
-what their values are is what the CPRBM's uncertainties are fractions of, as in the rows of the comparison.
+what their values are is what the CPRBM's and the solid's uncertainties are fractions of, as in the rows of the
+comparison.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Literal
 
 from comparisons.bench.timing import LARGEST, Method
 from comparisons.choices import KINEMATICS, Choices, Kinematics
+from comparisons.measures import rows_of
 from comparisons.memory import Remembering
 from comparisons.nearby import nearby
-from comparisons.pairing import Crew, Runs, Solvers, known_exactly, paired
+from comparisons.pairing import Crew, Runs, Solvers, known_exactly, paired, with_solid
+from comparisons.soundness import complaints
 from comparisons.tolerances.levels import SceneLevels
 from comparisons.tolerances.search import Found, Tolerance, search
+from comparisons.tolerances.solids import meshed, settled
 from scene import Answer, Scene
 from scene.frozendict import frozendict
 
@@ -43,7 +48,12 @@ class _Reached:
 
 
 def solved(
-    scene: Scene, solver: Method, choices: Choices, tolerance: float, solvers: Solvers, say: Callable[[str], None]
+    scene: Scene,
+    solver: Literal["cprbm", "fea", "solid"],
+    choices: Choices,
+    tolerance: float,
+    solvers: Solvers,
+    say: Callable[[str], None],
 ) -> tuple[Answer, Tolerance]:
     """One solver's answer within a tolerance, or the best that was solved.
 
@@ -58,6 +68,11 @@ def solved(
     Raises:
         SceneError: the solver refuses the question.
     """
+    if solver == "solid":
+        solvers = with_solid(solvers)
+        assert solvers.solid is not None
+        found = meshed(scene, solvers.solid, choices, tolerance, Remembering(solvers=solvers, say=say))
+        return settled(scene, found.answers), found.reached
     memory = Remembering(solvers=solvers, say=say)
     theory: Kinematics = choices.kinematics if solver == "fea" else "bending"
     reached = _reached(scene, solver, choices, (theory,), tolerance, memory, None)
@@ -66,8 +81,8 @@ def solved(
 
 def paired_within(
     scene: Scene, choices: Choices, tolerance: float, solvers: Solvers, crew: Crew, say: Callable[[str], None]
-) -> tuple[Runs, tuple[Tolerance, Tolerance]]:
-    """What a comparison rests on, with both solvers within a tolerance, and what their searches came to.
+) -> tuple[Runs, tuple[Tolerance, ...]]:
+    """What a comparison rests on, with all solvers within a tolerance, and what their searches came to.
 
     The arguments are those of :func:`solved`, and processes to share the runs.
 
@@ -75,6 +90,18 @@ def paired_within(
         SceneError: a solver refuses the question.
     """
     memory = Remembering(pool=crew.pool, solvers=solvers, say=say)
+    runs, reached = _both_within(scene, choices, tolerance, replace(solvers, solid=None), memory)
+    if solvers.solid is None:
+        return runs, reached
+    whole = not any(complaints(scene, answer) for _, answer in runs.everything())
+    rows = rows_of(scene, runs) if whole else None
+    third = meshed(scene, solvers.solid, choices, tolerance, memory, rows)
+    return replace(runs, solid=third.answers), (*reached, third.reached)
+
+
+def _both_within(
+    scene: Scene, choices: Choices, tolerance: float, solvers: Solvers, memory: Remembering
+) -> tuple[Runs, tuple[Tolerance, Tolerance]]:
     theories: tuple[Kinematics, ...] = tuple(dict.fromkeys(("bending", choices.kinematics)))
     fea = _reached(scene, "fea", choices, theories, tolerance, memory, None)
     cprbm = _reached(scene, "cprbm", choices, ("bending",), tolerance, memory, fea.value(choices.kinematics))

@@ -124,7 +124,7 @@ def reach(march: March, part: int, target: float) -> None:
         StoppedError: no equilibrium is found.
     """
     march.iterations = 0
-    why, cuts = "", 0
+    why, blocked, cuts = "", "", 0
     while True:
         here = float(march.values[part])
         left = target - here
@@ -133,6 +133,7 @@ def reach(march: March, part: int, target: float) -> None:
         step = left if abs(left) < _WHOLE * march.step else float(np.copysign(march.step, left))
         if cuts > _CUTS or here + step == here:
             name, unit = march.model.stepped[part].name, march.model.stepped[part].unit
+            why += f"; in a longer step {blocked}" if blocked and blocked != why else ""
             raise StoppedError(
                 Ending.STEP_TOO_SMALL, f"beyond {name} = {here * unit:.6g} no equilibrium is found: {why}"
             )
@@ -142,9 +143,11 @@ def reach(march: March, part: int, target: float) -> None:
         found = march.look(values, march.system.z, march.penalties)
         through = "" if found.system is None else passed(march.model, march.penalties, march.system.z, found.system.z)
         if found.system is None or through:
-            why = f"a beam passes through what it may touch in {through}" if through else found.why
+            blocked = f"a beam passes through what it may touch in {through}" if through else blocked
+            why = blocked if through else found.why
             march.step, cuts = _CUT * abs(step), cuts + 1
-            march.loosen()
+            if found.system is None:
+                march.loosen()
             continue
         cuts = 0
         _note_closings(march, part, here, goal, found.system)

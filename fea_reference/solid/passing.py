@@ -1,7 +1,9 @@
 """Whether a beam has passed through what it may touch between two equilibria.
 
-A step may be so long that neither of its ends overlaps.  Of a circle it is looked at whether the neutral line has gone
-over its centre, as the circle's body sees it, and so of a corner; of two beams whether their neutral lines cross at the
+A step may be so long that neither of its ends overlaps.  Of a circle it is looked at whether an edge has gone over its
+centre, as the circle's body sees it: until then the place of the edge that is nearest to the centre faces it, and shows
+an overlap, but of a beam that lies on the centre neither edge does.  Of a corner that is looked at of the neutral line,
+which is enough for what has no extent; of two beams whether their neutral lines cross at the
 end or on a straight way there, for a beam that goes through another's end lies clear on its wrong side.  Behind the
 edge of a half-plane everything is within it.
 """
@@ -27,7 +29,8 @@ def passed(model: Model, pairs: Iterable[Pair], before: Array, after: Array) -> 
     places = [model.mesh.places + model.displacements(z).reshape(-1, 2) for z in (before, after)]
     looked_at = set()
     for pair in pairs:
-        own = model.mesh.line(pair.skin.beam, 0.0)
+        eta = pair.skin.side if isinstance(pair.other, Round) else 0.0
+        own = model.mesh.line(pair.skin.beam, eta)
         if isinstance(pair.other, Skin):
             both = pair.skin.beam, pair.other.beam
             other = model.mesh.line(pair.other.beam, 0.0)

@@ -15,6 +15,7 @@ from fea_reference.solid.pairs import pairs_of
 from fea_reference.solid.probes import probed, shapes, touching
 from fea_reference.solid.refusals import refuse
 from fea_reference.solid.settings import Settings
+from fea_reference.solid.statics import statics
 from scene.answer import Answer, Ending, Event, StationAnswer
 from scene.statement import Scene, Stage
 from scene.threads import one_thread
@@ -134,4 +135,5 @@ def _certified(scene: Scene, march: March, stage: Stage, station: float) -> Stat
         shapes=shapes(march),
         touching=touching(march),
         certificate=certificate,
+        statics=statics(scene, march),
     )

@@ -196,3 +196,29 @@ def test_an_obstacle_too_small_for_the_mesh_is_never_passed_unseen():
     found = solid.answer(scene, solid.Settings(elements=20, across=1))
     assert found.completed == any(station.values["floor.force"][0] > 0.0 for station in found.stations)
     assert found.completed or "passes through" in found.sentence
+
+
+def test_a_beam_that_would_come_to_lie_on_a_circles_centre_is_held_by_it():
+    # in one step to its second station the beam would go so deep that the circle's centre is between its edges, where
+    # neither of them faces it; the force on a point support is that of beam tables at small loads, 1 + 3 (L − a)/(2 a)
+    # times the tip's, and the circle can be at most as much lower as it is round
+    length, a = 0.31, 0.2
+    scene = bar(
+        straight(length),
+        0.017,
+        poisson=0.35,
+        load={"kind": "force", "point": "tip", "direction": [0.0, -1.0]},
+        stations=(3.1, 41.0),
+        contacts={
+            "floor": {"kind": "beam-circle", "beam": "beam", "body": "ground", "center": [a, -0.06], "radius": 0.04}
+        },
+        probes=(("floor", "force"), ("tip", "displacement")),
+    )
+    found = solid.answer(scene, solid.Settings(elements=31, across=1))
+    assert found.completed, found.sentence
+    free, held = (station.values for station in found.stations)
+    assert free["floor.force"][0] == 0.0
+    assert 41.0 < held["floor.force"][0] < 41.0 * (1.0 + 1.5 * (length - a) / a)
+    # unhindered it would sink by P L³/(3 E I), less what a beam that bends far comes short of
+    unhindered = 41.0 * length**3 / (3.0 * YOUNG * WIDTH * 0.017**3 / 12.0)
+    assert -held["tip.displacement"][1] < 0.5 * unhindered

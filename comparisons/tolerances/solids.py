@@ -1,0 +1,184 @@
+"""The solid's meshes for a tolerance: each twice as fine as the one before, until their limit is known well enough.
+
+=======  =====================================================================================================
+symbol   meaning
+=======  =====================================================================================================
+τ        the tolerance, a fraction
+f        stated uncertainty of a row: u of :mod:`comparisons.extrapolated_solid` over what its differences are shown by
+=======  =====================================================================================================
+
+The first two meshes state f by the order that theory promises, every further one by the order that is seen.  So the
+answer is that of all meshes that were solved, extrapolated, and none of them is solved in vain.  A mesh on which the
+solid does not arrive counts for nothing, and the next one is begun with.
+
+The search ends unmet where the next mesh would be finer than :data:`LARGEST`, or where no probe that is not within τ
+would be so on the finest even if its error fell with the fourth power of an element's length, the best that these
+elements can do.  As long as one might, the search goes on for it: beside a kink of a section the stress of a solid has
+no bound, and displacements are not to suffer from that.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from comparisons.choices import Choices
+from comparisons.extrapolated_solid import FASTEST, at_row, orders_of
+from comparisons.measures import Row, rows_of
+from comparisons.memory import Remembering
+from comparisons.pairing import Runs, Solver
+from comparisons.scales import norm
+from comparisons.soundness import complaints
+from comparisons.stations import station_of
+from comparisons.tolerances.extrapolation import told
+from comparisons.tolerances.search import Estimate, Stated, Tolerance
+from scene import Answer, Scene
+from scene.answer import frozen_array
+from scene.frozendict import frozendict
+
+FIRST = (20, 1)
+"""Elements along a beam and across it, of the first mesh."""
+
+LARGEST = 160
+"""Elements along a beam beyond which nothing is solved."""
+
+
+@dataclass(frozen=True, slots=True)
+class Meshed:
+    """The solid within a tolerance: answers on meshes that double, whole ones if there are any, and what they state."""
+
+    answers: tuple[Answer, ...]
+    estimate: Estimate
+    reached: Tolerance
+
+
+def meshed(
+    scene: Scene,
+    solver: Solver,
+    choices: Choices,
+    tolerance: float,
+    memory: Remembering,
+    rows: Sequence[Row] | None = None,
+) -> Meshed:
+    """Refine until every row's stated uncertainty is within a tolerance, or no finer mesh is allowed.
+
+    Args:
+        scene: the question.
+        solver: who answers as a solid.
+        choices: its numbers of elements do not count.
+        tolerance: τ.
+        memory: solves, nothing twice.
+        rows: of a comparison, by whose denominators the fractions are; else by the solid's own values.
+
+    Raises:
+        SceneError: the solver refuses the question.
+    """
+    along, across = FIRST
+    answers: tuple[Answer, ...] = ()
+    solved: list[int] = []
+    while True:
+        solved.append(along)
+        (answer,) = memory.answers([(solver, scene, replace(choices, elements=along, across=across))])
+        trouble = complaints(scene, answer)
+        answers = () if trouble else (*answers, answer)
+        if len(answers) > 1:
+            estimate = stated(scene, answers, rows)
+        else:
+            estimate = Estimate((), trouble[0] if trouble else "one mesh alone states nothing")
+        met = estimate.fraction <= tolerance
+        ended = "" if met else _ended(estimate, along, tolerance)
+        if met or ended:
+            break
+        along, across = 2 * along, 2 * across
+    extrapolates = len(answers) > 1
+    reached = Tolerance(
+        asked=tolerance,
+        met=met,
+        solver="solid",
+        n=along,
+        worst=None if estimate.trouble else estimate.worst,
+        trouble=estimate.trouble,
+        extrapolated=(along // 2, along) if extrapolates else (),
+        probes=tuple(probe.name for probe in scene.probes) if extrapolates else (),
+        solved=tuple(solved),
+        ended=ended,
+    )
+    return Meshed(answers or (answer,), estimate, reached)
+
+
+def _ended(estimate: Estimate, along: int, tolerance: float) -> str:
+    """Why a search ends unmet, and what it has met; empty if it goes on."""
+    worst = estimate.worst_of_probes()
+    unmet = [fraction for fraction in worst.values() if fraction > tolerance]
+    fall = (LARGEST / along) ** FASTEST
+    if 2 * along > LARGEST:
+        why = f"no mesh of more than {LARGEST} elements along a beam is solved"
+    elif not estimate.trouble and all(tolerance * fall < fraction < math.inf for fraction in unmet):
+        why = f"{LARGEST} elements along a beam, the most that are solved, would not do either"
+    else:
+        return ""
+    met = ", ".join(name for name, fraction in worst.items() if fraction <= tolerance)
+    return f"{why}; within it: {met}" if met else why
+
+
+def stated(scene: Scene, answers: Sequence[Answer], rows: Sequence[Row] | None = None) -> Estimate:
+    """What is stated of every row that has a value on the finest of two meshes or more."""
+    orders = orders_of(scene, answers)
+    found = []
+    for row in _own_rows(scene, answers[-1]) if rows is None else rows:
+        order = orders[row.stage, row.probe.name]
+        at_this = at_row(scene, row, answers, orders)
+        if at_this is None:
+            if _comes_and_goes(row, answers):
+                found.append(Stated("", row.probe.name, row.stage, row.station, math.inf, int(order)))
+            continue
+        _, off, counts = at_this
+        if not counts.any():
+            continue
+        fraction = row.fraction(norm(row.probe.quantity, off[counts]))
+        if fraction is not None:
+            found.append(Stated("", row.probe.name, row.stage, row.station, fraction, int(order)))
+    return Estimate(tuple(found))
+
+
+def _comes_and_goes(row: Row, answers: Sequence[Answer]) -> bool:
+    """Whether a value is there on one of the finest two meshes and not on the other."""
+    values = [station_of(answer, row.stage, row.station).values[row.probe.name] for answer in answers[-2:]]
+    return len({value.shape for value in values}) > 1
+
+
+def _own_rows(scene: Scene, answer: Answer) -> tuple[Row, ...]:
+    """The scene's rows, with the answer in the place of all others."""
+    return rows_of(scene, Runs("bending", (answer, answer), {"bending": (answer, answer)}))
+
+
+def settled(scene: Scene, answers: Sequence[Answer]) -> Answer:
+    """The finest answer with the values that all tend to; of one alone itself.
+
+    A value that is there on one mesh and not on another is the finest's, and so are the ends of a zone that would
+    change places.  Limits are of no state: nothing says what acts, and all but values is the finest's.
+    """
+    if len(answers) < 2:
+        return answers[-1]
+    orders = orders_of(scene, answers)
+    values = {(station.stage, station.value): dict(station.values) for station in answers[-1].stations}
+    for row in _own_rows(scene, answers[-1]):
+        found = at_row(scene, row, answers, orders)
+        crossed = found is not None and row.probe.quantity == "ends" and np.any(np.diff(found[0]) < 0.0)
+        if found is not None and not crossed:
+            values[row.stage, row.station][row.probe.name] = frozen_array(found[0])
+    stations = [
+        replace(station, values=frozendict(values[station.stage, station.value]), statics=None)
+        for station in answers[-1].stations
+    ]
+    sizes = tuple(int(str(answer.settings["elements"])) for answer in answers[-2:])
+    return replace(
+        answers[-1],
+        settings=frozendict({**answers[-1].settings, "extrapolated_from": list(sizes)}),
+        stations=tuple(stations),
+        seconds=sum(answer.seconds for answer in answers),
+        notes=(*answers[-1].notes, told(sizes, [probe.name for probe in scene.probes])),
+    )
