@@ -133,7 +133,6 @@ def test_a_free_end_presses_into_another_beams_side(turned):
     ("change", "words"),
     [
         ({"contacts": {"floor": {**FLOOR, "point": [0.0, -0.1], "normal": [0.0, 1.0], "thick": False}}}, "lines"),
-        ({"load": {"kind": "beam_moment", "beam": "beam", "at": 0.5}}, "a moment on a beam"),
     ],
 )
 def test_what_the_solid_does_not_offer_is_refused_by_name(change, words):
