@@ -19,6 +19,7 @@ that is drawn apart from its point is a body of its own, which rows pin to that 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,6 +77,12 @@ class Tie:
 def is_own(tie: Tie, scene: Scene) -> bool:
     """Whether a tie's body is the face alone, of an end that is drawn apart from its point."""
     return tie.body >= len(scene.bodies)
+
+
+def stands_on(tie: Tie, bodies: Sequence[BodyPart]) -> int | None:
+    """The unknown that is the rotation of a face that can turn: ψ, or φ of a body that is the face alone."""
+    dofs = bodies[tie.body].dofs
+    return tie.psi if tie.psi is not None or dofs is None else int(dofs[2])
 
 
 def turned(r: Array, phi: float) -> Array:

@@ -187,7 +187,7 @@ def _prodded(model: Model, pair: Pair, tip: Tip, factor: float, places: Array, f
     gradient = (penalty * g)[:, None] * first
     hessian = penalty[:, None, None] * (first[:, :, None] * first[:, None, :] + bent[:, None, None] * second)
     on_corner = -gradient[:, : 2 * STENCIL].reshape(-1, STENCIL, 2).sum(axis=1)
-    push = on_corner if tip.own and pair.way < 1 else -on_corner
+    push = on_corner if tip.own else -on_corner
     energy = 0.5 * float((penalty * g**2).sum())
     opposite = there if tip.own else np.array([own])
     return Touch(pair, found, at, opposite, here, push, dofs, gradient, hessian, g, first, energy)

@@ -45,6 +45,11 @@ def smallest_curvature(model: Model, system: System) -> float:
     return float(found.min()) if _odd(system.factors) == bool(negative % 2) else float("nan")
 
 
+def beside_minima(model: Model, system: System) -> bool:
+    """Whether the tangent's determinant says that the number of negative curvatures is odd: no minimum."""
+    return system.factors is not None and _odd(system.factors) != bool(len(model.rows) % 2)
+
+
 def _odd(factors: SuperLU) -> bool:
     """Whether the determinant is negative."""
     negative = int((factors.U.diagonal() < 0.0).sum())

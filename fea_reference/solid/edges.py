@@ -165,11 +165,9 @@ def ends(points: Array, tangents: Array) -> tuple[Broken, tuple[Corner, ...]]:
         far[i] = share[(share > _SAME) & (along >= 0.0) & (along <= 1.0)].min(initial=np.inf)
     (one,), (other,) = _crossing(both[0], -out[0], both[1:], -out[1:])
     meet = _SAME < one < far[0] and _SAME < other < far[1]
-    if meet:
-        far = np.array([one, other])
+    far = np.array([one, other]) if meet else far
     back = Broken(both, np.stack([out[0], -out[1]]), np.array([-far[0], 0.0]), np.array([0.0, far[1]]))
-    meeting = both[1:] - far[1] * out[1:]
-    return back, corners(meeting, back.tangent[1:], back.tangent[:1]) if meet else ()
+    return back, corners(both[1:] - other * out[1:], back.tangent[1:], back.tangent[:1]) if meet else ()
 
 
 def _crossing(place: Array, way: Array, places: Array, ways: Array) -> tuple[Array, Array]:

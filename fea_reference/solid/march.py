@@ -11,6 +11,9 @@ A step begins at the last equilibrium, whose tangent is the first iteration's, a
 easy one is doubled.  (The line through the last two equilibria is no better a beginning: along it what turns is
 stretched.)  Where a contact closes on the way, the λ at which its gap vanishes is looked for between open states.
 
+A step that is too long may end in an equilibrium that is no minimum, beside the branch: the sign of the tangent's
+determinant tells of an odd number of negative curvatures, and the step is cut.
+
 Where beams are slender, a penalty by their Young's modulus holds an edge to a millionth of the depth that is asked, and
 Newton's iterations find no way along which such a contact travels, opens or goes from an end's corner to the edge
 beside it.  A step that fails therefore leaves the march with looser penalties, as long as what they leave is no deeper
@@ -23,6 +26,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from fea_reference.solid.curvature import beside_minima
 from fea_reference.solid.model import Model
 from fea_reference.solid.newton import Found, equilibrium
 from fea_reference.solid.pairs import Pair
@@ -45,6 +49,9 @@ _CLOSING = 1e-9  # gap at which a contact is found closed, of the longest beam
 _SAME = 1e-12  # of a step: two values that are one
 _LOOKS = 60
 _POLISHED = 1e-12  # residual, over the scale, if round-off allows that
+
+
+_NO_MINIMUM = "those that are, are no minima of the potential energy"
 
 
 class StoppedError(Exception):
@@ -133,20 +140,21 @@ def reach(march: March, part: int, target: float) -> None:
         step = left if abs(left) < _WHOLE * march.step else float(np.copysign(march.step, left))
         if cuts > _CUTS or here + step == here:
             name, unit = march.model.stepped[part].name, march.model.stepped[part].unit
+            ending = Ending.NOT_A_MINIMUM if why == _NO_MINIMUM else Ending.STEP_TOO_SMALL
             why += f"; in a longer step {blocked}" if blocked and blocked != why else ""
-            raise StoppedError(
-                Ending.STEP_TOO_SMALL, f"beyond {name} = {here * unit:.6g} no equilibrium is found: {why}"
-            )
+            raise StoppedError(ending, f"beyond {name} = {here * unit:.6g} no equilibrium is found: {why}")
         goal = target if step == left else here + step
         values = march.values.copy()
         values[part] = goal
         found = march.look(values, march.system.z, march.penalties)
         through = "" if found.system is None else passed(march.model, march.penalties, march.system.z, found.system.z)
-        if found.system is None or through:
+        aside = found.system is not None and beside_minima(march.model, found.system)
+        if found.system is None or through or aside:
             blocked = f"a beam passes through what it may touch in {through}" if through else blocked
-            why = blocked if through else found.why
+            why = blocked if through else _NO_MINIMUM if aside else found.why
             march.step, cuts = _CUT * abs(step), cuts + 1
-            march.loosen()
+            if found.system is None:
+                march.loosen()
             continue
         cuts = 0
         _note_closings(march, part, here, goal, found.system)

@@ -45,10 +45,7 @@ def probed(scene: Scene, march: March, probe: Probe) -> Array:
         case "closing_load":
             return frozen_array(march.closing[probe.of] if _touches(march, probe.of) else [])
         case "force":
-            return frozen_array(
-                float(np.hypot(*sum((one.push.sum(axis=0) for one in _touches(march, probe.of)), np.zeros(2))))
-                * units.force
-            )
+            return frozen_array(_resultant(march, probe.of) * units.force)
         case "centre":
             return frozen_array(_centre(scene, march, probe.of))
         case "ends":
@@ -107,6 +104,12 @@ def _ends_of(march: March, one: Touch) -> Array:
     if one.pair.way:
         return _arc_lengths(march, one, one.zeta, one.facing)
     return _arc_lengths(march, one, one.zones.zones.ravel(), np.empty(0))
+
+
+def _resultant(march: March, name: str) -> float:
+    """Magnitude of a contact's force on its first beam; of a beam that touches itself on the later of both places."""
+    pushes = (-one.push if one.pair.way > 0 else one.push for one in _touches(march, name))
+    return float(np.hypot(*sum((push.sum(axis=0) for push in pushes), np.zeros(2))))
 
 
 def _about_its_pin(scene: Scene, march: March, name: str) -> float:

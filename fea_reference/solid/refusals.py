@@ -16,7 +16,8 @@ def refuse(scene: Scene) -> None:
     mistakes = too_curved(scene)
     for name, contact in scene.contacts.items():
         if not contact.thick:
-            mistakes.append(Mistake(f"contacts.{name}", "lines that touch", "for the solid, edges: thick = true"))
+            allowed = "for the solid, edges, thick = true: what has a thickness would overlap before its line touches"
+            mistakes.append(Mistake(f"contacts.{name}", "lines that touch", allowed))
     for stage in scene.stages:
         if stage.beyond is not None:
             mistakes.append(

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from fea_reference.solid.bodies import is_own, stands_on
 from fea_reference.solid.contacts import Touch
 from fea_reference.solid.march import March
 from fea_reference.solid.pairs import Tip
@@ -34,13 +35,13 @@ class _Acting:
 def statics(scene: Scene, march: March) -> Statics:
     """What acts in the state that the march has reached."""
     model, units, z = march.model, march.model.units, march.system.z
-    parts = [*_joints(march), *_on_bodies(scene, march), *_stops(march)]
+    parts = [*_joints(scene, march), *_on_bodies(scene, march), *_stops(march)]
     for one in march.system.touches:
         parts += _touching(scene, march, one)
     empty = np.zeros((0, 2))
     bodies = {}
     for body in model.bodies:
-        if body.dofs is not None:
+        if body.dofs is not None and body.name in scene.bodies:
             moved = body.motion(body.arm(next(iter(body.points))), z) * units.length
             bodies[body.name] = frozen_array((*moved, body.state(z)[2]))
     return Statics(
@@ -71,14 +72,14 @@ def _one(by: str, on: str, s: float, at: Array, force: Array, moment: float) -> 
     return _Acting(by, on, np.array([s]), at.reshape(1, 2), np.asarray(force).reshape(1, 2), np.array([moment]))
 
 
-def _joints(march: March) -> Iterator[_Acting]:
+def _joints(scene: Scene, march: March) -> Iterator[_Acting]:
     """Of joints on the beams' end faces and on the bodies that these are tied to."""
     model, system = march.model, march.system
     for tie in model.ties:
         at, body, (force, moment) = place(model, system, tie), model.bodies[tie.body], support(model, system, tie)
         s = 0.0 if tie.end == "start" else model.lengths[tie.beam]
         yield _one(tie.point, model.mesh.names[tie.beam], s, at, force, moment)
-        if body.dofs is not None:
+        if body.dofs is not None and not is_own(tie, scene):  # what carries such a face is told of with its row
             yield _one(tie.point, body.name, np.nan, at, -force, -moment)
 
 
@@ -91,7 +92,7 @@ def _on_bodies(scene: Scene, march: March) -> Iterator[_Acting]:
         pull = -float(z[row.multiplier])
         for share in row.shares:
             body = model.bodies[share.body]
-            if body.dofs is None:
+            if body.dofs is None or body.name not in scene.bodies:
                 continue
             at = body.carried(share.arm, z)
             force, moment = (np.zeros(2), pull) if share.direction is None else (pull * share.direction, 0.0)
@@ -103,7 +104,7 @@ def _stops(march: March) -> Iterator[_Acting]:
     for stop in model.stops:
         moment = stop.moment(z)
         if moment:
-            tie = next(tie for tie in model.ties if tie.psi == stop.psi)
+            tie = next(tie for tie in model.ties if stands_on(tie, model.bodies) == stop.psi)
             at, s = place(model, march.system, tie), 0.0 if tie.end == "start" else model.lengths[tie.beam]
             yield _one(stop.name, model.mesh.names[tie.beam], s, at, np.zeros(2), moment)
             if stop.phi is not None:

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea_reference.solid.bodies import BodyPart, Tie
+from fea_reference.solid.bodies import BodyPart, Tie, stands_on
 from scene.answer import Array
 from scene.geometry import tangents_on
 from scene.statement import PinnedEnd, Scene
@@ -67,11 +67,8 @@ def stops_of(scene: Scene, bodies: Sequence[BodyPart], ties: Sequence[Tie]) -> t
         end = beam.start if stop.end == "start" else beam.end
         tie = next(tie for tie in ties if (names[tie.beam], tie.end) == (stop.beam, stop.end))
         assert isinstance(end, PinnedEnd)
-        psi = tie.psi
-        if psi is None:  # of an end that is assembled
-            face = bodies[tie.body].dofs
-            assert face is not None
-            psi = int(face[2])
+        psi = stands_on(tie, bodies)
+        assert psi is not None
         u, way = (0.0, 1.0) if stop.end == "start" else (1.0, -1.0)
         leaving = way * tangents_on(beam.curve, np.array([u]))[0]
         line = np.array(scene.place_of(stop.towards)) - np.array(scene.place_of(end.point))

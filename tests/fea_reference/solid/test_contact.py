@@ -133,7 +133,6 @@ def test_a_free_end_presses_into_another_beams_side(turned):
     ("change", "words"),
     [
         ({"contacts": {"floor": {**FLOOR, "point": [0.0, -0.1], "normal": [0.0, 1.0], "thick": False}}}, "lines"),
-        ({"load": {"kind": "beam_moment", "beam": "beam", "at": 0.5}}, "a moment on a beam"),
     ],
 )
 def test_what_the_solid_does_not_offer_is_refused_by_name(change, words):
@@ -195,7 +194,9 @@ def test_an_obstacle_too_small_for_the_mesh_is_never_passed_unseen():
     )
     found = solid.answer(scene, solid.Settings(elements=20, across=1))
     assert found.completed == any(station.values["floor.force"][0] > 0.0 for station in found.stations)
-    assert found.completed or "passes through" in found.sentence
+    # held by looser penalties on the way, it may come to the station, where those that are asked do not hold it
+    said = ("passes through", "cannot be made as stiff as asked")
+    assert found.completed or any(words in found.sentence for words in said)
 
 
 def test_a_beam_that_would_come_to_lie_on_a_circles_centre_is_held_by_it():
