@@ -121,7 +121,11 @@ def _unpacked_statics(data: Plain) -> Statics:
         inside=frozendict(
             {
                 name: Inside(
-                    inside["made_of"], _array(inside["borders"]), _array(inside["angles"]), _array(inside["pulls"])
+                    inside["made_of"],
+                    _array(inside["borders"]),
+                    _array(inside["angles"]),
+                    _array(inside["pulls"]),
+                    (float(inside["upright"][0]), float(inside["upright"][1])),
                 )
                 for name, inside in data["inside"].items()
             }
