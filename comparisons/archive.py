@@ -124,7 +124,9 @@ def _unpacked_statics(data: Plain) -> Statics:
 
 def _unpacked_inside(data: Plain) -> Inside | Area:
     if "made_of" in data:
-        return Inside(data["made_of"], _array(data["borders"]), _array(data["angles"]), _array(data["pulls"]))
+        start, end = map(float, data["upright"])
+        borders, angles, pulls = (_array(data[name]) for name in ("borders", "angles", "pulls"))
+        return Inside(data["made_of"], borders, angles, pulls, (start, end))
     return Area(_array(data["along"]), _array(data["across"]), frozen_array(data["x"]), frozen_array(data["y"]))
 
 

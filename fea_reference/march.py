@@ -447,6 +447,7 @@ class March:
         self.iterations += solved.iterations
         if solved.converged and self.moved(solved.system, self.system.z) <= _CORRECTED:
             self.system, self.penalties, self.loose = solved.system, looser, True
+            self.change_places()
             return True
         return False
 

@@ -15,6 +15,7 @@ from fea_reference.model import BeamPart
 from fea_reference.stops import acting_stops
 from fea_reference.supports import held, support
 from fea_reference.touch import Pair, Touch
+from fea_reference.upright import upright
 from scene.answer import Array, Inside, Statics, frozen_array
 from scene.statement import Scene, TurningBody
 
@@ -52,6 +53,7 @@ def statics(scene: Scene, march: March) -> Statics:
             frozen_array(np.linspace(0.0, beam.length * units.length, n + 1)),
             frozen_array(z[model.node_dofs[2, beam.nodes]]),
             frozen_array(z[model.element_dofs[6, beam.elements]] * units.force),
+            upright(scene, beam.name),
         )
     return Statics(
         by=tuple(part.by for part in parts for _ in part.s),

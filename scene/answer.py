@@ -111,19 +111,22 @@ class Inside:
 
     Of ``links`` they begin at the beam's first place and end in the middle of each element, where they are joined by
     springs, and at its last place; ``angles`` are theirs, one more than elements, and ``pulls`` empty.  Of ``elements``
-    the shape's places are their nodes, ``angles`` those of the sections there, and ``pulls`` the axial force in each.
+    the shape's places are their nodes, ``angles`` those of the sections there, and ``pulls`` the axial force in each;
+    beside an end sections may lean by less than the shear force over the shear stiffness, by tanh²(s/(√2 a)) of that.
 
     Attributes:
         made_of: ``links`` or ``elements``.
         borders: arc lengths at which elements begin and end, (n+1,), m.
         angles: rad, counter-clockwise, (n+1,).
         pulls: N, positive in tension, (n,) or (0,).
+        upright: a of the start and of the end, m; zero where there is no such length.
     """
 
     made_of: Literal["links", "elements"]
     borders: Array
     angles: Array
     pulls: Array
+    upright: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 =========  =====================================================================================
 l, α       length and angle of the chord between an element's nodes; l⁰ at rest
 ϑ, Δ       the sections' angles against the chord (2,), and less those at rest ϑ⁰
-F          what end moments turn the ends by, ∫ b bᵀ/(E·I) ds + (1, 1)ᵀ(1, 1) ∫ ds/(GA)/L², b = (ξ − 1, ξ)
+F          what end moments turn the ends by, ∫ b bᵀ/(E·I) ds + (1, 1)ᵀ(1, 1) ∫ f ds/(GA)/L², b = (ξ − 1, ξ)
 m          moments on the ends, F⁻¹ Δ + N ∂(½ ∫ w′² ds)/∂ϑ
 w′         slope of the line against the chord, θ + γ less its mean, θ a parabola through ϑ
 N, Q       axial force; shear force −(m₁ + m₂)/l
@@ -25,6 +25,7 @@ from scene.answer import Array, Inside, Shape
 
 PER_ELEMENT = 16
 SHEAR_FACTOR = 5.0 / 6.0  # of a rectangle
+LAYERS = np.array([1.0, 2.0, 4.0, 8.0, 16.0])  # between which f is smooth, and behind which it is one
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class ElementsOfBeam:
 
     @cached_property
     def _flexible(self) -> tuple[Array, Array, Array]:
-        """F (2, 2, n), ∫ ds/(EA) and ∫ ds/(GA) (n,)."""
+        """F (2, 2, n), ∫ ds/(EA) and ∫ f ds/(GA) (n,)."""
         e, L, rest = self.inside.borders, self._sizes, self.rest
         number, s, _ = rest.over(e)
         xi = (s - e[number, None]) / L[number, None]
@@ -62,9 +63,24 @@ class ElementsOfBeam:
         bending = np.array([[rest.summed(e, p * q / EI) for q in b] for p in b])
         EA = EI * 12.0 / rest.thickness(s) ** 2
         axial = rest.summed(e, 1.0 / EA)
-        shear = axial * 2.0 * (1.0 + rest.nu) / SHEAR_FACTOR
+        shear = self._leant() * 2.0 * (1.0 + rest.nu) / SHEAR_FACTOR
         axial = axial if self.kinematics in ("stretch", "shear") else 0.0 * axial
         return bending, axial, shear if self.kinematics == "shear" else 0.0 * shear
+
+    def _leant(self) -> Array:
+        """∫ f ds/(EA), (n,): of the shear beside an end only tanh²(s/(√2 a)) leans."""
+        e, rest = self.inside.borders, self.rest
+        start, end = (layer * LAYERS for layer in self.inside.upright)
+        finer = np.unique(np.concatenate((e, e[0] + start, e[-1] - end)))
+        finer = finer[(finer >= e[0]) & (finer <= e[-1])]
+        s = rest.over(finer)[1]
+        f = np.ones_like(s)
+        for layer, away in zip(self.inside.upright, (s - e[0], e[-1] - s), strict=True):
+            if layer > 0.0:
+                f = f * np.tanh(away / (np.sqrt(2.0) * layer)) ** 2
+        each = rest.summed(finer, f * rest.thickness(s) ** 2 / (12.0 * rest.rigidity(s)))
+        number = np.searchsorted(e, 0.5 * (finer[1:] + finer[:-1]), side="right") - 1
+        return np.asarray(np.bincount(number, each, len(e) - 1), dtype=float)
 
     @cached_property
     def _slopes(self) -> tuple[Array, Array]:

@@ -406,18 +406,29 @@ def _crossed_at_rest(seen: Seen, one: str, other: str) -> bool:
 
 
 def _crossings(seen: Seen, first: AnyBeam, second: AnyBeam) -> Iterator[tuple[complex, float]]:
-    """Where lines cross, and by how much the less deep of both parts of the first is beyond."""
+    """Where lines cross, and by how much the least deep of both parts of either is beyond the other.
+
+    An end that stands on the other line is beyond it by what it has sunk in, however far that goes on to both sides.
+    """
     a, b = (beam.line(beam.fine)[0] for beam in (first, second))
     at, places = _intersections(a, b)
-    ends = np.concatenate(([0], at + 1, [len(a)]))
-    depths = [np.max(np.abs(_feet(a[i:j], second).distance)) if j > i else 0.0 for i, j in pairwise(ends)]
+    other_at, other_places = _intersections(b, a)
+    depths, other_depths = _beyond(a, at, second), _beyond(b, other_at, first)
     allowed = SUNK * seen.longest
     joints = [beam.line(np.array([0.0, beam.rest.length]))[0] for beam in (first, second)]
     shared = [p for p in joints[0] if np.min(np.abs(joints[1] - p)) < 1e-6 * seen.longest]
-    for k, place in enumerate(places):
-        depth = min(depths[k], depths[k + 1])
+    for place, depth in zip(places, depths, strict=True):
+        if other_places.size:
+            depth = min(depth, other_depths[int(np.argmin(np.abs(other_places - place)))])
         if depth > allowed and all(abs(place - p) > allowed for p in shared):
             yield complex(place), float(depth)
+
+
+def _beyond(line: Complex, at: np.ndarray, other: AnyBeam) -> list[float]:
+    """At each crossing (k,), behind places ``at`` of a line, the less of what its parts beside are from the other."""
+    ends = np.concatenate(([0], at + 1, [len(line)]))
+    depths = [np.max(np.abs(_feet(line[i:j], other).distance)) if j > i else 0.0 for i, j in pairwise(ends)]
+    return [float(min(pair)) for pair in pairwise(depths)]
 
 
 def _intersections(a: Complex, b: Complex) -> tuple[np.ndarray, Complex]:

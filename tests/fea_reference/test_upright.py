@@ -20,6 +20,8 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from comparisons.archive import packed, unpacked
+from comparisons.audit import audit
 from fea_reference import Settings, answer
 from fea_reference.upright import upright
 from scene import Ending, Scene
@@ -161,3 +163,12 @@ def test_only_what_is_held_on_what_it_may_touch_stands_upright():
     plain = on_circle(STOUT, 0.01).model_dump()
     plain["contacts"]["edge"]["radius"] -= 0.2 * STOUT
     assert upright(Scene.model_validate(plain), "beam") == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("scene", [on_circle, on_its_like])
+def test_the_audit_knows_how_shear_begins(scene):
+    asked = scene(STOUT, 1.13 * KAPPA)
+    answered = answer(asked, Settings(elements=20))
+    found = audit(asked, unpacked(packed(answered)))
+    assert not found.complaints
+    assert found.unbalance < 1e-9

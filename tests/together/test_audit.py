@@ -7,6 +7,7 @@ same solvers where the scene gives them no other choice, held against a scene th
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ import cprbm
 import fea_reference
 from comparisons.audit import audit, audited
 from comparisons.audit.corners import corners_of
-from comparisons.audit.gaps import _standing_out, _surface
+from comparisons.audit.gaps import _crossings, _standing_out, _surface
 from comparisons.cases import opened
 from scene import Ending
 from scene.answer import frozen_array
@@ -354,3 +355,20 @@ def test_the_ends_of_a_graph_press_between_its_own_normals_there(axis, side):
         number, near = corners.standing(np.full(len(forces), place), 1e-9)
         assert near.all()
         assert corners.allow(forces, number).tolist() == [True, True, True, False, False, False]
+
+
+@pytest.mark.parametrize(("sunk", "depth"), [(3e-5, None), (0.017, 0.017)])
+def test_an_end_that_stands_on_a_line_crosses_it_by_what_it_has_sunk_in(sunk, depth):
+    # an end that stands across the middle of a line of length one, from above
+    def straight(start, end):
+        fine = np.linspace(0.0, abs(end - start), 401)
+        return SimpleNamespace(
+            fine=fine,
+            line=lambda s: (start + s * (end - start) / abs(end - start), None),
+            rest=SimpleNamespace(length=abs(end - start)),
+        )
+
+    level, upright = straight(0.003 + 0.0j, 1.003 + 0.0j), straight(0.41 + 0.73j, 0.41 - 1j * sunk)
+    for pair in ((level, upright), (upright, level)):
+        found = [by for _, by in _crossings(SimpleNamespace(longest=1.0), *pair)]
+        assert found == ([] if depth is None else [pytest.approx(depth, rel=1e-6)])

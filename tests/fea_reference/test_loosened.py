@@ -1,0 +1,71 @@
+"""A beam across a hump, pressed on until it meets the clamped end of another: one that is seen once places change.
+
+The hump's penalty is loosened to look for its zone, with which the other contact presses at once.
+"""
+
+from fea_reference import Settings, answer
+from scene import Ending
+from scene.reading import scene_from
+
+
+def hump():
+    points = [
+        [0.0, 0.0],
+        [0.0015107, -0.0103584],
+        [0.0094145, -0.013652],
+        [0.0169496, -0.0155317],
+        [0.0220207, -0.022809],
+    ]
+    others = [[0.0111076, -0.0280448], [0.004145, -0.0130245], [-0.0068688, -0.0076338]]
+    wall = {"R": points[0], "S": others[0], "E": others[-1]}
+    beam = {"material": "m"}
+    return scene_from(
+        {
+            "name": "hump",
+            "materials": {"m": {"youngs_modulus": 2.3e9, "poisson_ratio": 0.35}},
+            "bodies": {
+                "wall": {"motion": "fixed", "points": wall},
+                "tip": {"motion": "free", "points": {"T": points[-1]}},
+            },
+            "beams": {
+                "one": {
+                    **beam,
+                    "curve": {"kind": "spline", "points": points, "start_direction": [-0.071, -1.459]},
+                    "thickness": {"at": [0.0, 1.0], "values": [0.000154, 0.000128]},
+                    "width": 0.00743,
+                    "start": {"joint": "weld", "point": "R"},
+                    "end": {"joint": "weld", "point": "T"},
+                },
+                "other": {
+                    **beam,
+                    "curve": {"kind": "spline", "points": others},
+                    "thickness": 0.000142,
+                    "width": 0.00254,
+                    "start": {"joint": "weld", "point": "S"},
+                    "end": {"joint": "pin", "point": "E"},
+                },
+            },
+            "loads": {"F": {"kind": "force", "point": "T", "direction": [-0.679, -0.734]}},
+            "contacts": {
+                "meets": {"kind": "beam-beam", "between": ["one", "other"]},
+                "hump": {
+                    "kind": "beam-function",
+                    "beam": "one",
+                    "body": "wall",
+                    "axis": "x",
+                    "coefficients": [-0.0117040363, 0.0592889116, -58.3268314],
+                    "range": [-0.005818, 0.01104],
+                    "side": "above",
+                },
+            },
+            "stages": [{"name": "press", "steps": "F", "stations": [0.02429, 0.04858]}],
+            "probes": [{"of": "meets", "quantity": "force"}],
+        }
+    )
+
+
+def test_a_search_with_loose_penalties_begins_where_it_goes_on():
+    found = answer(hump(), Settings(elements=40, kinematics="bending"))
+    assert found.ending is Ending.COMPLETED, found.sentence
+    assert found.stations[0].values["meets.force"][0] == 0.0
+    assert found.stations[1].values["meets.force"][0] > 0.0
