@@ -19,7 +19,7 @@ from cprbm.critical import Minimum, foreseen
 from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import KEPT, continued
 from cprbm.kinematics import most_turned
-from cprbm.locking import Locked, between_ends, locked_on, pressed_on
+from cprbm.locking import Locked, between_ends, drawn_taut, locked_on, pressed_on, taut
 from cprbm.mechanism import Mechanism
 from cprbm.point import Point
 from cprbm.rate import carried_by_others, rate, strayed
@@ -35,6 +35,7 @@ SHORT = 0.2  # rad: the most that a link may turn in a step that hides no end of
 FAR = 10.0  # times the way that the rates make: up to a fold it is twice that
 ISOLATED = 0.01  # rad: the most in which a contact or stop may close or open: what it catches did not fall far
 ROUNDED = 1e-12  # of the way: less than this is left of it by round-off
+NEARLY_TAUT = 1e-3  # of the way: so near what ends it, forces tell whether that is a beam which is taut
 JUST = 2.0  # smallest steps, to see that there is nothing beyond
 TRAIL = 30  # minima that are kept
 
@@ -149,6 +150,10 @@ class Follower:
                 if self.locked is not None:
                     return Reached(Ending.STEP_TOO_SMALL, self.locked.told, certificate=None)
             step, refused, self.refused = self._cut(way, done, 0.5 * step), True, way.value(fraction)
+            if abs(self.refused - self.reached) <= NEARLY_TAUT * abs(way.value(1.0) - way.value(0.0)):
+                limit = taut(self._minima, self.refused)
+                if limit is not None:
+                    return Reached(Ending.STEP_TOO_SMALL, drawn_taut(way.load, limit), certificate=None)
             if iterations > self.settings.iteration_limit or step < self.settings.smallest_step:
                 beam = pressed_on(problem, self.point, found.point, values)
                 if beam:
@@ -171,7 +176,12 @@ class Follower:
     @property
     def _known(self) -> list[tuple[float, Point]]:
         """The last minima and their values."""
-        return [(one.value, one.point) for one in self.trail[-KEPT:]]
+        return self._minima[-KEPT:]
+
+    @property
+    def _minima(self) -> list[tuple[float, Point]]:
+        """All minima that are kept, and their values."""
+        return [(one.value, one.point) for one in self.trail]
 
     def _farthest(self, way: Array) -> float:
         """The most that a link turns by before a step is given up on which links go a ``way`` by their rates."""

@@ -1,10 +1,11 @@
-"""What does not move at first: beams that are straight between held ends, and where what is driven meets them.
+"""What does not move: beams that are straight between held ends, and what is driven until all it is held by is taut.
 
 ==========  ==================================================================================
 Z, A        equalities and their derivatives over the unknowns q
 ν           combination of the equalities that no small motion changes: νᵀA = 0
 z           −∂Z/∂v, what Z must be changed by on the way
 B           ½ ∂²(ν·Z)/∂q² of the links: what turning them changes ν·Z by, diagonal
+F, v, v_t   the largest multiplier, and the value that is stepped; that at which beams are taut
 ==========  ==================================================================================
 
 A beam that is straight between its ends is as long as they are apart: turning its links by q brings them closer by a
@@ -16,11 +17,18 @@ has no solution near by if B has the other sign, and the beam cannot become long
 size √dv: the beam buckles to one side or the other, and the straight branch ends in a bifurcation where it stands, for
 in bending alone a column shortens by nothing before.  Where the way asks for nothing (ν·z = 0) the beam stays straight
 under any pull, and what presses or pulls on it from the side is held by none that is finite.
+
+A beam that is not straight yet, or lies round something, can be drawn until it is taut, and no further: a bend that a
+pull F leaves has the length √(EI/F), so that F grows like (v_t − v)^−p with p about 2.  Whatever p is,
+
+    F/F′ = (v_t − v)/p
+
+falls to nothing evenly, as no force does that stays finite.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,6 +43,7 @@ from scene.answer import Array
 NOTHING = 1e-9  # of the largest singular value: rows whose combination is less do not depend on q
 NEXT_TO = 3e-5  # the same of a beam that has bent by what the closure's tolerance lets it, q² ~ 1e-11, and more for it
 TAKES_PART = 0.01  # of the largest, squared
+TAUT, GROWN = 4, 4.0  # minima by which F grows so many times before it is said to have no limit
 ASKED = 1e-6  # of the largest change that the way asks for of an equality
 
 
@@ -67,6 +76,31 @@ def locked_on(problem: Problem, point: Point, change: Mapping[str, float]) -> Lo
 def between_ends(beam: str) -> str:
     """Why nothing can press or pull on such a beam from the side, for people."""
     return f"beam '{beam}' is straight between ends that are held, and cannot give way from there by bending"
+
+
+def drawn_taut(load: str, value: float) -> str:
+    """Why a way ends near the ``value`` of a ``load`` where :func:`taut` finds it, for people."""
+    return f"forces grow without limit as {load} comes to {value:.6g}, where beams would have to become longer"
+
+
+def taut(minima: Sequence[tuple[float, Point]], refused: float) -> float | None:
+    """v_t, told from the last minima and their values; None where forces have a limit.
+
+    Args:
+        minima: in order.
+        refused: the value at which there was none.
+    """
+    if len(minima) < TAUT:
+        return None
+    v = np.array([value for value, _ in minima[-TAUT:]])
+    F = np.array([max(np.max(np.abs(at.mu), initial=0.0), at.lam.max(initial=0.0)) for _, at in minima[-TAUT:]])
+    if not np.all(np.diff(F) > 0.0) or F[-1] < GROWN * F[0]:
+        return None
+    ratio, middle = np.abs(0.5 * (F[1:] + F[:-1]) * np.diff(v) / np.diff(F)), 0.5 * (v[1:] + v[:-1])
+    if not np.all(np.diff(ratio) < 0.0):
+        return None
+    limit = middle[-1] + ratio[-1] * (middle[-1] - middle[-2]) / (ratio[-2] - ratio[-1])
+    return float(limit) if 0.0 < (limit - v[-1]) / (refused - v[-1]) <= 2.0 else None
 
 
 def pressed_on(problem: Problem, before: Point, point: Point, values: Mapping[str, float]) -> str:

@@ -241,6 +241,7 @@ class March:
         if found is None:
             if len(self.family) > 1:
                 return None
+            self.remarks.even.append(f"{stage.name} {value:.6g}")
             found = self.on.mechanism, self.on.point, certificate
         self.spent += certificate.iterations
         return self._answer(stage, value, found)

@@ -1,8 +1,12 @@
-"""What a reader of an answer in the formulation ``paper`` should know besides its numbers: what that form leaves out.
+"""What a reader of an answer should know besides its numbers.
 
-A joint next to the beam's own pin holds a chord (:mod:`cprbm.rigid_edge`): first order in 1/N.  A polynomial of one
-degree misses the points that it is fitted to, however many they are: an error that stays as N grows.  And it is fitted
-along an axis, so that its forces do not balance those on the joints that press it (:mod:`cprbm.boundary`).
+Where no mesh that is fitted to a station's contacts has a certified state, the one on even elements stands: as
+believable, but its error changes with where in their elements the contacts end, and two of them say less of it.
+
+Of the formulation ``paper``: what that form leaves out.  A joint next to the beam's own pin holds a chord
+(:mod:`cprbm.rigid_edge`): first order in 1/N.  A polynomial of one degree misses the points that it is fitted to,
+however many they are: an error that stays as N grows.  And it is fitted along an axis, so that its forces do not
+balance those on the joints that press it (:mod:`cprbm.boundary`).
 """
 
 from __future__ import annotations
@@ -25,10 +29,12 @@ class Remarks:
 
     Attributes:
         beside_pins: where a joint first pressed next to the beam's own pin, by contact.
+        even: stations on even elements though there is contact, in order.
         misfits: the most by which a polynomial missed its points, and where, by contact; units of length.
     """
 
     beside_pins: dict[str, str] = field(default_factory=dict)
+    even: list[str] = field(default_factory=list)
     misfits: dict[str, tuple[float, str]] = field(default_factory=dict)
 
     def look(self, mechanism: Mechanism, point: Point, where: str) -> None:
@@ -49,6 +55,11 @@ class Remarks:
             "there and not the tangent, so that energy and moments are of first order in 1/N and its force grows with N"
             for name, first in self.beside_pins.items()
         ]
+        if self.even:
+            said.append(
+                f"at {', '.join(self.even)} no mesh fitted to where contact is had a certified state: the values are "
+                "of even elements, and their error changes unevenly with the number of links"
+            )
         said += [
             f"in contact '{name}' the polynomial misses the points that it is fitted to by up to {most * unit:.1e} m, "
             f"at {where}: more links do not take that away"

@@ -1,5 +1,7 @@
 """Beams that are straight between held ends: idle, asked to become shorter or longer, and pressed on from the side."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -96,3 +98,28 @@ def test_a_beam_that_is_pulled_longer_says_so():
     answer = cprbm.answer(column(-0.0217), cprbm.Settings(links=17))
     assert answer.ending is Ending.STEP_TOO_SMALL
     assert "beam 'column' is straight between its ends, and cannot become longer" in answer.sentence
+
+
+@pytest.mark.parametrize("rise", [0.03, 0.2])
+def test_an_arc_that_is_drawn_straight_says_where_forces_have_no_limit(rise):
+    # reference: an arc of radius R and angle θ is R θ long, and its ends are no farther apart when it is straight
+    half = 2.0 * np.arctan(2.0 * rise)
+    radius = 0.5 * LENGTH / np.sin(half)
+    longer = 2.0 * half * radius - LENGTH
+    scene = column(0.1).model_dump(mode="json", exclude={"file"})
+    scene["bodies"] = {
+        "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
+        "car": {"motion": "slides", "along": [1.0, 0.0], "points": {"T": [LENGTH, 0.0]}},
+    }
+    middle = [0.5 * LENGTH, -radius * np.cos(half)]
+    arc = {"kind": "arc", "center": middle, "start": [0.0, 0.0], "end": [LENGTH, 0.0], "direction": "clockwise"}
+    scene["beams"]["column"] |= {"curve": arc, "start": {"joint": "pin", "point": "R"}}
+    scene["drives"] = {"pull": {"kind": "displacement", "point": "T", "direction": [1.0, 0.0]}}
+    scene["stages"] = [{"name": "pull", "steps": "pull", "stations": [0.5 * longer, 1.3 * longer]}]
+    scene["probes"] = [{"of": "T", "quantity": "displacement"}]
+    answer = cprbm.answer(scene_from(scene), cprbm.Settings(links=17))
+    assert answer.ending is Ending.STEP_TOO_SMALL
+    assert len(answer.stations) == 1
+    said = re.search(r"forces grow without limit as pull comes to (\S+),", answer.sentence)
+    assert said is not None, answer.sentence
+    assert float(said[1]) == pytest.approx(longer, rel=1e-2)

@@ -198,3 +198,13 @@ def test_a_place_on_a_circle_is_no_matter_of_two_beams_that_lie_on_each_other():
     fit = Fit({}, {}, {"circle": (kinks,)})
     on = march.on
     assert levelled(march.scene, on.settings, on.mechanism, on.point, fit, on.values) is None
+
+
+def test_values_on_elements_that_were_not_fitted_are_said_to_be(monkeypatch):
+    scene, settings = scene_of([31.0, 97.0]), Settings(links=20)
+    assert not any("even elements" in note for note in cprbm.answer(scene, settings).notes)
+    monkeypatch.setattr(March, "_fitted", lambda *_, **__: None)
+    plain = cprbm.answer(scene, settings)
+    assert plain.completed, plain.sentence
+    (said,) = [note for note in plain.notes if "even elements" in note]
+    assert all(f"{station.stage} {station.value:.6g}" in said for station in plain.stations)
