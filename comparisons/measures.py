@@ -404,7 +404,7 @@ def bounds_of(
     even = values.get("cprbm auto", v_c)
     own = size(v_c - even) + factor * size(even - values["cprbm finer"])
     if "cprbm beside" in values:
-        own += SAFETY * size(_unforeseen(even, values["cprbm finer"], values["cprbm beside"], runs.ratio, order))
+        own += SAFETY * size(unforeseen(even, values["cprbm finer"], values["cprbm beside"], runs.ratio, order))
     bending = factor * size(v_b - values["fea bending finer"])
     return Bounds(
         cprbm=own,
@@ -426,11 +426,15 @@ def _exact_station(runs: Runs, stage: str, spot: Spot) -> StationAnswer | None:
     return found if found.branch == spot.branch else None
 
 
-def _unforeseen(v: Array, V: Array, beside: Array, ratio: float, order: int) -> Array:
-    """What the even law through v and V does not foretell of the value beside, as at N links."""
+def foretold(v: Array, V: Array, ratio: float, order: int) -> Array:
+    """What the even law through v and V foretells of the value at N over ``ratio``."""
     error = richardson(order) * (v - V)
-    foretold = v - error + error * ratio**order
-    return np.asarray((beside - foretold) / ratio**order)
+    return np.asarray(v - error + error * ratio**order)
+
+
+def unforeseen(v: Array, V: Array, beside: Array, ratio: float, order: int) -> Array:
+    """What it does not foretell of the value beside, as at N links."""
+    return np.asarray((beside - foretold(v, V, ratio, order)) / ratio**order)
 
 
 def _none_small_by_accident(rows: tuple[Row, ...]) -> tuple[Row, ...]:

@@ -7,6 +7,7 @@ v_0 v_1 v_2  a probe's values at N/2, N and 2N
 p            the order that :mod:`comparisons.order` assumes of them
 q            the order of the largest changes in the stage, |v_1 − v_0| / |v_2 − v_1| = 2^q, between 1/2 and p
 ρ            2^p/(2^p − 1)
+w r          the value at N + N/7, and N over that number
 V_i          the extrapolation of v_(i−1) and v_i, :func:`comparisons.convergence.limit`
 ===========  =============================================================================================
 
@@ -17,6 +18,11 @@ value comes with the answer to hold it against:
   falls as the changes have done. With q = p that is the value at 4N that the law through v_1 and v_2 foretells;
 * *extrapolated*: V_2 beside V_2 + (V_1 − V_2)/ρ, so that S·|V_2 − V_1| is stated.  V_1's error is larger than V_2's:
   two successive extrapolations differ by more than the last one errs.
+
+Where the error may be uneven in N, two changes may be small by accident: what the even law through v_1 and v_2 does not
+foretell of w, the value at N + N/7 links (:mod:`comparisons.measures`), is d at N. Of v_2 it may be d/2^p, of what is
+extrapolated twice d/(2^p − 1): d/2^p of v_2 times ρ, and d of v_1 times ρ − 1. A third answer is made from which that
+follows as it does from w beside v_1 and v_2.
 
 Shapes, places of contact, events and certificates are the finest answer's, critical values and branches of what it is
 held against those at N.  Where a contact is open at one size and closed at another, or branches are different, values
@@ -32,6 +38,7 @@ from dataclasses import replace
 import numpy as np
 
 from comparisons.converging.limits import limit
+from comparisons.measures import foretold, unforeseen
 from comparisons.order import order_of, richardson
 from comparisons.scales import norm
 from comparisons.stations import station_of
@@ -65,6 +72,35 @@ def settled(scene: Scene, sizes: Sizes, answers: Three, probes: Collection[str])
         return value, beside
     settings = frozendict({**value.settings, "extrapolated_from": list(sizes[1:])})
     return replace(value, settings=settings, notes=(*value.notes, told(sizes[1:], probes))), beside
+
+
+def uneven(
+    scene: Scene, answers: Three, beside: Answer, ratio: float, pair: tuple[Answer, Answer], probes: Collection[str]
+) -> Answer:
+    """The answer to hold a settled ``pair`` against as one at N + N/7 is held against those at N and 2N.
+
+    Args:
+        scene: the question.
+        answers: at N/2, N and 2N, whole ones.
+        beside: at N + N/7, a whole one.
+        ratio: r.
+        pair: what :func:`settled` made of the answers.
+        probes: names of those whose values are extrapolated.
+    """
+    stations = []
+    for at in beside.stations:
+        v_1, v_2, v, V = (station_of(each, at.stage, at.value) for each in (*answers[1:], *pair))
+        values = dict(at.values)
+        for probe in scene.probes:
+            own = [each.values[probe.name] for each in (v_1, v_2, at, v, V)]
+            if len({each.shape for each in own}) > 1:
+                continue  # left as it is: where one has a value and another none, nothing is told
+            p = order_of(scene, probe)
+            share = 2.0 / (2.0**p - 1.0) if probe.name in probes else 2.0**-p
+            d = unforeseen(own[0], own[1], own[2], ratio, p)
+            values[probe.name] = frozen_array(foretold(own[3], own[4], ratio, p) + share * d * ratio**p)
+        stations.append(replace(at, values=frozendict(values), statics=None))
+    return replace(beside, stations=tuple(stations))
 
 
 def told(sizes: tuple[int, ...], probes: Collection[str]) -> str:

@@ -17,7 +17,7 @@ from comparisons.memory import Remembering
 from comparisons.order import order_of
 from comparisons.pairing import Runs, Solver, may_be_uneven, ratio_beside
 from comparisons.soundness import complaints
-from comparisons.tolerances.extrapolation import Sizes, settled
+from comparisons.tolerances.extrapolation import Sizes, settled, uneven
 from comparisons.tolerances.search import FIRST, Estimate, Stated
 from scene import Answer, Scene
 
@@ -57,7 +57,7 @@ class SceneLevels:
 
     def checked(self, n: int) -> Estimate:
         """The same, with n + n/7 where the error may be uneven."""
-        return self._plain(n, beside=self.beside and may_be_uneven(self.scene))
+        return self._plain(n, beside=self._uneven)
 
     def settled(self, n: int) -> Estimate:
         """Of the values at 2n or what n and 2n extrapolate to, from n/2, n and 2n.
@@ -80,6 +80,25 @@ class SceneLevels:
     def pair(self, theory: Kinematics, n: int, probes: Collection[str]) -> tuple[Answer, Answer]:
         """What n/2, n and 2n settle with these probes extrapolated, and the answer to hold it against."""
         return settled(self.scene, self._sizes(n), self._three(theory, n), probes)
+
+    def uneven(self, theory: Kinematics, n: int, probes: Collection[str]) -> Answer | None:
+        """What the same pair is to be held against as well; None where the error is even."""
+        if not self._uneven:
+            return None
+        chosen = self.choices(theory, n)
+        (beside,) = self._answers([chosen.beside()])
+        if complaints(self.scene, beside):
+            return beside
+        three, pair = self._three(theory, n), self.pair(theory, n, probes)
+        return uneven(self.scene, three, beside, ratio_beside(chosen), pair, probes)
+
+    def ratio(self, n: int) -> float:
+        """n over the links beside them."""
+        return ratio_beside(self.choices("bending", n))
+
+    @property
+    def _uneven(self) -> bool:
+        return self.beside and may_be_uneven(self.scene)
 
     def solved(self) -> tuple[int, ...]:
         """Every N at which the solver has answered the scene, ascending."""
@@ -115,9 +134,12 @@ class SceneLevels:
         ]
         if troubles:
             return Estimate((), troubles[0])
-        return _joined(
-            [stated(self.scene, self._runs(*self.pair(theory, n, probes)), theory) for theory in self.theories]
-        )
+        found = []
+        for theory in self.theories:
+            runs = self._runs(*self.pair(theory, n, probes))
+            runs = replace(runs, beside=self.uneven(theory, n, probes), ratio=self.ratio(n))
+            found.append(stated(self.scene, runs, theory))
+        return _joined(found)
 
     def _runs(self, value: Answer, other: Answer) -> Runs:
         """A solver's answer, what it is held against, and by what the differences are measured."""

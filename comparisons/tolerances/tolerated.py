@@ -107,11 +107,13 @@ def _both_within(
     cprbm = _reached(scene, "cprbm", choices, ("bending",), tolerance, memory, fea.value(choices.kinematics))
     told = _told(cprbm, "cprbm", tolerance), _told(fea, "fea", tolerance)
     if cprbm.found.settled:
-        driven = nearby(scene)
+        driven, n = nearby(scene), cprbm.found.n
         return Runs(
             choices.kinematics,
             cprbm.pair("bending"),
             _families(fea, choices.kinematics),
+            beside=cprbm.levels.uneven("bending", n, cprbm.found.estimate.extrapolated),
+            ratio=cprbm.levels.ratio(n),
             nearby=None if driven is None else _nearby(cprbm, driven),
             exact=known_exactly(scene, choices, solvers, memory),
         ), told
