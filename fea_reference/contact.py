@@ -53,6 +53,7 @@ from fea_reference.itself import seen_itself, unseen
 from fea_reference.model import BeamPart, Model
 from fea_reference.neighbours import nearest
 from fea_reference.state import State
+from fea_reference.staying import frame_of
 from fea_reference.touch import Pair, Penalty, Touch, gauss, together
 from fea_reference.zones import (
     Survey,
@@ -111,11 +112,8 @@ def _loose(scene: Scene, beam: BeamPart, other: BeamPart) -> tuple[int, ...]:
 
 
 def _holder(scene: Scene, end: BeamEnd) -> str | None:
-    """Of an end's body its name, of all that are fixed together none; None of a free end."""
-    if isinstance(end, FreeEnd):
-        return None
-    body = scene.body_of(end.point)
-    return "" if scene.bodies[body].motion == "fixed" else body
+    """What an end moves with, none of all that stay; None of a free end."""
+    return None if isinstance(end, FreeEnd) else frame_of(scene, scene.body_of(end.point))
 
 
 def _tapers(model: Model, first: BeamPart, second: BeamPart, *, thick: bool) -> Tapers | None:
@@ -150,9 +148,9 @@ def selves(scene: Scene, model: Model) -> tuple[Pair, ...]:
 
 
 def _grounded(scene: Scene, beam: str, which: Literal["start", "end"]) -> bool:
-    """Whether an end is held by a body that does not move, and cannot come to lie on the beam's side."""
+    """Whether an end is held by what does not move, and cannot come to lie on the beam's side."""
     end = getattr(scene.beams[beam], which)
-    return not isinstance(end, FreeEnd) and scene.bodies[scene.body_of(end.point)].motion == "fixed"
+    return not isinstance(end, FreeEnd) and not frame_of(scene, scene.body_of(end.point))
 
 
 def _penalties(model: Model, beam: BeamPart, thickness: float) -> tuple[float, float, float]:

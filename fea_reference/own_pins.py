@@ -27,9 +27,10 @@ import numpy as np
 
 from fea_reference.hermite import Index
 from fea_reference.outline import Outline, ends_at, outline_of
+from fea_reference.staying import frame_of
 from fea_reference.stops import StopPart
 from scene.answer import Array
-from scene.statement import BeamEnd, EdgeContact, FreeEnd, PinnedEnd, Scene
+from scene.statement import Beam, BeamEnd, EdgeContact, FreeEnd, PinnedEnd, Scene
 
 Which = Literal["start", "end"]
 _OPEN = 1.5 * np.pi  # what is free beside an edge that ends at the pin
@@ -68,8 +69,7 @@ def own_pins(
         if not isinstance(contact, EdgeContact):
             continue
         beam = scene.beams[contact.beam]
-        unit = max(np.hypot(*(np.array(beam.curve.end) - beam.curve.start)), beam.thickest)
-        outline, held = held_on(scene, contact, np.array(beam.curve.start), float(unit))
+        outline, held = held_on(scene, contact, *own_frame(beam))
         number, dofs = bodies[contact.body]
         for which, place in held.items():
             end = beam.start if which == "start" else beam.end
@@ -109,15 +109,20 @@ def own_pins(
     return tuple(found)
 
 
+def own_frame(beam: Beam) -> tuple[Array, float]:
+    """Origin (2,) and unit, m, by which places of a beam are known in whatever units a scene is drawn: its own."""
+    start = np.array(beam.curve.start)
+    return start, float(max(np.hypot(*(np.array(beam.curve.end) - start)), beam.thickest))
+
+
 def _moves_with(scene: Scene, point: str, body: str) -> bool:
-    """Whether a point is the body's, or pinned to one of its own; bodies that do not move are one."""
+    """Whether a point is the body's, or pinned to one of its own; bodies that stay are one."""
     points = {point}
     for pin in scene.pins.values():
         if point in pin.points:
             points.update(pin.points)
-    together = {name for name, one in scene.bodies.items() if one.motion == "fixed"}
-    together = together if body in together else {body}
-    return any(scene.body_of(each) in together for each in points)
+    frame = frame_of(scene, body)
+    return any(frame_of(scene, scene.body_of(each)) == frame for each in points)
 
 
 def _angle(vector: Array) -> float:

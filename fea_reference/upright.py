@@ -40,8 +40,9 @@ from typing import Literal
 
 import numpy as np
 
-from fea_reference.own_pins import held_on
+from fea_reference.own_pins import held_on, own_frame
 from fea_reference.section import SHEAR_FACTOR
+from fea_reference.staying import frame_of
 from scene.statement import (
     BeamContact,
     BeamEnd,
@@ -80,10 +81,10 @@ def _held(scene: Scene, beam: str, contact: Contact) -> Iterator[Which]:
         for which, place, holder in _welded(scene, beam):
             half = 0.5 * _thickness(scene, beam, which) if contact.thick else 0.0
             gap = math.dist(place, contact.center) - contact.radius - half
-            if holder == _together(scene, contact.body) and _reached(scene, gap, (beam, which)):
+            if holder == frame_of(scene, contact.body) and _reached(scene, gap, (beam, which)):
                 yield which
     elif isinstance(contact, EdgeContact) and contact.beam == beam:
-        outline, own = held_on(scene, contact, np.zeros(2), 1.0)
+        outline, own = held_on(scene, contact, *own_frame(scene.beams[beam]))
         if not outline.straight:
             yield from own
     elif isinstance(contact, BeamContact) and beam in contact.between:
@@ -102,14 +103,9 @@ def _reached(scene: Scene, gap: float, *ends: tuple[str, str]) -> bool:
 
 
 def _welded(scene: Scene, beam: str) -> Iterator[tuple[Which, tuple[float, float], str]]:
-    """A beam's welded ends, where they are held, and by what."""
+    """A beam's welded ends, where they are held, and what holds them moves with."""
     record = scene.beams[beam]
     ends: tuple[tuple[Which, BeamEnd], ...] = (("start", record.start), ("end", record.end))
     for which, end in ends:
         if isinstance(end, WeldedEnd):
-            yield which, scene.place_of(end.point), _together(scene, scene.body_of(end.point))
-
-
-def _together(scene: Scene, body: str) -> str:
-    """A body's name, none of one that does not move."""
-    return "" if scene.bodies[body].motion == "fixed" else body
+            yield which, scene.place_of(end.point), frame_of(scene, scene.body_of(end.point))

@@ -165,6 +165,51 @@ def test_only_what_is_held_on_what_it_may_touch_stands_upright():
     assert upright(Scene.model_validate(plain), "beam") == (0.0, 0.0)
 
 
+def on_a_block(scene, stepped=()):
+    """Below is held by a body of its own, and that by three drives, of which some are ``stepped`` afterwards."""
+    plain = scene.model_dump()
+    foot = plain["bodies"]["ground"]["points"].get("below", (0.31, -2.3))
+    plain["bodies"]["ground"]["points"].pop("below", None)
+    plain["bodies"]["held"] = {"motion": "free", "points": {"below": foot}}
+    plain["drives"] = {
+        "across": {"kind": "displacement", "point": "below", "direction": (0.83, 0.56)},
+        "beside": {"kind": "displacement", "point": "below", "direction": (-0.31, 0.95)},
+        "turn": {"kind": "rotation", "body": "held"},
+    }
+    if "body" in plain["contacts"]["edge"]:
+        plain["contacts"]["edge"]["body"] = "held"
+    plain["stages"] += tuple({"name": name, "steps": name, "stations": (1e-5,)} for name in stepped)
+    return Scene.model_validate(plain)
+
+
+@pytest.mark.parametrize("scene", [on_circle, on_its_like])
+def test_what_drives_hold_where_it_is_is_as_good_as_the_ground(scene):
+    own = scene(STOUT, 1.07 * KAPPA, 1.13 * KAPPA)
+    held = on_a_block(own)
+    assert upright(held, "beam") == upright(own, "beam") == pytest.approx((layer(STOUT), 0.0))
+    assert found(held, 20) == pytest.approx(found(own, 20), rel=1e-7, abs=1e-9 * KAPPA)
+
+
+@pytest.mark.parametrize("stepped", ["across", "beside", "turn"])
+def test_what_a_stage_moves_is_not(stepped):
+    assert upright(on_a_block(on_circle(STOUT, 0.01), [stepped]), "beam") == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("unit", [1.3e-6, 1.0, 1.7e5])
+@pytest.mark.parametrize(("gap", "held"), [(0.0, layer(STOUT)), (0.013, 0.0)])
+def test_an_end_is_held_on_a_curved_edge_in_whatever_units(unit, gap, held):
+    # y = −κx²/2 with the beam's lower face, or a gap, under it
+    plain = on_circle(STOUT, 0.01).model_dump()
+    (beam,) = plain["beams"].values()
+    beam["curve"]["end"] = plain["bodies"]["block"]["points"]["tip"] = (unit, 0.0)
+    beam["thickness"], beam["width"] = unit * beam["thickness"], unit * beam["width"]
+    low = -(0.5 * STOUT + gap) * unit
+    edge = {"kind": "beam-function", "beam": "beam", "body": "ground", "axis": "y", "side": "above"}
+    edge |= {"coefficients": (low, 0.0, -0.5 * KAPPA / unit), "range": (-0.3 * unit, 1.4 * unit)}
+    plain["contacts"] = {"edge": edge}
+    assert upright(Scene.model_validate(plain), "beam") == pytest.approx((unit * held, 0.0))
+
+
 @pytest.mark.parametrize("scene", [on_circle, on_its_like])
 def test_the_audit_knows_how_shear_begins(scene):
     asked = scene(STOUT, 1.13 * KAPPA)
