@@ -219,7 +219,7 @@ def _fasten(march: March) -> None:
 
 
 def _fastened(march: March, values: Array, z: Array, loose: dict[Pair, float], asked: dict[Pair, float]) -> Found:
-    """An equilibrium with the penalties asked from a ``loose`` one's ``z``, by smaller factors where a large one fails."""
+    """An equilibrium with the penalties asked, from a loose one's ``z``; by smaller factors where a large one fails."""
     factor, found = _TIGHTER, Found(None, 0)
     while loose != asked:
         penalties = {pair: min(factor * rho, asked[pair]) for pair, rho in loose.items()}
