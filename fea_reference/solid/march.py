@@ -157,11 +157,12 @@ def reach(march: March, part: int, target: float) -> None:
                 march.loosen()
             continue
         cuts = 0
-        _note_closings(march, part, here, goal, found.system)
+        before = march.system
         march.values, march.system = values, found.system
         march.step *= 2.0 if found.iterations <= _EASY else 1.0
         if march.penalties is not march.asked:
             _tighten(march)
+        _note_closings(march, part, here, before)
     _fasten(march)
     _tighten(march)
     _polish(march)
@@ -204,72 +205,139 @@ def _tighten(march: March) -> None:
 
 
 def _fasten(march: March) -> None:
-    """Bring penalties back to those that are asked, by smaller factors where a large one leads nowhere.
+    """Bring penalties back to those that are asked.
 
     Raises:
-        StoppedError: none does.
+        StoppedError: that leads to no equilibrium.
     """
-    factor = _TIGHTER
-    while march.penalties != march.asked:
-        penalties = {pair: min(factor * rho, march.asked[pair]) for pair, rho in march.penalties.items()}
-        found = march.look(march.values, march.system.z, penalties)
-        if found.system is not None:
-            march.penalties, march.system = penalties, found.system
-            continue
-        factor = float(np.sqrt(factor))
-        if factor < _GENTLY:
+    if march.penalties != march.asked:
+        found = _fastened(march, march.values, march.system.z, march.penalties, march.asked)
+        if found.system is None:
             raise StoppedError(Ending.STEP_TOO_SMALL, f"a contact cannot be made as stiff as asked: {found.why}")
+        march.system = found.system
     march.penalties = march.asked
 
 
-def _note_closings(march: March, part: int, here: float, goal: float, there: System) -> None:
-    """Find where between two equilibria the contacts close that are closed in the second for the first time."""
+def _fastened(march: March, values: Array, z: Array, loose: dict[Pair, float], asked: dict[Pair, float]) -> Found:
+    """An equilibrium with the penalties asked, from a loose one's ``z``; by smaller factors where a large one fails."""
+    factor, found = _TIGHTER, Found(None, 0)
+    while loose != asked:
+        penalties = {pair: min(factor * rho, asked[pair]) for pair, rho in loose.items()}
+        found = march.look(values, z, penalties)
+        if found.system is not None:
+            loose, z = penalties, found.system.z
+            continue
+        factor = float(np.sqrt(factor))
+        if factor < _GENTLY:
+            break
+    return found
+
+
+def _note_closings(march: March, part: int, here: float, before: System) -> None:
+    """Find where the contacts have closed that are closed for the first time, since ``before``, at the value ``here``.
+
+    The march's penalties leave nothing deeper than is asked, or are those of a station.
+    """
     unit = march.model.stepped[part].unit
-    was = _least(march.system)
-    for name, gap in _least(there).items():
+    was = _least(before)
+    for name, gap in _least(march.system).items():
         if name in march.closing or not gap < 0.0:
             continue
-        march.closing[name] = (here if was[name] <= 0.0 else _closing(march, part, name, here, goal)) * unit
+        march.closing[name] = (here if was[name] <= 0.0 else _closing(march, part, name, here, before)) * unit
 
 
-def _closing(march: March, part: int, name: str, here: float, goal: float) -> float:
-    """λ at which the gap of a contact vanishes: the false position between what is open and what overlaps.
-
-    What overlaps does so with the contact taken away, so that the gap is smooth there; such a state may lie far beyond
-    the open one, and is gone to in shorter steps where one is too long.
+def _closing(march: March, part: int, name: str, here: float, before: System) -> float:
+    """λ at which a contact closes, with the penalties asked unless these lead nowhere there.
 
     Raises:
         StoppedError: it is not found.
     """
-    without = {pair: rho for pair, rho in march.penalties.items() if pair.name != name}
+    goal, gap = float(march.values[part]), _least(before)[name]
+    loose, asked = (
+        {pair: rho for pair, rho in rhos.items() if pair.name != name} for rhos in (march.penalties, march.asked)
+    )
+    known = {here: before.z}
+    c = _vanishing(march, part, name, loose, known, (here, gap), 0.5 * (here + goal))
+    if c is None:
+        unit = march.model.stepped[part].unit
+        raise StoppedError(
+            Ending.STEP_TOO_SMALL, f"where {name} closes between {here * unit:.6g} and {goal * unit:.6g} is not found"
+        )
+    if loose == asked:
+        return c
+    found = _fastened(march, _at(march, part, c), known[_nearest(known, c)], loose, asked)
+    if found.system is None:
+        return c
+    tight = _vanishing(march, part, name, asked, {here: before.z, c: found.system.z}, (here, gap), c)
+    return c if tight is None else tight
+
+
+def _vanishing(
+    march: March,
+    part: int,
+    name: str,
+    without: dict[Pair, float],
+    known: dict[float, Array],
+    start: tuple[float, float],
+    c: float,
+) -> float | None:
+    """λ at which the gap of a contact vanishes: between a ``start`` (λ, gap) that is open and what overlaps.
+
+    What overlaps does so with the contact taken away, so that the gap is smooth there; such a state may lie far beyond
+    the open one, and is gone to from the nearest that is known, in shorter steps where one is too long.  What has gone
+    through overlaps too, by nobody knows how much.
+
+    The false position alone would creep: taken away, a contact may leave an overlap that is hundreds of times the gap.
+    Where one end stays twice, its gap is therefore halved (Dowell and Jarratt, BIT 11 (1971) 168-174, "Illinois").
+
+    Args:
+        march: at the end of the step.
+        part: what is stepped.
+        name: the contact's.
+        without: the penalties of the others.
+        known: z by λ; what is found is added.
+        start: where the step began.
+        c: the first λ that is looked at.
+    """
     watched = dict.fromkeys((pair for pair in march.penalties if pair.name == name), 1.0)
-    quadrature = march.settings.quadrature
-    a, fa, z = here, _least(march.system)[name], march.system.z
-    b, fb = goal, None
-    c = 0.5 * (a + b)
+    (a, fa), b, fb, last = start, float(march.values[part]), -np.inf, 0.0
+    whole = abs(b - a)
     for _ in range(_LOOKS):
-        values = march.values.copy()
-        values[part] = c
-        found = march.look(values, z, without)
-        if found.system is None:
-            c = 0.5 * (a + c)
+        values, nearest = _at(march, part, c), _nearest(known, c)
+        found = march.look(values, known[nearest], without)
+        if found.system is None or beside_minima(march.model, found.system):
+            c = 0.5 * (nearest + c)
             continue
-        watching = assemble(march.model, watched, quadrature, values, found.system.z)
+        watching = assemble(march.model, watched, march.settings.quadrature, values, found.system.z)
         fc = min(one.zones.least for one in watching.touches)
+        if passed(march.model, watched, known[a], found.system.z):
+            fc = -np.inf
+        else:
+            known[c] = found.system.z
         if abs(fc) < _CLOSING:
             return c
         if fc < 0.0:
             b, fb = c, fc
+            fa *= 0.5 if last < 0.0 else 1.0
         else:
-            a, fa, z = c, fc, found.system.z
-        secant = fb is not None and np.isfinite(fa)
-        c = a + fa * (b - a) / (fa - fb) if secant and fb is not None else 0.5 * (a + b)
-        if abs(b - a) < _SAME * abs(goal - here):
+            a, fa = c, fc
+            fb *= 0.5 if last > 0.0 else 1.0
+        last = fc
+        c = a + fa * (b - a) / (fa - fb) if np.isfinite(fa) and np.isfinite(fb) else 0.5 * (a + b)
+        if abs(b - a) < _SAME * whole:
             return c
-    unit = march.model.stepped[part].unit
-    raise StoppedError(
-        Ending.STEP_TOO_SMALL, f"where {name} closes between {here * unit:.6g} and {goal * unit:.6g} is not found"
-    )
+    return None
+
+
+def _at(march: March, part: int, value: float) -> Array:
+    """The march's values with another one of what is stepped."""
+    values = march.values.copy()
+    values[part] = value
+    return values
+
+
+def _nearest(known: dict[float, Array], c: float) -> float:
+    return min(known, key=lambda value: abs(value - c))
 
 
 def _least(system: System) -> dict[str, float]:
