@@ -48,6 +48,7 @@ _GENTLY = 1.2
 _CLOSING = 1e-9  # gap at which a contact is found closed, of the longest beam
 _SAME = 1e-12  # of a step: two values that are one
 _LOOKS = 60
+_SECANTS = 25  # looks after which a gap that has not vanished is taken for one that leaps: the interval is halved
 _POLISHED = 1e-12  # residual, over the scale, if round-off allows that
 
 
@@ -302,18 +303,21 @@ def _vanishing(
     watched = dict.fromkeys((pair for pair in march.penalties if pair.name == name), 1.0)
     (a, fa), b, fb, last = start, float(march.values[part]), -np.inf, 0.0
     whole = abs(b - a)
-    for _ in range(_LOOKS):
+    for look in range(_LOOKS):
         values, nearest = _at(march, part, c), _nearest(known, c)
         found = march.look(values, known[nearest], without)
         if found.system is None or beside_minima(march.model, found.system):
             c = 0.5 * (nearest + c)
             continue
-        watching = assemble(march.model, watched, march.settings.quadrature, values, found.system.z)
+        # from so near no iteration may be called for, while what is left of the balance is felt in a gap all but closed
+        left = found.system.solve(-found.system.residual)
+        z = found.system.z if left is None else found.system.z + left
+        watching = assemble(march.model, watched, march.settings.quadrature, values, z)
         fc = min(one.zones.least for one in watching.touches)
-        if passed(march.model, watched, known[a], found.system.z):
+        if passed(march.model, watched, known[a], z):
             fc = -np.inf
         else:
-            known[c] = found.system.z
+            known[c] = z
         if abs(fc) < _CLOSING:
             return c
         if fc < 0.0:
@@ -323,7 +327,8 @@ def _vanishing(
             a, fa = c, fc
             fb *= 0.5 if last > 0.0 else 1.0
         last = fc
-        c = a + fa * (b - a) / (fa - fb) if np.isfinite(fa) and np.isfinite(fb) else 0.5 * (a + b)
+        secant = np.isfinite(fa) and np.isfinite(fb) and look < _SECANTS
+        c = a + fa * (b - a) / (fa - fb) if secant else 0.5 * (a + b)
         if abs(b - a) < _SAME * whole:
             return c
     return None
