@@ -135,7 +135,7 @@ def _chapter(
         title=asked.title or asked.name,
         source=asked.source,
         word=verdict.word.value,
-        because=next(iter(verdict.sentences), ""),
+        because=verdict.because,
         sentence=verdict.sentence,
         sheets=tables,
         explanation=explanation,

@@ -70,6 +70,11 @@ class Verdict:
         """All that is said."""
         return " ".join(self.sentences)
 
+    @property
+    def because(self) -> str:
+        """The first sentence: what decided."""
+        return next(iter(self.sentences), "")
+
 
 @dataclass(frozen=True, slots=True)
 class Comparison:

@@ -6,10 +6,10 @@ from concurrent.futures.process import BrokenProcessPool
 from difflib import get_close_matches
 from pathlib import Path
 
+from comparisons.cli.wanting import WRONG_QUESTION
 from comparisons.processes import AloneError
 from scene import Mistake, SceneError
 
-WRONG_QUESTION = 2
 NOT_FINISHED = 1
 
 

@@ -19,7 +19,7 @@ from comparisons.reporting.stepping import Stepper, stepper
 from comparisons.sheet import Sheet
 from comparisons.sheets import Subject
 from comparisons.studies.told import Told as Study
-from comparisons.verdict import Comparison, Verdict
+from comparisons.verdict import Comparison
 from scene import Answer, Question
 
 
@@ -207,7 +207,7 @@ def _of_offset(found: Found, compared: OffsetComparison) -> Chapter:
         *_times(found, (seconds,)),
     )
     worst = f"{largest.spacing}, N = {largest.n}"
-    glance = Glance(percent(largest.difference), worst, _met(claims), len(claims), _first(compared.verdict))
+    glance = Glance(percent(largest.difference), worst, _met(claims), len(claims), compared.verdict.because)
     return _chapter(found, question, glance, claims, None, sections)
 
 
@@ -238,15 +238,11 @@ def _sentences(text: str) -> tuple[str, ...]:
 
 def _glance(compared: Comparison, claims: tuple[Claimed, ...]) -> Glance:
     rows = [row for row in compared.rows if row.bounds is not None and row.scale > 0.0]
-    because = _first(compared.verdict)
+    because = compared.verdict.because
     if not rows:
         return Glance("–", "–", _met(claims), len(claims), because)
     worst = max(rows, key=lambda row: row.difference / row.scale)
     return Glance(percent(worst.difference / worst.scale), worst.probe.name, _met(claims), len(claims), because)
-
-
-def _first(verdict: Verdict) -> str:
-    return next(iter(verdict.sentences), "")
 
 
 def _met(claims: tuple[Claimed, ...]) -> int:

@@ -81,16 +81,15 @@ class SceneLevels:
         """What n/2, n and 2n settle with these probes extrapolated, and the answer to hold it against."""
         return settled(self.scene, self._sizes(n), self._three(theory, n), probes)
 
-    def uneven(self, theory: Kinematics, n: int, probes: Collection[str]) -> Answer | None:
-        """What the same pair is to be held against as well; None where the error is even."""
+    def uneven(self, theory: Kinematics, n: int, pair: tuple[Answer, Answer], probes: Collection[str]) -> Answer | None:
+        """What that pair is to be held against as well; None where the error is even."""
         if not self._uneven:
             return None
         chosen = self.choices(theory, n)
         (beside,) = self._answers([chosen.beside()])
         if complaints(self.scene, beside):
             return beside
-        three, pair = self._three(theory, n), self.pair(theory, n, probes)
-        return uneven(self.scene, three, beside, ratio_beside(chosen), pair, probes)
+        return uneven(self.scene, self._three(theory, n), beside, ratio_beside(chosen), pair, probes)
 
     def ratio(self, n: int) -> float:
         """n over the links beside them."""
@@ -136,8 +135,8 @@ class SceneLevels:
             return Estimate((), troubles[0])
         found = []
         for theory in self.theories:
-            runs = self._runs(*self.pair(theory, n, probes))
-            runs = replace(runs, beside=self.uneven(theory, n, probes), ratio=self.ratio(n))
+            pair = self.pair(theory, n, probes)
+            runs = replace(self._runs(*pair), beside=self.uneven(theory, n, pair, probes), ratio=self.ratio(n))
             found.append(stated(self.scene, runs, theory))
         return _joined(found)
 

@@ -107,12 +107,12 @@ def _both_within(
     cprbm = _reached(scene, "cprbm", choices, ("bending",), tolerance, memory, fea.value(choices.kinematics))
     told = _told(cprbm, "cprbm", tolerance), _told(fea, "fea", tolerance)
     if cprbm.found.settled:
-        driven, n = nearby(scene), cprbm.found.n
+        driven, n, pair = nearby(scene), cprbm.found.n, cprbm.pair("bending")
         return Runs(
             choices.kinematics,
-            cprbm.pair("bending"),
+            pair,
             _families(fea, choices.kinematics),
-            beside=cprbm.levels.uneven("bending", n, cprbm.found.estimate.extrapolated),
+            beside=cprbm.levels.uneven("bending", n, pair, cprbm.found.estimate.extrapolated),
             ratio=cprbm.levels.ratio(n),
             nearby=None if driven is None else _nearby(cprbm, driven),
             exact=known_exactly(scene, choices, solvers, memory),
