@@ -37,7 +37,7 @@ from pydantic import ValidationError
 from comparisons.choices import KINEMATICS, Choices, Count, Kinematics, check
 from comparisons.listening import heard_from, listen
 from comparisons.nearby import nearby
-from comparisons.processes import AloneError, pool
+from comparisons.processes import AloneError, deaf, pool
 from scene import Answer, Mistake, RigidContact, Scene, SceneError, Spacing
 from scene.answer import Array
 from scene.frozendict import frozendict
@@ -285,7 +285,7 @@ class Crew:
         if self.pool is None:
             return lambda: _one_by_one(jobs)
         # The finest runs take longest, and they stand last: handed out first, they leave no worker idle.
-        with _workers_deaf_at_first():
+        with deaf():  # until they are prepared
             futures: dict[_Pending, int] = {
                 self.pool.submit(_job, solver, scene, choices): place
                 for place, (solver, scene, choices) in reversed(list(enumerate(jobs)))
@@ -478,23 +478,6 @@ def _job(solver: Solver, scene: Scene, choices: Choices) -> Answer | tuple[Mista
         return solver(scene, choices)
     except SceneError as error:
         return error.mistakes
-
-
-@contextmanager
-def _workers_deaf_at_first() -> Iterator[None]:
-    """Start workers that ignore interrupts, until :func:`_prepared_worker` says otherwise.
-
-    A process inherits that an interrupt is ignored, and nothing else of its parent's handling; one that is
-    interrupted while it still loads its modules would print a traceback.
-    """
-    if threading.current_thread() is not threading.main_thread():  # no other may say how signals are handled
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 def _prepared_worker(listening: Connection, heard: int) -> None:

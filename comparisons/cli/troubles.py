@@ -7,7 +7,6 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from comparisons.cli.wanting import WRONG_QUESTION
-from comparisons.processes import AloneError
 from scene import Mistake, SceneError
 
 NOT_FINISHED = 1
@@ -24,8 +23,6 @@ def told(error: Exception) -> tuple[str, int] | None:
                 "A process that was solving ended by force, perhaps for want of memory; what was finished stands.",
                 NOT_FINISHED,
             )
-        case AloneError():
-            return f"This machine has {error}.", WRONG_QUESTION
         case MemoryError():
             return "There is not enough memory for this; what was finished stands.", NOT_FINISHED
         case OSError():

@@ -6,14 +6,13 @@ gmsh keeps one state for its whole process, and a file that it does not take may
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
-from comparisons.processes import pool
+from comparisons.processes import ByForceError, beside
 from scene.answer import Array
 from scene.mistakes import Mistake, SceneError
 
@@ -53,17 +52,15 @@ def read(path: Path) -> Drawn:
     """The tagged curves of a file, and its tagged points.
 
     Raises:
-        AloneError: no process can work beside this one.
         ImportError: gmsh is not there, or a library of the system that it wants is not.
         SceneError: the file is none that gmsh reads.
     """
     if not path.is_file():
         raise SceneError([Mistake("", "no such file", "a .geo, .step or .msh file", str(path))])
-    with pool(1) as apart:
-        try:
-            found = apart.submit(_read, str(path)).result()
-        except BrokenProcessPool:
-            found = "a file at which gmsh ends by force"
+    try:
+        found = beside(_read, str(path))
+    except ByForceError:
+        found = "a file at which gmsh ends by force"
     if isinstance(found, str):
         raise SceneError([Mistake("", found, "a .geo, .step or .msh file that gmsh reads", str(path))])
     return found

@@ -18,6 +18,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any, Generic, TypeVar
 
+from comparisons.processes import deaf
 from comparisons.stress.apart import Crashed, End, Limits, apart
 from comparisons.threads import ONE_THREAD
 
@@ -107,11 +108,10 @@ def _started(prepare: Callable[[], None]) -> _Host[Any]:
     process = get_context("spawn").Process(target=_served, args=(its, prepare), daemon=True)
     before = {name: os.environ.get(name) for name in ONE_THREAD}
     os.environ.update(ONE_THREAD)
-    deaf = signal.signal(signal.SIGINT, signal.SIG_IGN)  # what a process is started with it keeps while it loads
     try:
-        process.start()
+        with deaf():
+            process.start()
     finally:
-        signal.signal(signal.SIGINT, deaf)
         for name, value in before.items():
             if value is None:
                 del os.environ[name]

@@ -8,13 +8,12 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Callable, Sequence
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from typing import ParamSpec, TypeVar
 
 import numpy as np
 
-from comparisons.processes import AloneError, pool
+from comparisons.processes import ByForceError, beside
 from comparisons.viewing.frames import COLOURS, TINY, Bounds, Coloured
 from comparisons.viewing.solids import Block
 from scene.answer import Array
@@ -59,14 +58,11 @@ def apart(draws: Callable[P, T], *arguments: P.args, **named: P.kwargs) -> T:
     """What a function ``draws`` in a process of its own.
 
     Raises:
-        DrawingError: the process was ended by force, or there can be none.
+        DrawingError: the process was ended by force.
     """
     try:
-        with pool(1, _be_silent) as beside:
-            return beside.submit(draws, *arguments, **named).result()
-    except AloneError as alone:
-        raise DrawingError(str(alone)) from None
-    except BrokenProcessPool:
+        return beside(_silent, draws, arguments, named)
+    except ByForceError:
         raise DrawingError("VTK ended as it began to draw") from None
 
 
@@ -85,9 +81,10 @@ def tried() -> str:
 _CUBE = np.array([[x, y, z] for z in (0.0, 1.0) for x, y in ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))])
 
 
-def _be_silent() -> None:
-    """Keep what VTK says on its way to its end off standard error, where one line is to stand."""
+def _silent(draws: Callable[..., T], arguments: tuple[object, ...], named: dict[str, object]) -> T:
+    """Draw, and keep what VTK says on its way to its end off standard error, where one line is to stand."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+    return draws(*arguments, **named)
 
 
 def _drawn(views: list[View], bounds: Bounds, quantity: Coloured, factor: float, bar: str) -> list[bytes]:

@@ -157,12 +157,6 @@ def test_the_doctor_says_whether_processes_can_share_the_work(no_semaphores, mon
     )
 
 
-def test_what_needs_a_process_of_its_own_says_so_where_there_can_be_none(no_semaphores, tmp_path, capsys):
-    (tmp_path / "frame.geo").write_text("Point(1) = {0, 0, 0};", encoding="utf-8")
-    assert run(["import", str(tmp_path / "frame.geo"), "--thickness", "1", "--width", "9"]) == 2
-    assert "they need a writable /dev/shm" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(
     ("found", "said"),
     [
