@@ -15,6 +15,8 @@ import numpy as np
 
 from scene.answer import Array, Flags, Ints
 
+AT_ONCE = 512  # pieces of a line that are held against the others together: a table of all pairs has no room
+
 
 def cross(P: Array, Q: Array) -> bool:
     """Whether the lines through the points P and Q cross, straight between the points."""
@@ -27,8 +29,12 @@ def own_crossings(P: Array) -> tuple[Ints, Ints, Array]:
     The depth is the way to the next crossing or to an end of the line, times the sine of the angle between the pieces:
     by so much, about, one part lies beyond the other.
     """
-    parted = _parted(P, P)
-    here, there = np.nonzero(np.triu(parted & parted.T))
+    pieces: list[tuple[Ints, Ints]] = []
+    for first in range(0, len(P) - 1, AT_ONCE):
+        some, onwards = P[first : first + AT_ONCE + 1], P[first:]
+        of, to = np.nonzero(np.triu(_parted(some, onwards) & _parted(onwards, some).T))
+        pieces.append((first + of, first + to))
+    here, there = (np.concatenate(each) for each in zip(*pieces, strict=True))
     if not here.size:
         return here, there, np.zeros(0)
     along, away = np.diff(P, axis=0), P[there] - P[here]

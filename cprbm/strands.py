@@ -29,6 +29,7 @@ from scene.answer import Array, Flags, Ints
 
 QUARTER = 0.5 * np.pi
 NEAR = 0.1  # of the longest beam: places whose side is known tell that of others as close, along s and σ together
+AT_ONCE = 512  # samples that are held against the others together: a table of all pairs has no room
 LINKED = 8  # samples by which what faces a place may go on from one sample to the next
 
 
@@ -44,9 +45,13 @@ class Faces:
         """Whether places near by are known (k,), and a of the nearest (k,)."""
         if not self.s.size:
             return np.zeros(len(s), dtype=bool), np.zeros(len(s))
-        away = np.abs(s[:, None] - self.s) + np.abs(sigma[:, None] - self.sigma)
-        nearest = np.argmin(away, axis=1)
-        return np.asarray(away[np.arange(len(s)), nearest] <= NEAR), self.side[nearest]
+        nearest = np.zeros(len(s), dtype=np.intp)
+        for first in range(0, len(s), AT_ONCE):
+            some = slice(first, first + AT_ONCE)
+            away = np.abs(s[some, None] - self.s) + np.abs(sigma[some, None] - self.sigma)
+            nearest[some] = np.argmin(away, axis=1)
+        away = np.abs(s - self.s[nearest]) + np.abs(sigma - self.sigma[nearest])
+        return np.asarray(away <= NEAR), self.side[nearest]
 
     def of(self, s: Array, sigma: Array, seen: Array, *, crossed: bool) -> Array:
         """a at other places (k,): that of the nearest known, or as ``seen`` where none is near and nothing ``crossed``.
@@ -108,14 +113,26 @@ def sides(turn: Array) -> Array:
 
 
 def facing_samples(x: Array, y: Array) -> tuple[Ints, Ints]:
-    """Samples (k,) and those further along (k,) to which the distance is less than to their neighbours."""
-    d = np.hypot(x[:, None] - x, y[:, None] - y)
-    low = np.zeros(d.shape, dtype=bool)
-    low[:, 1:-1] = (d[:, 1:-1] <= d[:, :-2]) & (d[:, 1:-1] < d[:, 2:])
-    # where the start faces the last half of an element the end is closest, of the samples
-    low[0, -1] = d[0, -1] <= d[0, -2]
-    here, there = np.nonzero(np.triu(low, 2))
-    return here, there
+    """Samples (k,) and those further along (k,) to which the distance is less than to their neighbours.
+
+    Args:
+        x, y: places of three samples or more (m,).
+    """
+    last = len(x) - 1
+    here, there = [], []
+    for first in range(0, last - 1, AT_ONCE):
+        i = np.arange(first, min(first + AT_ONCE, last - 1))[:, None]
+        # from the first of them on; what lies before is no part of the answer
+        d = np.hypot(x[i] - x[first:], y[i] - y[first:])
+        low = np.zeros(d.shape, dtype=bool)
+        low[:, 1:-1] = (d[:, 1:-1] <= d[:, :-2]) & (d[:, 1:-1] < d[:, 2:])
+        if first == 0:
+            # where the start faces the last half of an element the end is closest, of the samples
+            low[0, -1] = d[0, -1] <= d[0, -2]
+        of, to = np.nonzero(np.triu(low, 2))
+        here.append(first + of)
+        there.append(first + to)
+    return np.concatenate(here), np.concatenate(there)
 
 
 def strands(s: Array, here: Ints, sigma: Array, distance: Array, turn: Array, side: Array) -> tuple[Strand, ...]:

@@ -1,5 +1,7 @@
 """Both solvers at the ends of what may be asked: few and many elements, slender and thick, contacts that change."""
 
+import copy
+
 import numpy as np
 import pytest
 
@@ -15,12 +17,12 @@ DOWN = force(0.0, -1.0)
 RADIUS = 0.0313
 
 
-def solved(solver, data, elements):
+def solved(solver, data, elements, kinematics="bending"):
     scene = scene_from(data)
     answer = (
         cprbm.answer(scene, cprbm.Settings(links=elements))
         if solver == "cprbm"
-        else fea_reference.answer(scene, fea_reference.Settings(elements=elements, kinematics="bending"))
+        else fea_reference.answer(scene, fea_reference.Settings(elements=elements, kinematics=kinematics))
     )
     assert answer.completed, answer.sentence
     return answer.stations
@@ -72,6 +74,58 @@ def test_the_most_slender_and_the_thickest_beam_on_a_circle(solver, slender, loa
         assert station.values["tip.rotation"][0] == pytest.approx(truth.rotation, rel=1e-3)
         assert station.values["T.displacement"] == pytest.approx(np.array(truth.displacement), rel=1e-3)
         assert station.values["round.force"][0] == pytest.approx(float(np.hypot(*truth.contact_force)), rel=2e-3)
+
+
+@pytest.mark.parametrize("kinematics", ["stretch", "shear"])
+def test_stretch_and_shear_of_the_most_slender_beam_are_nothing(kinematics):
+    # reference: the elastica of Bisshopp and Drucker and the wrapped one, whose beams bend and do no more; what stretch
+    # and shear add goes with the square of t/L, 1e-8
+    thickness = 1.1e-4 * LENGTH
+    unit = MODULUS * WIDTH * thickness**3 / 12.0 / LENGTH**2
+    free = cantilever_data(DOWN, [2.3 * unit])
+    free["beams"]["beam"]["thickness"] = thickness
+    (station,) = solved("fea", free, 40, kinematics)
+    x, y, turned = elastica(2.3)
+    assert np.hypot(*(station.values["T.displacement"] / LENGTH - [x - 1.0, -y])) < 1e-7
+    assert station.values["tip.rotation"][0] == pytest.approx(-turned, rel=1e-7)
+    lying = cantilever_data(DOWN, [9.1 * unit, 23.3 * unit])
+    lying["beams"]["beam"]["thickness"] = thickness
+    lying["contacts"] = {"round": circle(0.0, RADIUS, thickness=thickness)}
+    lying["probes"] += [{"of": "round", "quantity": "force"}]
+    for station in solved("fea", lying, 40, kinematics):
+        truth = Wrapped(LENGTH, RADIUS, thickness, WIDTH, MODULUS, station.value)
+        assert station.values["tip.rotation"][0] == pytest.approx(truth.rotation, rel=1e-5)
+        assert station.values["T.displacement"] == pytest.approx(np.array(truth.displacement), rel=2e-5)
+        assert station.values["round.force"][0] == pytest.approx(float(np.hypot(*truth.contact_force)), rel=2e-5)
+
+
+@pytest.mark.parametrize(("gap", "slope"), [(1e-6, 1e-4), (1e-6, -1e-7), (1.3e-6, 0.0)])
+def test_beams_that_are_parallel_but_for_round_off_of_a_drawing(gap, slope):
+    # references: where only the ends touch, the room exact; pressed flat on each other, the other solver.  What presses
+    # beside the common root each mesh shares out otherwise: its moment about the root is what converges
+    unit = RIGIDITY / LENGTH**2
+    data = cantilever_data(DOWN, [0.7 * unit])
+    below = -(THICKNESS + gap * LENGTH)
+    lower = copy.deepcopy(data["beams"]["beam"])
+    lower["curve"] = {"kind": "line", "start": [0.0, below], "end": [0.93 * LENGTH, below - slope * 0.93 * LENGTH]}
+    lower |= {"start": {"joint": "weld", "point": "Q"}, "end": {"joint": "free"}}
+    data["bodies"]["wall"]["points"]["Q"] = [0.0, below]
+    data["beams"]["lower"] = lower
+    data["contacts"] = {"lap": {"kind": "beam-beam", "between": ["beam", "lower"]}}
+    data["probes"] = [{"of": "T", "quantity": "displacement"}]
+    data["probes"] += [{"of": "lap", "quantity": each} for each in ("force", "centre")]
+    truth = exact.answer(scene_from(data))
+    assert truth.completed, truth.sentence
+    data["stages"][0]["stations"].append(3.1 * unit)
+    answers = [solved("cprbm", data, 80), solved("fea", data, 40)]
+    for ends_touch, _ in answers:
+        for probe, allowed in (("T.displacement", 2e-4), ("lap.force", 3e-4), ("lap.centre", 1e-4)):
+            assert ends_touch.values[probe] == pytest.approx(truth.stations[0].values[probe], rel=allowed)
+    (_, chain), (_, elements) = answers
+    assert chain.values["T.displacement"] == pytest.approx(elements.values["T.displacement"], rel=2e-4)
+    moments = [flat.values["lap.force"][0] * flat.values["lap.centre"][0] for flat in (chain, elements)]
+    assert moments[0] == pytest.approx(moments[1], rel=4e-3)
+    assert moments[0] > 2.5 * truth.stations[0].values["lap.force"][0] * truth.stations[0].values["lap.centre"][0]
 
 
 @pytest.mark.parametrize("solver", ["cprbm", "fea"])
