@@ -20,10 +20,10 @@ from comparisons.stress.apart import Limits, OutOfTime, Returned
 from comparisons.stress.hosts import hosts_of
 from comparisons.stress.judging import Effort, judged
 from comparisons.stress.kept import Kept, digest
-from comparisons.stress.outcomes import Outcome, Way, packed, shares, totals, unpacked
+from comparisons.stress.outcomes import Outcome, Way, in_bending, packed, shares, totals, unpacked
 from comparisons.stress.running import FAILURES, Crew, Plan, run
 from comparisons.stress.shrinking import Patience, shrunk, steps
-from comparisons.stress.told import document
+from comparisons.stress.told import document, told_of
 from comparisons.stress.toml import toml_of
 from scene import Ending, SceneError, read
 from scene.reading import scene_from
@@ -268,6 +268,47 @@ def test_a_value_that_leaves_its_refinement_is_wrong():
     steady = Solvers(MadeUp("cprbm", 0.24, contact=False), drifting.fea)
     assert judged(scene, steady, Effort()).way is Way.UNDECIDED
     assert judged(scene, drifting, Effort()).way is Way.WRONG
+
+
+class Stretching:
+    """Finite elements whose answer, of a mechanism that locks, another theory makes another one."""
+
+    def __init__(self, error, *, off=1.0):
+        self.error, self.off, self.asked = error, off, set()
+
+    def __call__(self, scene, choices):
+        self.asked.add((choices.kinematics, choices.elements))
+        softer = 1.0 if choices.kinematics == "bending" else 0.93
+        return MadeUp("fea", self.error, stiffness=softer * self.off, contact=False)(scene, choices)
+
+
+def test_where_the_theories_are_too_far_apart_both_solvers_are_told_in_bending():
+    # by hand: shear answers 0.005 more than bending, and 1/0.93 times that, and what it answers is the scale
+    scene = scene_from(fated(1, 0).data)
+    right = MadeUp("cprbm", 2e-3, contact=False)
+    stretching = Stretching(-5e-4)
+    outcome = judged(scene, Solvers(right, stretching), Effort())
+    assert outcome.way is Way.AGREE
+    assert outcome.apart == pytest.approx(1.0 - 0.93 * 0.9995 / 1.0045, rel=1e-6)
+    assert outcome.uncertainty < 0.015
+    assert stretching.asked == {(theory, n) for theory in ("bending", "shear") for n in (40, 80)}
+    assert in_bending([outcome]) == 1
+    assert "Judged in the theory of bending alone" in told_of(outcome)
+    # nothing is excused by the step between the theories
+    assert judged(scene, Solvers(replace(right, stiffness=1.02), stretching), Effort()).way is Way.WRONG
+    assert judged(scene, Solvers(right, Stretching(-5e-4, off=1.02)), Effort()).way is Way.WRONG
+    # what is stated in bending still has to be little, and what is made finer for that is bending alone
+    vague = Stretching(-0.1)
+    finer = judged(scene, Solvers(right, vague), Effort())
+    assert finer.way is Way.UNDECIDED
+    assert vague.asked == stretching.asked | {("bending", 160)}
+
+
+def test_where_the_theories_are_close_the_chosen_one_is_judged():
+    scene = scene_from(fated(1, 0).data)
+    outcome = judged(scene, fated_solvers(), Effort())
+    assert outcome.way is Way.AGREE
+    assert outcome.apart is None
 
 
 def test_only_the_solver_that_states_too_much_is_asked_once_more():
