@@ -2,8 +2,9 @@
 
 It is the verdict of ``compare`` on the runs on which it rests, at a size at which most scenes can be told: from 20 to
 160 links time grows by a quarter, and what is asked twice is paid twice.  Where it cannot be told, or a run ended
-early, the solver on whose account that is does it once more at twice its size, as often as the effort allows.  The
-finer runs of one size are then the coarser ones of the next, and nothing is solved twice.  Of a scene whose answers end
+early, the solver on whose account that is does it once more at twice its size: as often as the effort allows where
+what is stated promises to become little enough by that, and once where it is something else that keeps it.  The finer
+runs of one size are then the coarser ones of the next, and nothing is solved twice.  Of a scene whose answers end
 early at every size the stations that both reached are judged as a scene of their own.
 
 Where the theories of ``bending`` and ``shear`` alone are further apart than may be stated, that is a property of the
@@ -47,6 +48,9 @@ from scene import Answer, Scene, SceneError
 DOMINANT = 2.0
 """Times that one solver states more than the other from which on it alone is refined."""
 
+PROMISING = 2.0
+"""Times too much that may be foretold of a finer size by the second order: many errors fall faster."""
+
 
 @dataclass(frozen=True, slots=True)
 class Effort:
@@ -58,7 +62,7 @@ class Effort:
     """
 
     first: Choices = field(default_factory=lambda: Choices(links=80, elements=40))
-    sizes: int = 2
+    sizes: int = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,9 +113,10 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Remembering) 
     """
     finding, left = _at_one_size(scene, effort.first, memory), effort.sizes - 1
     while finding.way in (Way.UNDECIDED, Way.ENDED):
-        if _for_the_theorys_sake(scene, finding, last=left == 0):
+        worth = left > 0 and _worth_while(scene, finding, left, first=left == effort.sizes - 1)
+        if _for_the_theorys_sake(scene, finding, last=not worth):
             finding = _in_bending(scene, finding, memory)
-        elif left == 0:
+        elif not worth:
             break
         else:
             finer = _at_one_size(scene, _finer(scene, finding), memory)
@@ -199,11 +204,25 @@ def _finer(scene: Scene, finding: _Finding) -> Choices:
     return finer
 
 
+def _worth_while(scene: Scene, finding: _Finding, left: int, *, first: bool) -> bool:
+    """Whether so many further sizes may tell what cannot be told; of answers that ended, or are doubted, the next."""
+    found = [(row.bounds, scene.limit(row.probe) * row.scale) for row in finding.rows if row.bounds is not None]
+    vague = [(bounds, allowed) for bounds, allowed in found if bounds.total > allowed]
+    if finding.way is Way.ENDED or finding.doubts or not vague:
+        return first
+    smaller = PROMISING * 4.0**left
+    return all(
+        (bounds.total - bounds.theory) / smaller + bounds.theory <= allowed
+        for bounds, allowed in vague
+        if allowed > 0.0
+    )
+
+
 def _for_the_theorys_sake(scene: Scene, finding: _Finding, *, last: bool) -> bool:
     """Whether nothing but what lies between the theories keeps a scene from being told.
 
     So it does where that alone is more than may be stated, which no finer size makes smaller; and at the ``last`` size
-    where no row states too much without it.  Where an audit doubts an answer that is what keeps it.
+    that is worth while, where no row states too much without it.  An audit that doubts an answer is another reason.
     """
     if finding.way is not Way.UNDECIDED or finding.doubts or finding.choices.kinematics == "bending":
         return False
