@@ -326,7 +326,7 @@ def test_only_the_solver_that_states_too_much_is_asked_once_more():
 
     for errors, expected in (
         ((0.4, -5e-4), {"cprbm": {80, 160, 320, 640}, "fea": {40, 80}}),
-        ((0.17, -5e-4), {"cprbm": {80, 160, 320}, "fea": {40, 80}}),
+        ((0.1, -5e-4), {"cprbm": {80, 160, 320}, "fea": {40, 80}}),
         ((2e-3, -0.1), {"cprbm": {80, 160}, "fea": {40, 80, 160, 320}}),
         # 1.25 times 1.6 of the scale, and a sixteenth of that, are beyond what two further sizes could tell
         ((6.4, -5e-4), {"cprbm": {80, 160}, "fea": {40, 80}}),
