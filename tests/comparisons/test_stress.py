@@ -21,9 +21,9 @@ from comparisons.stress.hosts import hosts_of
 from comparisons.stress.judging import Effort, judged
 from comparisons.stress.kept import Kept, digest
 from comparisons.stress.outcomes import Outcome, Way, in_bending, packed, shares, totals, unpacked
-from comparisons.stress.running import FAILURES, Crew, Plan, run
+from comparisons.stress.running import FAILURES, Crew, Plan, Stress, run
 from comparisons.stress.shrinking import Patience, shrunk, steps
-from comparisons.stress.told import document, told_of
+from comparisons.stress.told import document, sentence, sheets_of, told_of
 from comparisons.stress.toml import toml_of
 from scene import Ending, SceneError, read
 from scene.reading import scene_from
@@ -149,7 +149,7 @@ KILLED = """
 import sys
 from pathlib import Path
 from comparisons.pairing import Solvers
-from comparisons.stress.running import FAILURES, Crew, Plan, run
+from comparisons.stress.running import FAILURES, Crew, Plan, Stress, run
 from tests.comparisons.stressed import fated, fated_solvers, slow
 
 if __name__ == "__main__":
@@ -302,6 +302,26 @@ def test_where_the_theories_are_too_far_apart_both_solvers_are_told_in_bending()
     finer = judged(scene, Solvers(right, vague), Effort())
     assert finer.way is Way.UNDECIDED
     assert vague.asked == stretching.asked | {("bending", 160), ("bending", 320)}
+
+
+def test_how_many_were_judged_in_bending_alone_is_told():
+    some = [
+        Outcome("a", Way.AGREE, "", apart=0.163),
+        Outcome("b", Way.AGREE, ""),
+        Outcome("c", Way.UNDECIDED, "", apart=0.47),
+        Outcome("d", Way.AGREE, "", apart=0.021),
+    ]
+    there = Stress(PLAN, dict(enumerate(some)), {})
+    assert sentence(there) == "4 scenes: 3 agree (2 of them in the theory of bending alone), 1 undecided."
+    ways, worst, *_ = sheets_of(there)
+    assert ways.rows[:2] == (("agree", "3", "75.0 %"), ("of these in the theory of bending alone", "2", "50.0 %"))
+    assert sum(int(count) for said, count, _ in ways.rows if not said.startswith("of these")) == 4
+    assert ("0.163", "a") in [(value, scene) for _, value, scene in worst.rows]
+    data = document(there)
+    assert data["agree"] == 3
+    assert data["agree_in_bending"] == 2
+    assert data["worst"]["apart"] == {"scene": "a", "value": 0.163}
+    assert [record["apart"] for record in data["records"]] == [0.163, None, 0.47, 0.021]
 
 
 def test_where_the_theories_are_close_the_chosen_one_is_judged():
