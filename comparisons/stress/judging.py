@@ -119,7 +119,7 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Remembering) 
         elif not worth:
             break
         else:
-            finer = _at_one_size(scene, _finer(scene, finding), memory)
+            finer = _at_one_size(scene, _finer(scene, finding, left), memory)
             finer = finer if finer.way is Way.WRONG else _beside(finding, finer)
             finding, left = replace(finer, apart=finding.apart), left - 1
     if finding.runs is None:
@@ -189,17 +189,23 @@ def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
     return _Finding(way, sentence, choices, runs, comparison.rows, ending, early=_whose(early), doubts=doubts)
 
 
-def _finer(scene: Scene, finding: _Finding) -> Choices:
-    """Choices with twice the links or twice the elements: of the solver whose runs ended early, or state more than
-    DOMINANT times what the other does in the rows that cannot be told; of both where that is neither.
+def _finer(scene: Scene, finding: _Finding, left: int) -> Choices:
+    """Choices with twice the links or twice the elements, of which so many are left: of the solver whose runs ended
+    early, or state more than DOMINANT times what the other does in the rows that cannot be told, if what the other
+    states leaves it room enough; of both where that is neither.
     """
     choices, finer = finding.choices, finding.choices.finer()
     found = [(row.bounds, scene.limit(row.probe) * row.scale) for row in finding.rows if row.bounds is not None]
     vague = [(bounds, allowed) for bounds, allowed in found if max(bounds.total, bounds.same_theory) > allowed > 0.0]
     cprbm, fea = (sum(getattr(bounds, solver) / allowed for bounds, allowed in vague) for solver in ("cprbm", "fea"))
-    if finding.early == {"cprbm"} or (not finding.early and cprbm > DOMINANT * fea):
+
+    def room(mine: str) -> bool:
+        smaller = 1.0 - 0.25**left
+        return all(bounds.total - smaller * getattr(bounds, mine) <= allowed for bounds, allowed in vague)
+
+    if finding.early == {"cprbm"} or (not finding.early and cprbm > DOMINANT * fea and room("cprbm")):
         return replace(choices, links=finer.links)
-    if finding.early == {"fea"} or (not finding.early and fea > DOMINANT * cprbm):
+    if finding.early == {"fea"} or (not finding.early and fea > DOMINANT * cprbm and room("fea")):
         return replace(finer, links=choices.links)
     return finer
 

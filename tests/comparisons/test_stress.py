@@ -348,6 +348,8 @@ def test_only_the_solver_that_states_too_much_is_asked_once_more():
         ((0.4, -5e-4), {"cprbm": {80, 160, 320, 640}, "fea": {40, 80}}),
         ((0.1, -5e-4), {"cprbm": {80, 160, 320}, "fea": {40, 80}}),
         ((2e-3, -0.1), {"cprbm": {80, 160}, "fea": {40, 80, 160, 320}}),
+        # a sixteenth of 1.25 times 0.16 leaves no room for 1.25 times 0.002 and 0.005 of theory in 0.015
+        ((0.64, -2e-3), {"cprbm": {80, 160, 320, 640}, "fea": {40, 80, 160, 320}}),
         # 1.25 times 1.6 of the scale, and a sixteenth of that, are beyond what two further sizes could tell
         ((6.4, -5e-4), {"cprbm": {80, 160}, "fea": {40, 80}}),
         ((2e-3, -5e-4), {"cprbm": {80, 160}, "fea": {40, 80}}),
