@@ -14,7 +14,7 @@ S           safety factor of the error estimate, 1.25
 w           the CPRBM's value at N + N/7 links, where there is contact or a section has a kink
 d           v_c − v_f, the difference
 u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (or n), and no less than F times the
-            probe's largest in the stage on the same branch
+            probe's largest in the stage on the same branch; u_b no less than F times u_f
 F           share of that largest uncertainty that none falls below, S − 1
 r           round-off allowance
 x           the exact value in ``bending``, where one is known
@@ -29,6 +29,10 @@ An error changes its sign somewhere along a stage, and where v − V passes thro
 error: C is then small, and what the estimate leaves out (terms of higher order, contact that falls otherwise
 between joints) is all that is left.  S = 1 + F allows an estimate to be wrong by its share F.  By how much it is
 wrong does not pass through zero with it, and that share of the stage's largest is kept at every station.
+Of one station alone, or of several at which little but the load changes, the stage's largest may be small by the same
+accident.  The finite elements have two errors at every station: in both theories they are solved on the same meshes,
+contact falls between the same nodes, and C has no reason to vanish in both at one load.  The same share of u_f is
+therefore kept in u_b; u_f is no less than u_b anyway.
 
 Where a contact or a kink falls between joints can make the CPRBM's error uneven in N, and two N may meet by
 accident: what the even law through v and V does not foretell of w, times S, is added to u_c.
@@ -406,10 +410,11 @@ def bounds_of(
     if "cprbm beside" in values:
         own += SAFETY * size(unforeseen(even, values["cprbm finer"], values["cprbm beside"], runs.ratio, order))
     bending = factor * size(v_b - values["fea bending finer"])
+    fea = factor * size(v_f - values[f"{chosen} finer"])
     return Bounds(
         cprbm=own,
-        fea=max(factor * size(v_f - values[f"{chosen} finer"]), bending),
-        bending=bending,
+        fea=max(fea, bending),
+        bending=max(bending, SHARE_OF_LARGEST * fea),
         theory=size(v_b - v_f),
         round_off=allowance,
     )

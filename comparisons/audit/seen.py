@@ -14,7 +14,7 @@ from comparisons.audit.links import Links
 from comparisons.audit.rest import Complex, Rest
 from scene import Answer, Scene, StationAnswer
 from scene.answer import Area, Array, Statics
-from scene.statement import BeamForce, BeamMoment, DistributedLoad, Force, Moment
+from scene.statement import BeamForce, BeamMoment, DistributedLoad, Force, FreeEnd, Moment, WeldedEnd
 
 AnyBeam = Links | ElementsOfBeam | AreaOfBeam
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
@@ -164,7 +164,24 @@ class Seen:
                 beam, rest = self.beams[load.beam], self.rests[load.beam]
                 turned = np.unwrap(beam.line(s)[1]) - rest.angles(s)
                 _, begun = beam.ends[0]
-                return float(turned[-1] - turned[0] + begun)
+                return float(turned[-1] - turned[0] + begun) - self._full_turns(load.beam)
+
+    def _full_turns(self, name: str) -> float:
+        """By how many full turns, rad, a beam's angles are ahead of the body that holds an end of it, a weld if any.
+
+        A direction is known up to these, and from where the angles of a curve are counted each solver chooses.
+        """
+        record, beam = self.scene.beams[name], self.beams[name]
+        s = np.linspace(0.0, self.rests[name].length, 2000)
+        turned = np.unwrap(beam.line(s)[1]) - self.rests[name].angles(s)
+        _, begun = beam.ends[0]
+        held = [
+            (isinstance(end, WeldedEnd), begun + gone - self.motion(self.scene.body_of(end.point))[2])
+            for end, gone in ((record.start, 0.0), (record.end, float(turned[-1] - turned[0])))
+            if not isinstance(end, FreeEnd)
+        ]
+        _, ahead = max(held, key=lambda each: each[0])
+        return float(2.0 * np.pi * np.round(ahead / (2.0 * np.pi)))
 
 
 def _unit(direction: tuple[float, float]) -> complex:

@@ -2,10 +2,16 @@
 
 It is the verdict of ``compare`` on the runs on which it rests, at a size at which most scenes can be told: from 20 to
 160 links time grows by a quarter, and what is asked twice is paid twice.  Where it cannot be told, or a run ended
-early, the solver on whose account that is does it once more at twice its size, as often as the effort allows.  The
-finer runs of one size are then the coarser ones of the next, and nothing is solved twice.  Nothing is done once more
-where the step between the theories is too large already, which no size makes smaller.  Of a scene whose answers end
+early, the solver on whose account that is does it once more at twice its size: as often as the effort allows where
+what is stated promises to become little enough by that, and once where it is something else that keeps it.  The finer
+runs of one size are then the coarser ones of the next, and nothing is solved twice.  Of a scene whose answers end
 early at every size the stations that both reached are judged as a scene of their own.
+
+Where the theories of ``bending`` and ``shear`` alone are further apart than may be stated, that is a property of the
+mechanism and no doubt about either solver, both of which can be asked in ``bending``: there the scene is judged once
+more, by the same rules, with the chosen theory left out.  It has then agreed in ``bending`` alone, which the outcome
+says together with how far the theories are apart; what the finite elements make of stretch and shear in it nothing
+has told.  What differs in the chosen theory is wrong all the same, and so is what differs in ``bending``.
 
 An answer is *wrong* if it is certified and
 
@@ -42,6 +48,9 @@ from scene import Answer, Scene, SceneError
 DOMINANT = 2.0
 """Times that one solver states more than the other from which on it alone is refined."""
 
+PROMISING = 2.0
+"""Times too much that may be foretold of a finer size by the second order: many errors fall faster."""
+
 
 @dataclass(frozen=True, slots=True)
 class Effort:
@@ -53,13 +62,13 @@ class Effort:
     """
 
     first: Choices = field(default_factory=lambda: Choices(links=80, elements=40))
-    sizes: int = 2
+    sizes: int = 3
 
 
 @dataclass(frozen=True, slots=True)
 class _Finding:
-    """What one size says: a way, why, and the rows on which it rests; of answers that ended, whose they are (``early``)
-    and how many stations they reached.
+    """What one size says: a way, why, and the rows on which it rests; whether an audit ``doubts`` an answer; of answers
+    that ended, whose they are (``early``) and how many stations they reached; ``apart`` as an outcome has it.
     """
 
     way: Way
@@ -70,6 +79,8 @@ class _Finding:
     ending: str = ""
     reached: int = 0
     early: frozenset[str] = frozenset()
+    doubts: bool = False
+    apart: float | None = None
 
 
 def judged(scene: Scene, solvers: Solvers, effort: Effort) -> Outcome:
@@ -100,12 +111,17 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Remembering) 
     Raises:
         SceneError: a solver refuses the scene.
     """
-    finding = _at_one_size(scene, effort.first, memory)
-    for _ in range(effort.sizes - 1):
-        if finding.way not in (Way.UNDECIDED, Way.ENDED) or _theory_is_too_much(scene, finding):
+    finding, left = _at_one_size(scene, effort.first, memory), effort.sizes - 1
+    while finding.way in (Way.UNDECIDED, Way.ENDED):
+        worth = left > 0 and _worth_while(scene, finding, left, first=left == effort.sizes - 1)
+        if _for_the_theorys_sake(scene, finding, last=not worth):
+            finding = _in_bending(scene, finding, memory)
+        elif not worth:
             break
-        finer = _at_one_size(scene, _finer(scene, finding), memory)
-        finding = finer if finer.way is Way.WRONG else _beside(finding, finer)
+        else:
+            finer = _at_one_size(scene, _finer(scene, finding, left), memory)
+            finer = finer if finer.way is Way.WRONG else _beside(finding, finer)
+            finding, left = replace(finer, apart=finding.apart), left - 1
     if finding.runs is None:
         return _as_far_as_it_goes(scene, finding, memory)
     if solvers.exact is None or finding.way not in (Way.AGREE, Way.UNDECIDED):
@@ -113,7 +129,8 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Remembering) 
     exact = solvers.exact(scene, finding.choices)
     if not exact.stations:
         return finding
-    return _of_comparison(finding.choices, compared(scene, replace(finding.runs, exact=exact)))
+    comparison = compared(scene, replace(finding.runs, exact=exact))
+    return replace(_of_comparison(finding.choices, comparison), apart=finding.apart)
 
 
 def _at_one_size(scene: Scene, choices: Choices, memory: Remembering) -> _Finding:
@@ -168,29 +185,69 @@ def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
         way = Way.WRONG
     else:
         way = Way.AGREE if verdict.word is Word.AGREE else Way.UNDECIDED
-    return _Finding(way, sentence, choices, runs, comparison.rows, ending, early=_whose(early))
+    doubts = any(audit.complaints for audit in comparison.audits.values())
+    return _Finding(way, sentence, choices, runs, comparison.rows, ending, early=_whose(early), doubts=doubts)
 
 
-def _finer(scene: Scene, finding: _Finding) -> Choices:
-    """Choices with twice the links or twice the elements: of the solver whose runs ended early, or state more than
-    DOMINANT times what the other does in the rows that cannot be told; of both where that is neither.
+def _finer(scene: Scene, finding: _Finding, left: int) -> Choices:
+    """Choices with twice the links or twice the elements, of which so many are left: of the solver whose runs ended
+    early, or state more than DOMINANT times what the other does in the rows that cannot be told, if what the other
+    states leaves it room enough; of both where that is neither.
     """
     choices, finer = finding.choices, finding.choices.finer()
     found = [(row.bounds, scene.limit(row.probe) * row.scale) for row in finding.rows if row.bounds is not None]
     vague = [(bounds, allowed) for bounds, allowed in found if max(bounds.total, bounds.same_theory) > allowed > 0.0]
     cprbm, fea = (sum(getattr(bounds, solver) / allowed for bounds, allowed in vague) for solver in ("cprbm", "fea"))
-    if finding.early == {"cprbm"} or (not finding.early and cprbm > DOMINANT * fea):
+
+    def room(mine: str) -> bool:
+        smaller = 1.0 - 0.25**left
+        return all(bounds.total - smaller * getattr(bounds, mine) <= allowed for bounds, allowed in vague)
+
+    if finding.early == {"cprbm"} or (not finding.early and cprbm > DOMINANT * fea and room("cprbm")):
         return replace(choices, links=finer.links)
-    if finding.early == {"fea"} or (not finding.early and fea > DOMINANT * cprbm):
+    if finding.early == {"fea"} or (not finding.early and fea > DOMINANT * cprbm and room("fea")):
         return replace(finer, links=choices.links)
     return finer
 
 
-def _theory_is_too_much(scene: Scene, finding: _Finding) -> bool:
-    """Whether what lies between the theories alone is more than may be stated: no finer size can tell such a row."""
-    return finding.way is Way.UNDECIDED and any(
-        row.bounds.theory > scene.limit(row.probe) * row.scale for row in finding.rows if row.bounds is not None
+def _worth_while(scene: Scene, finding: _Finding, left: int, *, first: bool) -> bool:
+    """Whether so many further sizes may tell what cannot be told; of answers that ended, or are doubted, the next."""
+    found = [(row.bounds, scene.limit(row.probe) * row.scale) for row in finding.rows if row.bounds is not None]
+    vague = [(bounds, allowed) for bounds, allowed in found if bounds.total > allowed]
+    if finding.way is Way.ENDED or finding.doubts or not vague:
+        return first
+    smaller = PROMISING * 4.0**left
+    return all(
+        (bounds.total - bounds.theory) / smaller + bounds.theory <= allowed
+        for bounds, allowed in vague
+        if allowed > 0.0
     )
+
+
+def _for_the_theorys_sake(scene: Scene, finding: _Finding, *, last: bool) -> bool:
+    """Whether nothing but what lies between the theories keeps a scene from being told.
+
+    So it does where that alone is more than may be stated, which no finer size makes smaller; and at the ``last`` size
+    that is worth while, where no row states too much without it.  An audit that doubts an answer is another reason.
+    """
+    if finding.way is not Way.UNDECIDED or finding.doubts or finding.choices.kinematics == "bending":
+        return False
+    found = [(row.bounds, scene.limit(row.probe) * row.scale) for row in finding.rows if row.bounds is not None]
+    if any(bounds.theory > allowed for bounds, allowed in found):
+        return True
+    vague = [(bounds, allowed) for bounds, allowed in found if bounds.total > allowed]
+    return last and bool(vague) and all(bounds.total - bounds.theory <= allowed for bounds, allowed in vague)
+
+
+def _in_bending(scene: Scene, finding: _Finding, memory: Remembering) -> _Finding:
+    """What the same size says in the theory ``bending``, which has been solved already.
+
+    Raises:
+        SceneError: a solver refuses the scene.
+    """
+    shares = [row.bounds.theory / row.scale for row in finding.rows if row.bounds is not None and row.scale > 0.0]
+    apart = max(shares, default=0.0)
+    return replace(_at_one_size(scene, finding.choices.within("bending"), memory), apart=apart)
 
 
 def _why(early: Iterable[tuple[str, Answer]]) -> str:
@@ -253,6 +310,7 @@ def _told(scene: Scene, finding: _Finding) -> Outcome:
         difference=max((_pressure(row, bounds) for row, bounds in rows), default=None),
         uncertainty=max((max(bounds.total, bounds.same_theory) / row.scale for row, bounds in rows), default=None),
         beyond=max((each.ratio for row, _ in rows for each in every(row)), default=None),
+        apart=finding.apart,
         links=links,
         elements=elements,
         met=() if finding.runs is None else tuple(sorted(met(scene, finding.runs.reference))),

@@ -78,7 +78,7 @@ class Fated:
             case "refused":
                 raise SceneError([Mistake("beams", "a beam", "none of these")])
             case "vague":
-                return MadeUp("cprbm", 0.4, contact=False)(scene, choices)
+                return MadeUp("cprbm", 6.4, contact=False)(scene, choices)
         return found
 
 

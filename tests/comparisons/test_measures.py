@@ -127,6 +127,21 @@ def test_the_fea_is_never_taken_for_better_than_in_the_cprbms_own_theory(hinge):
     assert row.bounds.fea == row.bounds.bending > 0.0
 
 
+def test_at_one_station_alone_bending_keeps_a_quarter_of_what_the_chosen_theory_states(hinge):
+    """In ``bending`` both discretisations give the same number, as if the error passed through zero there."""
+    stage = hinge.stages[0].model_copy(update={"stations": (0.67,), "shown": ()})
+    alone = hinge.model_copy(update={"stages": (stage,), "claims": ()})
+
+    def fea(scene, choices):
+        return MadeUp("fea", 0.0 if choices.kinematics == "bending" else -3e-3)(scene, choices)
+
+    row = rows_by_name(alone, paired(alone, Choices(elements=40), Solvers(MadeUp("cprbm", 1e-3), fea)))["BD.rotation"]
+    assert row.bounds is not None
+    # once the contact is closed the made-up rotation is 0.8 times the reach, and a constant
+    assert row.bounds.fea == pytest.approx(1.25 * 0.8 * 0.67 * 3e-3, rel=1e-9)
+    assert row.bounds.bending == pytest.approx(0.25 * row.bounds.fea, rel=1e-9)
+
+
 @pytest.mark.parametrize(("formulation", "step"), [("auto", 0.0), ("paper", -1e-3)])
 def test_the_contact_model_is_the_distance_of_paper_from_auto(hinge, formulation, step):
     """Rotation 0.9·m·f before contact: f is 1.002 in ``auto``, 1.003 in ``paper`` and 1.005 for the FEA above."""

@@ -104,6 +104,32 @@ def test_what_loads_do_between_nodes_is_no_fault(solver):
     assert audited(scene, replace(found, stations=(*found.stations[:-1], last))) != ()
 
 
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("held", ["start", "end"])
+def test_from_where_angles_are_counted_is_no_fault(solver, held):
+    # a graph gone through from right to left begins in the third quadrant, where one may count from below or from
+    # above; a whole turn more or less is 2 pi times the moment, by hand
+    data = cantilever_data({"kind": "beam_moment", "beam": "beam", "at": 0.83}, [0.2])
+    beam, size = data["beams"]["beam"], MODULUS * WIDTH * THICKNESS**3 / 12.0 / LENGTH
+    beam["curve"] = {"kind": "polynomial", "axis": "x", "coefficients": [0.0, 0.25], "range": [0.0, -LENGTH]}
+    at_end = [-LENGTH, -0.25 * LENGTH]
+    data["bodies"]["tip"]["points"] = {"T": at_end}
+    if held == "end":
+        beam |= {"start": {"joint": "free"}, "end": {"joint": "weld", "point": "T"}}
+        data["bodies"] = {"wall": {"motion": "fixed", "points": {"T": at_end}}}
+    data["stages"] = [{"name": "turn", "steps": "P", "stations": [0.9 * size]}]
+    data["probes"] = [{"of": "scene", "quantity": "potential_energy"}]
+    scene = scene_from(data)
+    found = SOLVERS[solver](scene)
+    assert found.completed, found.sentence
+    assert audited(scene, found) == ()
+    (station,) = found.stations
+    for turns in (-2.0 * np.pi, 2.0 * np.pi):
+        energy = station.values["scene.potential_energy"] + turns * 0.9 * size
+        planted = replace(station, values={"scene.potential_energy": frozen_array(energy)})
+        assert audited(scene, replace(found, stations=(planted,))) != ()
+
+
 def test_in_front_of_a_sharp_corner_is_not_behind_it():
     # the triangle of a drawn scene; distances of places beyond its corners, and of one inside, by hand
     corners = ((-0.3, -0.2), (0.5, 0.1), (-0.4, 0.9), (-0.3, -0.2))
