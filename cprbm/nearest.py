@@ -717,6 +717,8 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
             break
     held = found.held(pair.side * across - pair.wider(s, sigma) - pair.offset)
     settled = held & (convex > LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
+    # beyond an end of B there is no foot: what lies there faces that end, which has a row of its own
+    settled &= (np.abs(along) < SETTLED) | ((sigma > 0.0) & (sigma < pair.b.s[-1]))
     return s[settled], sigma[settled]
 
 
