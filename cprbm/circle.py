@@ -47,8 +47,7 @@ from scene.answer import Array, Flags, Ints
 
 # local numbers (x, y, θθθ, centre) to (x of joints, y of joints, θθθ)
 ALONE, WITH_CENTRE = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4])
-CLOSEST_ITERATIONS = 12
-CLOSE = 1e-10  # units of length: a step whose square is nothing
+CLOSE = 1e-10  # units of length: a step whose square is nothing, as what it changes the distance by at a minimum
 LEAST_CURVATURE = 1e-6  # of D, 1/ℓ, below which its minimum has no place of its own
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 ON_IT = 1e-9  # gap of a clamped end, and how far its normal passes from the centre, where it is clamped on the circle
@@ -288,17 +287,15 @@ class Circle:
         # an end has no parabola through it
         inner = np.clip(samples, 1, len(D) - 2)
         s = start + np.where(inner == samples, wells.lowest_of_parabola(line.sampled.s, D, inner), 0.0)
-        for _ in range(CLOSEST_ITERATIONS):
+
+        def slope(s: Array) -> tuple[Array, Array]:
             A, beyond = line.at(s), missed(self.a, self.kinks, s)
             leading = self._leading(A)
-            D_ss = self.convexity(A) + leading * beyond.bend
-            step = -(self.slope(A) + leading * beyond.angle) / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
-            s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
-            if np.max(np.abs(step)) < CLOSE:
-                break
-        settled = (D_ss > LEAST_CURVATURE) & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
-        # at a minimum the last step changes it by less than round-off
-        return s, self.distance(A), settled
+            return self.slope(A) + leading * beyond.angle, self.convexity(A) + leading * beyond.bend
+
+        within = np.clip(np.stack((start - self.a.h, start + self.a.h)), 0.0, self.a.s[-1])
+        s, settled = wells.bottom(slope, s, within, LEAST_CURVATURE, CLOSE)
+        return s, self.distance(line.at(s)), settled
 
     def passed(self, before: Positions, after: Positions) -> bool:
         """Whether the beam has swept over the circle's centre between two states.

@@ -60,7 +60,7 @@ from scene.answer import Array, Flags
 
 # local numbers (x, y, θθθ, m, φ) to (x of joints, y of joints, θθθ φ)
 ALONE, WITH_BODY = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4, 7])
-CLOSEST_ITERATIONS = 12
+CLOSE = 1e-13  # units of length: a step that is nothing
 LEAST_CURVATURE = 1e-6  # of D, 1/ℓ, below which its minimum has no place of its own
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 ON_IT = 1e-9  # gap and slope of a clamped end that is in touch with the edge
@@ -430,21 +430,19 @@ class Edge:
 
     def _refined(self, face: Face, line: smooth.SmoothLine, frame: Frame, s: Array) -> tuple[Array, Flags]:
         """Newton's method on D_s = 0; the flags say where it settled at a minimum nearby."""
-        start = s
-        if not s.size:
-            return s, np.zeros(0, dtype=bool)
-        for _ in range(CLOSEST_ITERATIONS):
+
+        def slope(s: Array) -> tuple[Array, Array]:
             A, beyond = line.at(s), missed(self.a, self.kinks, s)
             seen = self._seen(face, A, frame)
             leading = self._leading(A, seen.normal)
             D_ss = self._convexity(A, seen.normal, seen.bend) + leading * beyond.bend
-            slope = self._slope(A, seen.normal) + leading * beyond.angle
-            step = -slope / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
-            s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
-            if np.max(np.abs(step)) < 1e-13:
-                break
-        settled = (D_ss > LEAST_CURVATURE) & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
-        return s, settled
+            return self._slope(A, seen.normal) + leading * beyond.angle, D_ss
+
+        return wells.bottom(slope, s, self._around(s), LEAST_CURVATURE, CLOSE)
+
+    def _around(self, s: Array) -> Array:
+        """Between which places (2, k) of the beam a minimum is sought from ``s`` (k,)."""
+        return np.clip(np.stack((s - self.a.h, s + self.a.h)), 0.0, self.a.s[-1])
 
     def _from(self, corner: Corner, A: smooth.Points, frame: Frame) -> Array:
         """C − P (k, 2)."""
@@ -464,18 +462,15 @@ class Edge:
         A = line.sampled
         away = np.hypot(*self._from(corner, A, frame).T)
         s = A.s[wells.lowest(away - self._half(A.s), REACH)]
-        start, F_s, step = s, np.zeros(0), np.zeros(0)
-        for _ in range(CLOSEST_ITERATIONS if s.size else 0):
+
+        def slope(s: Array) -> tuple[Array, Array]:
             A, beyond = line.at(s), missed(self.a, self.kinks, s)
             m, r = self._away(corner, A, frame), self._from(corner, A, frame)
             g, leading, rho = self._across(A, m), self._leading(A, m), np.sum(m * r, axis=1)
             F_s = g**2 + rho * (self._convexity(A, m, np.zeros(len(s))) + leading * beyond.bend)
-            F = g * (m[:, 1] * r[:, 0] - m[:, 0] * r[:, 1]) + leading * rho * beyond.angle
-            step = -F / np.where(F_s > LEAST_CURVATURE, F_s, np.inf)
-            s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
-            if np.max(np.abs(step)) < 1e-13:
-                break
-        settled = (F_s > LEAST_CURVATURE) & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
+            return g * (m[:, 1] * r[:, 0] - m[:, 0] * r[:, 1]) + leading * rho * beyond.angle, F_s
+
+        s, settled = wells.bottom(slope, s, self._around(s), LEAST_CURVATURE, CLOSE)
         settled &= (s > 0.0) & (s < self.a.s[-1]) & ~self._ruled(s) & ~self._beside(s, taken)
         s = np.unique(s[settled])
         A = line.at(s)
