@@ -24,7 +24,8 @@ needed, since the line is bent like the circle there.
 Where an end of the beam is clamped on the circle, tangent to it, the spring next to the clamp cannot move:
 rows at the springs beyond fix the curve, and its own row follows from theirs.  How clamp and circle share the
 force there is no question of equilibrium; the pressure of the beam, even as the curve is, decides it.  The
-two joints next to such a clamp have one row together, the sum of theirs, and so the same force each.
+two joints next to such a clamp have one row together, the sum of theirs, and so the same force each.  The same is so
+where drives have brought both together, as long as they are (:mod:`cprbm.brought`).
 """
 
 from __future__ import annotations
@@ -34,18 +35,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cprbm import smooth, wells
+from cprbm.brought import Brought, brought
 from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
 from cprbm.pairs import THINNEST, Pressed
+from cprbm.standing import Attachment
 from scene import CircleContact, Scene
 from scene.answer import Array, Flags, Ints
 
 # local numbers (x, y, θθθ, centre) to (x of joints, y of joints, θθθ)
 ALONE, WITH_CENTRE = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4])
-CLOSEST_ITERATIONS = 12
-CLOSE = 1e-10  # units of length: a step whose square is nothing
+CLOSE = 1e-10  # units of length: a step whose square is nothing, as what it changes the distance by at a minimum
 LEAST_CURVATURE = 1e-6  # of D, 1/ℓ, below which its minimum has no place of its own
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 ON_IT = 1e-9  # gap of a clamped end, and how far its normal passes from the centre, where it is clamped on the circle
@@ -62,11 +64,13 @@ class Circle:
         name: of the contact.
         a: the beam's chain.
         body: that the circle is fixed to, −1 for the ground; ``mark`` the number of its centre among the joints,
-            if that is a body that moves; ``frame`` the body again, or the ground where it stays.
+            if that is a body that moves.
         x, y, radius: of the circle, units of length; x and y at rest, see :meth:`placed`.
         offset: T₀, zero for a line; units of length.
         unit_length: ℓ, m.
-        clamped: whether the beam's start and end are clamped in touch with the circle and tangent to it.
+        held: whether the beam's start and end cannot move against the circle.
+        clamped: whether they are clamped in touch with it and tangent to it.
+        brought: of those ends that drives may bring in touch with it.
         ends: arc lengths at which zones end on this mesh, where element borders are, and where the edge has a corner
             that stands out; rows stand there too.
         own_places: whether minima of D have rows of their own.
@@ -76,14 +80,15 @@ class Circle:
     name: str
     a: Chain
     body: int
-    frame: int
     mark: int
     x: float
     y: float
     radius: float
     offset: float
     unit_length: float
+    held: tuple[bool, bool] = (False, False)
     clamped: tuple[bool, bool] = (False, False)
+    brought: tuple[Brought | None, Brought | None] = (None, None)
     ends: tuple[float, ...] = ()
     own_places: bool = True
     kinks: Kinks = NO_KINKS
@@ -96,6 +101,19 @@ class Circle:
     def placed(self, at: Positions) -> Circle:
         """The same circle where it is in a state."""
         return self if self.body < 0 else replace(self, x=float(at.x[self.mark]), y=float(at.y[self.mark]))
+
+    def brought_to(self, state: State) -> Circle:
+        """The same with those ends held that drives have brought in touch with it."""
+        if self.brought == (None, None):
+            return self
+        held, clamped = list(self.held), list(self.clamped)
+        for k, end in enumerate(self.brought):
+            if end is not None:
+                turn, shift = end.seen(state.bodies)
+                center = turn * complex(self.x, self.y) + shift
+                held[k], along = _in_touch(replace(self, x=center.real, y=center.imag))[k]
+                clamped[k] = along and end.end.welded
+        return replace(self, held=(held[0], held[1]), clamped=(clamped[0], clamped[1]))
 
     @property
     def arching(self) -> float:
@@ -140,7 +158,7 @@ class Circle:
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
-        return self.placed(at)._groups(state, at)
+        return self.brought_to(state).placed(at)._groups(state, at)
 
     def _groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         line = self.line(state, at)
@@ -241,14 +259,13 @@ class Circle:
         D = self.distance(A) - self.offset
         near = np.zeros(len(s), dtype=bool)
         near[::2] = D[::2] < _beside(self.a, self.radius)
-        # an end that the circle's own body holds cannot move against it: its gap is no unknown
-        held = tuple(end is not None and end.frame == self.frame for end in (self.a.start, self.a.end))
-        near[[0, -1]] &= ~np.array(held)
+        # of an end that cannot move against the circle the gap is no unknown
+        near[[0, -1]] &= ~np.array(self.held)
         # at an end that is lowest the minimum lies within if the way to it rises
         slope = self.slope(A)
         fence = [
             np.inf if inwards and not fixed else -np.inf
-            for inwards, fixed in zip((slope[0] < -ON_IT, slope[-1] > ON_IT), held, strict=True)
+            for inwards, fixed in zip((slope[0] < -ON_IT, slope[-1] > ON_IT), self.held, strict=True)
         ]
         lowest = wells.lowest(np.concatenate((fence[:1], D, fence[1:])), REACH) - 1
         # the two joints beside a clamp on the circle press together, a place of its own among them would part them
@@ -270,17 +287,15 @@ class Circle:
         # an end has no parabola through it
         inner = np.clip(samples, 1, len(D) - 2)
         s = start + np.where(inner == samples, wells.lowest_of_parabola(line.sampled.s, D, inner), 0.0)
-        for _ in range(CLOSEST_ITERATIONS):
+
+        def slope(s: Array) -> tuple[Array, Array]:
             A, beyond = line.at(s), missed(self.a, self.kinks, s)
             leading = self._leading(A)
-            D_ss = self.convexity(A) + leading * beyond.bend
-            step = -(self.slope(A) + leading * beyond.angle) / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
-            s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
-            if np.max(np.abs(step)) < CLOSE:
-                break
-        settled = (D_ss > LEAST_CURVATURE) & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
-        # at a minimum the last step changes it by less than round-off
-        return s, self.distance(A), settled
+            return self.slope(A) + leading * beyond.angle, self.convexity(A) + leading * beyond.bend
+
+        within = np.clip(np.stack((start - self.a.h, start + self.a.h)), 0.0, self.a.s[-1])
+        s, settled = wells.bottom(slope, s, within, LEAST_CURVATURE, CLOSE)
+        return s, self.distance(line.at(s)), settled
 
     def passed(self, before: Positions, after: Positions) -> bool:
         """Whether the beam has swept over the circle's centre between two states.
@@ -353,39 +368,42 @@ def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:
     chain = model.chain(contact.beam)
     unit = model.unit_length
     offset = 0.5 * float(chain.section.thickness.min()) if contact.thick else 0.0
-    body = model.marks[name].body if name in model.marks else -1
-    mark = model.mark_of(name)
+    x, y = contact.center[0] / unit, contact.center[1] / unit
+    on = model.marks[name] if name in model.marks else Attachment(-1, (x, y), welded=False)
+    start, end = (held is not None and held.frame == on.frame for held in (chain.start, chain.end))
     circle = Circle(
         name=name,
         a=chain,
-        body=body,
-        frame=model.marks[name].frame if name in model.marks else -1,
-        mark=mark,
-        x=contact.center[0] / unit,
-        y=contact.center[1] / unit,
+        body=on.body,
+        mark=model.mark_of(name),
+        x=x,
+        y=y,
         radius=contact.radius / unit,
         offset=offset,
         unit_length=unit,
         ends=_places_of_rows(chain, chain.s[-1] * fit.ends.get(name, np.zeros(0)), corners=contact.thick),
         kinks=fit.kinks.get(name, (NO_KINKS,))[0],
+        held=(start, end),
+        brought=(brought(chain.start, on, model.references), brought(chain.end, on, model.references)),
     )
-    start, end = (held is not None and held.frame == circle.frame and held.welded for held in (chain.start, chain.end))
+    start, end = start and chain.start.welded, end and chain.end is not None and chain.end.welded
     if not (start or end):
         return circle
-    touch = _in_touch(circle)
-    return replace(circle, clamped=(start and touch[0], end and touch[1]))
+    (_, starts), (_, ends) = _in_touch(circle)
+    return replace(circle, clamped=(start and starts, end and ends))
 
 
-def _in_touch(circle: Circle) -> tuple[bool, bool]:
-    """Whether the beam's start and end touch the circle at rest and lie along it."""
+def _in_touch(circle: Circle) -> tuple[tuple[bool, bool], tuple[bool, bool]]:
+    """Of the beam's start and of its end, whether it touches the circle at rest, and lies along it too."""
     s, line = circle.a.s[[0, -1]], circle.a.line
     here = line.at(s * circle.unit_length)
     x, y = (line.x0 + here.x) / circle.unit_length - circle.x, (line.y0 + here.y) / circle.unit_length - circle.y
     away = np.hypot(x, y)
     towards = x * here.tangent.real + y * here.tangent.imag - away * circle.widening(s)
     gap = away - circle.radius - circle.half(s)
-    start, end = (np.abs(gap) <= ON_IT) & (np.abs(towards) <= ON_IT)
-    return bool(start), bool(end)
+    touches = np.abs(gap) <= ON_IT
+    along = touches & (np.abs(towards) <= ON_IT)
+    return (bool(touches[0]), bool(along[0])), (bool(touches[1]), bool(along[1]))
 
 
 def _places_of_rows(chain: Chain, ends: Array, *, corners: bool) -> tuple[float, ...]:

@@ -36,11 +36,13 @@ between those of its pieces (:mod:`cprbm.corner`).  Of the pieces on either side
 
 from __future__ import annotations
 
+import cmath
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cprbm import smooth, wells
+from cprbm.brought import Brought, brought
 from cprbm.contact import Blocks, Group
 from cprbm.corner import Corner, corners_of
 from cprbm.faces import SAME, Face, Seen, Straight, faces_of, sides_of
@@ -51,13 +53,14 @@ from cprbm.outset import anchor
 from cprbm.own_pins import ON_IT as PIN_ON_IT
 from cprbm.own_pins import own_pins
 from cprbm.pairs import THINNEST, Pressed
+from cprbm.standing import Attachment
 from cprbm.stops import AngleStop
 from scene import EdgeContact, Scene
 from scene.answer import Array, Flags
 
 # local numbers (x, y, θθθ, m, φ) to (x of joints, y of joints, θθθ φ)
 ALONE, WITH_BODY = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4, 7])
-CLOSEST_ITERATIONS = 12
+CLOSE = 1e-13  # units of length: a step that is nothing
 LEAST_CURVATURE = 1e-6  # of D, 1/ℓ, below which its minimum has no place of its own
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 ON_IT = 1e-9  # gap and slope of a clamped end that is in touch with the edge
@@ -104,10 +107,13 @@ class Edge:
         corners: between the faces, but for those at which the beam is pinned.
         offset: T₀, zero for a line; units of length.
         unit_length: ℓ, m.
+        drawn: m at rest.
+        ends_at_rest: the beam's start and end, as they are drawn.
         held: whether the beam's start and end cannot move against the edge's body.
         pins: stops where these are pinned on the edge.
         ruled: whether the first and the last link cannot move either, or lie along the edge where it presses them.
         clamped: whether the start and the end are clamped in touch with the edge and along it.
+        brought: of those ends that drives may bring there.
         ends: arc lengths at which zones end on this mesh, where element borders are; rows stand there too.
         own_places: whether minima of D have rows of their own.
         kinks: of the beam where the contact is in points.
@@ -124,10 +130,13 @@ class Edge:
     corners: tuple[Corner, ...]
     offset: float
     unit_length: float
+    drawn: tuple[float, float]
+    ends_at_rest: smooth.Points
     held: tuple[bool, bool]
     pins: tuple[AngleStop | None, AngleStop | None]
     ruled: tuple[bool, bool]
     clamped: tuple[bool, bool] = (False, False)
+    brought: tuple[Brought | None, Brought | None] = (None, None)
     ends: tuple[float, ...] = ()
     own_places: bool = True
     kinks: Kinks = NO_KINKS
@@ -136,6 +145,21 @@ class Edge:
     def chains(self) -> tuple[Chain, ...]:
         """The beam."""
         return (self.a,)
+
+    def brought_to(self, state: State) -> Edge:
+        """The same with those ends held that drives have brought in touch with it."""
+        if self.brought == (None, None):
+            return self
+        held, ruled, clamped = list(self.held), list(self.ruled), list(self.clamped)
+        for k, end in enumerate(self.brought):
+            if end is not None:
+                turn, shift = end.seen(state.bodies)
+                at = turn * complex(*self.drawn) + shift
+                frame = Frame(np.array((at.real, at.imag)), cmath.phase(turn))
+                held[k], along = self._in_touch(frame)[k]
+                ruled[k] = held[k] and end.end.welded
+                clamped[k] = along and end.end.welded
+        return replace(self, held=(held[0], held[1]), ruled=(ruled[0], ruled[1]), clamped=(clamped[0], clamped[1]))
 
     @property
     def arching(self) -> float:
@@ -200,6 +224,9 @@ class Edge:
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
+        return self.brought_to(state)._groups(state, at)
+
+    def _groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         line, frame = self.line(state, at), self.frame(state, at)
         found = [group for pin in self.pins if pin is not None for group in self._stopped(pin, state, at)]
         placed = [self._places(face, line, frame) for face in self.faces]
@@ -403,21 +430,19 @@ class Edge:
 
     def _refined(self, face: Face, line: smooth.SmoothLine, frame: Frame, s: Array) -> tuple[Array, Flags]:
         """Newton's method on D_s = 0; the flags say where it settled at a minimum nearby."""
-        start = s
-        if not s.size:
-            return s, np.zeros(0, dtype=bool)
-        for _ in range(CLOSEST_ITERATIONS):
+
+        def slope(s: Array) -> tuple[Array, Array]:
             A, beyond = line.at(s), missed(self.a, self.kinks, s)
             seen = self._seen(face, A, frame)
             leading = self._leading(A, seen.normal)
             D_ss = self._convexity(A, seen.normal, seen.bend) + leading * beyond.bend
-            slope = self._slope(A, seen.normal) + leading * beyond.angle
-            step = -slope / np.where(D_ss > LEAST_CURVATURE, D_ss, np.inf)
-            s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
-            if np.max(np.abs(step)) < 1e-13:
-                break
-        settled = (D_ss > LEAST_CURVATURE) & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
-        return s, settled
+            return self._slope(A, seen.normal) + leading * beyond.angle, D_ss
+
+        return wells.bottom(slope, s, self._around(s), LEAST_CURVATURE, CLOSE)
+
+    def _around(self, s: Array) -> Array:
+        """Between which places (2, k) of the beam a minimum is sought from ``s`` (k,)."""
+        return np.clip(np.stack((s - self.a.h, s + self.a.h)), 0.0, self.a.s[-1])
 
     def _from(self, corner: Corner, A: smooth.Points, frame: Frame) -> Array:
         """C − P (k, 2)."""
@@ -437,18 +462,15 @@ class Edge:
         A = line.sampled
         away = np.hypot(*self._from(corner, A, frame).T)
         s = A.s[wells.lowest(away - self._half(A.s), REACH)]
-        start, F_s, step = s, np.zeros(0), np.zeros(0)
-        for _ in range(CLOSEST_ITERATIONS if s.size else 0):
+
+        def slope(s: Array) -> tuple[Array, Array]:
             A, beyond = line.at(s), missed(self.a, self.kinks, s)
             m, r = self._away(corner, A, frame), self._from(corner, A, frame)
             g, leading, rho = self._across(A, m), self._leading(A, m), np.sum(m * r, axis=1)
             F_s = g**2 + rho * (self._convexity(A, m, np.zeros(len(s))) + leading * beyond.bend)
-            F = g * (m[:, 1] * r[:, 0] - m[:, 0] * r[:, 1]) + leading * rho * beyond.angle
-            step = -F / np.where(F_s > LEAST_CURVATURE, F_s, np.inf)
-            s = np.clip(s + np.clip(step, -self.a.h, self.a.h), 0.0, self.a.s[-1])
-            if np.max(np.abs(step)) < 1e-13:
-                break
-        settled = (F_s > LEAST_CURVATURE) & (np.abs(step) < 1e-9) & (np.abs(s - start) <= self.a.h)
+            return g * (m[:, 1] * r[:, 0] - m[:, 0] * r[:, 1]) + leading * rho * beyond.angle, F_s
+
+        s, settled = wells.bottom(slope, s, self._around(s), LEAST_CURVATURE, CLOSE)
         settled &= (s > 0.0) & (s < self.a.s[-1]) & ~self._ruled(s) & ~self._beside(s, taken)
         s = np.unique(s[settled])
         A = line.at(s)
@@ -494,12 +516,13 @@ class Edge:
             normal, bend = np.where(nearer[:, None], seen.normal, normal), np.where(nearer, seen.bend, bend)
         return least, normal, bend
 
-    def in_touch(self, state: State, at: Positions) -> tuple[bool, bool]:
-        """Whether the beam's start and end touch the edge and lie along it."""
-        ends = self.line(state, at).at(self.a.s[[0, -1]])
-        distance, n, _ = self._nearest(ends, self.frame(state, at))
-        start, end = (np.abs(distance - self.offset) <= ON_IT) & (np.abs(self._slope(ends, n)) <= ON_IT)
-        return bool(start), bool(end)
+    def _in_touch(self, frame: Frame) -> tuple[tuple[bool, bool], tuple[bool, bool]]:
+        """Of the beam's start and of its end, as drawn, whether it touches the edge there, and lies along it too."""
+        ends = self.ends_at_rest
+        distance, n, _ = self._nearest(ends, frame)
+        touches = np.abs(distance - self.offset) <= ON_IT
+        along = touches & (np.abs(self._slope(ends, n)) <= ON_IT)
+        return (bool(touches[0]), bool(along[0])), (bool(touches[1]), bool(along[1]))
 
     def parting(self, state: State, at: Positions, s: Array) -> Array:
         """D_ss at arc lengths ``s`` if the beam touched there along the edge: the curvature with which it parts."""
@@ -561,15 +584,16 @@ def edge_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Edge:
     assert isinstance(contact, EdgeContact)
     chain = model.chain(contact.beam)
     offset = 0.5 * float(chain.section.thickness.min()) if contact.thick else 0.0
-    moves = name in model.marks
-    body = model.marks[name].body if moves else -1
-    x, y = np.array(anchor(contact)) / model.unit_length if moves else (0.0, 0.0)
+    on = model.marks[name] if name in model.marks else Attachment(-1, (0.0, 0.0), welded=False)
+    body = on.body
+    x, y = np.array(anchor(contact)) / model.unit_length if body >= 0 else (0.0, 0.0)
     pins = own_pins(scene, model, name)
-    frame = model.marks[name].frame if moves else -1
-    held = (chain.start.frame == frame, chain.end is not None and chain.end.frame == frame)
+    held = (chain.start.frame == on.frame, chain.end is not None and chain.end.frame == on.frame)
     welded = (chain.start.welded, chain.end is not None and chain.end.welded)
     pieces = faces_of(contact, model.unit_length, (float(x), float(y)))
     sides = sides_of(pieces)
+    state = rest_state(model)
+    line = smooth.smooth_line(chain, model.unit_length, state, positions(model, state))
     pinned = _pinned_at(scene, model, contact, pins, (float(x), float(y)))
     edge = Edge(
         name=name,
@@ -583,6 +607,8 @@ def edge_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Edge:
         corners=_corners(pieces, sides, pinned, offset),
         offset=offset,
         unit_length=model.unit_length,
+        drawn=(float(x), float(y)),
+        ends_at_rest=line.at(chain.s[[0, -1]]),
         held=(held[0] or pins[0] is not None, held[1] or pins[1] is not None),
         pins=pins,
         ruled=(
@@ -591,13 +617,13 @@ def edge_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Edge:
         ),
         ends=tuple((chain.s[-1] * fit.ends.get(name, np.zeros(0))).tolist()),
         kinks=fit.kinks.get(name, (NO_KINKS,))[0],
+        brought=(brought(chain.start, on, model.references), brought(chain.end, on, model.references)),
     )
     start, end = held[0] and welded[0], held[1] and welded[1]
     if not (start or end):
         return edge
-    state = rest_state(model)
-    touch = edge.in_touch(state, positions(model, state))
-    return replace(edge, clamped=(start and touch[0], end and touch[1]))
+    (_, starts), (_, ends) = edge._in_touch(Frame(np.array(edge.drawn), 0.0))
+    return replace(edge, clamped=(start and starts, end and ends))
 
 
 def _pinned_at(

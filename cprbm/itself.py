@@ -138,6 +138,10 @@ class Itself:
         """The beam, at s and at σ."""
         return self.a, self.a
 
+    def brought_to(self, state: State) -> Itself:
+        """The same."""
+        return self
+
     @property
     def clamped(self) -> tuple[bool, bool]:
         """No end is clamped in touch with the beam: at rest it does not touch itself."""

@@ -19,7 +19,7 @@ S           unit of energy and moment: the largest E·I/ℓ, N·m; S/ℓ that of
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -100,6 +100,12 @@ class Chain:
             return None
         link = np.minimum(np.arange(2 * self.n + 3) // 2, self.n)
         return self.pieces.seen(link, self.halves, self.halves - self.s[link], self.line.length / float(self.s[-1]))
+
+    @cached_property
+    def at_home(self) -> Chain:
+        """The same while bodies at its ends that drives lead are where they are drawn; itself, where there are none."""
+        start, end = self.start.at_home, None if self.end is None else self.end.at_home
+        return self if start is self.start and end is self.end else replace(self, start=start, end=end)
 
     @cached_property
     def springs(self) -> Places:

@@ -48,6 +48,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cprbm import leaning, smooth, wells
+from cprbm.brought import as_drawn
 from cprbm.contact import Group
 from cprbm.crossing import cross
 from cprbm.gathering import Touches, gathered
@@ -123,6 +124,7 @@ class Pair:
         unit_length: ℓ, m.
         tapered: whether beams touch by edges that lean against their neutral lines, :mod:`cprbm.leaning`.
         clamps: for the start and the end of A and of B, whether it is clamped together with an end of the other.
+        at_home: the same while the bodies that drives lead are where they are drawn.
         own_places: whether minima of D have rows of their own.
         kinks: of A and of B where the contact is in points.
         fixed: whether rows stand there, and no minimum has one of its own.
@@ -137,6 +139,7 @@ class Pair:
     unit_length: float
     tapered: bool = False
     clamps: tuple[tuple[bool, bool], tuple[bool, bool]] = ((False, False), (False, False))
+    at_home: tuple[tuple[bool, bool], tuple[bool, bool]] = ((False, False), (False, False))
     own_places: bool = True
     kinks: tuple[Kinks, ...] = (NO_KINKS, NO_KINKS)
     fixed: bool = False
@@ -184,8 +187,15 @@ class Pair:
             side=self.across,
             across=self.side,
             clamps=self.clamps[::-1],
+            at_home=self.at_home[::-1],
             kinks=self.kinks[::-1],
         )
+
+    def brought_to(self, state: State) -> Pair:
+        """The same with the bodies that drives lead as good as the ground, if all are where they are drawn."""
+        if not as_drawn((self.a.start, self.a.end, self.b.start, self.b.end), state.bodies):
+            return self
+        return replace(self, a=self.a.at_home, b=self.b.at_home, clamps=self.at_home)
 
     @property
     def chains(self) -> tuple[Chain, ...]:
@@ -286,6 +296,9 @@ class Pair:
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
+        return self.brought_to(state)._groups(state, at)
+
+    def _groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         lines = self.lines(state, at)
         if self.a.h < self.b.h * (1.0 - SAME):
             turned = self.exchanged()
@@ -704,6 +717,8 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
             break
     held = found.held(pair.side * across - pair.wider(s, sigma) - pair.offset)
     settled = held & (convex > LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
+    # beyond an end of B there is no foot: what lies there faces that end, which has a row of its own
+    settled &= (np.abs(along) < SETTLED) | ((sigma > 0.0) & (sigma < pair.b.s[-1]))
     return s[settled], sigma[settled]
 
 
@@ -729,6 +744,7 @@ def pair_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Pair:
         unit_length=model.unit_length,
         tapered=contact.thick and (a.thickness, b.thickness) != thinnest,
         clamps=standing.clamps,
+        at_home=standing.clamps if (a.at_home, b.at_home) == (a, b) else model.outset.at_home[name].clamps,
         kinks=fit.kinks.get(name, (NO_KINKS, NO_KINKS)),
         fixed=name in fit.fixed,
     )

@@ -14,7 +14,7 @@ from cprbm.curves import NeutralLine, neutral_line
 from cprbm.made import Made
 from cprbm.section import Section, largest_rigidity, section_of
 from cprbm.standing import Attachment, Side, Standing, standing
-from cprbm.staying import staying
+from cprbm.staying import led, staying
 from scene import (
     BeamContact,
     BeamEnd,
@@ -48,6 +48,7 @@ class Outset:
         marks: centres of circles and first places of edges on bodies that move, by contact.
         bent: where moments act within beams, shares of the length, ascending; of beams with any.
         standing: how the two beams of a contact stand to each other, made when it is asked for.
+        at_home: the same while the bodies that drives lead are where they are drawn.
     """
 
     lines: Mapping[str, NeutralLine]
@@ -63,6 +64,7 @@ class Outset:
     marks: Mapping[str, Attachment]
     bent: Mapping[str, tuple[float, ...]]
     standing: Mapping[str, Standing]
+    at_home: Mapping[str, Standing]
 
 
 def outset_of(scene: Scene) -> Outset:
@@ -77,12 +79,12 @@ def outset_of(scene: Scene) -> Outset:
     places |= {_loose(name): scene.beams[name].curve.start for name in scene.beams if name in loose}
     number = {name: i for i, name in enumerate(places)}
 
-    stay = staying(scene, unit_length)
+    stay, lead = staying(scene, unit_length), led(scene, unit_length)
 
     def on(owner: str, point: tuple[float, float], *, welded: bool) -> Attachment:
         (x, y), (x0, y0) = point, places.get(owner, (0.0, 0.0))
         at = (x - x0) / unit_length, (y - y0) / unit_length
-        return Attachment(number.get(owner, -1), at, welded, stays=owner in stay)
+        return Attachment(number.get(owner, -1), at, welded, stays=owner in stay, led=owner in lead)
 
     def joined(end: BeamEnd) -> Attachment | None:
         if isinstance(end, FreeEnd):
@@ -100,11 +102,16 @@ def outset_of(scene: Scene) -> Outset:
         for name, beam in scene.beams.items()
     }
 
-    def stand(contact: str) -> Standing:
+    def stand(contact: str, *, home: bool) -> Standing:
         of = scene.contacts[contact]
         assert isinstance(of, BeamContact)
-        one, other = (Side(lines[name], sections[name], (starts[name], ends[name])) for name in of.between)
+        one, other = (
+            Side(lines[name], sections[name], (_at_home(held[0]), _at_home(held[1])) if home else held)
+            for name, held in ((name, (starts[name], ends[name])) for name in of.between)
+        )
         return standing(one, other, unit_length, thick=of.thick)
+
+    beside = [name for name, contact in scene.contacts.items() if isinstance(contact, BeamContact)]
 
     return Outset(
         lines=lines,
@@ -123,10 +130,8 @@ def outset_of(scene: Scene) -> Outset:
             if isinstance(contact, RigidContact) and contact.body in number
         },
         bent=_bent(scene),
-        standing=Made(
-            [name for name, contact in scene.contacts.items() if isinstance(contact, BeamContact)],
-            stand,
-        ),
+        standing=Made(beside, lambda contact: stand(contact, home=False)),
+        at_home=Made(beside, lambda contact: stand(contact, home=True)),
     )
 
 
@@ -149,6 +154,10 @@ def _bent(scene: Scene) -> dict[str, tuple[float, ...]]:
         if isinstance(load, BeamMoment) and 0.0 < load.at < 1.0:
             found.setdefault(load.beam, set()).add(load.at)
     return {beam: tuple(sorted(marks)) for beam, marks in found.items()}
+
+
+def _at_home(end: Attachment | None) -> Attachment | None:
+    return None if end is None else end.at_home
 
 
 def _loose(beam: str) -> str:

@@ -45,6 +45,9 @@ class Touching(Protocol):
     def arching(self) -> float:
         """By how much a zone arches at most, of what the largest force can bend one element by."""
 
+    def brought_to(self, state: State) -> Touching:
+        """The same where drives have brought it in a state: what they hold in touch is clamped so."""
+
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
 

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -40,13 +40,25 @@ class Attachment:
     """What a beam's end is joined to: ``body`` (−1 for the ground), the point there, and whether it is welded.
 
     ``point`` is the point's position on the body: from the body's reference place for a free body,
-    absolute for the ground; units of length.  A body ``stays`` that is held as the ground is (:mod:`cprbm.staying`).
+    absolute for the ground; units of length.  A body ``stays`` that is held as the ground is, and is ``led`` if
+    stages step drives of those that hold it so (:mod:`cprbm.staying`).
     """
 
     body: int
     point: tuple[float, float]
     welded: bool
     stays: bool = False
+    led: bool = False
+
+    @property
+    def told(self) -> bool:
+        """Whether the place is none of the unknowns: the ground's, or what guides and drives say."""
+        return self.frame < 0 or self.led
+
+    @property
+    def at_home(self) -> Attachment:
+        """The same while the body, where drives lead it, is where it is drawn."""
+        return replace(self, stays=True) if self.led else self
 
     @property
     def frame(self) -> int:

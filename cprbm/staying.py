@@ -1,4 +1,4 @@
-"""Which bodies stay where they are drawn, though they are not of the ground.
+"""Which bodies stay where they are drawn, though they are not of the ground, and which go where drives say.
 
 ======  ======================================================================================
 r       a held point, from the body's first point; units of length
@@ -8,10 +8,13 @@ J       rows (e, r × e) of a displacement that is held and (0, 0, 1) of a rotat
 
 What slides, pivots and drives hold that no stage steps stays at zero.  Where J has rank three the body stays, and what
 is on it cannot move against what is on the ground: how a clamp and a contact that lies along it share their force is
-then as little a question of equilibrium as where both are on one body.
+then as little a question of equilibrium as where both are on one body.  What stages step leads a body that it helps to
+hold so: in each state it stands somewhere, and no unknown moves it.
 """
 
 from __future__ import annotations
+
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -23,6 +26,17 @@ INDEPENDENT = 1e-6  # of J's least singular value: less than this, and the body 
 
 def staying(scene: Scene, unit_length: float) -> frozenset[str]:
     """Names of the bodies that stay, ``unit_length`` in m."""
+    stepped = {stage.steps for stage in scene.stages}
+    return _wholly(scene, unit_length, [name for name in scene.drives if name not in stepped])
+
+
+def led(scene: Scene, unit_length: float) -> frozenset[str]:
+    """Names of the bodies that go where drives say, some of which a stage steps; ``unit_length`` in m."""
+    return _wholly(scene, unit_length, scene.drives) - staying(scene, unit_length)
+
+
+def _wholly(scene: Scene, unit_length: float, drives: Iterable[str]) -> frozenset[str]:
+    """Names of the bodies that guides and some ``drives`` leave no way to move of their own."""
     first = {name: np.array(next(iter(body.points.values()))) for name, body in scene.bodies.items()}
     turning = (0.0, 0.0, 1.0)
     held: dict[str, list[tuple[float, float, float]]] = {name: [] for name in scene.bodies}
@@ -41,10 +55,7 @@ def staying(scene: Scene, unit_length: float) -> frozenset[str]:
             hold(name, body.pin or next(iter(body.points)), (-ey, ex))
             if body.pin is None:
                 held[name].append(turning)
-    stepped = {stage.steps for stage in scene.stages}
-    for name, drive in scene.drives.items():
-        if name in stepped:
-            continue
+    for drive in (scene.drives[name] for name in drives):
         if isinstance(drive, DisplacementDrive):
             hold(scene.body_of(drive.point), drive.point, drive.direction)
         else:

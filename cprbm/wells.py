@@ -16,6 +16,7 @@ is held at a minimum and is apart at both joints beside it stays a place of its 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +27,9 @@ from scene.answer import Array, Flags, Ints
 BESIDE = 2.5  # a joint closer than this many h to a place of its own leaves what presses to that
 NEAR = 1.5  # h between a minimum and a place that is known to be one
 HELD = 2e-3  # of h², 1/ℓ: gaps that a zone may leave at its joints
+ITERATIONS = 12
+BORDER = np.array([[-1e-7], [1e-7]])  # units of length: to either side of a place where elements may meet
+SETTLED = 1e-9  # units of length: the last step to a minimum
 LEVEL = 0.01  # of the larger gap beside a minimum: less on its other side is the end of a zone
 
 
@@ -43,6 +47,35 @@ def lowest_of_parabola(s: Array, D: Array, samples: Ints) -> Array:
         curved = (rise - fall) / (other - one)
         ahead = -0.5 * (rise - curved * other) / curved
     return np.where(np.isfinite(ahead) & (ahead > one) & (ahead < other), ahead, 0.0)
+
+
+def bottom(
+    slope: Callable[[Array], tuple[Array, Array]], start: Array, within: Array, least: float, close: float
+) -> tuple[Array, Flags]:
+    """Newton's method on a slope that goes through zero: the places, and at which of them it settled.
+
+    Two joints that press are as far from the circle as each other, so that what is lowest between them is just where
+    their elements meet.  From one to the next the second derivative jumps, and from which of both a place like that is
+    seen would hang on round-off: the first step goes by the mean of both sides.
+
+    Args:
+        slope: of places (k,), dD/ds and d²D/ds².
+        start: places (k,) to begin at.
+        within: (2, k) the places between which it is sought.
+        least: d²D/ds² that is no more than unevenness; where it is less, there is no going on.
+        close: a step whose square is nothing.
+    """
+    s, (low, high) = start, within
+    D_s, D_ss = (each.reshape(2, -1).mean(axis=0) for each in slope(np.clip(start + BORDER, low, high).ravel()))
+    step = np.zeros(len(s))
+    for iteration in range(ITERATIONS if s.size else 0):
+        if iteration:
+            D_s, D_ss = slope(s)
+        step = -D_s / np.where(D_ss > least, D_ss, np.inf)
+        s = np.minimum(np.maximum(s + step, low), high)
+        if np.max(np.abs(step)) < close:
+            break
+    return s, (D_ss > least) & (np.abs(step) < SETTLED)
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,7 +50,7 @@ def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     pinned = arcs[moments & (forces > 0.0)]
     largest = np.max(forces[~moments], initial=0.0)
     # ends that are clamped in touch: no force is needed there
-    clamped = chain.s[[0, -1]][list(pair.clamped)]
+    clamped = chain.s[[0, -1]][list(pair.brought_to(point.state).clamped)]
     arcs, forces = np.append(arcs, clamped), np.append(forces, np.full(len(clamped), largest))
     overlaps, reach = np.append(overlaps, np.zeros(len(clamped))), np.append(reach, np.zeros(len(clamped)))
     order = np.argsort(arcs)

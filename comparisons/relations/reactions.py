@@ -9,7 +9,8 @@ symbol  meaning
 ======  =====================================================================
 R, x    a force and where it acts, N and m
 M       a moment, N·m
-ΣF, ΣM  ΣR and Σ(M + x × R), as shares of the largest in any station
+ΣF, ΣM  ΣR and Σ(M + x × R), as shares of the largest in any station; for ΣF of the largest M + x × R over the
+        longest beam, if that is more
 ======  =====================================================================
 
 What is told of slides and of loads along beams is a force without its place, so that ΣM is asked only without them.
@@ -98,7 +99,10 @@ def balance(scene: Scene, answer: Answer) -> dict[str, dict[tuple[str, float], f
             if isinstance(contact, RigidContact) and f"{contact.body}".startswith(f"{name}_"):
                 pair = station.values[f"{name}.force"][0], np.hypot(*station.values[f"{name}_point.reaction"])
                 pushed.setdefault(f"{name}: force of the drives", {})[at] = np.array([[pair[0], -pair[1]]]).T
-    found = {"ΣF": _shares(forces)}
+    # where couples alone act, all forces are round-off: a couple on a beam is borne by forces of itself over its length
+    longest = max(length(beam.curve) for beam in scene.beams.values())
+    couples = max((float(np.max(np.abs(m), initial=0.0)) for m in moments.values()), default=0.0)
+    found = {"ΣF": _shares(forces, couples / longest)}
     if not _told_without_place(scene):
         found["ΣM"] = _shares(moments)
     largest = max((float(np.max(np.abs(f), initial=0.0)) for f in forces.values()), default=0.0)

@@ -1,4 +1,10 @@
-"""A beam that begins where it ended."""
+"""A beam that begins where it ended.
+
+Two things of a discretised problem know where a beam begins, and such an image is another one, as that of ``pair`` is.
+Of two parts of one beam that touch, it is the first that is asked for gaps, and in the image the other.  And at the
+joints of a beam whose stress-free curvature varies, the CPRBM's smooth line has the tangent of the link behind: what it
+is off that of the link before is of fifth order in the elements (:mod:`cprbm.smooth`).
+"""
 
 from __future__ import annotations
 
@@ -10,7 +16,7 @@ from comparisons.relations.image import Data, Image, copied
 from scene import Probe
 from scene.answer import Array
 from scene.reading import scene_from
-from scene.statement import FreeEnd
+from scene.statement import FreeEnd, Polynomial, Spline
 
 ASSEMBLED = 1e-6
 """Of a beam's length: an end that is drawn farther from its point is brought there by the assembly."""
@@ -33,7 +39,7 @@ def reversed_beam(data: Data, beam: str) -> Image:
     scene = scene_from(data)
     L = length(scene.beams[beam].curve)
     first = {name for name, each in scene.contacts.items() if each.beams[0] == beam}
-    own = {name for name, each in scene.contacts.items() if each.kind == "beam-self"}
+    own = {name for name, each in scene.contacts.items() if each.kind == "beam-self" and each.beam == beam}
 
     def expected(probe: Probe, stage: str, value: Array) -> Array | None:
         if probe.quantity in ("centre", "ends") and probe.of in first:
@@ -42,7 +48,8 @@ def reversed_beam(data: Data, beam: str) -> Image:
             return value
         return np.asarray((-1.0 if probe.quantity == "bending_stress" else 1.0) * value[::-1])
 
-    return Image(f"{beam} reversed", _data(data, beam), expected)
+    anew = bool(own) or isinstance(scene.beams[beam].curve, Polynomial | Spline)
+    return Image(f"{beam} reversed", _data(data, beam), expected, discretised_anew=anew)
 
 
 def _data(data: Data, name: str) -> Data:

@@ -372,6 +372,65 @@ def test_a_circle_on_a_body_that_is_held_where_it_stands(truth, how, formulation
         assert values[name] == pytest.approx(value, rel=1e-8, abs=1e-8 * np.max(np.abs(value))), name
 
 
+UP, TURN = 0.00131, 0.37
+BROUGHT = {
+    "a later stage moves it off": (0.0, [], [("beside", [-0.0007])]),
+    "moved off and back": (0.0, [("beside", [-0.0007]), ("beside", [0.0])], []),
+    "brought up to the clamp": (UP, [("beside", [UP])], []),
+    "turned about its centre": (0.0, [("turn", [TURN])], []),
+}
+
+
+def on_a_cam(kind, center, before=(), after=()):
+    """The contact of a ``kind`` on a body that three drives lead, stages ``before`` and ``after`` the load's."""
+    data = scene_of([191.0]).model_dump(mode="json", exclude_defaults=True)
+    data["bodies"]["cam"] = {"motion": "free", "points": {"Q": center}}
+    data["contacts"]["circle"] = {**kind, "beam": "beam", "body": "cam"}
+    data["drives"] = {
+        "across": {"kind": "displacement", "point": "Q", "direction": [1.0, 0.0]},
+        "beside": {"kind": "displacement", "point": "Q", "direction": [0.0, 1.0]},
+        "turn": {"kind": "rotation", "body": "cam"},
+    }
+    moves = [
+        [{"name": f"{when}{i}", "steps": drive, "stations": to} for i, (drive, to) in enumerate(each)]
+        for when, each in (("before", before), ("after", after))
+    ]
+    (load,) = data["stages"]
+    data["stages"] = [*moves[0], load, *moves[1]]
+    answer = cprbm.answer(scene_from(data), cprbm.Settings(links=20))
+    assert answer.completed, answer.sentence
+    (values,) = (station.values for station in answer.stations if station.stage == load["name"])
+    return values
+
+
+@pytest.mark.parametrize("how", BROUGHT)
+def test_a_circle_in_touch_with_the_clamp_where_drives_have_brought_it(truth, how):
+    # reference: tests.references.wrapped; taken for one that might move, up to ten times the contact's force
+    off, before, after = BROUGHT[how]
+    center = [0.0, -RADIUS - BEAM["thickness"] / 2.0 - off]
+    values = on_a_cam({"kind": "beam-circle", "center": center, "radius": RADIUS}, center, before, after)
+    assert values["circle.force"][0] == pytest.approx(np.hypot(*truth.contact_force), rel=0.5 / 20**2)
+    assert values["circle.centre"][0] == pytest.approx(truth.contact_centre, abs=0.5 / 20**2 * BEAM["length"])
+    assert values["circle.ends"] == pytest.approx([0.0, truth.wrap_length], abs=0.5 / 20**2 * BEAM["length"])
+
+
+@pytest.mark.parametrize("off", [0.0, UP])
+def test_an_edge_in_touch_with_the_clamp_where_drives_have_brought_it(off):
+    # reference: the same edge on the ground, of which the clamp is
+    def edge(y):
+        return {"kind": "beam-function", "axis": "x", "coefficients": [y, 0.0, -5.3], "range": [-0.01, 0.2],
+                "side": "above"}  # fmt: skip
+
+    y = -0.5 * BEAM["thickness"]
+    fixed = scene_of([191.0], contacts={"circle": {**edge(y), "beam": "beam", "body": "wall"}})
+    on_wall = cprbm.answer(fixed, cprbm.Settings(links=20)).stations[-1].values
+    assert on_wall["circle.ends"][0] == 0.0 < on_wall["circle.ends"][1]
+    before = [("beside", [off])] if off else []
+    values = on_a_cam(edge(y - off), [0.003, -0.07], before, [("beside", [off - 0.0007])])
+    for name, value in on_wall.items():
+        assert values[name] == pytest.approx(value, rel=1e-8, abs=1e-8 * np.max(np.abs(value))), name
+
+
 def test_a_beam_never_passes_over_a_circle_whatever_the_step():
     # a thin pin under the middle of the beam, far smaller than what one load step moves the beam by; it stands
     # in the way on the beam's whole path, so that an answer without force is on the wrong side of it

@@ -11,6 +11,8 @@ from cprbm.kinematics import State, positions, rest_state
 from cprbm.mechanism import mechanism_of
 from scene.reading import scene_from
 
+H = np.sqrt(0.4985**2 - 0.065**2)  # of the bowl's ends below its centre
+
 
 def beams(first, second, thickness=1e-3):
     """Two beams of given curves, their starts welded to the ground, their ends free, the first loaded by nothing."""
@@ -113,6 +115,29 @@ def test_an_end_of_the_second_beam_that_digs_into_the_first_is_seen(links):
     rows = Rows(pair.groups(sagging, at))
     assert np.max(rows.values) == pytest.approx(overlap, rel=1e-9)
     assert rows.arc[np.argmax(rows.values)] == pytest.approx(nearest_place.x, abs=1e-6)
+
+
+@pytest.mark.parametrize("links", [9, 14])
+def test_beyond_an_end_of_the_second_beam_there_is_no_place(links):
+    # A comes down over B and is lowest past B's end, over its continuation: what is nearest to B faces that end alone
+    bowl = {
+        "kind": "arc",
+        "direction": "counterclockwise",
+        "center": [0.065, 0.5],
+        "start": [0.0, 0.5 - H],
+        "end": [0.13, 0.5 - H],
+    }
+    pair, state, at = pair_at_rest(beams(bowl, line((0.0, 0.0), (0.0613, 0.0))), links)
+    lines = pair.lines(state, at)
+    D, sigma = nearest._sampled(pair, lines)
+    assert wells.lowest(D, pair.offset + nearest.REACH).size
+    assert nearest.minima(pair, lines, D, sigma)[0].size == 0
+    # B as long as A has it
+    pair, state, at = pair_at_rest(beams(bowl, line((0.0, 0.0), (0.1, 0.0))), links)
+    lines = pair.lines(state, at)
+    assert nearest.minima(pair, lines, *nearest._sampled(pair, lines))[1] * pair.unit_length == pytest.approx(
+        [0.065], abs=1e-9
+    )
 
 
 @pytest.mark.parametrize("longer", [1.0, 1.3])

@@ -99,6 +99,21 @@ def test_relations_hold(name, solver):
     assert all(each.worst.allowed >= TARGET and np.isfinite(each.worst.size) for each in found)
 
 
+def test_where_couples_alone_act_forces_that_are_round_off_balance():
+    # a strip rolled by its end: its forces are round-off, and as shares of each other had ΣF = 1
+    (found,) = violations(few("rolled", 2.3), fea_answer, COARSE, [BY_NAME["reaction"]])
+    assert found.holds, found
+
+
+def test_what_knows_where_a_beam_begins_is_another_discretised_problem():
+    def anew(name):
+        return {image.what: image.discretised_anew for image in BY_NAME["direction"].images(plain(cases.data(name)))}
+
+    assert anew("rolled") == {"strip reversed": True}  # the first of two parts that touch is asked for gaps
+    assert anew("gripper") == {"beam1 reversed": False, "beam2 reversed": True}  # a line, and a polynomial
+    assert anew("hinge") == {"beam1 reversed": False, "beam2 reversed": False}  # arcs
+
+
 # ---------------------------------------------------------------------------------------- planted faults
 
 
