@@ -21,6 +21,7 @@ from cprbm.extrapolating import KEPT, continued
 from cprbm.kinematics import most_turned
 from cprbm.locking import Locked, between_ends, drawn_taut, locked_on, pressed_on, taut
 from cprbm.mechanism import Mechanism
+from cprbm.midway import ASIDE, aside, uneven
 from cprbm.point import Point
 from cprbm.rate import carried_by_others, rate, strayed
 from cprbm.settings import Settings
@@ -38,6 +39,7 @@ ROUNDED = 1e-12  # of the way: less than this is left of it by round-off
 NEARLY_TAUT = 1e-3  # of the way: so near what ends it, forces tell whether that is a beam which is taut
 JUST = 2.0  # smallest steps, to see that there is nothing beyond
 TRAIL = 30  # minima that are kept
+ELSEWHERE = "half-way of a load step the branch is not where the rates at its ends say"
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,8 +131,12 @@ class Follower:
                 certificate, ending = certify(self.mechanism, self.settings, found)
                 if ending is Ending.COMPLETED:
                     there = rate(problem, found.point, way.change)
-                    part = fraction - done
-                    ending, sentence = self._strayed(found.point, part * here, part * there)
+                    ways = (fraction - done) * here, (fraction - done) * there
+                    ending, sentence = self._strayed(found.point, *ways)
+                    if ending is Ending.COMPLETED and self._uneven(found.point, *ways):
+                        iterations += 1
+                        if aside(problem, way.at(0.5 * (done + fraction)), self.point, found.point, *ways) > ASIDE:
+                            ending, sentence = Ending.STEP_TOO_SMALL, ELSEWHERE
                 else:
                     sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
                 if ending is Ending.COMPLETED:
@@ -168,10 +174,8 @@ class Follower:
 
     def _longest(self, here: Array) -> float:
         """The largest part of the way that may be taken at once, on which links turn at the rate ``here``."""
-        if not self.careful:
-            return 1.0
-        turn = float(np.max(np.abs(here)))
-        return max(SHORT / turn, self.settings.smallest_step) if turn > SHORT else 1.0
+        turn, most = float(np.max(np.abs(here))), SHORT if self.careful else self.settings.largest_turn
+        return max(most / turn, self.settings.smallest_step) if turn > most else 1.0
 
     @property
     def _known(self) -> list[tuple[float, Point]]:
@@ -210,6 +214,12 @@ class Follower:
         if strayed(model.lengths, change, start, end, carried_by_others(model, self.point, found)):
             return Ending.STEP_TOO_SMALL, "the links went another way than their rates say, to another branch"
         return Ending.COMPLETED, ""
+
+    def _uneven(self, found: Point, start: Array, end: Array) -> bool:
+        """Whether what the rates at both ends say leaves a doubt where the branch is between them."""
+        model = self.mechanism.problem.model
+        change = found.state.theta - self.point.state.theta
+        return uneven(model.lengths, change, start, end, carried_by_others(model, self.point, found))
 
     def _cut(self, way: Way, done: float, step: float) -> float:
         """A step that ends before what is about to end the branch does, or just beyond where that is near."""
