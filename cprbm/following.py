@@ -29,6 +29,8 @@ from scene import Certificate, Ending
 from scene.answer import Array
 
 GROWTH = 2.0
+FASTER = 4.0  # where no step was refused
+LEAST = 0.06  # part of a step that is tried after it: what a rate makes too much of goes with the step's root
 SETTLE = 0.1  # of the way: in shorter steps steady rows may settle which places there are
 CLOSER = 0.98  # of the way that is left to where something ends
 SOON = 6  # iterations to a state that is nearly known
@@ -123,6 +125,7 @@ class Follower:
             fraction = 1.0 if done + step >= 1.0 - ROUNDED else done + step
             values = way.at(fraction)
             ahead = None if refused else continued(problem, values, self._known, way.value(fraction))
+            far = 0.0
             for start in [self.point] if ahead is None else [ahead, self.point]:
                 most = self.settings.iterations if start is self.point else SOON
                 farthest = self._farthest((fraction - done) * here)
@@ -135,8 +138,8 @@ class Follower:
                     ending, sentence = self._strayed(found.point, *ways)
                     if ending is Ending.COMPLETED and self._uneven(found.point, *ways):
                         iterations += 1
-                        if aside(problem, way.at(0.5 * (done + fraction)), self.point, found.point, *ways) > ASIDE:
-                            ending, sentence = Ending.STEP_TOO_SMALL, ELSEWHERE
+                        far = aside(problem, way.at(0.5 * (done + fraction)), self.point, found.point, *ways)
+                        ending, sentence = (ending, "") if far <= ASIDE else (Ending.STEP_TOO_SMALL, ELSEWHERE)
                 else:
                     sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
                 if ending is Ending.COMPLETED:
@@ -148,7 +151,11 @@ class Follower:
                 self.trail = [*self.trail[-TRAIL:], Minimum(way.value(fraction), self.point.bare, certificate)]
                 if fraction == 1.0:
                     return Reached(ending, "", replace(certificate, iterations=iterations))
-                step = self._cut(way, done, GROWTH * step) if refused else GROWTH * step
+                step = self._cut(way, done, GROWTH * step) if refused else FASTER * step
+                continue
+            if far > ASIDE and step > self.settings.smallest_step and iterations <= self.settings.iteration_limit:
+                # nothing ends here: the step was too long to be believed
+                step = max(min(0.5, max((ASIDE / far) ** 2, LEAST)) * step, self.settings.smallest_step)
                 continue
             if done == 0.0 and not refused:
                 self.refused = way.value(fraction)
