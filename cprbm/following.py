@@ -21,7 +21,7 @@ from cprbm.extrapolating import KEPT, continued
 from cprbm.kinematics import most_turned
 from cprbm.locking import Locked, between_ends, drawn_taut, locked_on, pressed_on, taut
 from cprbm.mechanism import Mechanism
-from cprbm.midway import ASIDE, aside, uneven
+from cprbm.midway import doubt, uneven
 from cprbm.point import Point
 from cprbm.rate import carried_by_others, rate, strayed
 from cprbm.settings import Settings
@@ -125,7 +125,7 @@ class Follower:
             fraction = 1.0 if done + step >= 1.0 - ROUNDED else done + step
             values = way.at(fraction)
             ahead = None if refused else continued(problem, values, self._known, way.value(fraction))
-            far = 0.0
+            doubtful = 0.0
             for start in [self.point] if ahead is None else [ahead, self.point]:
                 most = self.settings.iterations if start is self.point else SOON
                 farthest = self._farthest((fraction - done) * here)
@@ -138,8 +138,8 @@ class Follower:
                     ending, sentence = self._strayed(found.point, *ways)
                     if ending is Ending.COMPLETED and self._uneven(found.point, *ways):
                         iterations += 1
-                        far = aside(problem, way.at(0.5 * (done + fraction)), self.point, found.point, *ways)
-                        ending, sentence = (ending, "") if far <= ASIDE else (Ending.STEP_TOO_SMALL, ELSEWHERE)
+                        doubtful = doubt(problem, way.at(0.5 * (done + fraction)), self.point, found.point, *ways)
+                        ending, sentence = (ending, "") if doubtful <= 1.0 else (Ending.STEP_TOO_SMALL, ELSEWHERE)
                 else:
                     sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
                 if ending is Ending.COMPLETED:
@@ -153,9 +153,9 @@ class Follower:
                     return Reached(ending, "", replace(certificate, iterations=iterations))
                 step = self._cut(way, done, GROWTH * step) if refused else FASTER * step
                 continue
-            if far > ASIDE and step > self.settings.smallest_step and iterations <= self.settings.iteration_limit:
+            if doubtful > 1.0 and step > self.settings.smallest_step and iterations <= self.settings.iteration_limit:
                 # nothing ends here: the step was too long to be believed
-                step = max(min(0.5, max((ASIDE / far) ** 2, LEAST)) * step, self.settings.smallest_step)
+                step = max(min(0.5, max(doubtful**-2, LEAST)) * step, self.settings.smallest_step)
                 continue
             if done == 0.0 and not refused:
                 self.refused = way.value(fraction)

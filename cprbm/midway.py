@@ -7,7 +7,8 @@ w_0, w_1    the ways that the rates there make of the step, :mod:`cprbm.rate`
 Δ           Newton's step from there, under loads and drives half-way between
 ==========  ==============================================================================
 
-On one branch the cubic is the branch but for a small part of the step, and Δ is that part.
+On one branch the cubic is the branch but for a small part of the step, and Δ is that part.  Where a rate makes far more
+of the step than it is, there is no such cubic.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ from cprbm.point import Point, Problem, point_at
 from scene.answer import Array
 
 EVEN = 0.25  # of the step, by which it may differ from what the rates at both ends make of it: no more need be known
-ASIDE = 0.25  # of the step
-
+ASIDE = 0.25  # of the step, by which the branch may be beside the cubic half-way
+STEEP = 3.0  # a cubic whose ends are no steeper than so many times its chord goes one way only
 
 
 def uneven(lengths: Array, change: Array, start: Array, end: Array, shifted: float) -> bool:
@@ -38,10 +39,8 @@ def uneven(lengths: Array, change: Array, start: Array, end: Array, shifted: flo
     return float(lengths @ left**2) > allowed
 
 
-def aside(
-    problem: Problem, values: dict[str, float], before: Point, after: Point, start: Array, end: Array
-) -> float:
-    """By how much of the step between two equilibria the branch is aside of the cubic through them, half-way.
+def doubt(problem: Problem, values: dict[str, float], before: Point, after: Point, start: Array, end: Array) -> float:
+    """How doubtful it is that the branch goes from one equilibrium to another; no more than one is believed.
 
     Args:
         problem: of which both are equilibria.
@@ -50,10 +49,12 @@ def aside(
         start, end: w_0 and w_1 (n_links,).
     """
     lengths, fixed = problem.model.lengths, problem.closure.fixed
-    change = after.state.theta - before.state.theta
-    size = float(np.sqrt(lengths @ change**2))
-    if size == 0.0:
-        return 0.0
+    size, first, last = (
+        float(np.sqrt(lengths @ way**2)) for way in (after.state.theta - before.state.theta, start, end)
+    )
+    steep = max(first, last) / (STEEP * size)
+    if steep > 1.0:
+        return steep
     theta = 0.5 * (before.state.theta + after.state.theta) + 0.125 * (start - end)
     theta[fixed] = problem.model.rest[fixed]
     state = State(theta, 0.5 * (before.state.bodies + after.state.bodies))
@@ -62,5 +63,4 @@ def aside(
         step, _, _ = newton_step(problem, guess)
     except np.linalg.LinAlgError:
         return np.inf
-    return float(np.sqrt(lengths @ step[: problem.model.n_links] ** 2)) / size
-
+    return float(np.sqrt(lengths @ step[: problem.model.n_links] ** 2)) / (ASIDE * size)
