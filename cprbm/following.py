@@ -2,6 +2,8 @@
 
 A step is refused where no certified minimum is found, where a link turns too far, where a beam goes across what it may
 touch, and where the links went another way than their rates say (:mod:`cprbm.rate`), which leads to another branch.
+Where the rates leave a doubt the branch is looked for half-way (:mod:`cprbm.midway`), and if it is not there, a shorter
+step is taken; none is begun on which the rates turn a link farther than may be.
 Where ends of branches are asked for, a step is no longer than a small turn of the links, so that none hides in it.
 After a step was refused, the way on is cut by what will soon be zero (:func:`cprbm.critical.foreseen`), so that a
 branch's end is closed in on from the side where it stands.
@@ -180,7 +182,10 @@ class Follower:
                 return Reached(ending, sentence, certificate=None)
 
     def _longest(self, here: Array) -> float:
-        """The largest part of the way that may be taken at once, on which links turn at the rate ``here``."""
+        """The largest part of the way that may be taken at once, on which links turn at the rate ``here``.
+
+        So far that no end of a branch hides in it if none may be passed; else as far as a link may turn at all.
+        """
         turn, most = float(np.max(np.abs(here))), SHORT if self.careful else self.settings.largest_turn
         return max(most / turn, self.settings.smallest_step) if turn > most else 1.0
 
