@@ -21,7 +21,7 @@ from cprbm.point import Point, Problem, point_at
 from scene.answer import Array
 
 EVEN = 0.25  # of the step, by which it may differ from what the rates at both ends make of it: no more need be known
-ASIDE = 0.25  # of the step, by which the branch may be beside the cubic half-way
+ASIDE = 0.1  # of the step, by which the branch may be beside the cubic half-way
 STEEP = 3.0  # a cubic whose ends are no steeper than so many times its chord goes one way only
 
 
