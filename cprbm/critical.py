@@ -14,6 +14,7 @@ F           resultant of a contact, moment of a stop: sum of its multipliers
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -25,7 +26,7 @@ from cprbm.stability import Softest, released, softest
 from scene import Certificate, Loss
 from scene.answer import Array
 
-Key = tuple[str, int]  # of a row: its contact or stop, and what it is there
+Row = tuple[str, int, int]  # its contact or stop, what it is there, and which of those that are the same there
 
 LEAST = 2  # minima from which the end of a branch can be told
 TURNED = 0.5  # part of τ in φ: a fold has all of it, a bifurcation nothing
@@ -88,8 +89,8 @@ def branch_end(mechanism: Mechanism, trail: list[Minimum], beyond: float) -> Bra
     before = next((one for one in reversed(trail) if abs(one.value - beyond) >= SPREAD * abs(width)), trail[0])
     if before is last:
         return None
-    whole = [frozenset(key for key in last.point.rows.keys if key[0] == name) for name in _names(last.point)]
-    let_go = _let_go(mechanism, last, before, width, whole)
+    rows = _rows(last.point)
+    let_go = _let_go(mechanism, last, before, width, _whole([*rows, *_rows(before.point)]))
     if let_go is not None:
         return let_go
     soft = softest(mechanism.problem, last.point)
@@ -100,7 +101,7 @@ def branch_end(mechanism: Mechanism, trail: list[Minimum], beyond: float) -> Bra
         loss = Loss.FOLD if fold else Loss.BIFURCATION
         return BranchEnd(zero, abs(width), loss, "", last.curvature, last.curvature, soft.direction)
     # one place of several that a contact has: in a zone others take over, and κ falls little by little
-    return _let_go(mechanism, last, before, width, [frozenset({key}) for key in last.point.rows.keys])
+    return _let_go(mechanism, last, before, width, [frozenset({row}) for row in rows])
 
 
 def at_rest(mechanism: Mechanism, point: Point, value: float) -> BranchEnd:
@@ -110,7 +111,7 @@ def at_rest(mechanism: Mechanism, point: Point, value: float) -> BranchEnd:
 
 
 def _let_go(
-    mechanism: Mechanism, last: Minimum, before: Minimum, width: float, holders: Iterable[frozenset[Key]]
+    mechanism: Mechanism, last: Minimum, before: Minimum, width: float, holders: Iterable[frozenset[Row]]
 ) -> BranchEnd | None:
     """The end at which one of the ``holders``, rows that press together, has no force left and κ < 0 without it."""
     for rows in holders:
@@ -118,9 +119,10 @@ def _let_go(
         zero = _continued(last.value, force, before.value, earlier)
         if force <= 0.0 or zero is None or not 0.0 <= (zero - last.value) / width <= NEAR:
             continue
-        soft = softest(mechanism.problem, released(last.point, rows))
+        others = np.array([row not in rows for row in _rows(last.point)], dtype=bool)
+        soft = softest(mechanism.problem, released(last.point, others))
         if soft.curvature <= 0.0:
-            (name,) = {contact for contact, _ in rows}
+            (name,) = {contact for contact, _, _ in rows}
             loss = Loss.STOP if name in mechanism.stops else Loss.CONTACT
             return BranchEnd(zero, abs(width), loss, name, last.curvature, soft.curvature, soft.direction)
     return None
@@ -131,7 +133,7 @@ def foreseen(trail: list[Minimum], ahead: float) -> float | None:
     if len(trail) < LEAST:
         return None
     before, last = trail[-2:]
-    whole = [frozenset(key for key in last.point.rows.keys if key[0] == name) for name in _names(last.point)]
+    whole = _whole([*_rows(before.point), *_rows(last.point)])
     falling = [(_force(last.point, rows), _force(before.point, rows)) for rows in whole]
     falling += [(last.curvature**power, before.curvature**power) for power in (1.0, 2.0)]
     zeros = [_continued(last.value, now, before.value, earlier) for now, earlier in falling if now > 0.0]
@@ -139,12 +141,25 @@ def foreseen(trail: list[Minimum], ahead: float) -> float | None:
     return min(reached, key=lambda zero: abs(zero - last.value), default=None)
 
 
-def _names(point: Point) -> dict[str, None]:
-    return dict.fromkeys(point.rows.contact)
+def _rows(point: Point) -> list[Row]:
+    """Names of a state's rows: of places of their own that one contact has, which of them along the beam."""
+    order = np.argsort(point.rows.arc, kind="stable").tolist()
+    seen: Counter[tuple[str, int]] = Counter()
+    which = [0] * len(order)
+    for i in order:
+        which[i] = seen[point.rows.keys[i]]
+        seen[point.rows.keys[i]] += 1
+    return [(contact, kind, nth) for (contact, kind), nth in zip(point.rows.keys, which, strict=True)]
 
 
-def _force(point: Point, rows: frozenset[Key]) -> float:
-    return float(sum(lam for lam, key in zip(point.lam, point.rows.keys, strict=True) if key in rows))
+def _whole(rows: Iterable[Row]) -> list[frozenset[Row]]:
+    """Those of each contact or stop together."""
+    rows = list(rows)
+    return [frozenset(row for row in rows if row[0] == name) for name in dict.fromkeys(row[0] for row in rows)]
+
+
+def _force(point: Point, rows: frozenset[Row]) -> float:
+    return float(sum(lam for lam, row in zip(point.lam, _rows(point), strict=True) if row in rows))
 
 
 def _continued(value: float, amount: float, before: float, earlier: float) -> float | None:

@@ -2,6 +2,8 @@
 
 A step is refused where no certified minimum is found, where a link turns too far, where a beam goes across what it may
 touch, and where the links went another way than their rates say (:mod:`cprbm.rate`), which leads to another branch.
+Where the rates leave a doubt the branch is looked for half-way (:mod:`cprbm.midway`), and if it is not there, a shorter
+step is taken; none is begun on which the rates turn a link farther than may be.
 Where ends of branches are asked for, a step is no longer than a small turn of the links, so that none hides in it.
 After a step was refused, the way on is cut by what will soon be zero (:func:`cprbm.critical.foreseen`), so that a
 branch's end is closed in on from the side where it stands.
@@ -21,6 +23,7 @@ from cprbm.extrapolating import KEPT, continued
 from cprbm.kinematics import most_turned
 from cprbm.locking import Locked, between_ends, drawn_taut, locked_on, pressed_on, taut
 from cprbm.mechanism import Mechanism
+from cprbm.midway import doubt, uneven
 from cprbm.point import Point
 from cprbm.rate import carried_by_others, rate, strayed
 from cprbm.settings import Settings
@@ -28,6 +31,8 @@ from scene import Certificate, Ending
 from scene.answer import Array
 
 GROWTH = 2.0
+FASTER = 4.0  # where no step was refused
+LEAST = 0.06  # part of a step that is tried after it: what a rate makes too much of goes with the step's root
 SETTLE = 0.1  # of the way: in shorter steps steady rows may settle which places there are
 CLOSER = 0.98  # of the way that is left to where something ends
 SOON = 6  # iterations to a state that is nearly known
@@ -38,6 +43,7 @@ ROUNDED = 1e-12  # of the way: less than this is left of it by round-off
 NEARLY_TAUT = 1e-3  # of the way: so near what ends it, forces tell whether that is a beam which is taut
 JUST = 2.0  # smallest steps, to see that there is nothing beyond
 TRAIL = 30  # minima that are kept
+ELSEWHERE = "half-way of a load step the branch is not where the rates at its ends say"
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,6 +127,7 @@ class Follower:
             fraction = 1.0 if done + step >= 1.0 - ROUNDED else done + step
             values = way.at(fraction)
             ahead = None if refused else continued(problem, values, self._known, way.value(fraction))
+            doubtful = 0.0
             for start in [self.point] if ahead is None else [ahead, self.point]:
                 most = self.settings.iterations if start is self.point else SOON
                 farthest = self._farthest((fraction - done) * here)
@@ -129,8 +136,12 @@ class Follower:
                 certificate, ending = certify(self.mechanism, self.settings, found)
                 if ending is Ending.COMPLETED:
                     there = rate(problem, found.point, way.change)
-                    part = fraction - done
-                    ending, sentence = self._strayed(found.point, part * here, part * there)
+                    ways = (fraction - done) * here, (fraction - done) * there
+                    ending, sentence = self._strayed(found.point, *ways)
+                    if ending is Ending.COMPLETED and self._uneven(found.point, *ways):
+                        iterations += 1
+                        doubtful = doubt(problem, way.at(0.5 * (done + fraction)), self.point, found.point, *ways)
+                        ending, sentence = (ending, "") if doubtful <= 1.0 else (Ending.STEP_TOO_SMALL, ELSEWHERE)
                 else:
                     sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
                 if ending is Ending.COMPLETED:
@@ -142,7 +153,11 @@ class Follower:
                 self.trail = [*self.trail[-TRAIL:], Minimum(way.value(fraction), self.point.bare, certificate)]
                 if fraction == 1.0:
                     return Reached(ending, "", replace(certificate, iterations=iterations))
-                step = self._cut(way, done, GROWTH * step) if refused else GROWTH * step
+                step = self._cut(way, done, GROWTH * step) if refused else FASTER * step
+                continue
+            if doubtful > 1.0 and step > self.settings.smallest_step and iterations <= self.settings.iteration_limit:
+                # nothing ends here: the step was too long to be believed
+                step = max(min(0.5, max(doubtful**-2, LEAST)) * step, self.settings.smallest_step)
                 continue
             if done == 0.0 and not refused:
                 self.refused = way.value(fraction)
@@ -167,11 +182,12 @@ class Follower:
                 return Reached(ending, sentence, certificate=None)
 
     def _longest(self, here: Array) -> float:
-        """The largest part of the way that may be taken at once, on which links turn at the rate ``here``."""
-        if not self.careful:
-            return 1.0
-        turn = float(np.max(np.abs(here)))
-        return max(SHORT / turn, self.settings.smallest_step) if turn > SHORT else 1.0
+        """The largest part of the way that may be taken at once, on which links turn at the rate ``here``.
+
+        So far that no end of a branch hides in it if none may be passed; else as far as a link may turn at all.
+        """
+        turn, most = float(np.max(np.abs(here))), SHORT if self.careful else self.settings.largest_turn
+        return max(most / turn, self.settings.smallest_step) if turn > most else 1.0
 
     @property
     def _known(self) -> list[tuple[float, Point]]:
@@ -210,6 +226,12 @@ class Follower:
         if strayed(model.lengths, change, start, end, carried_by_others(model, self.point, found)):
             return Ending.STEP_TOO_SMALL, "the links went another way than their rates say, to another branch"
         return Ending.COMPLETED, ""
+
+    def _uneven(self, found: Point, start: Array, end: Array) -> bool:
+        """Whether what the rates at both ends say leaves a doubt where the branch is between them."""
+        model = self.mechanism.problem.model
+        change = found.state.theta - self.point.state.theta
+        return uneven(model.lengths, change, start, end, carried_by_others(model, self.point, found))
 
     def _cut(self, way: Way, done: float, step: float) -> float:
         """A step that ends before what is about to end the branch does, or just beyond where that is near."""

@@ -18,7 +18,7 @@ from scipy.linalg import eigh_tridiagonal, lapack
 
 from cprbm.newton import local_system_at, many, own_system
 from cprbm.point import Point, Problem
-from scene.answer import Array
+from scene.answer import Array, Flags
 
 DENSE = 120  # unknowns up to which all curvatures are computed at once
 LANCZOS = 40  # steps
@@ -68,9 +68,8 @@ def smallest_curvature(problem: Problem, point: Point) -> float:
     return softest(problem, point).curvature
 
 
-def released(point: Point, rows: frozenset[tuple[str, int]]) -> Point:
-    """A state in which some ``rows``, named by their keys, hold nothing any more."""
-    others = np.array([key not in rows for key in point.rows.keys], dtype=bool)
+def released(point: Point, others: Flags) -> Point:
+    """A state in which no rows but these ``others`` (m,) hold anything any more."""
     return replace(point, lam=np.where(others, point.lam, 0.0))
 
 
