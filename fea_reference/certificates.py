@@ -9,12 +9,14 @@ from fea_reference.model import Model, OnBeam
 from fea_reference.stops import acting_stops
 from fea_reference.supports import grounded, held, support
 from fea_reference.system import NOTHING, System
-from fea_reference.touch import LACKING, Pair
+from fea_reference.touch import LACKING, Pair, Touch
 from scene.answer import Array, Certificate
 
 _VIOLATION = 1e-9
 _BALANCE = 1e-8
 _RESOLVED = 0.05  # of the thickness: overlap with what is rigid, whose penalty is as stiff as the elements can follow
+_FROM_AFAR = 0.05  # of the thickness: a gap across which something may press
+_SLENDER = 0.01  # of the longest beam: the most that stands for the thickness there
 _SOFT = 0.05  # by which a penalty may fall short of the stiffness that its elements ask for
 _NONE_MET = 1e3  # units of round-off of the stiffest element: measured up to twelve from 10 to 640 elements
 _PULLS = 1e-8  # of the largest force or of EI/length: what a stop may pull with
@@ -68,6 +70,9 @@ def certify(march: March) -> Certificate:
             failures.append(f"what touches in {one.pair.name} overlaps by {overlap:.1e}; {allowed:.1e} was asked")
         elif one.closed and march.penalties[one.pair].stiffness < (1.0 - _SOFT) * one.pair.stiffest:
             failures.append(f"the penalty of {one.pair.name} could not be raised to what the elements can follow")
+        far = _across(march, one)
+        if not far <= _FROM_AFAR * min(one.pair.measure, _SLENDER):
+            failures.append(f"what touches in {one.pair.name} presses across a gap of {far * model.units.length:.1e} m")
     if not force <= balance:
         failures.append(f"the forces of loads and supports leave {force:.1e} of the largest")
     if not moment <= balance:
@@ -93,6 +98,15 @@ def certify(march: March) -> Certificate:
         iterations=march.iterations,
         failures=tuple(failures),
     )
+
+
+def _across(march: March, one: Touch) -> float:
+    """The widest gap across which a contact presses: a pressure that was foreseen begins before the gap is none.
+
+    The lead is that pressure over the penalty, which goes with the bending stiffness: what is taut asks for more.
+    """
+    pressing = one.gap < 0.0
+    return max(0.0, float((one.gap[pressing] + march.penalties[one.pair].lead).max(initial=0.0)))
 
 
 def _drowned(march: March) -> bool:
