@@ -8,15 +8,17 @@ from fea_reference.march import March
 from fea_reference.model import Model, OnBeam
 from fea_reference.stops import acting_stops
 from fea_reference.supports import grounded, held, support
-from fea_reference.system import System
-from fea_reference.touch import LACKING, Pair
+from fea_reference.system import NOTHING, System
+from fea_reference.touch import LACKING, Pair, Touch
 from scene.answer import Array, Certificate
 
 _VIOLATION = 1e-9
 _BALANCE = 1e-8
 _RESOLVED = 0.05  # of the thickness: overlap with what is rigid, whose penalty is as stiff as the elements can follow
+_FROM_AFAR = 0.05  # of the thickness: a gap across which something may press
+_SLENDER = 0.01  # of the longest beam: the most that stands for the thickness there
 _SOFT = 0.05  # by which a penalty may fall short of the stiffness that its elements ask for
-_NOTHING = 10.0  # floors: forces below this are round-off themselves
+_NONE_MET = 1e3  # units of round-off of the stiffest element: measured up to twelve from 10 to 640 elements
 _PULLS = 1e-8  # of the largest force or of EI/length: what a stop may pull with
 
 
@@ -51,9 +53,16 @@ def certify(march: March) -> Certificate:
         press = stop.press(system.z, limit)
         if not press >= -_PULLS * max(1.0, system.scale):
             failures.append(f"{stop.known_as} holds with {press * model.units.moment:.1e} N·m on the wrong side")
-    if system.lost:
+    if not system.told:
         left = system.floor * model.units.force
-        failures.append(f"what is loaded is too little to be told from round-off, which leaves forces of {left:.1e} N")
+        if march.values[: len(model.loads)].any():
+            failures.append(
+                f"what is loaded is too little to be told from round-off, which leaves forces of {left:.1e} N"
+            )
+        elif _drowned(march):
+            failures.append(
+                f"what is driven is too little to be told from round-off, which leaves forces of {left:.1e} N"
+            )
     for one in system.touches:
         allowed = settings.penetration if isinstance(one.pair, Pair) else max(settings.penetration, _RESOLVED)
         overlap = one.penetration / (one.pair.scale if isinstance(one.pair, Pair) else one.pair.measure)
@@ -61,6 +70,9 @@ def certify(march: March) -> Certificate:
             failures.append(f"what touches in {one.pair.name} overlaps by {overlap:.1e}; {allowed:.1e} was asked")
         elif one.closed and march.penalties[one.pair].stiffness < (1.0 - _SOFT) * one.pair.stiffest:
             failures.append(f"the penalty of {one.pair.name} could not be raised to what the elements can follow")
+        far = _across(march, one)
+        if not far <= _FROM_AFAR * min(one.pair.measure, _SLENDER):
+            failures.append(f"what touches in {one.pair.name} presses across a gap of {far * model.units.length:.1e} m")
     if not force <= balance:
         failures.append(f"the forces of loads and supports leave {force:.1e} of the largest")
     if not moment <= balance:
@@ -86,6 +98,30 @@ def certify(march: March) -> Certificate:
         iterations=march.iterations,
         failures=tuple(failures),
     )
+
+
+def _across(march: March, one: Touch) -> float:
+    """The widest gap across which a contact presses: a pressure that was foreseen begins before the gap is none.
+
+    The lead is that pressure over the penalty, which goes with the bending stiffness: what is taut asks for more.
+    """
+    pressing = one.gap < 0.0
+    return max(0.0, float((one.gap[pressing] + march.penalties[one.pair].lead).max(initial=0.0)))
+
+
+def _drowned(march: March) -> bool:
+    """Whether a drive meets resistance, and has gone no farther than to where that is round-off.
+
+    What turns or shifts all as one meets no more than elements, of 12 EI/h³, are rounded to, however far it goes.
+    """
+    model = march.model
+    none = _NONE_MET * float(np.finfo(float).eps) * model.stiffest / float(model.elements.length.min())
+    first = len(model.loads)
+    for number, value in enumerate(march.values[first : first + len(model.drives)], start=first):
+        met = float(np.abs(march.rate(number)[model.multipliers]).max())
+        if met > none and 0.0 < met * abs(value) <= NOTHING * march.system.floor:
+            return True
+    return False
 
 
 def _balance(model: Model, values: Array, system: System) -> tuple[float, float]:
@@ -139,5 +175,5 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float]
     largest_moment = max(map(abs, moments), default=0.0)
     # Forces that vanish are judged by the moments, and these by them: lengths are of order one here.
     scale = max(largest_force, largest_moment)
-    scale = scale if scale > _NOTHING * system.floor else 1.0
+    scale = scale if scale > NOTHING * system.floor else 1.0
     return float(np.hypot(*sum(forces, np.zeros(2)))) / scale, abs(sum(moments)) / scale

@@ -8,6 +8,7 @@ import numpy as np
 
 from fea_reference import circle, contact, face
 from fea_reference.crossing import cross, crosses_itself
+from fea_reference.end_on_end import ends_through
 from fea_reference.far import FAR, kept_apart, least_apart
 from fea_reference.model import Model
 from fea_reference.state import State
@@ -137,7 +138,8 @@ def passed_through(model: Model, what: Contact, before: State, after: State) -> 
         return face.passed(model, what, before, after)
     first, second = (model.line(model.beams[i], after) for i in (what.first, what.second))
     if what.roles is not None:
-        return crosses_itself(first, contact.zones_of(model, what, after))
+        line = model.line(model.beams[what.first], before)
+        return ends_through(what, line, first) or crosses_itself(first, contact.zones_of(model, what, after))
     # Lines without thickness cross by what the penalty lets through; that is held, and measured.
     held = what.distance == 0.0 and contact.zones_of(model, what, after).least < 0.0
     return not held and cross(first, second)

@@ -30,6 +30,7 @@ _TIGHTENINGS = 25
 _SETTLINGS = 8
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
 _NEARBY = (1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0)  # of a step: where to look for a closing under tighter penalties
+_SUNK = 0.1  # of the thickness: an overlap that tight penalties are to press out on the way
 _DEEPER = 1e-3  # of the shortest element: by how much a contact sinks that is about to be passed
 _THROUGH = 0.5  # of the thickness: a way on which nothing passes through it unseen
 _CLOSED = 1e-9  # of the thickness, a gap that is none
@@ -40,7 +41,7 @@ _PULLS = 1e-9  # of the largest force or of EI/length: with which a stop may pul
 _SWITCHED = 1e-8  # rad, or of these: how near to its change a stop is found
 _AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
 _STIFFEST = 1e9  # times what the elements can follow: the most that a penalty is raised to, for a penetration of
-_STANDARD = 1e-4
+_STANDARD = 1e-4  # of elements that are as long as thick; at a tip that goes with the square of what it may be deep
 _EVEN = 0.03  # by which a penalty may differ from the one wanted
 _SAME = 1e-9  # by which the one of a circle may
 _POLISHINGS = 8  # tries after which a penetration below the one asked will do
@@ -513,6 +514,12 @@ class March:
                 tried = max(max(factor, 1.0 / factor) for factor in factors.values())
                 most = max(min(most, tried) ** 0.4, 1.2)
 
+    def sunk(self) -> bool:
+        """Whether beams have sunk so far into the penalties of a way that a further step might bring them through."""
+        return any(
+            isinstance(one.pair, Pair) and one.penetration > _SUNK * one.pair.scale for one in self.system.touches
+        )
+
     def settle(self, load: int) -> None:
         """Tighten penalties, and let stops change whose side is another with them, until all is as it should be.
 
@@ -562,7 +569,8 @@ class March:
             return max(1.0, least)
         aim = _AIM * self.settings.penetration * one.pair.scale
         # what overlaps in spite of that has gone through, and is not pushed out again
-        most = _STIFFEST * (_STANDARD / self.settings.penetration) ** _FALLS[1] * least
+        slender = max(1.0, self._finest / one.pair.scale)
+        most = _STIFFEST * (slender * _STANDARD / self.settings.penetration) ** _FALLS[1] * least
         return float(min(max((one.penetration / aim) ** fall, least), most))
 
     def _will_do(self, one: Touch, factor: float, tries: int) -> bool:

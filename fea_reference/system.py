@@ -28,8 +28,10 @@ from scene.frozendict import frozendict
 
 Entries = tuple[Index, Index, Array]
 
+NOTHING = 10.0
+"""Floors: forces below this are round-off themselves."""
+
 _ROUND_OFF = 3.0  # measured: up to two from 20 to 1280 elements, of both of its parts
-_NOTHING = 10.0  # floors: a force below this is round-off itself
 _NONE_HELD: Mapping[Contact, float] = frozendict()
 _NOTHING_FORESEEN: Mapping[Contact, Array] = frozendict()
 
@@ -46,7 +48,7 @@ class System:
             tangents and its chord; the chord's own angle is rounded, and so the force is to 12 EI/h² times the
             spacing of machine numbers there.  A penalty ε adds ε times an element's share of the zone,
             times what the gap is rounded to.
-        lost: whether something is loaded, and all that balances is no more than round-off.
+        told: whether what balances is more than round-off.
     """
 
     z: State
@@ -58,7 +60,7 @@ class System:
     loads: tuple[BeamLoad, ...]
     scale: float
     floor: float
-    lost: bool
+    told: bool
 
     def solve(self, right: Array) -> Array | None:
         """What the tangent makes ``right`` (size,) of; None where it is exactly singular or as good as that."""
@@ -144,9 +146,8 @@ def assemble(
     angle = max(1.0, float(np.abs(z[model.node_dofs[2]]).max()))
     floor = _ROUND_OFF * model.stiffest * float(np.spacing(angle))
     floor += sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
-    told = largest > _NOTHING * floor
-    lost = not told and bool(values[: len(model.loads)].any())
-    return System(z, acting, residual, tangent, elements, touches, loads, largest if told else 1.0, floor, lost)
+    told = largest > NOTHING * floor
+    return System(z, acting, residual, tangent, elements, touches, loads, largest if told else 1.0, floor, told)
 
 
 def _pushes(one: Touch, foreseen: Array | None) -> Array:

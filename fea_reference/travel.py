@@ -198,7 +198,12 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
         else:
             march.restore(saved)
             rate = None
-            if not searching and march.loosen(Circle, Face, Pair):
+            if trouble[0] is Ending.BEAMS_CROSSED and march.sunk():
+                # what presses is not to go through what gives way
+                march.tighten()
+                known, march.behind = [], None
+                stride, cuts, reason = size, cuts + 1, trouble
+            elif not searching and march.loosen(Circle, Face, Pair):
                 searching, march.far, known = True, True, []
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble

@@ -9,9 +9,12 @@ symbol  meaning
 ======  =====================================================================
 R, x    a force and where it acts, N and m
 M       a moment, N·m
-ΣF, ΣM  ΣR and Σ(M + x × R), as shares of the largest in any station; for ΣF of the largest M + x × R over the
-        longest beam, if that is more
+L       the longest beam's length, m
+ΣF, ΣM  ΣR and Σ(M + x × R), as shares of the largest in any station
 ======  =====================================================================
+
+What only moments hold has forces that are round-off: a force counts for no less than the largest moment over L, and a
+moment for no less than the largest force times L.
 
 What is told of slides and of loads along beams is a force without its place, so that ΣM is asked only without them.
 """
@@ -99,20 +102,23 @@ def balance(scene: Scene, answer: Answer) -> dict[str, dict[tuple[str, float], f
             if isinstance(contact, RigidContact) and f"{contact.body}".startswith(f"{name}_"):
                 pair = station.values[f"{name}.force"][0], np.hypot(*station.values[f"{name}_point.reaction"])
                 pushed.setdefault(f"{name}: force of the drives", {})[at] = np.array([[pair[0], -pair[1]]]).T
-    # where couples alone act, all forces are round-off: a couple on a beam is borne by forces of itself over its length
     longest = max(length(beam.curve) for beam in scene.beams.values())
-    couples = max((float(np.max(np.abs(m), initial=0.0)) for m in moments.values()), default=0.0)
-    found = {"ΣF": _shares(forces, couples / longest)}
+    largest, turning = _largest(forces), _largest(moments)
+    found = {"ΣF": _shares(forces, turning / longest)}
     if not _told_without_place(scene):
-        found["ΣM"] = _shares(moments)
-    largest = max((float(np.max(np.abs(f), initial=0.0)) for f in forces.values()), default=0.0)
+        found["ΣM"] = _shares(moments, largest * longest)
     found.update({name: _shares(pairs, largest) for name, pairs in pushed.items()})
     return found
 
 
-def _shares(terms: dict[tuple[str, float], Array], least: float = 0.0) -> dict[tuple[str, float], float]:
-    """The norm of each sum of terms (n, ...) over the largest term of all."""
-    largest = max([least, *(float(np.max(np.abs(each), initial=0.0)) for each in terms.values())])
+def _largest(terms: dict[tuple[str, float], Array]) -> float:
+    """Of all terms (n, ...)."""
+    return max((float(np.max(np.abs(each), initial=0.0)) for each in terms.values()), default=0.0)
+
+
+def _shares(terms: dict[tuple[str, float], Array], least: float) -> dict[tuple[str, float], float]:
+    """The norm of each sum of terms (n, ...) over the largest term of all, or what is the ``least`` if that is more."""
+    largest = max(least, _largest(terms))
     return {at: float(np.linalg.norm(each.sum(axis=0))) / largest if largest else 0.0 for at, each in terms.items()}
 
 

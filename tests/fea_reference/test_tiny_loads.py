@@ -1,5 +1,9 @@
-"""A beam that lies along a floor, pressed at its tip: what presses goes straight through it, however little it is."""
+"""A beam that lies along a floor, pressed at its tip: what presses goes straight through it, however little it is.
 
+And one whose tip is moved by however little.
+"""
+
+import numpy as np
 import pytest
 
 from fea_reference import Settings, answer
@@ -65,3 +69,53 @@ def test_no_load_is_told():
     found = answer(pressed(0.0), Settings(elements=80, kinematics="bending"))
     assert found.ending is Ending.COMPLETED, found.sentence
     assert found.stations[0].values["k.force"][0] == 0.0
+
+
+def driven(distance, root):
+    """A straight beam whose tip is moved across by so much of its length, its root welded or pinned."""
+    return scene_from(
+        {
+            "name": "driven",
+            "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.31}},
+            "bodies": {
+                "wall": {"motion": "fixed", "points": {"R": (0.0, 0.0)}},
+                "tip": {"motion": "free", "points": {"P": (LENGTH, 0.0)}},
+            },
+            "beams": {
+                "b": {
+                    "curve": {"kind": "line", "start": (0.0, 0.0), "end": (LENGTH, 0.0)},
+                    "thickness": THICK,
+                    "width": WIDTH,
+                    "material": "m",
+                    "start": {"joint": root, "point": "R"},
+                    "end": {"joint": "weld", "point": "P"},
+                }
+            },
+            "drives": {"d": {"kind": "displacement", "point": "P", "direction": (0.0, -1.0)}},
+            "stages": [{"name": "press", "steps": "d", "stations": [distance * LENGTH]}],
+            "probes": [{"of": "P", "quantity": "reaction"}, {"of": "tip", "quantity": "rotation"}],
+        }
+    )
+
+
+@pytest.mark.parametrize("share", [1e-5, 1.7e-3])
+def test_a_small_drive_meets_what_a_cantilever_resists(share):
+    """Reference: 3 EI/L³, but for the square of the slope."""
+    found = answer(driven(share, "weld"), Settings(elements=80, kinematics="bending"))
+    assert found.ending is Ending.COMPLETED, found.sentence
+    assert -found.stations[0].values["P.reaction"][1] == pytest.approx(3.0 * share * UNIT, rel=1e-4)
+
+
+@pytest.mark.parametrize("share", [1.3e-10, 1e-12])
+def test_what_a_drive_meets_below_round_off_is_no_answer(share):
+    found = answer(driven(share, "weld"), Settings(elements=80, kinematics="bending"))
+    assert found.ending is Ending.NOT_CERTIFIED
+    assert "what is driven is too little to be told from round-off" in found.sentence
+
+
+@pytest.mark.parametrize("share", [1e-12, 0.53])
+def test_a_drive_that_bends_nothing_is_one_at_any_size(share):
+    """Reference: the beam turns about its pin as it is, by an angle whose sine is the way over the length."""
+    found = answer(driven(share, "pin"), Settings(elements=80, kinematics="bending"))
+    assert found.ending is Ending.COMPLETED, found.sentence
+    assert found.stations[0].values["tip.rotation"][0] == pytest.approx(-np.arcsin(share), rel=1e-9)

@@ -117,11 +117,11 @@ def test_what_knows_where_a_beam_begins_is_another_discretised_problem():
 # ---------------------------------------------------------------------------------------- planted faults
 
 
-def values_by(change):
+def values_by(change, solver=cprbm_answer):
     """A solver whose answers' values are changed: by the scene, the number of the station, its probe and value."""
 
     def planted(scene, choices):
-        answer = cprbm_answer(scene, choices)
+        answer = solver(scene, choices)
         stations = tuple(
             replace(
                 station,
@@ -192,6 +192,46 @@ def test_a_fault_is_caught(name):
     asked = few("hinge", 0.23, 0.57)
     found = tuple(violations(asked, FAULTS[name], COARSE, [BY_NAME[name]]))
     assert any(not each.holds for each in found), found
+
+
+def turned():
+    """A strip whose end is turned, and else free: by statics a moment alone holds it."""
+    return {
+        "name": "turned",
+        "materials": {"m": {"youngs_modulus": 7.3e10, "poisson_ratio": 0.31}},
+        "bodies": {"ground": {"motion": "fixed", "points": {"P": [0.013, 0.021]}},
+                   "tip": {"motion": "free", "points": {"T": [0.093, 0.054]}}},
+        "beams": {
+            "beam": {
+                "curve": {"kind": "line", "start": [0.013, 0.021], "end": [0.093, 0.054]},
+                "thickness": 0.0007,
+                "width": 0.0083,
+                "material": "m",
+                "start": {"joint": "weld", "point": "P"},
+                "end": {"joint": "weld", "point": "T"},
+            }
+        },
+        "drives": {"turn": {"kind": "rotation", "body": "tip"}},
+        "stages": [{"name": "turn", "steps": "turn", "stations": [1.3]}],
+        "probes": [{"of": "P", "quantity": "reaction"}],
+    }  # fmt: skip
+
+
+def test_forces_that_are_round_off_beside_a_moment_are_told_by_the_moment():
+    def pushed(scene, choices):
+        length = np.hypot(0.08, 0.033)
+        moment = 7.3e10 * 0.0083 * 0.0007**3 / 12.0 * 1.3 / length  # EI times curvature
+        change = values_by(
+            lambda scene, i, name, v: v + np.array([1e-5 * moment / length, 0.0]) if name == "P.reaction" else v,
+            fea_answer,
+        )
+        return change(scene, choices)
+
+    (found,) = violations(turned(), fea_answer, COARSE, [BY_NAME["reaction"]])
+    assert found.holds, found
+    (found,) = violations(turned(), pushed, COARSE, [BY_NAME["reaction"]])
+    assert found.worst.probe == "ΣF"
+    assert found.worst.size == pytest.approx(1e-5, rel=1e-3)
 
 
 def test_every_relation_has_a_planted_fault():
