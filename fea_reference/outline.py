@@ -283,7 +283,7 @@ class Graph:
         bend = np.where(past, 1.0 / np.where(past, r, 1.0), kappa / (1.0 + kappa * d))
         # behind the edge the sides straight back may be nearer, and beyond its ends they are
         if (behind := d < 0.0).any():
-            corners, end = self.corners, np.stack([at == first, at == last])
+            corners, end = self.corners, np.array([at == first, at == last])
             for i, back in ((0, corners.normals[0]), (1, corners.normals[1])):
                 beside = back[:, i] @ (y - corners.points[:, i, None])
                 nearer = behind & np.where(past, end[i], (beside > d) & (beside <= 0.0))
@@ -315,7 +315,7 @@ class Graph:
     def _samples(self) -> tuple[Array, Array]:
         """Places along the axis (n,), and what makes of (y, 1) the part of −|s − y|² that tells the points s apart."""
         v = np.linspace(*self.span, _SAMPLES)
-        s = np.stack([v, self.f(v)])
+        s = np.array([v, self.f(v)])
         return v, np.concatenate([2.0 * s, -(s**2).sum(axis=0, keepdims=True)])
 
     @cached_property
@@ -333,8 +333,8 @@ class Graph:
         """Points and unit tangents (2, k) at ``v`` (k,), the free side to the left, and κ (k,)."""
         f, slope, second = polyval(v, self._derivatives)
         long = np.hypot(1.0, slope)
-        tau = np.stack([np.ones_like(v), slope]) / long * (1.0 if self._forwards else -1.0)
-        point = np.stack([v, f])
+        tau = np.array([np.ones_like(v), slope]) / long * (1.0 if self._forwards else -1.0)
+        point = np.array([v, f])
         kappa = -self.sign * second / long**3  # juts out where it bends away from the free side
         return (point[::-1], tau[::-1], kappa) if self.across else (point, tau, kappa)
 
@@ -393,4 +393,4 @@ def _crossing(place: Array, ahead: Array, places: Array, aheads: Array) -> tuple
 
 def _left(tangents: Array) -> Array:
     """Tangents (2, k) turned counter-clockwise."""
-    return np.stack([-tangents[1], tangents[0]])
+    return np.array([-tangents[1], tangents[0]])
