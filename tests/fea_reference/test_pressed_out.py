@@ -65,8 +65,8 @@ def test_a_tightened_edge_is_no_other_branch():
     at_once = answer(arch([-53.57]), Settings(elements=40, iteration_limit=300))
     assert at_once.ending is Ending.COMPLETED, at_once.sentence
     # without friction it does not matter how one has come
-    bit_by_bit = answer(arch([-21.3, -36.1, -38.7, -39.1, -44.7, -53.57]), Settings(elements=40))
+    bit_by_bit = answer(arch([-21.3, -38.7, -39.1, -53.57]), Settings(elements=40))
     assert bit_by_bit.ending is Ending.COMPLETED, bit_by_bit.sentence
     for name in ("scene.potential_energy", "wedge.force"):
-        one, other = (float(each.stations[-1].values[name]) for each in (at_once, bit_by_bit))
+        one, other = (each.stations[-1].values[name].item() for each in (at_once, bit_by_bit))
         assert one == pytest.approx(other, rel=1e-5)
