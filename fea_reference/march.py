@@ -138,9 +138,14 @@ class March:
         )
 
     def restore(self, saved: March) -> None:
-        """Go back to where a copy was taken, but for the iterations that have been spent."""
-        self.open, self.values, self.system, self.acting = saved.open, saved.values, saved.system, saved.acting
-        self.penalties, self.closing, self.switched = saved.penalties, saved.closing, saved.switched
+        """Go back to where a copy was taken, but for the iterations that have been spent; it can be done again."""
+        self.open, self.values, self.system, self.acting = (
+            list(saved.open),
+            saved.values.copy(),
+            saved.system,
+            saved.acting,
+        )
+        self.penalties, self.closing, self.switched = dict(saved.penalties), dict(saved.closing), dict(saved.switched)
         self.far, self.loose = saved.far, saved.loose
 
     def rate(self, load: int, system: System | None = None) -> Array:

@@ -158,7 +158,8 @@ class Broken:
         nearest = np.hypot(away[0], away[1]).argmin(axis=0)
         every = np.arange(y.shape[1])
         t, away = t[nearest, every], away[:, nearest, every]
-        side = _left(tangents[:, nearest])
+        normals = self._normals
+        side = normals.take(nearest, axis=1)
         before = t <= low[nearest]
         corner = before | (t >= high[nearest])
         d = (side * away).sum(axis=0)
@@ -166,7 +167,7 @@ class Broken:
         neighbour = np.where(before, nearest - 1, nearest + 1)
         round_it = self.closed or self._round_behind
         neighbour = neighbour % low.size if round_it else np.minimum(np.maximum(neighbour, 0), low.size - 1)
-        both = side + np.where(corner, _left(tangents[:, neighbour]), 0.0)
+        both = side + np.where(corner, normals.take(neighbour, axis=1), 0.0)
         r_corner = np.hypot(away[0], away[1])
         corner &= r_corner > 0.0
         sign = np.where((both * away).sum(axis=0) < 0.0, -1.0, 1.0)
@@ -196,6 +197,11 @@ class Broken:
         )
 
     @cached_property
+    def _normals(self) -> Array:
+        """To the left of them, (2, m+2)."""
+        return _left(self._sides[0])
+
+    @cached_property
     def _back(self) -> Array:
         """How far the sides straight back go from where the edge begins and ends, (2,)."""
         each = self._met_each_other
@@ -221,7 +227,7 @@ class Broken:
         """Whether what is rigid ends where its two sides meet."""
         return not self.closed and bool(np.isfinite(self._back).all() and (self._back == self._met_each_other).all())
 
-    @property
+    @cached_property
     def closed(self) -> bool:
         """Whether the edge goes round."""
         return bool(np.all(self.points[:, 0] == self.points[:, -1]))
