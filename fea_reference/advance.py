@@ -30,7 +30,7 @@ def advance(model: Model, z: State, step: Array) -> State:
         dx, dy, turn, stretch = _chords(dofs, z, step)
         # What each chord changes by, with all digits however small it is: (1 + stretch) R(turn) less one.
         along, across = stretch * np.cos(turn) - 2.0 * np.sin(0.5 * turn) ** 2, (1.0 + stretch) * np.sin(turn)
-        changes = np.stack([along * dx - across * dy, across * dx + along * dy])
+        changes = np.array([along * dx - across * dy, across * dx + along * dy])
         way[dofs[:, 1:]] = step[dofs[:, :1]] + np.cumsum(changes, axis=1)
     return z.moved(way)
 
@@ -42,7 +42,7 @@ def carried(model: Model, before: State, now: State, rate: Array) -> Array:
         dofs = model.node_dofs[:2, beam.nodes]
         _, _, turn, stretch = _chords(dofs, before, rate)
         dx, dy = now.difference(dofs[:, 1:], dofs[:, :-1])
-        changes = np.stack([stretch * dx - turn * dy, turn * dx + stretch * dy])
+        changes = np.array([stretch * dx - turn * dy, turn * dx + stretch * dy])
         same[dofs[:, 1:]] = rate[dofs[:, :1]] + np.cumsum(changes, axis=1)
     return same
 
@@ -68,7 +68,7 @@ def way_to(model: Model, start: State, end: State) -> Array:
         along, across = end.difference(dofs[:, 1:], dofs[:, :-1])
         ratio = (along + 1j * across) / (dx + 1j * dy)
         turn, stretch = np.angle(ratio), np.abs(ratio) - 1.0
-        changes = np.stack([stretch * dx - turn * dy, turn * dx + stretch * dy])
+        changes = np.array([stretch * dx - turn * dy, turn * dx + stretch * dy])
         way[dofs[:, 1:]] = way[dofs[:, :1]] + np.cumsum(changes, axis=1)
     return way
 

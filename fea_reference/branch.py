@@ -23,7 +23,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import bmat, csc_matrix
+from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
 from fea_reference.acting import Acting
@@ -137,10 +137,21 @@ def _solve(
 ) -> tuple[Array, float] | None:
     """K t − f τ = ``right`` and w t₀·t + w τ₀ τ = ``last``, of the direction ``along`` (t₀, τ₀)."""
     way, rate = along
-    border = csc_matrix((branch.weights * way)[None, :])
-    matrix = bmat([[system.tangent, csc_matrix(-f[:, None])], [border, csc_matrix([[branch.weight * rate]])]], "csc")
+    matrix = _bordered(system.tangent, -f, branch.weights * way, branch.weight * rate)
     try:
         solution = splu(matrix).solve(np.append(right, last))
     except RuntimeError:  # exactly singular
         return None
     return (solution[:-1], float(solution[-1])) if np.isfinite(solution).all() else None
+
+
+def _bordered(K: csc_matrix, column: Array, row: Array, corner: float) -> csc_matrix:
+    """K (size, size) with one more ``column`` and ``row`` (size,) each, and what is in the ``corner``."""
+    size = column.size
+    below, beside = np.flatnonzero(row), np.flatnonzero(column)
+    ends = K.indptr[below + 1]
+    entries = np.concatenate([np.insert(K.data, ends, row[below]), column[beside], [corner]])
+    rows = np.concatenate([np.insert(K.indices, ends, size), beside, [size]])
+    counts = np.append(np.diff(K.indptr), beside.size + 1)
+    counts[below] += 1
+    return csc_matrix((entries, rows, np.append(0, np.cumsum(counts))), (size + 1, size + 1))

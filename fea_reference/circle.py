@@ -141,7 +141,7 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
 
     r, toward, g = _clearance(seen, circle, there, zeta)
     x, n = plane(line.nodes[e] + there.way), plane(toward)
-    tau = np.stack([n[1], -n[0]])
+    tau = np.array([n[1], -n[0]])
 
     H = shapes(zeta - e)
     g_q, p = along(n, H, line, e), along(tau, H, line, e)

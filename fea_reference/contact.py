@@ -235,7 +235,7 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     e_m, xi_m = line_m.locate(zeta_m)
     x_m = line_m.nodes[across.element] + across.way
     tau = plane(faced.w)
-    n = np.stack([-tau[1], tau[0]])
+    n = np.array([-tau[1], tau[0]])
     d = (n * plane(apart(line, there, line_m, across))).sum(axis=0)
     a = (n * plane(across.bent)).sum(axis=0)
     Z = np.where(faced.fixed, 1.0, J**2 - d * a)

@@ -95,7 +95,7 @@ def reference(
     first, second = mesh.t
     chord = points[second] - points[first]
     alpha = np.arctan2(chord[:, 1], chord[:, 0])
-    rotation = _wrapped(np.stack([tangents[first] - alpha, tangents[second] - alpha]))
+    rotation = _wrapped(np.array([tangents[first] - alpha, tangents[second] - alpha]))
 
     # of an even moment: Δ = (−1, 1) turns the element by ∫ ds/(EI)
     turning = flexibility[0, 0] - flexibility[0, 1] - flexibility[1, 0] + flexibility[1, 1]
@@ -199,8 +199,8 @@ def layer(elements: Elements, e: int) -> float:
 def _chord(dx: Array, dy: Array, l: Array) -> tuple[Array, Array, Array]:  # noqa: E741 - the chord's length
     """Derivatives of the chord, l by the unknowns r (7, n), α z/l (7, n), and ϑ (2, 7, n)."""
     cos, sin, zero = dx / l, dy / l, np.zeros_like(l)
-    r = np.stack([-cos, -sin, zero, cos, sin, zero, zero])
-    z = np.stack([sin, -cos, zero, -sin, cos, zero, zero])
+    r = np.array([-cos, -sin, zero, cos, sin, zero, zero])
+    z = np.array([sin, -cos, zero, -sin, cos, zero, zero])
     turn = np.zeros((2, *r.shape))
     turn[:] = -z / l
     turn[0, 2] += 1.0

@@ -154,7 +154,7 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     x = line.at(zeta)[0]
     near = face.outline.near(seen.place(zeta))
     n = seen.turned(near.normal)
-    tau = np.stack([n[1], -n[0]])
+    tau = np.array([n[1], -n[0]])
     r = x - seen.centre[:, None]
     g = near.distance - face.edge.at(zeta)
 
@@ -165,7 +165,7 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     g_qq = near.bend * p[:, None] * p[None, :]
     g_qq[:7, :7] += twice_along(n, H, line, e)
     if moves:
-        across = np.stack([-n[1], n[0]])  # across·w = −n·k × w
+        across = np.array([-n[1], n[0]])  # across·w = −n·k × w
         turning = np.concatenate([along(across, H, line, e), -across])
         g_qq[:9, 9] += turning
         g_qq[9, :9] += turning

@@ -64,7 +64,7 @@ def _distances(model: Model, face: Face, z: State) -> tuple[Complex, Array]:
 
 def _distance(face: Face, y: Complex) -> Array:
     """d of places x + i y (k,) as the edge's body sees them."""
-    return face.outline.near(np.stack([y.real, y.imag])).distance
+    return face.outline.near(np.array([y.real, y.imag])).distance
 
 
 def _discs(model: Model, beam: int, z: State) -> tuple[Complex, Array]:

@@ -67,9 +67,9 @@ class NeutralLine:
         turned = np.diff(angles)
         speeds = lengths * (1.0 + turned**2 / (2.0 * _ARC)) + give * axial
         t1, t2 = speeds * ahead[:-1], speeds * ahead[1:]
-        cubic = np.stack([t1, 3.0 * step - 2.0 * t1 - t2, t1 + t2 - 2.0 * step])
+        cubic = np.array([t1, 3.0 * step - 2.0 * t1 - t2, t1 + t2 - 2.0 * step])
         arching = lengths * turned / _ARC
-        tangents, normals = np.stack([cos, sin]), np.stack([-sin, cos])
+        tangents, normals = np.array([cos, sin]), np.array([-sin, cos])
         longest = float(lengths.max())
         return cls(
             points, rest, angles, lengths, speeds, give, arching, tangents, normals, cubic, nodes, rests, longest
@@ -119,7 +119,7 @@ class Around:
 
 def plane(number: Complex) -> Array:
     """x + i y as (2, k)."""
-    return np.stack([number.real, number.imag])
+    return np.array([number.real, number.imag])
 
 
 def apart(first: NeutralLine, at: Around, second: NeutralLine, at_m: Around) -> Complex:
@@ -132,7 +132,7 @@ def apart(first: NeutralLine, at: Around, second: NeutralLine, at_m: Around) -> 
 
 def shapes(xi: Array) -> Array:
     """H at ``xi`` (k,), (4, k)."""
-    return np.stack(
+    return np.array(
         [
             1.0 + xi**2 * (2.0 * xi - 3.0),
             xi * (1.0 - xi) ** 2,
@@ -145,7 +145,7 @@ def shapes(xi: Array) -> Array:
 def shape_slopes(xi: Array) -> Array:
     """∂H/∂ξ at ``xi`` (k,), (4, k)."""
     bump = 6.0 * xi * (1.0 - xi)
-    return np.stack([-bump, (1.0 - xi) * (1.0 - 3.0 * xi), bump, xi * (3.0 * xi - 2.0)])
+    return np.array([-bump, (1.0 - xi) * (1.0 - 3.0 * xi), bump, xi * (3.0 * xi - 2.0)])
 
 
 def along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
@@ -154,7 +154,7 @@ def along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
     second = H[3] * (v * line.normals[:, e + 1]).sum(axis=0)
     ahead = H[1] * (v * line.tangents[:, e]).sum(axis=0) + H[3] * (v * line.tangents[:, e + 1]).sum(axis=0)
     m, turn = line.speeds[e], line.arching[e] * ahead
-    return np.stack(
+    return np.array(
         [H[0] * v[0], H[0] * v[1], m * first - turn, H[2] * v[0], H[2] * v[1], m * second + turn, line.give[e] * ahead]
     )
 

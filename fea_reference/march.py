@@ -26,11 +26,12 @@ _AHEAD = 2.0  # of the last step: the longest for which its change of rate tells
 _BENT = 0.3  # of what a step moves by its rate: the most that its change may add
 _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
+_GENTLEST = 1.2  # the factor that is tried at last
 _TIGHTENINGS = 25
 _SETTLINGS = 8
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
 _NEARBY = (1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0)  # of a step: where to look for a closing under tighter penalties
-_SUNK = 0.1  # of the thickness: an overlap that tight penalties are to press out on the way
+_SINKING = 0.1  # of the thickness: an overlap that tight penalties are to press out on the way
 _DEEPER = 1e-3  # of the shortest element: by how much a contact sinks that is about to be passed
 _THROUGH = 0.5  # of the thickness: a way on which nothing passes through it unseen
 _CLOSED = 1e-9  # of the thickness, a gap that is none
@@ -48,6 +49,9 @@ _POLISHINGS = 8  # tries after which a penetration below the one asked will do
 _IN_A_POINT = 1.5  # the power of one over the penetration with which the penalty of a contact in a point goes
 _FALLS = (1.0, 2.0)  # in an area, and at a tip
 _POINT = 1.0  # elements: a zone no wider is a point
+_SUNK = 0.3  # of the thickness: a beam deeper in another is about to have its line on the other side of that one's
+_STIFFER = 10.0  # times: the penalty with which the step is tried again then
+_STIFFENINGS = 3
 
 
 Trouble = tuple[Ending, str]
@@ -135,9 +139,14 @@ class March:
         )
 
     def restore(self, saved: March) -> None:
-        """Go back to where a copy was taken, but for the iterations that have been spent."""
-        self.open, self.values, self.system, self.acting = saved.open, saved.values, saved.system, saved.acting
-        self.penalties, self.closing, self.switched = saved.penalties, saved.closing, saved.switched
+        """Go back to where a copy was taken, but for the iterations that have been spent; it can be done again."""
+        self.open, self.values, self.system, self.acting = (
+            list(saved.open),
+            saved.values.copy(),
+            saved.system,
+            saved.acting,
+        )
+        self.penalties, self.closing, self.switched = dict(saved.penalties), dict(saved.closing), dict(saved.switched)
         self.far, self.loose = saved.far, saved.loose
 
     def rate(self, load: int, system: System | None = None) -> Array:
@@ -179,6 +188,12 @@ class March:
         before, start = self.system.z, float(self.values[load])
         predicted = advance(self.model, before, self._foreseen(load, value - start, rate))
         system = self.solve(load, value, predicted)
+        for _ in range(_STIFFENINGS):
+            stiffer = self._stiffer(system) if system is not None else {}
+            if not stiffer:
+                break
+            self.penalties.update(stiffer)
+            system = self.solve(load, value, predicted)
         if system is None:
             return (
                 Ending.STEP_TOO_SMALL,
@@ -225,6 +240,22 @@ class March:
         by = float(self.values[load] - before.values[load])
         second, third = bend(self.model, before.system.z, self.system.z, (rate, ahead), by)
         return Behind(load, by, second, third, before.acting, frozenset(before.penalties))
+
+    def _stiffer(self, system: System) -> dict[Contact, Penalty]:
+        """Stiffer penalties for beams that sink so far into each other under those of now; none where none does.
+
+        Where neutral lines cross, the one does not lie on a side of the other any more, and no penalty parts them.
+        """
+        return {
+            one.pair: Penalty(_STIFFER * self.penalties[one.pair].stiffness)
+            for one in system.touches
+            if isinstance(one.pair, Pair) and one.pair.distance > 0.0 and one.penetration > _SUNK * one.pair.scale
+        }
+
+    def _closes_more(self, system: System) -> bool:
+        """Whether something overlaps in a system that is open now: no step could be made from there."""
+        gaps = zip(self.gaps(self.system), self.gaps(system), strict=True)
+        return any(after < 0.0 <= before for before, after in gaps)
 
     def _foreseen(self, load: int, step: float, rate: Array) -> Array:
         """By what a step will move, (size,): to third order by the rate and the last step, if that tells."""
@@ -434,7 +465,8 @@ class March:
     def loosen(self, *kinds: type[Contact]) -> bool:
         """Go back to the loosest penalties: the ends of a zone move by a layer's width per iteration.
 
-        Returns whether it could be done.  Most pairs of beams touch in a point, whose zone is found all the same.
+        Returns whether it could be done: not where that sinks in too far, or lets something overlap that is open.
+        Most pairs of beams touch in a point, whose zone is found all the same.
         """
         looser = {
             pair: Penalty(pair.loosest) if isinstance(pair, kinds) and pair.loosest < now.stiffness else now
@@ -446,7 +478,9 @@ class March:
             self.model, self.settings, looser, self.values, self.system.z, self.acting, self.depths(), self.pushes()
         )
         self.iterations += solved.iterations
-        if solved.converged and self.moved(solved.system, self.system.z) <= _CORRECTED:
+        if not solved.converged or self._stiffer(solved.system) or self._closes_more(solved.system):
+            return False
+        if self.moved(solved.system, self.system.z) <= _CORRECTED:
             self.system, self.penalties, self.loose = solved.system, looser, True
             self.change_places()
             return True
@@ -511,13 +545,15 @@ class March:
                 self.system, self.penalties = solved.system, tighter
                 most = min(most**1.5, _TIGHTEN)
             else:
+                if most <= _GENTLEST:
+                    return  # the next try would be this one again
                 tried = max(max(factor, 1.0 / factor) for factor in factors.values())
-                most = max(min(most, tried) ** 0.4, 1.2)
+                most = max(min(most, tried) ** 0.4, _GENTLEST)
 
     def sunk(self) -> bool:
         """Whether beams have sunk so far into the penalties of a way that a further step might bring them through."""
         return any(
-            isinstance(one.pair, Pair) and one.penetration > _SUNK * one.pair.scale for one in self.system.touches
+            isinstance(one.pair, Pair) and one.penetration > _SINKING * one.pair.scale for one in self.system.touches
         )
 
     def settle(self, load: int) -> None:

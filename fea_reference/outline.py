@@ -158,7 +158,8 @@ class Broken:
         nearest = np.hypot(away[0], away[1]).argmin(axis=0)
         every = np.arange(y.shape[1])
         t, away = t[nearest, every], away[:, nearest, every]
-        side = _left(tangents[:, nearest])
+        normals = self._normals
+        side = normals.take(nearest, axis=1)
         before = t <= low[nearest]
         corner = before | (t >= high[nearest])
         d = (side * away).sum(axis=0)
@@ -166,7 +167,7 @@ class Broken:
         neighbour = np.where(before, nearest - 1, nearest + 1)
         round_it = self.closed or self._round_behind
         neighbour = neighbour % low.size if round_it else np.minimum(np.maximum(neighbour, 0), low.size - 1)
-        both = side + np.where(corner, _left(tangents[:, neighbour]), 0.0)
+        both = side + np.where(corner, normals.take(neighbour, axis=1), 0.0)
         r_corner = np.hypot(away[0], away[1])
         corner &= r_corner > 0.0
         sign = np.where((both * away).sum(axis=0) < 0.0, -1.0, 1.0)
@@ -196,6 +197,11 @@ class Broken:
         )
 
     @cached_property
+    def _normals(self) -> Array:
+        """To the left of them, (2, m+2)."""
+        return _left(self._sides[0])
+
+    @cached_property
     def _back(self) -> Array:
         """How far the sides straight back go from where the edge begins and ends, (2,)."""
         each = self._met_each_other
@@ -221,7 +227,7 @@ class Broken:
         """Whether what is rigid ends where its two sides meet."""
         return not self.closed and bool(np.isfinite(self._back).all() and (self._back == self._met_each_other).all())
 
-    @property
+    @cached_property
     def closed(self) -> bool:
         """Whether the edge goes round."""
         return bool(np.all(self.points[:, 0] == self.points[:, -1]))
@@ -283,7 +289,7 @@ class Graph:
         bend = np.where(past, 1.0 / np.where(past, r, 1.0), kappa / (1.0 + kappa * d))
         # behind the edge the sides straight back may be nearer, and beyond its ends they are
         if (behind := d < 0.0).any():
-            corners, end = self.corners, np.stack([at == first, at == last])
+            corners, end = self.corners, np.array([at == first, at == last])
             for i, back in ((0, corners.normals[0]), (1, corners.normals[1])):
                 beside = back[:, i] @ (y - corners.points[:, i, None])
                 nearer = behind & np.where(past, end[i], (beside > d) & (beside <= 0.0))
@@ -315,7 +321,7 @@ class Graph:
     def _samples(self) -> tuple[Array, Array]:
         """Places along the axis (n,), and what makes of (y, 1) the part of −|s − y|² that tells the points s apart."""
         v = np.linspace(*self.span, _SAMPLES)
-        s = np.stack([v, self.f(v)])
+        s = np.array([v, self.f(v)])
         return v, np.concatenate([2.0 * s, -(s**2).sum(axis=0, keepdims=True)])
 
     @cached_property
@@ -333,8 +339,8 @@ class Graph:
         """Points and unit tangents (2, k) at ``v`` (k,), the free side to the left, and κ (k,)."""
         f, slope, second = polyval(v, self._derivatives)
         long = np.hypot(1.0, slope)
-        tau = np.stack([np.ones_like(v), slope]) / long * (1.0 if self._forwards else -1.0)
-        point = np.stack([v, f])
+        tau = np.array([np.ones_like(v), slope]) / long * (1.0 if self._forwards else -1.0)
+        point = np.array([v, f])
         kappa = -self.sign * second / long**3  # juts out where it bends away from the free side
         return (point[::-1], tau[::-1], kappa) if self.across else (point, tau, kappa)
 
@@ -393,4 +399,4 @@ def _crossing(place: Array, ahead: Array, places: Array, aheads: Array) -> tuple
 
 def _left(tangents: Array) -> Array:
     """Tangents (2, k) turned counter-clockwise."""
-    return np.stack([-tangents[1], tangents[0]])
+    return np.array([-tangents[1], tangents[0]])

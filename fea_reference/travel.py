@@ -71,7 +71,7 @@ def reach(march: March, course: Course, target: float) -> None:
     try:
         _reach(march, course, target)
     except StoppedError as stopped:
-        if course.beyond is not None:
+        if course.beyond is not None or stopped.ending is Ending.BRANCH_ENDS:
             raise
         march.restore(origin)
         march.critical, march.behind = list(origin.critical), None
@@ -128,6 +128,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
     known: list[tuple[float, float]] = []
     limit = march.settings.iteration_limit
     rate: Array | None = None
+    tight: March | None = None
     paced = march.values[load], march.iterations
     while march.values[load] != target:
         if abs(march.values[load] - paced[0]) >= _PACE * course.span:
@@ -176,6 +177,10 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
         if minimum and follow and (close or unstable or tired):
             march.restore(saved)
             lost = followed(march, load, target, course.span) if march.curvature > 0.0 else None
+            if lost is None and tired and tight is not None:
+                # with loose penalties the march may have come past where the branch ends with tight ones
+                march.restore(tight)
+                tight, lost = None, followed(march, load, target, course.span)
             if lost is not None:
                 _beyond(march, course, target, lost)
                 stride, cuts, searching = np.inf, 0, False
@@ -195,6 +200,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
             easy = march.iterations - spent <= _EASY
             stride, cuts, follow = 2.0 * size if easy else size, 0, True
             searching = searching and len(march.penalties) == len(saved.penalties)
+            tight = tight if searching else None
         else:
             march.restore(saved)
             rate = None
@@ -204,7 +210,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
                 known, march.behind = [], None
                 stride, cuts, reason = size, cuts + 1, trouble
             elif not searching and march.loosen(Circle, Face, Pair):
-                searching, march.far, known = True, True, []
+                searching, march.far, known, tight = True, True, [], saved
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
 
@@ -228,9 +234,10 @@ def _aside(saved: March, march: March, load: int, rate: Array, ahead: Array) -> 
         return False  # one of the tangents is singular, and says nothing
     gone = (march.system.z.values - saved.system.z.values)[moving]
     aside = float(np.abs(gone - 0.5 * (first + last)).max())
-    if saved.loose and not march.loose:
-        # what had sunk into loose penalties has come out of tight ones
-        aside -= _RISES * max((one.penetration for one in saved.system.touches), default=0.0)
+    # what had sunk into loose penalties has come out of tight ones
+    now = {pair.name: penalty for pair, penalty in march.penalties.items()}
+    other = [one for one in saved.system.touches if now.get(one.pair.name) != saved.penalties[one.pair]]
+    aside -= _RISES * max((one.penetration for one in other), default=0.0)
     way, uneven = max(np.abs(first).max(), np.abs(last).max()), np.abs(last - first).max()
     return bool(aside > _UNEVEN * uneven + _ASIDE * way + _NOWHERE)
 

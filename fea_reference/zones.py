@@ -99,8 +99,8 @@ class Survey:
         if ends.size:
             share = _parabola(zeta, g, there.slope, there.curvature, ends)
             where, guess = _roots(gap_at, zeta, g, zeta_m, ends, share)
-            new = np.stack([where, np.zeros_like(where), guess])
-            zeta, g, zeta_m = np.insert(np.stack([zeta, g, zeta_m]), ends + 1, new, axis=1)
+            new = np.array([where, np.zeros_like(where), guess])
+            zeta, g, zeta_m = np.insert(np.array([zeta, g, zeta_m]), ends + 1, new, axis=1)
             neighbours = np.insert(neighbours, ends, True)
         inside = np.flatnonzero(neighbours & (g[:-1] <= 0.0) & (g[1:] <= 0.0) & (g[:-1] + g[1:] < 0.0))
         # What follows on within one element is one interval: the gap is smooth there.
@@ -301,7 +301,7 @@ def _with(
     zeta: Array, there: Gap, neighbours: NDArray[np.bool_], left: NDArray[np.int64], where: Array, more: Gap
 ) -> tuple[Array, Gap, NDArray[np.bool_]]:
     """The same with further places ``where``, each behind the one ``left`` of it."""
-    rows = np.insert(np.stack([zeta, *there.rows]), left + 1, np.stack([where, *more.rows]), axis=1)
+    rows = np.insert(np.array([zeta, *there.rows]), left + 1, np.array([where, *more.rows]), axis=1)
     zeta, g, slope, curvature, zeta_m = rows
     found = np.insert(there.found, left + 1, more.found)
     return zeta, Gap(g, slope, curvature, zeta_m, found), np.insert(neighbours, left, True)

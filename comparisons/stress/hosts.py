@@ -18,6 +18,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any, Generic, TypeVar
 
+from comparisons.pairing import COLLECTED
 from comparisons.processes import deaf
 from comparisons.stress.apart import Crashed, End, Limits, apart
 from comparisons.threads import ONE_THREAD
@@ -127,6 +128,7 @@ def _served(line: Connection, prepare: Callable[[], None]) -> None:
     prepare()
     gc.collect()
     gc.freeze()
+    gc.set_threshold(*COLLECTED)
     while True:
         try:
             call, argument, limits = line.recv()

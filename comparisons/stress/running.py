@@ -25,6 +25,12 @@ from scene.reading import scene_from
 FAILURES = (Way.WRONG, Way.CRASHED, Way.TIMED_OUT)
 """The ways that are always a fault of ours."""
 
+SHARE = 0.1
+"""Of the time that a scene did not end in: a smaller one that takes longer is taken for one that does not either."""
+
+HASTE = 30.0
+"""Seconds of the clock in which such a scene is shrunk: every smaller one that is alike takes all of its time."""
+
 
 @dataclass(frozen=True, slots=True)
 class Plan:
@@ -141,7 +147,7 @@ def _shrunk(
         if isinstance(end, Returned):
             outcome = there.outcomes[index]
             file = f"{outcome.name}.toml"
-            write(folder / file, f"# {outcome.way.words}: {outcome.sentence}\n\n{end.value}")
+            write(folder / file, f"# {outcome.way.words}: {outcome.sentence}\n{_less(there, outcome)}\n{end.value}")
             kept.saved(index, file)
             there = replace(there, saved=dict(sorted({**there.saved, index: file}.items())))
             yield there
@@ -184,9 +190,20 @@ def _named(there: Stress, draw: Callable[[int, int], Drawn], index: int) -> Outc
     return replace(there.outcomes[index], name=found.name, stated=features)
 
 
+def _less(there: Stress, outcome: Outcome) -> str:
+    """What a file says of a scene that was shrunk in less time than it was judged in."""
+    if outcome.way is not Way.TIMED_OUT:
+        return ""
+    return f"# Made smaller for as long as it took more than {SHARE * there.plan.limits.seconds:g} of them.\n"
+
+
 def _smaller(plan: Plan, crew: Crew, outcomes: dict[int, Outcome], index: int) -> str:
-    """The TOML of the smallest scene that ends as the one of an index did."""
+    """The TOML of the smallest scene that ends as the one of an index did; if that was out of time, in less of it."""
     outcome = outcomes[index]
+    limits, patience = plan.limits, crew.patience
+    if outcome.way is Way.TIMED_OUT:
+        limits = replace(limits, seconds=SHARE * limits.seconds)
+        patience = replace(patience, seconds=min(patience.seconds, HASTE))
 
     def alike(data: Plain) -> bool:
         if outcome.way is not Way.REFUSED:
@@ -194,7 +211,7 @@ def _smaller(plan: Plan, crew: Crew, outcomes: dict[int, Outcome], index: int) -
                 scene_from(data)
             except SceneError:
                 return False
-        end = apart(partial(judged_data, solvers=crew.solvers, effort=plan.effort), data, plan.limits)
+        end = apart(partial(judged_data, solvers=crew.solvers, effort=plan.effort), data, limits)
         return _outcome(outcome.name, end).kind == outcome.kind
 
-    return toml_of(shrunk(crew.draw(plan.seed, index).data, alike, crew.patience))
+    return toml_of(shrunk(crew.draw(plan.seed, index).data, alike, patience))

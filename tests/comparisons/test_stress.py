@@ -123,6 +123,16 @@ def test_what_fails_is_saved_as_a_smaller_scene_that_is_read(whole):
     assert "# wrong: " in (folder / there.saved[FATES.index("stiffer")]).read_text("utf-8")
 
 
+def test_what_was_out_of_time_is_shrunk_in_less_and_its_file_says_so(whole):
+    folder, there = whole
+    texts = {index: (folder / file).read_text("utf-8") for index, file in there.saved.items()}
+    hurried = {
+        index for index, text in texts.items() if "# Made smaller for as long as it took more than 0.1 of" in text
+    }
+    assert hurried == {index for index, outcome in there.outcomes.items() if outcome.way is Way.TIMED_OUT}
+    assert hurried
+
+
 def test_a_finished_run_is_not_begun_again(whole):
     folder, there = whole
     asked = (folder / "asked").read_text("utf-8")
