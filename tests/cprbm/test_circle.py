@@ -1,5 +1,7 @@
 """A cantilever pressed round a rigid circle, against its closed form, and contact at one point of a circle."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,7 @@ from cprbm.march import March
 from cprbm.mechanism import mechanism_of
 from cprbm.newton import system
 from cprbm.point import contact_gradient, contact_rows, point_at
+from cprbm.zones import zones_of
 from scene import Profile
 from scene.reading import scene_from
 from tests.cprbm.scenes import cantilever_data, drives_of, force
@@ -78,6 +81,26 @@ def test_a_wrap_over_most_of_the_beam_converges_with_order_two_in_everything(tru
         assert np.all((ratios > 3.3) & (ratios < 5.0)), ratios
     for n, found in errors.items():  # of forces and places hardly any error is left
         assert np.all(found[4:] < 0.2 / n**2)
+
+
+@pytest.mark.parametrize("short", [0.6, 0.9])
+def test_the_stress_along_a_wrap_needs_its_end_to_no_more_than_an_element(monkeypatch, truth, short):
+    """D″ tells where a zone ends to a part of an element; which forces are the zone's must not hang on that.
+
+    Reference: on the circle the beam has its radius and half a thickness, wherever the wrap is taken to end.
+    """
+
+    def shorter(pair, point):
+        (zone,) = zones_of(pair, point)
+        return (replace(zone, end=zone.end - short * float(pair.a.size_at(np.array([0.99 * zone.end]))[0])),)
+
+    monkeypatch.setattr("cprbm.stress.zones_of", shorter)
+    links, probe = 37, {"of": "beam", "quantity": "bending_stress", "points": 197}
+    got = solved(truth.force, links, probes=[probe]).values["beam.bending_stress"]
+    s = np.linspace(0.0, truth.length, len(got))
+    bent = 0.5 * truth.youngs_modulus * truth.thickness / (RADIUS + 0.5 * truth.thickness)
+    on_circle = s < 0.999 * truth.wrap_length
+    assert got[on_circle] == pytest.approx(-bent, rel=0.3 / links**2)
 
 
 def test_where_the_beam_lifts_off_between_two_joints_does_not_matter(truth):
