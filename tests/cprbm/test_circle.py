@@ -126,6 +126,21 @@ def test_iterations_hardly_grow_with_the_links():
     assert many.values["circle.force"][0] == pytest.approx(np.hypot(*reference.contact_force), rel=1e-5)
 
 
+@pytest.mark.parametrize("links", [11, 20, 37])
+def test_a_wrap_that_begins_within_the_first_element_beside_its_clamp(links):
+    """The circle's top is 0.3 mm beyond the clamp, at a height with it: hardly anything moves before it touches.
+
+    Reference: tests.references.wrapped of a beam that is clamped there, shorter by as much.  What is left out is the
+    bow of what lies before, of the third power of its length over the radius.
+    """
+    beside = 0.0003
+    truth = Wrapped(**(BEAM | {"length": BEAM["length"] - beside}), radius=RADIUS, force=191.0)
+    values = solved(191.0, links, center=[beside, -RADIUS - 0.5 * BEAM["thickness"]]).values
+    off = values["T.displacement"] - truth.displacement
+    assert np.hypot(*off) < 0.5 / links**2 * BEAM["length"]
+    assert values["tip.rotation"][0] == pytest.approx(truth.rotation, abs=0.5 / links**2)
+
+
 def test_one_point_of_a_circle_under_the_beams_middle():
     # reference: with w'' = M/EI, a rigid point that lifts nothing at a distance a carries R = F(3L − a)/2a of a
     # cantilever's tip force F, to the square of the slopes (1e-5 here)
