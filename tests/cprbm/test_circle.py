@@ -1,5 +1,7 @@
 """A cantilever pressed round a rigid circle, against its closed form, and contact at one point of a circle."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -13,6 +15,7 @@ from cprbm.march import March
 from cprbm.mechanism import mechanism_of
 from cprbm.newton import system
 from cprbm.point import contact_gradient, contact_rows, point_at
+from cprbm.zones import zones_of
 from scene import Profile
 from scene.reading import scene_from
 from tests.cprbm.scenes import cantilever_data, drives_of, force
@@ -80,6 +83,26 @@ def test_a_wrap_over_most_of_the_beam_converges_with_order_two_in_everything(tru
         assert np.all(found[4:] < 0.2 / n**2)
 
 
+@pytest.mark.parametrize("short", [0.6, 0.9])
+def test_the_stress_along_a_wrap_needs_its_end_to_no_more_than_an_element(monkeypatch, truth, short):
+    """D″ tells where a zone ends to a part of an element; which forces are the zone's must not hang on that.
+
+    Reference: on the circle the beam has its radius and half a thickness, wherever the wrap is taken to end.
+    """
+
+    def shorter(pair, point):
+        (zone,) = zones_of(pair, point)
+        return (replace(zone, end=zone.end - short * float(pair.a.size_at(np.array([0.99 * zone.end]))[0])),)
+
+    monkeypatch.setattr("cprbm.stress.zones_of", shorter)
+    links, probe = 37, {"of": "beam", "quantity": "bending_stress", "points": 197}
+    got = solved(truth.force, links, probes=[probe]).values["beam.bending_stress"]
+    s = np.linspace(0.0, truth.length, len(got))
+    bent = 0.5 * truth.youngs_modulus * truth.thickness / (RADIUS + 0.5 * truth.thickness)
+    on_circle = s < 0.999 * truth.wrap_length
+    assert got[on_circle] == pytest.approx(-bent, rel=0.3 / links**2)
+
+
 def test_where_the_beam_lifts_off_between_two_joints_does_not_matter(truth):
     # reference: tests.references.wrapped. Over these N the lift-off passes through an element seven times
     scaled = np.array([errors_of(n, truth)[:4] * n**2 for n in range(40, 50)])
@@ -101,6 +124,21 @@ def test_iterations_hardly_grow_with_the_links():
     assert many.certificate.iterations <= 2 * few.certificate.iterations
     assert many.values["tip.rotation"][0] == pytest.approx(reference.rotation, rel=1e-6)
     assert many.values["circle.force"][0] == pytest.approx(np.hypot(*reference.contact_force), rel=1e-5)
+
+
+@pytest.mark.parametrize("links", [11, 20, 37])
+def test_a_wrap_that_begins_within_the_first_element_beside_its_clamp(links):
+    """The circle's top is 0.3 mm beyond the clamp, at a height with it: hardly anything moves before it touches.
+
+    Reference: tests.references.wrapped of a beam that is clamped there, shorter by as much.  What is left out is the
+    bow of what lies before, of the third power of its length over the radius.
+    """
+    beside = 0.0003
+    truth = Wrapped(**(BEAM | {"length": BEAM["length"] - beside}), radius=RADIUS, force=191.0)
+    values = solved(191.0, links, center=[beside, -RADIUS - 0.5 * BEAM["thickness"]]).values
+    off = values["T.displacement"] - truth.displacement
+    assert np.hypot(*off) < 0.5 / links**2 * BEAM["length"]
+    assert values["tip.rotation"][0] == pytest.approx(truth.rotation, abs=0.5 / links**2)
 
 
 def test_one_point_of_a_circle_under_the_beams_middle():

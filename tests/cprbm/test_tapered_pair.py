@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import cprbm
+from cprbm import wells
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import State, rest_state
@@ -177,6 +178,21 @@ def test_edges_touch_half_a_thickness_from_either_line():
         at = line.at(arc)
         away = np.hypot(at.x[0] - place[0], at.y[0] - place[1])
         assert away == pytest.approx(0.5 * chain.section.thickness_at(arc)[0], rel=1e-6)
+
+
+def test_what_presses_with_a_place_of_its_own_has_no_gap_there(monkeypatch):
+    """Of edges that lean, too: whether a minimum keeps its place is asked of the gap between them."""
+    seen = []
+    held = wells.Wells.held
+
+    def recorded(found, gap):
+        seen.append(gap)
+        return held(found, gap)
+
+    monkeypatch.setattr(wells.Wells, "held", recorded)
+    _, point = loaded(tapered(bowl(1.3), A=THINNER, B=THICKER), 1.3, 23)
+    assert np.count_nonzero(point.lam) == 1
+    assert seen[-1] == pytest.approx([0.0], abs=1e-9 * THICKNESS / LENGTH)
 
 
 def test_what_is_across_from_a_corner_that_stands_out_has_its_foot_there():

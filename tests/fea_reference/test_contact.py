@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from fea_reference import Settings, answer
-from fea_reference.contact import least_at_ends
+from fea_reference.contact import least_at_ends, touch
 from fea_reference.contacts import contacts
 from fea_reference.crossing import cross
 from fea_reference.facing import borders
 from fea_reference.hermite import NeutralLine
 from fea_reference.model import build
+from fea_reference.state import State
+from fea_reference.touch import Penalty
 from fea_reference.zones import Gap, negative, overlap, seen
 from scene import Ending
 from scene.reading import scene_from
@@ -223,12 +225,10 @@ def test_beams_change_places_where_an_end_of_the_second_comes_to_press(monkeypat
         np.testing.assert_allclose(found[probe], expected[probe], rtol=1e-7, err_msg=probe)
 
 
-@pytest.mark.parametrize("beyond", [False, True])
-def test_the_gap_of_an_end_is_its_distance_from_the_side_that_faces_it(monkeypatch, beyond):
-    """The lower leans as drawn: its end is DROP below the upper's side, or beyond the upper's end and faces none."""
-    first_at_first(monkeypatch)
+def leaning(end):
+    """The lower beam drawn straight from below up to its ``end``; both beams' model and their pair."""
     scene = end_under_side(("upper", "lower"))
-    lower, end = scene.beams["lower"], (1.1 * A if beyond else C, GAP - DROP)
+    lower = scene.beams["lower"]
     line = lower.curve.model_copy(update={"start": (0.3 * C, GAP - 3.0 * DROP), "end": end})
     ground = scene.bodies["ground"].model_copy(update={"points": {"U": (0.0, GAP), "V": line.start}})
     beams = {**scene.beams, "lower": lower.model_copy(update={"curve": line})}
@@ -236,8 +236,38 @@ def test_the_gap_of_an_end_is_its_distance_from_the_side_that_faces_it(monkeypat
     scene, settings = scene.model_copy(update={"beams": beams, "bodies": bodies}), Settings(elements=7)
     model = build(scene, settings)
     (pair,) = contacts(scene, model, settings.penetration)
+    return model, pair
+
+
+@pytest.mark.parametrize("beyond", [False, True])
+def test_the_gap_of_an_end_is_its_distance_from_the_side_that_faces_it(monkeypatch, beyond):
+    """The lower leans as drawn: its end is DROP below the upper's side, or beyond the upper's end and faces none."""
+    first_at_first(monkeypatch)
+    model, pair = leaning((1.1 * A if beyond else C, GAP - DROP))
     found = least_at_ends(model, pair, model.start) * model.units.length
     assert found == (np.inf if beyond else pytest.approx(DROP, rel=1e-12))
+
+
+def test_what_an_integral_along_the_wrong_beam_leaves_out_is_the_energy_by_the_ends_way(monkeypatch):
+    """The lower, straight, slides along itself with its end inside the upper: no gap changes, nothing pushes along it.
+
+    The zone grows all the same, and with it the energy: what that changes by per length is left out.
+    """
+    first_at_first(monkeypatch)
+    model, pair = leaning((C, GAP - DROP))
+    nodes = model.node_dofs[:2, model.beams[pair.second].nodes]
+    along = np.array([0.7 * C, 2.0 * DROP]) / np.hypot(0.7 * C, 2.0 * DROP)
+    lifted = np.array([0.0, 1.07 * DROP / model.units.length])
+
+    def slid(way):
+        z = model.start.values.copy()
+        z[nodes] += (lifted + way * along)[:, None]
+        return touch(model, pair, Penalty(1.3), 6, State.of(z))
+
+    back, here, ahead = (slid(way) for way in (-1e-5, 0.0, 1e-5))
+    assert here.closed
+    change = [0.5 * float(one.stiffness @ one.gap**2) for one in (back, ahead)]
+    assert here.missing == pytest.approx((change[1] - change[0]) / 2e-5, rel=1e-5)
 
 
 def test_an_integral_along_the_wrong_beam_is_not_certified(monkeypatch):

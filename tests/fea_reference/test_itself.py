@@ -9,8 +9,10 @@ from fea_reference import Settings, answer
 from fea_reference.contact import selves, touch
 from fea_reference.contacts import looked_at, passed_through, zones_of
 from fea_reference.crossing import cross, crosses_itself
+from fea_reference.edge import Edge
+from fea_reference.facing import Tapers
 from fea_reference.hermite import NeutralLine
-from fea_reference.itself import unseen
+from fea_reference.itself import seen_itself, unseen
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.touch import Penalty
@@ -255,3 +257,21 @@ def test_neighbours_never_touch():
     (pair,) = selves(scene, model)
     thick = replace(pair, distance=0.5)
     assert zones_of(model, thick, model.start).least > 0.0
+
+
+def test_a_place_across_from_an_end_that_leans_is_looked_at():
+    """A strip that grows thicker runs out and back, past above its start: its edge leans, and so does the way across.
+
+    By n·x_m' = T' the last place that faces the start is twice the bend's radius times tan(asin T') beyond it.
+    """
+    n, bend = 37, 0.15
+    s = np.linspace(0.0, 2.05 + np.pi * bend, n + 1)
+    turned = np.clip((s - 1.0) / bend, 0.0, np.pi)
+    back = 1.0 - (s - 1.0 - np.pi * bend)
+    x = np.where(s < 1.0, s, np.where(turned < np.pi, 1.0 + bend * np.sin(turned), back))
+    line = curve(x, bend * (1.0 - np.cos(turned)), turned)
+    edge = Edge((0.0, float(n)), (0.05, 0.15))
+    survey = seen_itself(line, unseen(later=True, ended=False), 0.2, Tapers(edge, edge))
+    last = float(line.at(survey.zeta[-1:])[0][0, 0])
+    assert last == pytest.approx(-2.0 * bend * np.tan(np.arcsin(0.1 / line.lengths.sum())), rel=1e-2)
+    assert survey.there.zeta_m[-1] == pytest.approx(0.0, abs=1e-9)

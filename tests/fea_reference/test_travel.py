@@ -9,11 +9,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from fea_reference import travel
+from fea_reference.following import Lost
 from fea_reference.march import StoppedError
 from fea_reference.travel import Course, _arrive
-from scene.answer import Ending
+from scene.answer import Ending, Loss
 
-MODEL = SimpleNamespace(moving=np.array([True]))
+MODEL = SimpleNamespace(moving=np.array([True]), stepped=[SimpleNamespace(unit=1.0)])
 
 
 @dataclass
@@ -92,3 +94,71 @@ def test_where_there_is_no_way_steps_end():
         _arrive(march, Course(0, 1.0), 1.0, watched=False)
     assert stopped.value.ending is Ending.STEP_TOO_SMALL
     assert march.values[0] < 0.37
+
+
+END = 0.7313
+
+
+@dataclass
+class Ended(Ways):
+    """A march whose one motion is λ, on a branch that ends at END; beyond stands another one.
+
+    Nothing but the curvature μ tells of that: the branch beyond goes on in the same direction, and is stable.
+    """
+
+    folds: bool = True
+    reached: list[float] = field(default_factory=list)
+
+    @property
+    def system(self):
+        return SimpleNamespace(z=SimpleNamespace(values=self.values.copy()))
+
+    @property
+    def curvature(self):
+        here = self.values[0]
+        return np.sqrt(1.0 - here / END) if self.folds and here < END else 1.0
+
+    @curvature.setter
+    def curvature(self, value):
+        pass
+
+    def rate(self, load):
+        return np.ones(1)
+
+    def saved(self):
+        return Ended(values=self.values.copy(), acting=self.acting, folds=self.folds)
+
+    def step(self, load, value, rate):
+        self.reached.append(value)
+        return super().step(load, value, rate)
+
+
+def ending(monkeypatch, march, *, lets_go):
+    """Where the branch began to be followed, of a march to λ = 1; ``lets_go``, it ends as a contact lets go."""
+    followed = []
+
+    def follow(march, load, target, span):
+        followed.append(float(march.values[load]))
+        return Lost(END, 0.0, Loss.FOLD, "", 0.0, 0.0, 0.0, march.system, np.zeros(1))
+
+    monkeypatch.setattr(travel, "followed", follow)
+    monkeypatch.setattr(travel, "about_to_go", lambda march, load, value: lets_go and value > END)
+    with pytest.raises(StoppedError) as stopped:
+        _arrive(march, Course(0, 1.0), 1.0, watched=True)
+    assert stopped.value.ending is Ending.BRANCH_ENDS
+    (begun,) = followed
+    return begun
+
+
+def test_no_step_goes_over_a_fold_that_the_curvature_foresees(monkeypatch):
+    """μ² goes evenly to zero at END, as towards any fold: two steps before it tell where that is."""
+    march = Ended()
+    begun = ending(monkeypatch, march, lets_go=False)
+    assert max(march.reached) < END
+    assert 0.95 * END < begun < END
+
+
+def test_no_step_goes_over_where_a_contact_is_about_to_let_go(monkeypatch):
+    march = Ended(folds=False)
+    begun = ending(monkeypatch, march, lets_go=True)
+    assert max(march.reached) == begun < END

@@ -1,0 +1,103 @@
+"""Where a branch ends, seen by following it: a fold, a stop that comes before it, a turn sharper than a step.
+
+References: :mod:`tests.references.snap`, and a branch that is made up.
+"""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fea_reference import Settings, following
+from fea_reference.assembly import assemble_ends
+from fea_reference.branch import Place
+from fea_reference.curvature import Mode
+from fea_reference.following import followed
+from fea_reference.solve import prepared
+from fea_reference.travel import Course, reach
+from scene.answer import Loss
+from scene.reading import scene_from
+from tests.together import branches
+from tests.together.branches import SNAP
+
+TURNED = 0.75  # rad; the free beam has snapped before
+
+
+def turned_to(clamp, stopped_at=None):
+    """The march of the beam that hangs below, its clamp turned so far."""
+    scene = scene_from(branches.snap([[clamp]], stopped_at=stopped_at))
+    march = prepared(scene, Settings(elements=16, kinematics="bending")).march
+    assemble_ends(scene, march)
+    reach(march, Course(0, TURNED), clamp)
+    return march
+
+
+def test_a_fold_is_found_and_known_as_finely_as_told():
+    lost = followed(turned_to(0.5), 0, TURNED, TURNED)
+    assert lost.loss is Loss.FOLD
+    assert lost.value == pytest.approx(SNAP.fold.clamp, rel=2e-4)
+    # λ is even about its fold: where the curvature's zero lies within a 10⁻⁴ of a step, λ is known to its square
+    assert lost.uncertainty < 1e-7 * TURNED
+
+
+def test_a_stop_that_acts_before_the_fold_holds_beyond_it():
+    """The beam's far end comes down to the stop's angle at φ = 0.6, before the fold, and stands there as φ grows."""
+    march = turned_to(0.5, SNAP.at(0.6).far)
+    assert followed(march, 0, TURNED, TURNED) is None
+    assert march.closing["stop"] == pytest.approx(0.6, rel=2e-4)
+    assert "stop" in march.acting.limits
+    assert march.values[0] > 1.05 * SNAP.fold.clamp
+
+
+END, RADIUS = 0.137, 0.0021
+
+
+class Sharp:
+    """The branch x = λ, which turns back at END on a circle of RADIUS; its curvature falls to zero there, with dλ/ds.
+
+    Steps longer than RADIUS across the turn come to another branch, stable and beyond.
+    """
+
+    def at(self, s):
+        straight = (END - RADIUS * (1.0 + np.sqrt(0.5))) * np.sqrt(2.0)
+        angle = 0.25 * np.pi + np.clip((s - straight) / RADIUS, 0.0, np.pi)
+        way, rate = np.cos(angle), np.sin(angle)
+        on, back = min(s, straight), max(s - straight - np.pi * RADIUS, 0.0)
+        value = on * np.sqrt(0.5) + RADIUS * (np.sqrt(0.5) - np.cos(angle)) + back * rate
+        return self.place(value, min(rate, 0.7), way, rate, s)
+
+    @staticmethod
+    def place(value, curvature, way, rate, s):
+        return Place(float(value), SimpleNamespace(z=None, s=s), Mode(curvature, np.ones(1)), np.array([way]), rate)
+
+    def onwards(self, branch, here, length):
+        there = self.at(here.system.s + length)
+        if length > RADIUS and there.rate != here.rate:
+            return self.place(1.7 * END, 1.0, -here.way[0], -here.rate, np.inf)
+        return there
+
+
+def test_a_turn_sharper_than_a_step_is_not_stepped_over(monkeypatch):
+    sharp, ends = Sharp(), []
+    unit = SimpleNamespace(weights=np.ones(1), weight=1.0, at=lambda value: np.array([value]))
+    monkeypatch.setattr(following, "_letting_go", lambda march, load, target, span: None)
+    monkeypatch.setattr(following, "_branch", lambda march, load, span: unit)
+    monkeypatch.setattr(following, "place", lambda branch, value, system, before: sharp.at(0.0))
+    monkeypatch.setattr(following, "onwards", sharp.onwards)
+    monkeypatch.setattr(
+        following, "_lost", lambda march, branch, first, here, there, length: ends.append((here, there))
+    )
+    march = SimpleNamespace(
+        look=lambda: None,
+        loose=False,
+        values=np.zeros(1),
+        system=SimpleNamespace(z=None),
+        model=SimpleNamespace(size=1, moving=np.array([True])),
+        least_gap=lambda system: np.inf,
+        passed=lambda before, system, what: None,
+    )
+    followed(march, 0, 1.0, 1.0)
+    ((here, there),) = ends
+    assert here.curvature > 0.0 >= there.curvature
+    assert here.value == pytest.approx(END, abs=RADIUS)
+    assert there.value == pytest.approx(END, abs=RADIUS)
