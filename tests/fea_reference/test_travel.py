@@ -111,7 +111,7 @@ class Ended(Ways):
 
     @property
     def system(self):
-        return SimpleNamespace(z=SimpleNamespace(values=self.values.copy()))
+        return SimpleNamespace(z=SimpleNamespace(values=self.values.copy()), touches=())
 
     @property
     def curvature(self):

@@ -57,7 +57,7 @@ def in_short_steps():
     return fea_reference.answer(scene_from(pressed(*SHORT)))
 
 
-@pytest.mark.parametrize("stations", [(FIRST,), (0.00571, FIRST)])
+@pytest.mark.parametrize("stations", [(FIRST,), (0.0041, FIRST)])
 def test_a_long_step_ends_where_short_ones_do(stations, in_short_steps):
     answer = cprbm.answer(scene_from(pressed(*stations)))
     assert answer.completed
