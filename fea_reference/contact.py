@@ -70,6 +70,7 @@ from fea_reference.zones import (
 from scene.statement import BeamContact, BeamEnd, FreeEnd, Scene, SelfContact
 
 _AT_END = 1e-6  # elements
+_BESIDE = 2.0  # mean thicknesses: held ends no further apart stand beside each other
 _SLENDER = 0.01  # of the longest beam: what stands for the thickness of beams that touch as lines
 _LYING = 1.0  # elements: what is shorter at an end does not lie on the other beam
 _LAYERS = 32.0  # the widest in a beam's length
@@ -93,7 +94,7 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         lines = [model.line(beam, model.start) for beam in (first, second)]
         side, side_m = side_of(*lines), side_of(*lines[::-1])
         distance, scale, measure = (mean, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
-        ends, ends_m = _loose(scene, first, second), _loose(scene, second, first)
+        ends, ends_m = _loose(model, scene, first, second), _loose(model, scene, second, first)
         penalties = [_penalties(model, beam, mean) for beam in (first, second)]
         loosest, stiffness, stiffest = map(min, zip(*penalties, strict=True))
         tapers = _tapers(model, first, second, thick=contact.thick)
@@ -104,11 +105,25 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
     return tuple(found)
 
 
-def _loose(scene: Scene, beam: BeamPart, other: BeamPart) -> tuple[int, ...]:
-    """Ends of a beam that no body holds beside another: 0 for its start, 1 for its end."""
-    theirs = {_holder(scene, end) for end in (scene.beams[other.name].start, scene.beams[other.name].end)} - {None}
-    mine = (scene.beams[beam.name].start, scene.beams[beam.name].end)
-    return tuple(which for which, end in enumerate(mine) if _holder(scene, end) not in theirs)
+def _loose(model: Model, scene: Scene, beam: BeamPart, other: BeamPart) -> tuple[int, ...]:
+    """Ends of a beam that no body holds beside an end of another: 0 for its start, 1 for its end."""
+    mine, theirs = (
+        [
+            (_holder(scene, end), place)
+            for end, place in zip(
+                (scene.beams[each.name].start, scene.beams[each.name].end),
+                model.line(each, model.start).nodes[[0, -1]],
+                strict=True,
+            )
+        ]
+        for each in (beam, other)
+    )
+    near = _BESIDE * 0.5 * (beam.thickness + other.thickness)
+    return tuple(
+        which
+        for which, (holder, place) in enumerate(mine)
+        if not any(holder is not None and holder == its and abs(place - there) < near for its, there in theirs)
+    )
 
 
 def _holder(scene: Scene, end: BeamEnd) -> str | None:
