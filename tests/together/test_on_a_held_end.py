@@ -1,7 +1,7 @@
 """A beam that comes to lean on the held end of another, which stands on the same ground but far from its own clamp.
 
-What the beam sees of the other is a circle of half its thickness about that end, which is the reference: the differential
-equations that the room exact integrates.  From rest on both beams have an end over the other's inside.
+What the beam sees of the other is a circle of half its thickness about that end, which is the reference: the
+differential equations that the room exact integrates.  From rest on both beams have an end over the other's inside.
 """
 
 import pytest
