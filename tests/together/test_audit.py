@@ -150,6 +150,22 @@ def test_a_graph_over_y_is_looked_at_from_its_side(side, ahead):
     assert _surface(contact, np.array([0.41 + 0.2j])).distance == pytest.approx([0.11 * ahead])
 
 
+def test_places_are_as_far_from_a_parabola_as_the_roots_of_its_cubic_say():
+    # y = c x²: the foot x of (p, q) solves 2c²x³ + (1 − 2cq)x − p = 0; near the graph, far off, and deep in its bend
+    c = 3.7
+    contact = FunctionContact(
+        kind="beam-function", beam="b", body="w", axis="x", coefficients=(0.0, 0.0, c), range=(1.1, -0.9), side="above"
+    )
+    places = np.array([0.31 + 0.4j, -0.52 + 0.97j, 0.013 + 2.3j, 0.77 - 0.6j, -0.21 + 0.16317j])
+    expected = []
+    for p, q in zip(places.real, places.imag, strict=True):
+        feet = np.polynomial.polynomial.polyroots((-p, 1.0 - 2.0 * c * q, 0.0, 2.0 * c**2))
+        x = feet[np.abs(feet.imag) < 1e-9].real
+        expected.append(np.sign(q - c * p**2) * np.hypot(x - p, c * x**2 - q).min())
+    # chords of 5e-4 by a curvature of at most 2c: h²·2c/8
+    assert _surface(contact, places).distance == pytest.approx(expected, abs=2.0 * c * (2.0 / 4000 * 8.3) ** 2 / 8.0)
+
+
 @pytest.mark.parametrize("solver", ["cprbm", "fea"])
 def test_a_line_on_a_corner_is_pressed_across_itself(solver):
     # without thickness it stands on the corner itself, whose nearest place says nothing of the force's direction
