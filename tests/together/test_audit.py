@@ -23,7 +23,7 @@ from scene.answer import frozen_array
 from scene.reading import scene_from
 from scene.statement import FunctionContact, LineContact
 from tests.cprbm.scenes import LENGTH, MODULUS, THICKNESS, WIDTH, cantilever_data
-from tests.fea_reference.on_an_edge import cantilever_over
+from tests.fea_reference.on_an_edge import T, cantilever_over, scene_of
 from tests.references import columns
 from tests.together import branches
 from tests.together.branches import PINNED_ARCH
@@ -128,6 +128,34 @@ def test_from_where_angles_are_counted_is_no_fault(solver, held):
         energy = station.values["scene.potential_energy"] + turns * 0.9 * size
         planted = replace(station, values={"scene.potential_energy": frozen_array(energy)})
         assert audited(scene, replace(found, stations=(planted,))) != ()
+
+
+def test_what_rounding_leaves_of_moments_in_short_links_is_no_fault():
+    # a circle under the tip presses 3e-4 of the length before it, where a quarter of the links is put: which way their
+    # chords point is known to the rounding of places over their length
+    away = 0.013 + 0.5 * T
+    scene = scene_of(
+        {"kind": "polynomial", "axis": "x", "coefficients": (0.0, 0.0, 0.31, -0.17), "range": (0.0, 0.93)},
+        {"joint": "weld", "point": "root"},
+        {"joint": "weld", "point": "tip"},
+        {
+            "kind": "beam-circle",
+            "body": "ground",
+            "center": (0.9297 + 0.1343 * away, 0.13133 - 0.9909 * away),
+            "radius": 0.013,
+        },
+        bodies={
+            "ground": {"motion": "fixed", "points": {"root": (0.0, 0.0)}},
+            "block": {"motion": "free", "points": {"tip": (0.93, 0.13137431)}},
+        },
+        loads={"P": {"kind": "beam_force", "beam": "beam", "at": 0.71, "direction": (0.0, -1.0)}},
+        stages=(("P", (0.041, 0.83)),),
+        probes=(("edge", "force"), ("edge", "ends")),
+    )
+    found = cprbm.answer(scene, cprbm.Settings(links=91))
+    assert found.completed, found.sentence
+    assert min(np.diff(each.statics.inside["beam"].borders).min() for each in found.stations) < 3e-5
+    assert audited(scene, found) == ()
 
 
 def test_in_front_of_a_sharp_corner_is_not_behind_it():
