@@ -13,6 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from comparisons.audit.areas import AreaOfBeam
+from comparisons.audit.links import Links
 from comparisons.audit.seen import Acting, AnyBeam, Seen
 from scene.statement import BeamContact, BeamMoment, SelfContact, WeldedEnd
 
@@ -20,6 +21,7 @@ CLOSED = 1e-7  # of the largest force or moment in a sum
 ROUNDED = 100.0  # times what round-off leaves
 SMALL = 1e-3  # of the longest beam
 LEVER = 0.4  # h: by how much the lever of a force near a cut may be off
+SIDE = 1e-9  # of the longest beam
 NEAR, NEAR_SHEAR = 1.6, 2.6  # h: how near that is
 
 
@@ -50,6 +52,8 @@ def cuts(seen: Seen) -> Iterator[str]:
     for name, beam in seen.beams.items():
         arc, _, inside = beam.cuts
         allowed = floor + between_nodes(seen, name)[1] + near(seen, name, arc)
+        if isinstance(beam, Links):
+            allowed = allowed + beam.blurred
         beyond = moments_beyond(seen, name, arc)
         off = np.abs(inside - beyond) - allowed
         worst = int(np.argmax(off))
@@ -116,7 +120,9 @@ def moments_beyond(seen: Seen, name: str, arc: np.ndarray) -> np.ndarray:
 def near(seen: Seen, name: str, arc: np.ndarray) -> np.ndarray:
     """By how much moments at arc lengths (n,) may be off for what acts near there, N·m; zero where nothing does."""
     beam, acting = seen.beams[name], seen.acting[name]
-    h = _size(beam, arc)[:, None]
+    # beside a much shorter element it is the one that the force acts in or beside
+    beside = np.maximum(_size(beam, acting.s - SIDE * seen.longest), _size(beam, acting.s + SIDE * seen.longest))
+    h = np.maximum(_size(beam, arc)[:, None], beside)
     inner = (acting.s > 0.0) & (acting.s < seen.rests[name].length)
     ends = ~inner & ~np.isin(acting.by, _joints_of(seen, name))
     wide = seen.kinematics == "shear" or isinstance(beam, AreaOfBeam)  # an area's edge leads a force on to neighbours

@@ -237,7 +237,7 @@ def _feet(places: Complex, beam: AnyBeam) -> Feet:
     line = beam.line(s)[0]
     if not places.size:
         return Feet(np.zeros(0), places, np.zeros(0), np.zeros(0, dtype=bool))
-    nearest = cKDTree(np.stack((line.real, line.imag), axis=1)).query(np.stack((places.real, places.imag), axis=1))[1]
+    nearest = cKDTree(_pairs(line)).query(_pairs(places))[1]
     return _projected(places, line, s, np.asarray(nearest))
 
 
@@ -295,14 +295,14 @@ def _surface(contact: CircleContact | LineContact | HalfPlaneContact | FunctionC
         return Feet(distance, np.full(len(places), normal), 0.0 * distance, nowhere)
     corners, left = _corners(contact), _left(contact)
     steps = np.diff(corners)
-    share = ((places[:, None] - corners[:-1]) * np.conj(steps)).real / np.abs(steps) ** 2
+    pieces = _pieces(contact, places, corners)  # (k, few)
+    share = ((places[:, None] - corners[pieces]) * np.conj(steps[pieces])).real / np.abs(steps[pieces]) ** 2
     held = np.clip(share, 0.0, 1.0)
-    away = places[:, None] - corners[:-1] - held * steps
-    piece = np.abs(away).argmin(axis=1)
-    rows = np.arange(len(places))
+    away = places[:, None] - corners[pieces] - held * steps[pieces]
+    rows, nearest = np.arange(len(places)), np.abs(away).argmin(axis=1)
+    piece, share, held, away = (each[rows, nearest] for each in (pieces, share, held, away))
     side = (1j if left else -1j) * steps / np.abs(steps)
-    across = (away * np.conj(side)).real[rows, piece]
-    share, held, away = share[rows, piece], held[rows, piece], away[rows, piece]
+    across = (away * np.conj(side[piece])).real
     closed = bool(abs(corners[0] - corners[-1]) == 0.0)
     ended = ((piece == 0) & (share < 0.0)) | ((piece == len(steps) - 1) & (share > 1.0))
     corner = (held != share) & (np.abs(away) > 0.0)
@@ -317,6 +317,22 @@ def _surface(contact: CircleContact | LineContact | HalfPlaneContact | FunctionC
         lying | ~corner & (size < 1e-9), side[piece], sign * away / np.maximum(size, np.finfo(float).tiny)
     )
     return Feet(sign * size, normal, 0.0 * size, ended & ~closed)
+
+
+def _pieces(contact: LineContact | FunctionContact, places: Complex, corners: Complex) -> Ints:
+    """Pieces (k, m) of a line among which the nearest of every place is: of a finely drawn graph those at its nearest
+    corner, as all of them would be thousands for every place; of a line as it was given all, ascending.
+    """
+    last = len(corners) - 2
+    if isinstance(contact, LineContact):
+        return np.broadcast_to(np.arange(last + 1), (len(places), last + 1))
+    nearest = cKDTree(_pairs(corners)).query(_pairs(places))[1]
+    return np.stack((np.maximum(nearest - 1, 0), np.minimum(nearest, last)), axis=1)
+
+
+def _pairs(places: Complex) -> Array:
+    """Complex places (k,) as coordinates (k, 2)."""
+    return np.stack((places.real, places.imag), axis=1)
 
 
 def _left(contact: LineContact | FunctionContact) -> bool:
@@ -376,7 +392,7 @@ def _near_at_rest(seen: Seen, a: str, b: str, s: Array) -> Flags:
     A, B = seen.rests[a], seen.rests[b]
     line = B.places(seen.beams[b].fine)
     places = A.places(s)
-    nearest = cKDTree(np.stack((line.real, line.imag), axis=1)).query(np.stack((places.real, places.imag), axis=1))[1]
+    nearest = cKDTree(_pairs(line)).query(_pairs(places))[1]
     feet = _projected(places, line, seen.beams[b].fine, np.asarray(nearest))
     T = 0.5 * (A.thickness(s) + B.thickness(feet.s))
     return _spread(s, ~feet.at_end & (feet.distance < T * (1.0 - 1e-6)), float(T.max()))
@@ -435,7 +451,7 @@ def _intersections(a: Complex, b: Complex) -> tuple[np.ndarray, Complex]:
     """Pieces of the line a that cross b, ascending, and where."""
     u, v = np.diff(a), np.diff(b)
     reach = 0.5 * (np.abs(u).max() + np.abs(v).max())
-    trees = [cKDTree(np.stack((m.real, m.imag), axis=1)) for m in (0.5 * (a[1:] + a[:-1]), 0.5 * (b[1:] + b[:-1]))]
+    trees = [cKDTree(_pairs(m)) for m in (0.5 * (a[1:] + a[:-1]), 0.5 * (b[1:] + b[:-1]))]
     pairs = trees[0].sparse_distance_matrix(trees[1], reach, output_type="ndarray")
     i, j = pairs["i"], pairs["j"]
     cross = (np.conj(u[i]) * v[j]).imag

@@ -23,7 +23,7 @@ from scene.answer import frozen_array
 from scene.reading import scene_from
 from scene.statement import FunctionContact, LineContact
 from tests.cprbm.scenes import LENGTH, MODULUS, THICKNESS, WIDTH, cantilever_data
-from tests.fea_reference.on_an_edge import cantilever_over
+from tests.fea_reference.on_an_edge import T, cantilever_over, scene_of
 from tests.references import columns
 from tests.together import branches
 from tests.together.branches import PINNED_ARCH
@@ -130,6 +130,34 @@ def test_from_where_angles_are_counted_is_no_fault(solver, held):
         assert audited(scene, replace(found, stations=(planted,))) != ()
 
 
+def test_what_rounding_leaves_of_moments_in_short_links_is_no_fault():
+    # a circle under the tip presses 3e-4 of the length before it, where a quarter of the links is put: which way their
+    # chords point is known to the rounding of places over their length
+    away = 0.013 + 0.5 * T
+    scene = scene_of(
+        {"kind": "polynomial", "axis": "x", "coefficients": (0.0, 0.0, 0.31, -0.17), "range": (0.0, 0.93)},
+        {"joint": "weld", "point": "root"},
+        {"joint": "weld", "point": "tip"},
+        {
+            "kind": "beam-circle",
+            "body": "ground",
+            "center": (0.9297 + 0.1343 * away, 0.13133 - 0.9909 * away),
+            "radius": 0.013,
+        },
+        bodies={
+            "ground": {"motion": "fixed", "points": {"root": (0.0, 0.0)}},
+            "block": {"motion": "free", "points": {"tip": (0.93, 0.13137431)}},
+        },
+        loads={"P": {"kind": "beam_force", "beam": "beam", "at": 0.71, "direction": (0.0, -1.0)}},
+        stages=(("P", (0.041, 0.83)),),
+        probes=(("edge", "force"), ("edge", "ends")),
+    )
+    found = cprbm.answer(scene, cprbm.Settings(links=91))
+    assert found.completed, found.sentence
+    assert min(np.diff(each.statics.inside["beam"].borders).min() for each in found.stations) < 3e-5
+    assert audited(scene, found) == ()
+
+
 def test_in_front_of_a_sharp_corner_is_not_behind_it():
     # the triangle of a drawn scene; distances of places beyond its corners, and of one inside, by hand
     corners = ((-0.3, -0.2), (0.5, 0.1), (-0.4, 0.9), (-0.3, -0.2))
@@ -148,6 +176,22 @@ def test_a_graph_over_y_is_looked_at_from_its_side(side, ahead):
         kind="beam-function", beam="b", body="w", axis="y", coefficients=(0.3, 0.0), range=(-1.0, 0.7), side=side
     )
     assert _surface(contact, np.array([0.41 + 0.2j])).distance == pytest.approx([0.11 * ahead])
+
+
+def test_places_are_as_far_from_a_parabola_as_the_roots_of_its_cubic_say():
+    # y = c x²: the foot x of (p, q) solves 2c²x³ + (1 − 2cq)x − p = 0; near the graph, far off, and deep in its bend
+    c = 3.7
+    contact = FunctionContact(
+        kind="beam-function", beam="b", body="w", axis="x", coefficients=(0.0, 0.0, c), range=(1.1, -0.9), side="above"
+    )
+    places = np.array([0.31 + 0.4j, -0.52 + 0.97j, 0.013 + 2.3j, 0.77 - 0.6j, -0.21 + 0.16317j])
+    expected = []
+    for p, q in zip(places.real, places.imag, strict=True):
+        feet = np.polynomial.polynomial.polyroots((-p, 1.0 - 2.0 * c * q, 0.0, 2.0 * c**2))
+        x = feet[np.abs(feet.imag) < 1e-9].real
+        expected.append(np.sign(q - c * p**2) * np.hypot(x - p, c * x**2 - q).min())
+    # chords of 5e-4 by a curvature of at most 2c: h²·2c/8
+    assert _surface(contact, places).distance == pytest.approx(expected, abs=2.0 * c * (2.0 / 4000 * 8.3) ** 2 / 8.0)
 
 
 @pytest.mark.parametrize("solver", ["cprbm", "fea"])
