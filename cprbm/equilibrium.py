@@ -19,6 +19,7 @@ LONGEST_TURN = 0.5  # of any link in one iteration, rad
 PATIENCE = 12  # iterations; then the set that presses may go in circles, and is found by a rule that cannot
 SAME = 0.1  # part by which residuals differ that are the same again
 SHORT, LONG = 3, 6  # iterations of a circle: in which residuals alone tell it, and with the rows that press
+IDLE, BETTER = 15, 0.7  # iterations in a row that lead nowhere: none leaves such a part of what the best one left
 CIRCLES = 4  # returns that end the search for places of their own, and as many more that with steady rows
 AWAY = 6  # steps in a row, each longer than the one before
 NOTHING = 1e-12  # S: moments below it are no load at all, and what is left is measured by S
@@ -80,9 +81,9 @@ def equilibrium(
 ) -> Equilibrium:
     """Newton's method from ``start`` to the equilibrium under the loads' and drives' ``values`` (SI).
 
-    Where it comes back to a residual it had, the row sets of two or three states follow each other in a circle, and
-    a part of the step is taken.  Where it comes back for good, the steady rows decide if they may ``settle`` it;
-    otherwise that is the end.  Where ``farthest`` says (rad) by what a link turns at most, so it is beyond that, and
+    Where it comes back to a residual it had, the row sets of a few states follow each other in a circle, and a part of
+    the step is taken.  Where it comes back for good, or comes no nearer, the steady rows decide if they may ``settle``
+    it; otherwise that is the end, as it is where these are no others or lead nowhere either.  Where ``farthest`` says (rad) by what a link turns at most, so it is beyond that, and
     where steps grow and grow: they lead away from a state that is no minimum.
     """
     model = problem.model
@@ -90,6 +91,7 @@ def equilibrium(
     now = measure(problem, point)
     seen: list[tuple[float, Held]] = []
     part, circles, settled = 1.0, 0, False
+    idle, best = 0, np.inf
     grown, last = 0, np.inf
     near: Point | None = None
     for iteration in range(1, iterations + 1):
@@ -108,15 +110,17 @@ def equilibrium(
         returns = _returns(seen, here)
         part = 0.5 * part if returns else min(1.0, 2.0 * part)
         circles += returns
-        if circles == CIRCLES:
+        if circles == CIRCLES or idle == IDLE:
             if settled or not settle or _steady(here[1]):
                 return Equilibrium(point, now, iteration, converged=False)
-            problem, circles, settled = replace(problem, formulation=problem.steady), 0, True
+            problem, circles, idle, settled = replace(problem, formulation=problem.steady), 0, 0, True
         seen.append(here)
         scale = min(part, LONGEST_TURN / longest) if longest > 0.0 else part
         state = point.state.moved(scale * change, model.n_links)
         before, point = point, point_at(problem, values, state, mu, lam, point.rows)
         now = measure(problem, point)
+        most = max(now.residual, now.violation, now.overlap)
+        idle, best = 0 if most < BETTER * best else idle + 1, min(best, most)
         if most_turned(start.state, state) > farthest:
             return Equilibrium(point, now, iteration, converged=False)
         if scale == 1.0 and _settled(now, longest, tolerance):
