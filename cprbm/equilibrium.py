@@ -83,8 +83,9 @@ def equilibrium(
 
     Where it comes back to a residual it had, the row sets of a few states follow each other in a circle, and a part of
     the step is taken.  Where it comes back for good, or comes no nearer, the steady rows decide if they may ``settle``
-    it; otherwise that is the end, as it is where these are no others or lead nowhere either.  Where ``farthest`` says (rad) by what a link turns at most, so it is beyond that, and
-    where steps grow and grow: they lead away from a state that is no minimum.
+    it; otherwise that is the end, as it is where these are no others or lead nowhere either.  Where ``farthest`` says
+    (rad) by what a link turns at most, so it is beyond that, and where steps grow and grow: they lead away from a state
+    that is no minimum.
     """
     model = problem.model
     point = point_under(problem, values, start)
