@@ -112,9 +112,10 @@ def equilibrium(
         part = 0.5 * part if returns else min(1.0, 2.0 * part)
         circles += returns
         if circles == CIRCLES or idle == IDLE:
-            if settled or not settle or _steady(here[1]):
+            if settled or not settle or _steady(seen):
                 return Equilibrium(point, now, iteration, converged=False)
-            problem, circles, idle, settled = replace(problem, formulation=problem.steady), 0, 0, True
+            problem, settled = replace(problem, formulation=problem.steady), True
+            part, circles, seen, idle, best = 1.0, 0, [], 0, np.inf
         seen.append(here)
         scale = min(part, LONGEST_TURN / longest) if longest > 0.0 else part
         state = point.state.moved(scale * change, model.n_links)
@@ -152,9 +153,10 @@ def _held(point: Point) -> Held:
     return frozenset(key for key, force in zip(point.rows.keys, point.lam, strict=True) if force > 0.0)
 
 
-def _steady(held: Held) -> bool:
-    """Whether no place of its own is among what is held, so that steady rows are no others."""
-    return all(key >= 0 for _, key in held)
+def _steady(seen: list[tuple[float, Held]]) -> bool:
+    """Whether the same rows have pressed lately, and none at a place of its own, so that it is no circle of rows."""
+    lately = {held for _, held in seen[-LONG:]}
+    return len(lately) == 1 and all(key >= 0 for held in lately for _, key in held)
 
 
 def _returns(seen: list[tuple[float, Held]], here: tuple[float, Held]) -> bool:
