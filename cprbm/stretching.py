@@ -16,7 +16,8 @@ from nothing.  To first order in t and m their equation along w is
     m (σ + κ t) = 0,
 
 of which Newton's method, begun at m = 0, keeps m = 0: it looks for the one branch where only the other goes on.  Begun
-at t = −σ/κ and any m that holds x there (m κ > 0) it finds the other.
+at t = −σ/κ and any m that holds x there (m κ > 0) it finds the other.  Where m κ < 0 the linkage is pushed, and folds: an
+equilibrium and no minimum.
 """
 
 from __future__ import annotations
@@ -28,11 +29,13 @@ import numpy as np
 from cprbm.closure import closure_second
 from cprbm.kinematics import State
 from cprbm.point import Point, Problem, point_at
-from scene.answer import Array
+from scene.answer import Array, Ints
 
 NEAR = 0.7  # rad, and units of length: the most that one step may bring a linkage into line by
 SLIGHT = 1e-6  # of the largest turn: κ that is nothing
 ENOUGH = 1.0  # S/ℓ²: m κ to begin with
+IN_LINE = 1e-6  # of the largest singular value: σ that is nothing
+NOTHING = 1e-9  # S: curvature that is none
 
 
 def stretched(problem: Problem, values: Mapping[str, float], point: Point) -> Point | None:
@@ -41,11 +44,9 @@ def stretched(problem: Problem, values: Mapping[str, float], point: Point) -> Po
     ``values`` (SI) are those of loads and drives there.
     """
     model, first = problem.model, problem.model.n_links
-    led = {body for chain in model.chains for body in (chain.start.body, chain.end.body if chain.end else -1)}
-    alone = [body for body in range(len(model.free_bodies)) if body not in led]
-    if not alone:
+    columns = _alone(problem)
+    if not columns.size:
         return None
-    columns = (first + 3 * np.array(alone)[:, None] + np.arange(3)).ravel()
     A = point.A_E[:, columns]
     left, sizes, right = np.linalg.svd(A, full_matrices=False)
     nu, sigma, w = left[:, -1], float(sizes[-1]), np.zeros(model.n_unknowns)
@@ -57,3 +58,32 @@ def stretched(problem: Problem, values: Mapping[str, float], point: Point) -> Po
     state: State = point.state.moved(-sigma / kappa * w, first)
     mu: Array = point.mu + ENOUGH / kappa * nu
     return point_at(problem, dict(values), state, mu, point.lam, point.rows)
+
+
+def folds(problem: Problem, point: Point) -> bool:
+    """Whether a linkage that is in line carries a push, under which it folds.
+
+    That moves no link of a beam, and is in no curvature over their angles.
+    """
+    columns, first = _alone(problem), problem.model.n_links
+    if not columns.size:
+        return False
+    held = np.concatenate((point.A_E, point.slopes[point.lam > 0.0]))[:, columns]
+    _, sizes, right = np.linalg.svd(held)
+    sizes = np.pad(sizes, (0, len(columns) - len(sizes)))
+    free = right[sizes <= IN_LINE * sizes[0]]
+    if not len(free):
+        return False
+    second = closure_second(problem.model, problem.closure, point.state, point.mu) - point.work.second
+    turns = np.zeros((len(free), problem.model.n_unknowns - first))
+    turns[:, columns - first] = free
+    turns = turns[:, 2::3]
+    return bool(np.linalg.eigvalsh((turns * second) @ turns.T)[0] < -NOTHING)
+
+
+def _alone(problem: Problem) -> Ints:
+    """u, v, φ of the bodies that no beam is joined to, by their numbers among the unknowns."""
+    model = problem.model
+    led = {body for chain in model.chains for body in (chain.start.body, chain.end.body if chain.end else -1)}
+    alone = [body for body in range(len(model.free_bodies)) if body not in led]
+    return np.array([model.n_links + 3 * body + k for body in alone for k in range(3)], dtype=np.intp)

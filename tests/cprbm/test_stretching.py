@@ -15,6 +15,7 @@ import pytest
 
 import cprbm
 from comparisons.relations.image import Data
+from scene import Ending
 from scene.reading import scene_from
 
 LENGTH, THICKNESS, WIDTH, YOUNGS_MODULUS = 0.0973, 0.00117, 0.0083, 2.07e11
@@ -56,3 +57,15 @@ def test_the_slide_carries_what_the_beam_does_not(stations):
         lift, pull = station.values["T.displacement"][1], station.values["link.reaction"]
         assert lift == pytest.approx(min(part, 1.0) * RISE, rel=1.0 / LINKS**2)
         np.testing.assert_allclose(pull, (0.0, -max(part - 1.0, 0.0) * NEEDED), atol=NEEDED / LINKS**2)
+
+
+def test_on_the_way_back_a_link_that_would_be_pushed_is_no_minimum():
+    # reference: less force than NEEDED leaves a push in the link, whose slide holds it against no turn; to which side it
+    # folds then nothing says
+    data = lifted(0.47, 2.3)
+    data["stages"].append({"name": "back", "steps": "up", "stations": [0.31 * NEEDED]})
+    answer = cprbm.answer(scene_from(data), cprbm.Settings(links=LINKS))
+    assert answer.ending is Ending.NOT_A_MINIMUM
+    assert len(answer.stations) == 2
+    last = float(answer.sentence.rsplit(" ", 1)[1])
+    assert last == pytest.approx(NEEDED, rel=1.0 / LINKS**2)
