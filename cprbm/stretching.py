@@ -16,8 +16,8 @@ from nothing.  To first order in t and m their equation along w is
     m (σ + κ t) = 0,
 
 of which Newton's method, begun at m = 0, keeps m = 0: it looks for the one branch where only the other goes on.  Begun
-at t = −σ/κ and any m that holds x there (m κ > 0) it finds the other.  Where m κ < 0 the linkage is pushed, and folds: an
-equilibrium and no minimum.
+at t = −σ/κ and any m that holds x there (m κ > 0) it finds the other.  Where m κ < 0 the linkage is pushed, and folds:
+an equilibrium and no minimum.
 """
 
 from __future__ import annotations
@@ -63,13 +63,13 @@ def stretched(problem: Problem, values: Mapping[str, float], point: Point) -> Po
 def folds(problem: Problem, point: Point) -> bool:
     """Whether a linkage that is in line carries a push, under which it folds.
 
-    That moves no link of a beam, and is in no curvature over their angles.
+    That moves no link of a beam, and is in no curvature over their angles.  Of bodies on which contacts press nothing is
+    said: how these are bent counts, too.
     """
     columns, first = _alone(problem), problem.model.n_links
-    if not columns.size:
+    if not columns.size or point.slopes[point.lam > 0.0][:, columns].any():
         return False
-    held = np.concatenate((point.A_E, point.slopes[point.lam > 0.0]))[:, columns]
-    _, sizes, right = np.linalg.svd(held)
+    _, sizes, right = np.linalg.svd(point.A_E[:, columns])
     sizes = np.pad(sizes, (0, len(columns) - len(sizes)))
     free = right[sizes <= IN_LINE * sizes[0]]
     if not len(free):

@@ -60,7 +60,7 @@ def test_the_slide_carries_what_the_beam_does_not(stations):
 
 
 def test_on_the_way_back_a_link_that_would_be_pushed_is_no_minimum():
-    # reference: less force than NEEDED leaves a push in the link, whose slide holds it against no turn; to which side it
+    # reference: less force than NEEDED leaves a push in the link, which nothing keeps from turning; to which side it
     # folds then nothing says
     data = lifted(0.47, 2.3)
     data["stages"].append({"name": "back", "steps": "up", "stations": [0.31 * NEEDED]})
