@@ -63,7 +63,7 @@ def stretched(problem: Problem, values: Mapping[str, float], point: Point) -> Po
 def folds(problem: Problem, point: Point) -> bool:
     """Whether a linkage that is in line carries a push, under which it folds.
 
-    That moves no link of a beam, and is in no curvature over their angles.  Of bodies on which contacts press nothing is
+    That moves no link of a beam, and is in no curvature over their angles.  Of bodies that contacts press on nothing is
     said: how these are bent counts, too.
     """
     columns, first = _alone(problem), problem.model.n_links
