@@ -31,7 +31,9 @@ others, so that a beam that passes beyond an end and comes back behind it meets 
 has passed.
 
 A corner that stands out has one row where the beam is closest to it, at a place of its own always, whose normal is
-between those of its pieces (:mod:`cprbm.corner`).  Of the pieces on either side it is the other that has one then.
+between those of its pieces (:mod:`cprbm.corner`), or beyond them by no more than one element bends: a beam that lies on
+a piece from the corner on dips behind it next to the corner by as much, and is held by the corner and by joints there
+at once.  If the corner had a row only without that dip, and joints only without the corner, each would bring the other.
 """
 
 from __future__ import annotations
@@ -232,11 +234,9 @@ class Edge:
         placed = [self._places(face, line, frame) for face in self.faces]
         own = np.concatenate([s[free] for s, free in placed])
         standing = [self._closest(corner, line, frame, own) for corner in self.corners]
-        beside = np.concatenate([np.zeros(0), *standing])
         for number, (s, free) in enumerate(placed):
-            mine = free | ~self._beside(s, beside)
-            if np.any(mine):
-                found.append(self._pressing(number, line, frame, s[mine], free[mine]))
+            if s.size:
+                found.append(self._pressing(number, line, frame, s, free))
         for number, s in enumerate(standing):
             if s.size:
                 found.append(self._cornering(number, line, frame, s))
@@ -475,7 +475,7 @@ class Edge:
         s = np.unique(s[settled])
         A = line.at(s)
         m, r = self._away(corner, A, frame), self._from(corner, A, frame)
-        faced = corner.beyond(frame.turned(m, -frame.phi)) >= -FACING
+        faced = corner.beyond(frame.turned(m, -frame.phi)) >= -FACING - np.abs(A.bend) * self.a.size_at(s)
         faced &= (np.sum(m * r, axis=1) >= 0.0) | self._inside(corner, frame.turned(r, -frame.phi))
         return np.asarray(s[faced])
 

@@ -18,10 +18,14 @@ from cprbm.point import Point, Problem, point_at, point_under
 LONGEST_TURN = 0.5  # of any link in one iteration, rad
 PATIENCE = 12  # iterations; then the set that presses may go in circles, and is found by a rule that cannot
 SAME = 0.1  # part by which residuals differ that are the same again
-CIRCLES = 4  # returns that end the search for places of their own
+SHORT, LONG = 3, 6  # iterations of a circle: in which residuals alone tell it, and with the rows that press
+IDLE, BETTER = 15, 0.7  # iterations in a row that lead nowhere: none leaves such a part of what the best one left
+CIRCLES = 4  # returns that end the search for places of their own, and as many more that with steady rows
 AWAY = 6  # steps in a row, each longer than the one before
 NOTHING = 1e-12  # S: moments below it are no load at all, and what is left is measured by S
 EPS = float(np.finfo(float).eps)
+
+Held = frozenset[tuple[str, int]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,16 +81,18 @@ def equilibrium(
 ) -> Equilibrium:
     """Newton's method from ``start`` to the equilibrium under the loads' and drives' ``values`` (SI).
 
-    Where it comes back to a residual it had, the row sets of two or three states follow each other in a circle, and
-    a part of the step is taken.  Where it comes back for good, the steady rows decide if they may ``settle`` it;
-    otherwise that is the end.  Where ``farthest`` says (rad) by what a link turns at most, so it is beyond that, and
-    where steps grow and grow: they lead away from a state that is no minimum.
+    Where it comes back to a residual it had, the row sets of a few states follow each other in a circle, and a part of
+    the step is taken.  Where it comes back for good, or comes no nearer, the steady rows decide if they may ``settle``
+    it; otherwise that is the end, as it is where these are no others or lead nowhere either.  Where ``farthest`` says
+    (rad) by what a link turns at most, so it is beyond that, and where steps grow and grow: they lead away from a state
+    that is no minimum.
     """
     model = problem.model
     point = point_under(problem, values, start)
     now = measure(problem, point)
-    seen: list[float] = []
-    part, circles = 1.0, 0
+    seen: list[tuple[float, Held]] = []
+    part, circles, settled = 1.0, 0, False
+    idle, best = 0, np.inf
     grown, last = 0, np.inf
     near: Point | None = None
     for iteration in range(1, iterations + 1):
@@ -101,18 +107,22 @@ def equilibrium(
         if grown == AWAY and np.isfinite(farthest):
             return Equilibrium(point, now, iteration, converged=False)
         left = _left(now, tolerance)
-        returns = _returns(seen, left)
+        here = left, _held(point)
+        returns = _returns(seen, here)
         part = 0.5 * part if returns else min(1.0, 2.0 * part)
         circles += returns
-        if circles == CIRCLES and not settle:
-            return Equilibrium(point, now, iteration, converged=False)
-        if circles == CIRCLES:
-            problem = replace(problem, formulation=problem.steady)
-        seen.append(left)
+        if circles == CIRCLES or idle == IDLE:
+            if settled or not settle or _steady(seen):
+                return Equilibrium(point, now, iteration, converged=False)
+            problem, settled = replace(problem, formulation=problem.steady), True
+            part, circles, seen, idle, best = 1.0, 0, [], 0, np.inf
+        seen.append(here)
         scale = min(part, LONGEST_TURN / longest) if longest > 0.0 else part
         state = point.state.moved(scale * change, model.n_links)
         before, point = point, point_at(problem, values, state, mu, lam, point.rows)
         now = measure(problem, point)
+        most = max(now.residual, now.violation, now.overlap)
+        idle, best = 0 if most < BETTER * best else idle + 1, min(best, most)
         if most_turned(start.state, state) > farthest:
             return Equilibrium(point, now, iteration, converged=False)
         if scale == 1.0 and _settled(now, longest, tolerance):
@@ -138,9 +148,30 @@ def _left(now: Measure, tolerance: float) -> float:
     return next((left for left, allowed in parts if left > allowed), 0.0)
 
 
-def _returns(seen: list[float], left: float) -> bool:
-    """Whether an iteration is back where it was two or three before: each state denies the other's rows."""
-    return left > 0.0 and any(abs(left - before) < SAME * before for before in seen[-3:-1])
+def _held(point: Point) -> Held:
+    """The rows that press."""
+    return frozenset(key for key, force in zip(point.rows.keys, point.lam, strict=True) if force > 0.0)
+
+
+def _steady(seen: list[tuple[float, Held]]) -> bool:
+    """Whether the same rows have pressed lately, and none at a place of its own, so that it is no circle of rows."""
+    lately = {held for _, held in seen[-LONG:]}
+    return len(lately) == 1 and all(key >= 0 for held in lately for _, key in held)
+
+
+def _returns(seen: list[tuple[float, Held]], here: tuple[float, Held]) -> bool:
+    """Whether an iteration is back where it was two or three before, or a few more and the same rows press.
+
+    In a circle each state denies the rows of the one before.
+    """
+    left, held = here
+    if left == 0.0:
+        return False
+    return any(
+        abs(left - before) < SAME * before and (ago <= SHORT or those == held)
+        for ago, (before, those) in enumerate(reversed(seen[-LONG:]), start=1)
+        if ago > 1
+    )
 
 
 def _settled(now: Measure, longest: float, tolerance: float) -> bool:

@@ -11,7 +11,7 @@ branch's end is closed in on from the side where it stands.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,6 +27,7 @@ from cprbm.midway import doubt, uneven
 from cprbm.point import Point
 from cprbm.rate import carried_by_others, rate, strayed
 from cprbm.settings import Settings
+from cprbm.stretching import stretched
 from scene import Certificate, Ending
 from scene.answer import Array
 
@@ -128,8 +129,8 @@ class Follower:
             values = way.at(fraction)
             ahead = None if refused else continued(problem, values, self._known, way.value(fraction))
             doubtful = 0.0
-            for start in [self.point] if ahead is None else [ahead, self.point]:
-                most = self.settings.iterations if start is self.point else SOON
+            for start in self._starts(ahead, values):
+                most = SOON if start is ahead else self.settings.iterations
                 farthest = self._farthest((fraction - done) * here)
                 found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
                 iterations += found.iterations
@@ -180,6 +181,15 @@ class Follower:
             if step < self.settings.smallest_step:
                 ending = ending if found.converged else Ending.STEP_TOO_SMALL
                 return Reached(ending, sentence, certificate=None)
+
+    def _starts(self, ahead: Point | None, values: dict[str, float]) -> Iterator[Point]:
+        """Where Newton's method begins, until it finds what is sought: first where the last minima lead, if known."""
+        if ahead is not None:
+            yield ahead
+        yield self.point
+        held = stretched(self.mechanism.problem, values, self.point)
+        if held is not None:
+            yield held
 
     def _longest(self, here: Array) -> float:
         """The largest part of the way that may be taken at once, on which links turn at the rate ``here``.

@@ -18,6 +18,7 @@ from scipy.linalg import eigh_tridiagonal, lapack
 
 from cprbm.newton import local_system_at, many, own_system
 from cprbm.point import Point, Problem
+from cprbm.stretching import folds
 from scene.answer import Array, Flags
 
 DENSE = 120  # unknowns up to which all curvatures are computed at once
@@ -42,8 +43,10 @@ class Softest:
 def softest(problem: Problem, point: Point) -> Softest:
     """κ and φ of PE on the directions that keep the equalities and the pressing contacts.
 
-    Minus infinity where the system is singular, infinity where no direction is free.
+    Minus infinity where the system is singular or a linkage folds, infinity where no direction is free.
     """
+    if folds(problem, point):
+        return Softest(float("-inf"), np.zeros(problem.model.n_links))
     root = np.sqrt(problem.model.lengths)
     root[problem.closure.fixed] = 0.0
     try:

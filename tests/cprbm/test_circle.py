@@ -126,7 +126,7 @@ def test_iterations_hardly_grow_with_the_links():
     assert many.values["circle.force"][0] == pytest.approx(np.hypot(*reference.contact_force), rel=1e-5)
 
 
-@pytest.mark.parametrize("links", [11, 20, 29])
+@pytest.mark.parametrize("links", [11, 20, 29, 37, 38])
 def test_a_wrap_that_begins_within_the_first_element_beside_its_clamp(links):
     """The circle's top is 0.3 mm beyond the clamp, at a height with it: hardly anything moves before it touches.
 

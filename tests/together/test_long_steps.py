@@ -57,7 +57,8 @@ def in_short_steps():
     return fea_reference.answer(scene_from(pressed(*SHORT)))
 
 
-@pytest.mark.parametrize("stations", [(FIRST,), (0.0041, FIRST)])
+# before two of these the rows that press follow each other in a circle of four
+@pytest.mark.parametrize("stations", [(FIRST,), (0.0041, FIRST), (0.00571, FIRST), (0.00586, FIRST)])
 def test_a_long_step_ends_where_short_ones_do(stations, in_short_steps):
     answer = cprbm.answer(scene_from(pressed(*stations)))
     assert answer.completed
