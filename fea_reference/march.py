@@ -111,6 +111,13 @@ class March:
     loose: bool = False
     known: tuple[System, float] | None = None
     behind: Behind | None = None
+    course: tuple[int, float, float] | None = None
+
+    def foregone(self, load: int) -> list[tuple[float, float]]:
+        """Value and curvature one step before, if that was one of the same ``load``."""
+        if self.course is None or self.course[0] != load or self.course[1] == self.values[load]:
+            return []
+        return [self.course[1:]]
 
     @property
     def curvature(self) -> float:

@@ -27,6 +27,7 @@ import numpy as np
 from fea_reference.descent import descended
 from fea_reference.following import Lost, about_to_go, followed
 from fea_reference.march import March, StoppedError, Trouble
+from fea_reference.released import released
 from fea_reference.touch import Circle, Face, Pair
 from scene.answer import Array, Critical, Ending, Loss
 
@@ -69,7 +70,7 @@ def reach(march: March, course: Course, target: float) -> None:
     """
     origin = march.saved()
     try:
-        _reach(march, course, target)
+        leapt = _reach(march, course, target)
     except StoppedError as stopped:
         if course.beyond is not None or stopped.ending is Ending.BRANCH_ENDS:
             raise
@@ -79,10 +80,21 @@ def reach(march: March, course: Course, target: float) -> None:
             _reach(march, replace(course, beyond="stop"), target)
         except StoppedError as looking:
             raise looking if looking.ending is Ending.BRANCH_ENDS else stopped from None
+    else:
+        if course.beyond is None and leapt:
+            there = march.saved()
+            march.restore(origin)
+            march.behind = None
+            try:
+                _reach(march, replace(course, beyond="stop"), target)
+            except StoppedError as looking:
+                if looking.ending is Ending.BRANCH_ENDS:
+                    raise
+                march.restore(there)
 
 
-def _reach(march: March, course: Course, target: float) -> None:
-    """The same, and whether steps look for ends is the course's."""
+def _reach(march: March, course: Course, target: float) -> bool:
+    """The same, and whether steps look for ends is the course's; whether one has released energy on the way."""
     load = course.load
     march.iterations = 0
     march.switched = {}
@@ -90,7 +102,7 @@ def _reach(march: March, course: Course, target: float) -> None:
     origin, before = march.saved(), march.zones()
     if march.far and march.values[load] != target:
         march.loosen(Circle, Face)
-    _arrive(march, course, target, watched=course.beyond is not None)
+    leapt = _arrive(march, course, target, watched=course.beyond is not None)
     march.settle(load)
     same = len(march.critical) == len(origin.critical) and march.values[load] != origin.values[load]
     if same and not march.minimum:
@@ -114,10 +126,13 @@ def _reach(march: March, course: Course, target: float) -> None:
     march.sharpen()
     after = march.zones()
     march.far = march.far and any(np.abs(after[one] - before[one]).max() > _FAR for one in before if one in after)
+    return leapt
 
 
-def _arrive(march: March, course: Course, target: float, *, watched: bool) -> None:
+def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bool:
     """March to the value ``target``, with penalties as they are; ``watched``, from minimum to minimum.
+
+    Whether a step on the way has released energy, which a watched one may not.
 
     Raises:
         StoppedError: it cannot be reached.
@@ -130,6 +145,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
     rate: Array | None = None
     tight: March | None = None
     paced = march.values[load], march.iterations
+    leapt = False
     while march.values[load] != target:
         if abs(march.values[load] - paced[0]) >= _PACE * course.span:
             paced = march.values[load], march.iterations
@@ -141,7 +157,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
                 f"{march.iterations} iterations only led to {march.shown(load, march.values[load])}",
             )
         if watched and not known:
-            known = [(float(march.values[load]), march.curvature)]
+            known = [*march.foregone(load), (float(march.values[load]), march.curvature)]
         rate = march.rate(load) if rate is None else rate
         speed = float(np.abs(rate[march.model.moving]).max())
         way = target - march.values[load]
@@ -161,7 +177,9 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
             trouble = march.step(load, value, rate)
             if trouble is None:
                 ahead = march.rate(load)
-                if _aside(saved, march, load, rate, ahead):
+                jumped = _jumped(saved, march, load, rate, ahead)
+                leapt = leapt or jumped
+                if _aside(saved, march, load, rate, ahead) or (watched and jumped):
                     trouble = (
                         Ending.STEP_TOO_SMALL,
                         f"beyond {saved.shown(load, saved.values[load])} the nearest equilibrium is on another branch",
@@ -177,10 +195,13 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
         if minimum and follow and (close or unstable or tired):
             march.restore(saved)
             lost = followed(march, load, target, course.span) if march.curvature > 0.0 else None
-            if lost is None and tired and tight is not None:
+            if lost is None and tight is not None:
                 # with loose penalties the march may have come past where the branch ends with tight ones
+                loose = march.saved()
                 march.restore(tight)
                 tight, lost = None, followed(march, load, target, course.span)
+                if lost is None and not tired:
+                    march.restore(loose)
             if lost is not None:
                 _beyond(march, course, target, lost)
                 stride, cuts, searching = np.inf, 0, False
@@ -196,6 +217,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
         elif trouble is None:
             same = len(march.penalties) == len(saved.penalties) and march.acting is saved.acting
             known = [*known[-1:], (float(march.values[load]), march.curvature)] if same and watched else []
+            march.course = (load, *known[-2]) if len(known) == 2 else None
             march.behind, rate = march.gone(load, saved, rate, ahead), ahead
             easy = march.iterations - spent <= _EASY
             stride, cuts, follow = 2.0 * size if easy else size, 0, True
@@ -213,6 +235,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
                 searching, march.far, known, tight = True, True, [], saved
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
+    return leapt
 
 
 def _vanishing(known: list[tuple[float, float]]) -> float:
@@ -223,6 +246,14 @@ def _vanishing(known: list[tuple[float, float]]) -> float:
     if not 0.0 < now < before:
         return np.inf
     return abs(other - one) * now**2 / (before**2 - now**2)
+
+
+def _jumped(saved: March, march: March, load: int, rate: Array, ahead: Array) -> bool:
+    """Whether a step has released energy, where that can be told: under the same penalties, and what acts."""
+    if march.acting is not saved.acting or any(march.penalties.get(one) != old for one, old in saved.penalties.items()):
+        return False
+    here, there = (saved.system, saved.values, rate), (march.system, march.values, ahead)
+    return released(march.model, load, march.acting, (here, there))
 
 
 def _aside(saved: March, march: March, load: int, rate: Array, ahead: Array) -> bool:
