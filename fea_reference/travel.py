@@ -27,6 +27,7 @@ import numpy as np
 from fea_reference.descent import descended
 from fea_reference.following import Lost, about_to_go, followed
 from fea_reference.march import March, StoppedError, Trouble
+from fea_reference.model import SharePart
 from fea_reference.released import released
 from fea_reference.touch import Circle, Face, Pair
 from scene.answer import Array, Critical, Ending, Loss
@@ -249,8 +250,10 @@ def _vanishing(known: list[tuple[float, float]]) -> float:
 
 
 def _jumped(saved: March, march: March, load: int, rate: Array, ahead: Array) -> bool:
-    """Whether a step has released energy, where that can be told: under the same penalties, and what acts."""
-    if march.acting is not saved.acting or any(march.penalties.get(one) != old for one, old in saved.penalties.items()):
+    """Whether a step has released energy, where that can be told: by a load or drive, while what acts stays."""
+    if isinstance(march.model.stepped[load], SharePart) or march.acting is not saved.acting:
+        return False
+    if any(march.penalties.get(one) != penalty for one, penalty in saved.penalties.items()):
         return False
     here, there = (saved.system, saved.values, rate), (march.system, march.values, ahead)
     return released(march.model, load, march.acting, (here, there))
