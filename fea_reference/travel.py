@@ -64,8 +64,8 @@ class Course:
 def reach(march: March, course: Course, target: float) -> None:
     """March to the value ``target`` and land on it exactly.
 
-    Where steps look for no end of the branch and one leads nowhere or releases energy, they may have passed it: they are
-    gone again from where they began, looking.
+    Where steps look for no end of the branch and one leads nowhere or releases energy, they may have passed it: they
+    are gone again from where they began, looking.
 
     Raises:
         StoppedError: it cannot be reached.
