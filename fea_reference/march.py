@@ -92,8 +92,9 @@ class March:
     of branches that have been passed; ``iterations`` are counted since the last station; ``far`` is whether zones have
     been too far from one station to the last for tight penalties and have not come nearer since, so that the way to
     the next one begins with loose ones on what is rigid; ``loose`` whether penalties were loosened since they were
-    tightened; ``known`` is the last system whose smallest curvature was asked for, with that; ``behind`` is the last
-    step, if it went along a branch.
+    tightened; ``course`` are the load, value and curvature of the step before, where ends of branches are looked for
+    and penalties are tight; ``known`` is the last system whose smallest curvature was asked for, with that; ``behind``
+    is the last step, if it went along a branch.
     """
 
     model: Model
@@ -154,7 +155,7 @@ class March:
             saved.acting,
         )
         self.penalties, self.closing, self.switched = dict(saved.penalties), dict(saved.closing), dict(saved.switched)
-        self.far, self.loose = saved.far, saved.loose
+        self.far, self.loose, self.course = saved.far, saved.loose, saved.course
 
     def rate(self, load: int, system: System | None = None) -> Array:
         """dz/dvalue along the branch, here or in another ``system`` of it; zero where the tangent is singular."""

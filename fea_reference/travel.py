@@ -14,7 +14,8 @@ wherever an equilibrium that was found is no minimum, no step can be made or a c
 branch is followed by :mod:`fea_reference.following`.
 
 A step that stays on its branch moves by the mean of r at both ends, but for its third power, or where a contact
-changes in between by something between both; one that does not is on another branch, however near.
+changes in between by something between both; one that does not is on another branch, however near.  Nor does it release
+energy (:mod:`fea_reference.released`): where nothing was asked of the end of the branch, that is why it is looked for.
 """
 
 from __future__ import annotations
@@ -63,8 +64,8 @@ class Course:
 def reach(march: March, course: Course, target: float) -> None:
     """March to the value ``target`` and land on it exactly.
 
-    Where steps look for no end of the branch and one leads nowhere, they may have passed it: they are gone again from
-    where they began, looking.
+    Where steps look for no end of the branch and one leads nowhere or releases energy, they may have passed it: they
+    are gone again from where they began, looking.
 
     Raises:
         StoppedError: it cannot be reached.
@@ -218,7 +219,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
         elif trouble is None:
             same = len(march.penalties) == len(saved.penalties) and march.acting is saved.acting
             known = [*known[-1:], (float(march.values[load]), march.curvature)] if same and watched else []
-            march.course = (load, *known[-2]) if len(known) == 2 else None
+            march.course = (load, *known[-2]) if len(known) == 2 and not march.loose else None
             march.behind, rate = march.gone(load, saved, rate, ahead), ahead
             easy = march.iterations - spent <= _EASY
             stride, cuts, follow = 2.0 * size if easy else size, 0, True

@@ -18,6 +18,11 @@ from scene.answer import Ending, Loss
 MODEL = SimpleNamespace(moving=np.array([True]), stepped=[SimpleNamespace(unit=1.0)])
 
 
+@pytest.fixture(autouse=True)
+def _energy_is_kept(monkeypatch):
+    monkeypatch.setattr(travel, "_jumped", lambda *step: False)
+
+
 @dataclass
 class Ways:
     """A march over λ in which nothing moves.
@@ -36,9 +41,13 @@ class Ways:
     far: bool = False
     acting: tuple[str, ...] = ()
     behind: None = None
+    course: None = None
     curvature: float = -1.0
     model = MODEL
     settings: SimpleNamespace = field(default_factory=lambda: SimpleNamespace(iteration_limit=100000))
+
+    def foregone(self, load):
+        return []
 
     def saved(self):
         return Ways(values=self.values.copy(), penalties=dict(self.penalties), loose=self.loose, acting=self.acting)
