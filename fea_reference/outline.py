@@ -29,7 +29,8 @@ from numpy.polynomial import Polynomial
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
-from scene.answer import Array
+from fea_reference.state import multiplied, summed
+from scene.answer import Array, Ints
 from scene.statement import EdgeContact, FunctionContact, HalfPlaneContact, LineContact
 
 _SAME = 1e-6  # as near as a scene's places have to be
@@ -108,6 +109,10 @@ class HalfPlane:
             np.zeros(k, dtype=bool),
         )
 
+    def kept(self, y: Array, rest: Array) -> Array:
+        """d (k,) of places ``y`` + ``rest`` (2, k), with all digits."""
+        return _across(self.normal[:, None], y, rest, self.point[:, None])
+
 
 @dataclass(frozen=True, eq=False)
 class Broken:
@@ -150,14 +155,8 @@ class Broken:
 
     def near(self, y: Array) -> Near:
         """Distance and so on of places (2, k)."""
-        tangents, first, low, high = self._sides
-        r = y[:, None, :] - first[:, :, None]
-        t = r[0] * tangents[0][:, None] + r[1] * tangents[1][:, None]
-        t = np.minimum(np.maximum(t, low[:, None]), high[:, None])
-        away = r - t * tangents[:, :, None]
-        nearest = np.hypot(away[0], away[1]).argmin(axis=0)
-        every = np.arange(y.shape[1])
-        t, away = t[nearest, every], away[:, nearest, every]
+        nearest, t, away = self._foot(y)
+        _, _, low, high = self._sides
         normals = self._normals
         side = normals.take(nearest, axis=1)
         before = t <= low[nearest]
@@ -178,6 +177,27 @@ class Broken:
             np.where(corner, sign / np.where(corner, r_corner, 1.0), 0.0),
             corner,
         )
+
+    def kept(self, y: Array, rest: Array) -> Array:
+        """d (k,) of places ``y`` + ``rest`` (2, k), with all digits."""
+        near, (side, t, _) = self.near(y), self._foot(y)
+        tangents, first, _, _ = self._sides
+        begins = first.take(side, axis=1)
+        away, more = summed(y, -(begins + t * tangents.take(side, axis=1)))
+        away += more + rest
+        round_it = np.sign(near.distance) * np.hypot(away[0], away[1])
+        return np.asarray(np.where(near.corner, round_it, _across(self._normals.take(side, axis=1), y, rest, begins)))
+
+    def _foot(self, y: Array) -> tuple[Ints, Array, Array]:
+        """The side (k,) that is nearest to places (2, k), how far along it that is (k,), and the way from there."""
+        tangents, first, low, high = self._sides
+        r = y[:, None, :] - first[:, :, None]
+        t = r[0] * tangents[0][:, None] + r[1] * tangents[1][:, None]
+        t = np.minimum(np.maximum(t, low[:, None]), high[:, None])
+        away = r - t * tangents[:, :, None]
+        nearest = np.hypot(away[0], away[1]).argmin(axis=0)
+        every = np.arange(y.shape[1])
+        return nearest, t[nearest, every], away[:, nearest, every]
 
     @cached_property
     def _sides(self) -> tuple[Array, Array, Array, Array]:
@@ -298,6 +318,11 @@ class Graph:
                 bend = np.where(nearer, 0.0, bend)
         return Near(distance, normal, bend, past & ~behind)
 
+    def kept(self, y: Array, rest: Array) -> Array:
+        """d (k,) of places ``y`` + ``rest`` (2, k), to what the edge's own places are rounded to."""
+        near = self.near(y)
+        return np.asarray(near.distance + (near.normal * rest).sum(axis=0))
+
     def _nearest(self, y: Array) -> Array:
         """Where along the axis that place of the edge is, (k,), which is nearest to places (2, k)."""
         low, high = self.span
@@ -395,6 +420,14 @@ def _crossing(place: Array, ahead: Array, places: Array, aheads: Array) -> tuple
     share = 1.0 / np.where(parallel, 1.0, across)
     far, along = (x * aheads[1] - y * aheads[0]) * share, (x * ahead[1] - y * ahead[0]) * share
     return np.where(parallel, np.inf, far), np.where(parallel, np.inf, along)
+
+
+def _across(normal: Array, y: Array, rest: Array, point: Array) -> Array:
+    """n·(y + rest − point) of places (2, k), with normals and points (2, k) or (2, 1): it loses no digits far away."""
+    away, more = summed(y, -point)
+    (a, a_error), (b, b_error) = multiplied(normal[0], away[0]), multiplied(normal[1], away[1])
+    value, error = summed(a, b)
+    return np.asarray(value + (error + a_error + b_error + (normal * (more + rest)).sum(axis=0)))
 
 
 def _left(tangents: Array) -> Array:

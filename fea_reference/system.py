@@ -20,6 +20,7 @@ from fea_reference.contacts import touch
 from fea_reference.element import ElementForces
 from fea_reference.hermite import Index
 from fea_reference.model import MOMENTS, WAY, DrivePart, Model, OnBeam, SharePart, turned
+from fea_reference.outline import Graph
 from fea_reference.state import State
 from fea_reference.stops import acting_stops
 from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
@@ -166,15 +167,19 @@ def _pushes(one: Touch, foreseen: Array | None) -> Array:
 def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
     """Of a contact's force on a node: ε times what lies in an element of the zone, times what the gap is rounded to.
 
-    Within an element that is a share of the element's length, across a pair also of the beams' distance; where what
-    is rigid moves with its body, or has corners, of the longest beam.
+    Within an element that is a share of the element's length, across a pair and to an edge also of the distance at
+    which they touch; where what is rigid moves with its body, or is the graph of a function, of the longest beam.
     """
     pair = touch.pair
     h = float(model.elements.length[model.beams[pair.first].elements.start])
     if isinstance(pair, Pair):
         lengths = h + float(model.elements.length[model.beams[pair.second].elements.start]) + pair.distance
+    elif model.bodies[pair.body].dofs is not None:
+        lengths = 1.0
+    elif isinstance(pair, Circle):
+        lengths = h
     else:
-        lengths = h if isinstance(pair, Circle) and model.bodies[pair.body].dofs is None else 1.0
+        lengths = 1.0 if isinstance(pair.outline, Graph) else h + pair.edge.farthest
     widest = h * float(np.diff(touch.zones.intervals, axis=1).max(initial=0.0))
     return float(np.finfo(float).eps) * stiffness * widest * lengths
 
