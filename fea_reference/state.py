@@ -73,7 +73,7 @@ def multiplied(a: Array, b: Array) -> tuple[Array, Array]:
     """a ⊗ b and its error."""
     value = np.asarray(a * b)
     (high, low), (high_b, low_b) = _halves(a), _halves(b)
-    return value, ((high * high_b - value) + (high * low_b + low * high_b)) + low * low_b
+    return value, ((high * high_b - value) + high * low_b + low * high_b) + low * low_b
 
 
 def squared(a: Array) -> tuple[Array, Array]:
