@@ -204,6 +204,12 @@ def room(model: Model, pair: Pair, z: State) -> float:
     return nodes_apart(first, second) - out_of_reach(first, second, pair.distance)
 
 
+def ends_apart(model: Model, pair: Pair, z: State) -> float:
+    """How far places of the first beam are from touching the circles about the ends of the second: a lower bound."""
+    first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
+    return float(nearest(second.nodes[[0, -1]], first.nodes)[0].min()) - first.longest - pair.distance
+
+
 def _seen(pair: Pair, first: NeutralLine, second: NeutralLine, T: float) -> Survey:
     if pair.roles is None:
         return seen(first, second, pair.side, T, pair.tapers)

@@ -106,6 +106,19 @@ def room(model: Model, what: Contact, z: State) -> float:
             return -np.inf
 
 
+def clear(model: Model, what: Contact, z: State) -> float:
+    """How far what may touch can move, each against the other, before it overlaps: by the least gap, a lower bound.
+
+    No two places come nearer to each other by more than they move.  Places of a beam beyond an end of the other have
+    no gap, and are as far from it as from that end; of a line's own ends nothing is known.  That a beam bends double
+    within its own thickness is no motion that its elements follow.
+    """
+    least = zones_of(model, what, z).least
+    if not isinstance(what, Pair) or what.ended:
+        return least
+    return min(least, contact.ends_apart(model, what, z)) if what.roles is None else -np.inf
+
+
 def against(model: Model, what: Contact, before: State, after: State) -> float:
     """The most by which places of what may touch move against each other on the straight way between two states."""
 

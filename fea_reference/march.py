@@ -10,7 +10,16 @@ from scipy.optimize import brentq
 
 from fea_reference.acting import Acting
 from fea_reference.advance import advance, bend, way_to
-from fea_reference.contacts import against, least_gap, looked_at, passed_through, resting_pressure, room, zones_of
+from fea_reference.contacts import (
+    against,
+    clear,
+    least_gap,
+    looked_at,
+    passed_through,
+    resting_pressure,
+    room,
+    zones_of,
+)
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
@@ -363,6 +372,8 @@ class March:
                 return False
             if zones_of(self.model, pair, state).least < deepest:
                 return True
+            if clear(self.model, pair, state) > pace * (last - middle):
+                return False
             return overlaps(first, middle) or overlaps(middle, last)
 
         return overlaps(0, parts)
