@@ -399,7 +399,8 @@ class March:
             return self.gaps(known[value])
 
         def sought(value: float, which: int) -> float:
-            return gaps(value)[which]
+            gap = gaps(value)[which]
+            return 0.0 if abs(gap) <= 0.5 * arrived[which] else gap
 
         arrived = [*(_CLOSED * pair.scale for pair in self.open), *(_SWITCHED for _ in self.model.stops)]
         clear, beyond = sorted(known, key=lambda value: min(gaps(value)), reverse=True)
