@@ -26,7 +26,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from fea_reference.state import multiplied, summed
@@ -143,7 +142,7 @@ class Broken:
         """Whether all of it is but for corners."""
         return True
 
-    @property
+    @cached_property
     def extent(self) -> float:
         """How deep behind the edge a place is still taken for one that has sunk in: a share of its size."""
         return 0.25 * float(np.hypot(*np.ptp(self.points, axis=1)))
@@ -279,9 +278,9 @@ class Graph:
     @property
     def straight(self) -> bool:
         """Whether all of it is."""
-        return not self._derivatives[:, 2].any()
+        return not self.f.coef[2:].any()
 
-    @property
+    @cached_property
     def extent(self) -> float:
         """How deep behind the edge a place is still taken for one that has sunk in: a share of its size."""
         low, high = self._at(np.array(self.span))[0].T
@@ -327,10 +326,10 @@ class Graph:
         """Where along the axis that place of the edge is, (k,), which is nearest to places (2, k)."""
         low, high = self.span
         v, w = y[::-1] if self.across else y
-        samples, nearness = self._samples
-        at = samples[(np.column_stack([v, w, np.ones_like(v)]) @ nearness).argmax(axis=1)]
+        samples, along, across, away = self._samples
+        at = samples[(np.multiply.outer(v, along) + np.multiply.outer(w, across) + away).argmax(axis=1)]
         for _ in range(_NEWTON_STEPS):
-            f, slope, second = polyval(at, self._derivatives)
+            f, slope, second = self._f(at)
             rest = f - w
             bent = 1.0 + slope**2 + rest * second
             # beyond the centre of curvature a place of the edge is farthest: it stays where it is
@@ -343,17 +342,25 @@ class Graph:
         return np.asarray(at)
 
     @cached_property
-    def _samples(self) -> tuple[Array, Array]:
+    def _samples(self) -> tuple[Array, Array, Array, Array]:
         """Places along the axis (n,), and what makes of (y, 1) the part of −|s − y|² that tells the points s apart."""
         v = np.linspace(*self.span, _SAMPLES)
-        s = np.array([v, self.f(v)])
-        return v, np.concatenate([2.0 * s, -(s**2).sum(axis=0, keepdims=True)])
+        f = self.f(v)
+        return v, 2.0 * v, 2.0 * f, -(v**2 + f**2)
+
+    def _f(self, v: Array) -> tuple[Array, Array, Array]:
+        """f and its first two derivatives at ``v`` (k,), (k,) each, by Horner's scheme."""
+        f = slope = half = np.zeros_like(v)
+        for coefficient in self._falling:
+            half = half * v + slope
+            slope = slope * v + f
+            f = f * v + coefficient
+        return f, slope, 2.0 * half
 
     @cached_property
-    def _derivatives(self) -> Array:
-        """Coefficients of f and its first two derivatives, a column each."""
-        columns = [self.f.deriv(order).coef if order else self.f.coef for order in range(3)]
-        return np.stack([np.pad(one, (0, self.f.coef.size - one.size)) for one in columns], axis=1)
+    def _falling(self) -> list[float]:
+        """Coefficients of f, the last first."""
+        return [float(one) for one in self.f.coef[::-1]]
 
     @property
     def _forwards(self) -> bool:
@@ -362,7 +369,7 @@ class Graph:
 
     def _at(self, v: Array) -> tuple[Array, Array, Array]:
         """Points and unit tangents (2, k) at ``v`` (k,), the free side to the left, and κ (k,)."""
-        f, slope, second = polyval(v, self._derivatives)
+        f, slope, second = self._f(v)
         long = np.hypot(1.0, slope)
         tau = np.array([np.ones_like(v), slope]) / long * (1.0 if self._forwards else -1.0)
         point = np.array([v, f])

@@ -43,6 +43,7 @@ _INSIDE = 1e-6  # elements
 _ON_RAY = 1e-6  # elements
 _ARRIVED = 1e-8  # elements
 _TURNS = 1e-4  # elements: where a gap is least it changes by the square of what is left, and what a step leaves is less
+_WITHIN = 1e-9  # of the way between two places: zones far narrower than that way begin at a gap that is least
 _EVEN = 3.0  # times its mean: a derivative below that at both ends keeps a cubic rising
 
 
@@ -287,7 +288,9 @@ def survey(
         one = at(where, guess)
         return one.slope, one.curvature, one.zeta_m
 
-    turning = np.flatnonzero(neighbours & (slope[:-1] * slope[1:] < 0.0))
+    # a largest value parts what is below zero on both sides of it, and tells nothing anywhere else
+    parts = (slope[:-1] < 0.0) | ((there.g[:-1] <= 0.0) & (there.g[1:] <= 0.0))
+    turning = np.flatnonzero(neighbours & (slope[:-1] * slope[1:] < 0.0) & parts)
     if turning.size and kinks:
         turning = turning[~_at_kinks(slope_at, zeta, slope, zeta_m, turning, kinks)]
     if turning.size:
@@ -489,7 +492,7 @@ def _parabola(zeta: Array, g: Array, slope: Array, curvature: Array, left: NDArr
     a, b, c = 0.5 * curvature[inner] * width**2, way * slope[inner] * width, g[inner]
     root = np.sqrt(np.maximum(b * b - 4.0 * a * c, 0.0))
     # The stable form of (−b + root)/(2a)
-    distance = np.clip(-2.0 * c / np.maximum(b + root, 1e-300), 1e-3, 1.0 - 1e-3)
+    distance = np.clip(-2.0 * c / np.maximum(b + root, 1e-300), _WITHIN, 1.0 - _WITHIN)
     return np.where(forward, distance, 1.0 - distance)
 
 
