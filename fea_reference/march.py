@@ -400,7 +400,8 @@ class March:
 
         def sought(value: float, which: int) -> float:
             gap = gaps(value)[which]
-            return 0.0 if abs(gap) <= 0.5 * arrived[which] else gap
+            # what is as near counts as closed; beyond it an end without thickness would be on the other side
+            return 0.0 if 0.0 <= gap <= 0.5 * arrived[which] else gap
 
         arrived = [*(_CLOSED * pair.scale for pair in self.open), *(_SWITCHED for _ in self.model.stops)]
         clear, beyond = sorted(known, key=lambda value: min(gaps(value)), reverse=True)
