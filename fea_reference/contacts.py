@@ -16,6 +16,9 @@ from fea_reference.touch import Circle, Contact, Face, Pair, Penalty, Touch
 from fea_reference.zones import Zones, none
 from scene.statement import Scene
 
+CLOSED = 1e-9
+"""Of the thickness, a gap that is none."""
+
 
 def contacts(scene: Scene, model: Model, penetration: float) -> tuple[Contact, ...]:
     """What may touch, in the scene's order."""
@@ -153,6 +156,7 @@ def passed_through(model: Model, what: Contact, before: State, after: State) -> 
     if what.roles is not None:
         line = model.line(model.beams[what.first], before)
         return ends_through(what, line, first) or crosses_itself(first, contact.zones_of(model, what, after))
-    # Lines without thickness cross by what the penalty lets through; that is held, and measured.
-    held = what.distance == 0.0 and contact.zones_of(model, what, after).least < 0.0
+    # Lines without thickness cross by what the penalty lets through; that is held, and measured.  Where one just
+    # touches the other, chords cross by what their elements bow.
+    held = what.distance == 0.0 and least_gap(model, what, after) <= CLOSED * what.scale
     return not held and cross(first, second)
