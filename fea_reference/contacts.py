@@ -117,6 +117,10 @@ def clear(model: Model, what: Contact, z: State) -> float:
     within its own thickness is no motion that its elements follow.
     """
     least = zones_of(model, what, z).least
+    numbers = (what.first, what.second) if isinstance(what, Pair) else (what.first,)
+    longest = [model.line(model.beams[i], z).longest for i in numbers]
+    # what is farther than an element may be known by nodes only, and be nearer between them
+    least = least if least <= longest[-1] else max(longest[-1], least - max(longest))
     if not isinstance(what, Pair) or what.ended:
         return least
     return min(least, contact.ends_apart(model, what, z)) if what.roles is None else -np.inf
