@@ -178,7 +178,7 @@ def _penalties(model: Model, beam: BeamPart, thickness: float) -> tuple[float, f
 def zones_of(model: Model, pair: Pair, z: State) -> Zones:
     """Where the beams of a pair overlap in state ``z``."""
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    return overlap(first, second, pair.distance, _seen(pair, first, second, pair.distance), 0.0, _rays(pair, second))
+    return overlap(first, second, pair.distance, _seen(model, pair, z, pair.distance), 0.0, _rays(pair, second))
 
 
 def least_at_ends(model: Model, pair: Pair, z: State) -> float:
@@ -204,10 +204,21 @@ def room(model: Model, pair: Pair, z: State) -> float:
     return nodes_apart(first, second) - out_of_reach(first, second, pair.distance)
 
 
-def _seen(pair: Pair, first: NeutralLine, second: NeutralLine, T: float) -> Survey:
-    if pair.roles is None:
-        return seen(first, second, pair.side, T, pair.tapers)
-    return seen_itself(first, pair.roles, T, pair.tapers)
+def ends_apart(model: Model, pair: Pair, z: State) -> float:
+    """How far places of the first beam are from touching the circles about the ends of the second: a lower bound."""
+    first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
+    return float(nearest(second.nodes[[0, -1]], first.nodes)[0].min()) - first.longest - pair.distance
+
+
+def _seen(model: Model, pair: Pair, z: State, T: float) -> Survey:
+    first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
+
+    def look() -> Survey:
+        if pair.roles is None:
+            return seen(first, second, pair.side, T, pair.tapers)
+        return seen_itself(first, pair.roles, T, pair.tapers)
+
+    return model.surveys.found(z, (pair, T), look)
 
 
 def _rays(pair: Pair, second: NeutralLine) -> list[Borders]:
@@ -225,12 +236,12 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
     line, line_m = model.line(beam, z), model.line(beam_m, z)
     distance = pair.distance + penalty.lead
-    gaps = _seen(pair, line, line_m, distance)
+    gaps = _seen(model, pair, z, distance)
     level = 0.0 if held is None else gaps.least + held
     if level < line_m.longest:
         zones = overlap(line, line_m, distance, gaps, level, _rays(pair, line_m))
     else:
-        wider = _seen(pair, line, line_m, distance + level)
+        wider = _seen(model, pair, z, distance + level)
         zones = overlap(line, line_m, distance + level, wider, 0.0, _rays(pair, line_m))
     zones = replace(zones, least=gaps.least + penalty.lead)
 

@@ -16,6 +16,9 @@ from fea_reference.touch import Circle, Contact, Face, Pair, Penalty, Touch
 from fea_reference.zones import Zones, none
 from scene.statement import Scene
 
+CLOSED = 1e-9
+"""Of the thickness, a gap that is none."""
+
 
 def contacts(scene: Scene, model: Model, penetration: float) -> tuple[Contact, ...]:
     """What may touch, in the scene's order."""
@@ -106,6 +109,23 @@ def room(model: Model, what: Contact, z: State) -> float:
             return -np.inf
 
 
+def clear(model: Model, what: Contact, z: State) -> float:
+    """How far what may touch can move, each against the other, before it overlaps: by the least gap, a lower bound.
+
+    No two places come nearer to each other by more than they move.  Places of a beam beyond an end of the other have
+    no gap, and are as far from it as from that end; of a line's own ends nothing is known.  That a beam bends double
+    within its own thickness is no motion that its elements follow.
+    """
+    least = zones_of(model, what, z).least
+    numbers = (what.first, what.second) if isinstance(what, Pair) else (what.first,)
+    longest = [model.line(model.beams[i], z).longest for i in numbers]
+    # what is farther than an element may be known by nodes only, and be nearer between them
+    least = least if least <= longest[-1] else max(longest[-1], least - max(longest))
+    if not isinstance(what, Pair) or what.ended:
+        return least
+    return min(least, contact.ends_apart(model, what, z)) if what.roles is None else -np.inf
+
+
 def against(model: Model, what: Contact, before: State, after: State) -> float:
     """The most by which places of what may touch move against each other on the straight way between two states."""
 
@@ -140,6 +160,7 @@ def passed_through(model: Model, what: Contact, before: State, after: State) -> 
     if what.roles is not None:
         line = model.line(model.beams[what.first], before)
         return ends_through(what, line, first) or crosses_itself(first, contact.zones_of(model, what, after))
-    # Lines without thickness cross by what the penalty lets through; that is held, and measured.
-    held = what.distance == 0.0 and contact.zones_of(model, what, after).least < 0.0
+    # Lines without thickness cross by what the penalty lets through; that is held, and measured.  Where one just
+    # touches the other, chords cross by what their elements bow.
+    held = what.distance == 0.0 and least_gap(model, what, after) <= CLOSED * what.scale
     return not held and cross(first, second)

@@ -156,7 +156,8 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     n = seen.turned(near.normal)
     tau = np.array([n[1], -n[0]])
     r = x - seen.centre[:, None]
-    g = near.distance - face.edge.at(zeta)
+    # what a stiff penalty makes a force of; to find where it begins the rounded places will do
+    g = face.outline.kept(*seen.place_and_rest(zeta)) - face.edge.at(zeta)
 
     H = shapes(xi)
     moves = body.dofs is not None
@@ -238,11 +239,18 @@ class _Seen:
         rest = np.zeros(2) if body.dofs is None else z.rest[body.dofs[:2]]
         q, error = summed(self.line.nodes, -complex(*self.centre) * np.ones_like(self.line.nodes))
         self.back = complex(np.cos(self.phi), -np.sin(self.phi))
-        self.nodes = self.back * (q + (error + self.line.rests - complex(*rest)))
+        q, error = summed(q, error + self.line.rests - complex(*rest))
+        self.nodes, self.rests = self.back * q, self.back * error  # of a body that does not turn with all digits
 
     def place(self, zeta: Array) -> Array:
         """y (2, k)."""
         return plane(self._place(self.line.around(zeta)))
+
+    def place_and_rest(self, zeta: Array) -> tuple[Array, Array]:
+        """y (2, k), and what its rounding left."""
+        there = self.line.around(zeta)
+        value, error = summed(self.nodes[there.element], self.back * there.way)
+        return plane(value), plane(error + self.rests[there.element])
 
     def _place(self, there: Around) -> Complex:
         """y as a complex number, (k,)."""

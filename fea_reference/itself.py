@@ -38,6 +38,7 @@ from scipy.spatial import KDTree
 from fea_reference.edge import Edge
 from fea_reference.facing import Tapers, borders
 from fea_reference.hermite import NeutralLine, plane
+from fea_reference.neighbours import nearest
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Survey, gap, one_side, rounded, survey
 from scene.answer import Array, Ints
 
@@ -67,8 +68,8 @@ class Roles:
         seen = np.where(d < 0.0, -1.0, 1.0)
         if not self.side.size or not zeta.size:
             return seen
-        far, nearest = KDTree(self.across).query(np.stack([zeta, zeta_m], axis=1))
-        return np.asarray(np.where(far <= _ALIKE * np.abs(zeta - zeta_m), self.side[nearest], seen))
+        far, which = nearest(zeta + 1j * zeta_m, self.across[:, 0] + 1j * self.across[:, 1])
+        return np.asarray(np.where(far <= _ALIKE * np.abs(zeta - zeta_m), self.side[which], seen))
 
     def renewed(self, line: NeutralLine) -> Roles:
         """The same, with what is across from each node where the ``line`` lies now."""

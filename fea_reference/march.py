@@ -10,7 +10,17 @@ from scipy.optimize import brentq
 
 from fea_reference.acting import Acting
 from fea_reference.advance import advance, bend, way_to
-from fea_reference.contacts import against, least_gap, looked_at, passed_through, resting_pressure, room, zones_of
+from fea_reference.contacts import (
+    CLOSED,
+    against,
+    clear,
+    least_gap,
+    looked_at,
+    passed_through,
+    resting_pressure,
+    room,
+    zones_of,
+)
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
@@ -34,7 +44,6 @@ _NEARBY = (1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0)  # of a step: where to look for a clo
 _SINKING = 0.1  # of the thickness: an overlap that tight penalties are to press out on the way
 _DEEPER = 1e-3  # of the shortest element: by how much a contact sinks that is about to be passed
 _THROUGH = 0.5  # of the thickness: a way on which nothing passes through it unseen
-_CLOSED = 1e-9  # of the thickness, a gap that is none
 _AT_LIMIT = 1e-10  # rad: by which an angle may be beyond its limit before its stop closes
 _SHARP = 1e-3  # of the unbalanced force accepted: what is left at a station, where that is more than round-off
 _SHARPENINGS = 3
@@ -283,7 +292,7 @@ class March:
         for pair in (*self.open, *self.penalties):
             if isinstance(pair, Face):
                 continue  # its straight way is one in the frame of its body
-            least, touching = zones_of(self.model, pair, system.z).least, _CLOSED * pair.scale
+            least, touching = zones_of(self.model, pair, system.z).least, CLOSED * pair.scale
             # of what does not press yet an overlap is on its way to be closed; of what has pressed, it has gone through
             if pair in pressing or (abs(least) if pair in self.penalties else least) <= touching:
                 continue
@@ -371,6 +380,8 @@ class March:
                 return False
             if zones_of(self.model, pair, state).least < deepest:
                 return True
+            if clear(self.model, pair, state) > pace * (last - middle):
+                return False
             return overlaps(first, middle) or overlaps(middle, last)
 
         return overlaps(0, parts)
@@ -396,9 +407,11 @@ class March:
             return self.gaps(known[value])
 
         def sought(value: float, which: int) -> float:
-            return gaps(value)[which]
+            gap = gaps(value)[which]
+            # what is as near counts as closed; beyond it an end without thickness would be on the other side
+            return 0.0 if 0.0 <= gap <= 0.5 * arrived[which] else gap
 
-        arrived = [*(_CLOSED * pair.scale for pair in self.open), *(_SWITCHED for _ in self.model.stops)]
+        arrived = [*(CLOSED * pair.scale for pair in self.open), *(_SWITCHED for _ in self.model.stops)]
         clear, beyond = sorted(known, key=lambda value: min(gaps(value)), reverse=True)
         xtol = 1e-11 * max(abs(clear), abs(beyond))
         try:
@@ -459,11 +472,11 @@ class March:
     def watch_what_touches(self, load: int) -> None:
         """Give a penalty to every open contact whose gap has vanished."""
         z = self.system.z
-        closing = [p for p in self.open if least_gap(self.model, p, z) <= _CLOSED * p.scale]
+        closing = [p for p in self.open if least_gap(self.model, p, z) <= CLOSED * p.scale]
         for pair in closing:
             self.open.remove(pair)
             # an end that touches is to be the first beam's
-            unseen = zones_of(self.model, pair, z).least > _CLOSED * pair.scale
+            unseen = zones_of(self.model, pair, z).least > CLOSED * pair.scale
             closed = pair.about() if unseen and isinstance(pair, Pair) else pair
             self.penalties[closed] = Penalty(pair.stiffness)
             self.closing.setdefault(pair.name, self.value(load))
@@ -656,7 +669,7 @@ class March:
             one.pair: one.penetration if one.push > 0.0 else allowed * one.pair.scale
             for one in self.system.touches
             if isinstance(one.pair, Pair)
-            and one.zones.least <= _CLOSED * one.pair.scale
+            and one.zones.least <= CLOSED * one.pair.scale
             and self.penalties[one.pair].stiffness >= one.pair.stiffness
         }
 

@@ -24,13 +24,14 @@ from fea_reference.hermite import Index, NeutralLine
 from fea_reference.known import Known
 from fea_reference.leaning import Chain, Span, chain, own_chain, tangent_angles
 from fea_reference.own_pins import own_pins
+from fea_reference.pattern import Patterns
 from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
 from fea_reference.settings import Settings
 from fea_reference.state import Complex, State
 from fea_reference.stops import StopPart, stops_of
 from fea_reference.touch import Contact, Penalty, Touch
 from fea_reference.upright import upright
-from fea_reference.zones import Zones
+from fea_reference.zones import Survey, Zones
 from scene.answer import Array
 from scene.check_shapes import is_apart
 from scene.statement import (
@@ -250,9 +251,10 @@ class Model:
 
     ``guides`` are rows like a drive's whose value stays zero; ``apart`` are the ends to be assembled; ``stiffest`` is
     the largest of the elements' 12 EI/h²; ``moving`` are the motions among the unknowns: of all nodes and bodies.
-    ``lines``, ``discs``, ``distances``, ``overlaps`` and ``touches`` remember what has been found in a state: neutral
-    lines by the name of the beam, discs about these and their distances from edges (:mod:`fea_reference.far`), the
-    zones of contacts, and what a contact is with a penalty, a quadrature and the depth at which it is held.
+    ``lines``, ``discs``, ``distances``, ``surveys``, ``overlaps`` and ``touches`` remember what has been found in a
+    state: neutral lines by the name of the beam, discs about these and their distances from edges
+    (:mod:`fea_reference.far`), gaps of beams at a distance, the zones of contacts, and what a contact is with a
+    penalty, a quadrature and the depth at which it is held.
     """
 
     units: Units
@@ -273,10 +275,12 @@ class Model:
     start: State
     stiffest: float
     moving: Index
+    patterns: Patterns = field(repr=False)
     bends: Known[None, ElementForces] = field(default_factory=Known, repr=False)
     lines: Known[str, NeutralLine] = field(default_factory=Known, repr=False)
     discs: Known[str, tuple[Complex, Array]] = field(default_factory=Known, repr=False)
     distances: Known[Contact, tuple[Complex, Array]] = field(default_factory=Known, repr=False)
+    surveys: Known[tuple[Contact, float], Survey] = field(default_factory=Known, repr=False)
     overlaps: Known[Contact, Zones] = field(default_factory=Known, repr=False)
     touches: Known[tuple[Contact, Penalty, int, float | None], Touch] = field(default_factory=Known, repr=False)
 
@@ -515,6 +519,7 @@ def build(scene: Scene, settings: Settings) -> Model:
         State.of(start),
         max(12.0 * beam.stiffest / float(elements.length[beam.elements.start]) ** 2 for beam in beams),
         np.concatenate([node_dofs.ravel(), *(body.dofs for body in bodies if body.dofs is not None)]),
+        Patterns(size),
     )
 
 

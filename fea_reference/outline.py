@@ -26,10 +26,10 @@ from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import Polynomial
-from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
-from scene.answer import Array
+from fea_reference.state import multiplied, summed
+from scene.answer import Array, Ints
 from scene.statement import EdgeContact, FunctionContact, HalfPlaneContact, LineContact
 
 _SAME = 1e-6  # as near as a scene's places have to be
@@ -108,6 +108,10 @@ class HalfPlane:
             np.zeros(k, dtype=bool),
         )
 
+    def kept(self, y: Array, rest: Array) -> Array:
+        """d (k,) of places ``y`` + ``rest`` (2, k), with all digits."""
+        return _across(self.normal[:, None], y, rest, self.point[:, None])
+
 
 @dataclass(frozen=True, eq=False)
 class Broken:
@@ -138,7 +142,7 @@ class Broken:
         """Whether all of it is but for corners."""
         return True
 
-    @property
+    @cached_property
     def extent(self) -> float:
         """How deep behind the edge a place is still taken for one that has sunk in: a share of its size."""
         return 0.25 * float(np.hypot(*np.ptp(self.points, axis=1)))
@@ -150,14 +154,8 @@ class Broken:
 
     def near(self, y: Array) -> Near:
         """Distance and so on of places (2, k)."""
-        tangents, first, low, high = self._sides
-        r = y[:, None, :] - first[:, :, None]
-        t = r[0] * tangents[0][:, None] + r[1] * tangents[1][:, None]
-        t = np.minimum(np.maximum(t, low[:, None]), high[:, None])
-        away = r - t * tangents[:, :, None]
-        nearest = np.hypot(away[0], away[1]).argmin(axis=0)
-        every = np.arange(y.shape[1])
-        t, away = t[nearest, every], away[:, nearest, every]
+        nearest, t, away = self._foot(y)
+        _, _, low, high = self._sides
         normals = self._normals
         side = normals.take(nearest, axis=1)
         before = t <= low[nearest]
@@ -178,6 +176,27 @@ class Broken:
             np.where(corner, sign / np.where(corner, r_corner, 1.0), 0.0),
             corner,
         )
+
+    def kept(self, y: Array, rest: Array) -> Array:
+        """d (k,) of places ``y`` + ``rest`` (2, k), with all digits."""
+        near, (side, t, _) = self.near(y), self._foot(y)
+        tangents, first, _, _ = self._sides
+        begins = first.take(side, axis=1)
+        away, more = summed(y, -(begins + t * tangents.take(side, axis=1)))
+        away += more + rest
+        round_it = np.sign(near.distance) * np.hypot(away[0], away[1])
+        return np.asarray(np.where(near.corner, round_it, _across(self._normals.take(side, axis=1), y, rest, begins)))
+
+    def _foot(self, y: Array) -> tuple[Ints, Array, Array]:
+        """The side (k,) that is nearest to places (2, k), how far along it that is (k,), and the way from there."""
+        tangents, first, low, high = self._sides
+        r = y[:, None, :] - first[:, :, None]
+        t = r[0] * tangents[0][:, None] + r[1] * tangents[1][:, None]
+        t = np.minimum(np.maximum(t, low[:, None]), high[:, None])
+        away = r - t * tangents[:, :, None]
+        nearest = np.hypot(away[0], away[1]).argmin(axis=0)
+        every = np.arange(y.shape[1])
+        return nearest, t[nearest, every], away[:, nearest, every]
 
     @cached_property
     def _sides(self) -> tuple[Array, Array, Array, Array]:
@@ -259,9 +278,9 @@ class Graph:
     @property
     def straight(self) -> bool:
         """Whether all of it is."""
-        return not self._derivatives[:, 2].any()
+        return not self.f.coef[2:].any()
 
-    @property
+    @cached_property
     def extent(self) -> float:
         """How deep behind the edge a place is still taken for one that has sunk in: a share of its size."""
         low, high = self._at(np.array(self.span))[0].T
@@ -298,14 +317,19 @@ class Graph:
                 bend = np.where(nearer, 0.0, bend)
         return Near(distance, normal, bend, past & ~behind)
 
+    def kept(self, y: Array, rest: Array) -> Array:
+        """d (k,) of places ``y`` + ``rest`` (2, k), to what the edge's own places are rounded to."""
+        near = self.near(y)
+        return np.asarray(near.distance + (near.normal * rest).sum(axis=0))
+
     def _nearest(self, y: Array) -> Array:
         """Where along the axis that place of the edge is, (k,), which is nearest to places (2, k)."""
         low, high = self.span
         v, w = y[::-1] if self.across else y
-        samples, nearness = self._samples
-        at = samples[(np.column_stack([v, w, np.ones_like(v)]) @ nearness).argmax(axis=1)]
+        samples, along, across, away = self._samples
+        at = samples[(np.multiply.outer(v, along) + np.multiply.outer(w, across) + away).argmax(axis=1)]
         for _ in range(_NEWTON_STEPS):
-            f, slope, second = polyval(at, self._derivatives)
+            f, slope, second = self._f(at)
             rest = f - w
             bent = 1.0 + slope**2 + rest * second
             # beyond the centre of curvature a place of the edge is farthest: it stays where it is
@@ -318,17 +342,25 @@ class Graph:
         return np.asarray(at)
 
     @cached_property
-    def _samples(self) -> tuple[Array, Array]:
+    def _samples(self) -> tuple[Array, Array, Array, Array]:
         """Places along the axis (n,), and what makes of (y, 1) the part of −|s − y|² that tells the points s apart."""
         v = np.linspace(*self.span, _SAMPLES)
-        s = np.array([v, self.f(v)])
-        return v, np.concatenate([2.0 * s, -(s**2).sum(axis=0, keepdims=True)])
+        f = self.f(v)
+        return v, 2.0 * v, 2.0 * f, -(v**2 + f**2)
+
+    def _f(self, v: Array) -> tuple[Array, Array, Array]:
+        """f and its first two derivatives at ``v`` (k,), (k,) each, by Horner's scheme."""
+        f = slope = half = np.zeros_like(v)
+        for coefficient in self._falling:
+            half = half * v + slope
+            slope = slope * v + f
+            f = f * v + coefficient
+        return f, slope, 2.0 * half
 
     @cached_property
-    def _derivatives(self) -> Array:
-        """Coefficients of f and its first two derivatives, a column each."""
-        columns = [self.f.deriv(order).coef if order else self.f.coef for order in range(3)]
-        return np.stack([np.pad(one, (0, self.f.coef.size - one.size)) for one in columns], axis=1)
+    def _falling(self) -> list[float]:
+        """Coefficients of f, the last first."""
+        return [float(one) for one in self.f.coef[::-1]]
 
     @property
     def _forwards(self) -> bool:
@@ -337,7 +369,7 @@ class Graph:
 
     def _at(self, v: Array) -> tuple[Array, Array, Array]:
         """Points and unit tangents (2, k) at ``v`` (k,), the free side to the left, and κ (k,)."""
-        f, slope, second = polyval(v, self._derivatives)
+        f, slope, second = self._f(v)
         long = np.hypot(1.0, slope)
         tau = np.array([np.ones_like(v), slope]) / long * (1.0 if self._forwards else -1.0)
         point = np.array([v, f])
@@ -395,6 +427,14 @@ def _crossing(place: Array, ahead: Array, places: Array, aheads: Array) -> tuple
     share = 1.0 / np.where(parallel, 1.0, across)
     far, along = (x * aheads[1] - y * aheads[0]) * share, (x * ahead[1] - y * ahead[0]) * share
     return np.where(parallel, np.inf, far), np.where(parallel, np.inf, along)
+
+
+def _across(normal: Array, y: Array, rest: Array, point: Array) -> Array:
+    """n·(y + rest − point) of places (2, k), with normals and points (2, k) or (2, 1): it loses no digits far away."""
+    away, more = summed(y, -point)
+    (a, a_error), (b, b_error) = multiplied(normal[0], away[0]), multiplied(normal[1], away[1])
+    value, error = summed(a, b)
+    return np.asarray(value + (error + a_error + b_error + (normal * (more + rest)).sum(axis=0)))
 
 
 def _left(tangents: Array) -> Array:

@@ -69,10 +69,22 @@ def summed(a: Numbers, b: Numbers) -> tuple[Numbers, Numbers]:
     return value, (a - (value - shift)) + (b - shift)
 
 
+def multiplied(a: Array, b: Array) -> tuple[Array, Array]:
+    """a ⊗ b and its error."""
+    value = np.asarray(a * b)
+    (high, low), (high_b, low_b) = _halves(a), _halves(b)
+    return value, ((high * high_b - value) + high * low_b + low * high_b) + low * low_b
+
+
 def squared(a: Array) -> tuple[Array, Array]:
     """a ⊗ a and its error."""
     value = np.asarray(a * a)
+    high, low = _halves(a)
+    return value, ((high * high - value) + 2.0 * (high * low)) + low * low
+
+
+def _halves(a: Array) -> tuple[Array, Array]:
+    """Numbers of half the digits whose sum is a."""
     wide = _SPLITTER * a
     high = wide - (wide - a)
-    low = a - high
-    return value, ((high * high - value) + 2.0 * (high * low)) + low * low
+    return high, a - high

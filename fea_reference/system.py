@@ -6,7 +6,7 @@ included, and the tangent its second derivative: symmetric and indefinite.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -18,15 +18,14 @@ from fea_reference.acting import Acting
 from fea_reference.beam_loads import BeamLoad, beam_load, load_forces
 from fea_reference.contacts import touch
 from fea_reference.element import ElementForces
-from fea_reference.hermite import Index
 from fea_reference.model import MOMENTS, WAY, DrivePart, Model, OnBeam, SharePart, turned
+from fea_reference.outline import Graph
+from fea_reference.pattern import Block, Single
 from fea_reference.state import State
 from fea_reference.stops import acting_stops
 from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
 from scene.answer import Array
 from scene.frozendict import frozendict
-
-Entries = tuple[Index, Index, Array]
 
 NOTHING = 10.0
 """Floors: forces below this are round-off themselves."""
@@ -87,7 +86,7 @@ def stiffened(model: Model, system: System, one: Touch, factor: float) -> System
     """The same state, one of its contacts ``factor`` times as stiff and pushing as before; the tangent only."""
     stiffer = replace(one, stiffness=factor * one.stiffness)
     more = stiffer.hessian(one.pushes) - one.hessian(one.pushes)
-    return replace(system, tangent=system.tangent + _matrix([_entries(one.dofs, more)], model.size))
+    return replace(system, tangent=system.tangent + model.patterns.matrix([Block(one.dofs, more)]))
 
 
 def assemble(
@@ -119,11 +118,11 @@ def assemble(
     touches = tuple(touch(model, pair, penalty, quadrature, z, held.get(pair)) for pair, penalty in penalties.items())
     residual, rigid = _rigid(model, values, z, acting)
     parts = [(model.element_dofs, elements.gradient)]
-    entries = [rigid, _entries(model.element_dofs, elements.hessian)]
+    entries: list[Block | Single] = [rigid, Block(model.element_dofs, elements.hessian)]
     pressing = [(one, one.gradient) for one in touches if one.closed]
     for one, gradient in pressing:
         parts.append((one.dofs, gradient))
-        entries.append(_entries(one.dofs, one.hessian(_pushes(one, foreseen.get(one.pair)))))
+        entries.append(Block(one.dofs, one.hessian(_pushes(one, foreseen.get(one.pair)))))
     loads = tuple(
         beam_load(model, part, float(value), z)
         for part, value in zip(model.loads, values[: len(model.loads)], strict=True)
@@ -131,14 +130,14 @@ def assemble(
     )
     for load in loads:
         parts.append((load.dofs, -load.gradient))
-        entries.append(_entries(load.dofs, -load.hessian))
+        entries.append(Block(load.dofs, -load.hessian))
     for dofs, gradient in parts:
         residual += np.bincount(dofs.ravel(), gradient.ravel(), model.size)
     if drag is not None:
         residual += drag.weights * (z.values - drag.anchor.values + (z.rest - drag.anchor.rest))
         every = np.arange(model.size)
-        entries.append((every, every, drag.weights))
-    tangent = _matrix(entries, model.size)
+        entries.append(Single(every, every, drag.weights))
+    tangent = model.patterns.matrix(entries)
     balanced = [np.abs(elements.gradient[:6]).max(), np.abs(values[: len(model.loads)]).max(initial=0.0)]
     balanced += [np.abs(gradient).max() for _, gradient in pressing]
     balanced += [abs(values[model.stepped.index(MOMENTS)] * one.moment) for one in model.apart]
@@ -166,15 +165,19 @@ def _pushes(one: Touch, foreseen: Array | None) -> Array:
 def _round_off(model: Model, touch: Touch, stiffness: float) -> float:
     """Of a contact's force on a node: ε times what lies in an element of the zone, times what the gap is rounded to.
 
-    Within an element that is a share of the element's length, across a pair also of the beams' distance; where what
-    is rigid moves with its body, or has corners, of the longest beam.
+    Within an element that is a share of the element's length, across a pair and to an edge also of the distance at
+    which they touch; where what is rigid moves with its body, or is the graph of a function, of the longest beam.
     """
     pair = touch.pair
     h = float(model.elements.length[model.beams[pair.first].elements.start])
     if isinstance(pair, Pair):
         lengths = h + float(model.elements.length[model.beams[pair.second].elements.start]) + pair.distance
+    elif model.bodies[pair.body].dofs is not None:
+        lengths = 1.0
+    elif isinstance(pair, Circle):
+        lengths = h
     else:
-        lengths = h if isinstance(pair, Circle) and model.bodies[pair.body].dofs is None else 1.0
+        lengths = 1.0 if isinstance(pair.outline, Graph) else h + pair.edge.farthest
     widest = h * float(np.diff(touch.zones.intervals, axis=1).max(initial=0.0))
     return float(np.finfo(float).eps) * stiffness * widest * lengths
 
@@ -209,7 +212,7 @@ def load_direction(model: Model, load: int, z: State, acting: Acting) -> Array:
     return f
 
 
-def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array, Entries]:
+def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array, Single]:
     """Joints, hinges, guides, drives, stops and loads: few, so one after the other."""
     residual = np.zeros(model.size)
     ways: dict[int, Array] = {}
@@ -319,16 +322,4 @@ def _rigid(model: Model, values: Array, z: State, acting: Acting) -> tuple[Array
             rows.append(int(dofs[2]))
             columns.append(int(dofs[2]))
             entries.append(value * float(turned(part.arm, z[dofs[2]]) @ part.direction))
-    return residual, (np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64), np.array(entries))
-
-
-def _entries(dofs: Index, local: Array) -> Entries:
-    """Rows, columns and values of local symmetric matrices (m, m, n) of the unknowns ``dofs`` (m, n)."""
-    rows = np.broadcast_to(dofs[:, None], local.shape)
-    return rows.ravel(), rows.swapaxes(0, 1).ravel(), local.ravel()
-
-
-def _matrix(entries: Sequence[Entries], size: int) -> csc_matrix:
-    """Their sum, (size, size)."""
-    rows, columns, values = (np.concatenate(arrays) for arrays in zip(*entries, strict=True))
-    return csc_matrix((values, (rows, columns)), (size, size))
+    return residual, Single(np.array(rows, dtype=np.int64), np.array(columns, dtype=np.int64), np.array(entries))

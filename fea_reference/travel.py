@@ -35,6 +35,7 @@ from scene.answer import Array, Critical, Ending, Loss
 
 _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
 _CUTS = 10  # in a row, each to a quarter
+_SHORTEST = 0.25**_CUTS  # of the span: as short as a step all along it that is cut so often
 _PACE = 1e-3  # of the span: who has not come so far
 _PATIENCE = 250  # in so many iterations, and fails, may creep up to where the branch ends, and looks for that
 _EASY = 6  # iterations: a step that took more is not followed by a longer one
@@ -146,11 +147,11 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
     limit = march.settings.iteration_limit
     rate: Array | None = None
     tight: March | None = None
-    paced = march.values[load], march.iterations
+    paced, looked = (march.values[load], march.iterations), False
     leapt = False
     while march.values[load] != target:
         if abs(march.values[load] - paced[0]) >= _PACE * course.span:
-            paced = march.values[load], march.iterations
+            paced, looked = (march.values[load], march.iterations), False
         if cuts > _CUTS:
             raise StoppedError(*reason)
         if march.iterations > limit:
@@ -192,7 +193,11 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
             # the branch has no end near by, and this is another one
             trouble = Ending.NOT_A_MINIMUM, f"beyond {saved.shown(load, saved.values[load])} no minimum is found"
         crept = trouble is not None and march.iterations - paced[1] > _PATIENCE
-        tired = crept or (trouble is not None and cuts >= _TIRED)
+        # some of ever shorter steps may succeed, and lead nowhere together: what has no other end ends there
+        tiny = trouble is not None and size < _SHORTEST * course.span and size * speed < _NOWHERE
+        if tiny and looked and trouble is not None:
+            raise StoppedError(*trouble)
+        tired = crept or tiny or (trouble is not None and cuts >= _TIRED)
         paced = (paced[0], march.iterations) if crept else paced
         if minimum and follow and (close or unstable or tired):
             march.restore(saved)
@@ -208,8 +213,9 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
                 _beyond(march, course, target, lost)
                 stride, cuts, searching = np.inf, 0, False
                 limit = march.iterations + march.settings.iteration_limit
-                paced = march.values[load], march.iterations
+                paced, looked = (march.values[load], march.iterations), False
             elif tired:
+                looked = looked or tiny
                 march.restore(saved)
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble or reason
                 follow = False
@@ -236,6 +242,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
             elif not searching and march.loosen(Circle, Face, Pair):
                 searching, march.far, known, tight = True, True, [], saved
             else:
+                looked = looked or tiny
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
     return leapt
 

@@ -42,6 +42,8 @@ _END_ITERATIONS = 15
 _INSIDE = 1e-6  # elements
 _ON_RAY = 1e-6  # elements
 _ARRIVED = 1e-8  # elements
+_TURNS = 1e-4  # elements: where a gap is least it changes by the square of what is left, and what a step leaves is less
+_WITHIN = 1e-9  # of the way between two places: zones far narrower than that way begin at a gap that is least
 _EVEN = 3.0  # times its mean: a derivative below that at both ends keeps a cubic rising
 
 
@@ -286,12 +288,14 @@ def survey(
         one = at(where, guess)
         return one.slope, one.curvature, one.zeta_m
 
-    turning = np.flatnonzero(neighbours & (slope[:-1] * slope[1:] < 0.0))
+    # a largest value parts what is below zero on both sides of it, and tells nothing anywhere else
+    parts = (slope[:-1] < 0.0) | ((there.g[:-1] <= 0.0) & (there.g[1:] <= 0.0))
+    turning = np.flatnonzero(neighbours & (slope[:-1] * slope[1:] < 0.0) & parts)
     if turning.size and kinks:
         turning = turning[~_at_kinks(slope_at, zeta, slope, zeta_m, turning, kinks)]
     if turning.size:
         share = _turning(zeta, slope, there.curvature, turning)
-        where, guess = _roots(slope_at, zeta, slope, zeta_m, turning, share, floor)
+        where, guess = _roots(slope_at, zeta, slope, zeta_m, turning, share, floor, _TURNS)
         zeta, there, neighbours = _with(zeta, there, neighbours, turning, where, at(where, guess))
     least = float((there.g[~np.isin(zeta, joined)] if joined else there.g).min())
     return Survey(at, zeta, there, neighbours, kinks, least)
@@ -404,12 +408,14 @@ def _roots(
     left: NDArray[np.int64],
     share: Array,
     floor: float = 0.0,
+    arrived: float = _ARRIVED,
 ) -> tuple[Array, Array]:
     """Roots between the places ``left`` and the next, where ``values`` change their sign; with their ζ_m.
 
     ``share`` of the way from one to the next is where to begin.  Where a value times what is left of the way is no
     more than the ``floor``, what it is the slope of does not change any more, and any place will do: beams that lie on
-    something have slopes that are nothing but round-off, and no root to be found.
+    something have slopes that are nothing but round-off, and no root to be found.  A step of Newton's method that is
+    shorter than ``arrived`` (elements) is the last, and one of halving that is no more than round-off.
     """
     low, high = zeta[left], zeta[left + 1]
     x = low + share * (high - low)
@@ -430,7 +436,7 @@ def _roots(
         nothing = np.abs(f) * (high - low) <= floor
         step = np.where(nothing, 0.0, moved - x)
         x, guess = x + step, guess + pace * step
-        going = np.abs(step) >= _ARRIVED  # as in a projection, the last step's error is of second order
+        going = np.abs(step) >= np.where(good, arrived, _ARRIVED)  # the last step's error is of second order
         places[sought], closest_there[sought] = x, guess
         if not going.any():
             break
@@ -486,7 +492,7 @@ def _parabola(zeta: Array, g: Array, slope: Array, curvature: Array, left: NDArr
     a, b, c = 0.5 * curvature[inner] * width**2, way * slope[inner] * width, g[inner]
     root = np.sqrt(np.maximum(b * b - 4.0 * a * c, 0.0))
     # The stable form of (−b + root)/(2a)
-    distance = np.clip(-2.0 * c / np.maximum(b + root, 1e-300), 1e-3, 1.0 - 1e-3)
+    distance = np.clip(-2.0 * c / np.maximum(b + root, 1e-300), _WITHIN, 1.0 - _WITHIN)
     return np.where(forward, distance, 1.0 - distance)
 
 

@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from fea_reference import Settings
+from fea_reference import Settings, answer
 from fea_reference.certificates import certify
 from fea_reference.contacts import contacts
 from fea_reference.march import begin
 from fea_reference.model import build
 from fea_reference.travel import Course, reach
+from tests.fea_reference.on_an_edge import cantilever_over
 from tests.fea_reference.test_contact import CLOSING, two_cantilevers
 from tests.together.pivots import wheel
 
@@ -45,3 +46,14 @@ def test_an_angle_beyond_its_stop_is_not_certified(limit, beyond):
     failures = certify(march).failures
     told = [f"a joint, a stop or an element's length is violated by {beyond:.1e} of the longest beam"] if beyond else []
     assert list(failures) == told
+
+
+@pytest.mark.parametrize("elements", [83, 157])
+def test_a_corner_that_is_pressed_hard_by_a_tight_penalty_leaves_no_force(elements):
+    # reference: action and reaction; the corner lies far from where the body's places are counted from
+    corner = {"kind": "beam-line", "points": ((0.2, -0.3), (0.437, -0.0053), (0.8, -0.4)), "side": "left"}
+    settings = Settings(elements=elements, kinematics="bending", penetration=4e-7)
+    found = answer(cantilever_over(corner, force=8.0), settings)
+    assert found.completed
+    assert found.stations[0].certificate.force_balance < 1e-8
+    assert found.stations[0].certificate.residual_floor < 3e-8

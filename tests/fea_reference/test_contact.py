@@ -5,7 +5,7 @@ import pytest
 
 from fea_reference import Settings, answer
 from fea_reference.contact import least_at_ends, touch
-from fea_reference.contacts import contacts
+from fea_reference.contacts import against, clear, contacts, zones_of
 from fea_reference.crossing import cross
 from fea_reference.facing import borders
 from fea_reference.hermite import NeutralLine
@@ -326,3 +326,39 @@ def test_a_zone_between_two_places_is_found_although_the_gap_falls_at_neither(de
     assert found.least == pytest.approx(-depth, rel=1e-6)
     assert 0.75 - low == pytest.approx(np.sqrt(depth / (4 * low - 1)), rel=1e-4)
     assert high - 0.75 == pytest.approx(np.sqrt(depth / (4 * high - 1)), rel=1e-4)
+
+
+@pytest.mark.parametrize("order", [("upper", "lower"), ("lower", "upper")])
+def test_what_moves_by_less_than_is_clear_does_not_overlap(order):
+    # reference: the distance of two places changes by no more than both move; nodes move by up to half of that each
+    apart, settings = 0.019, Settings(elements=23)
+    upper = {**clamped(apart, A, "U", "tip"), "curve": {"kind": "line", "start": [0.03, apart], "end": [A, apart]}}
+    lower = {**clamped(0.0, B, "V"), "curve": {"kind": "line", "start": [-0.02, 0.0], "end": [0.161, 0.0]}}
+    scene = scene_from(
+        {
+            "name": "apart",
+            "materials": {"m": {"youngs_modulus": YOUNG, "poisson_ratio": 0.3}},
+            "bodies": {
+                "ground": {"motion": "fixed", "points": {"U": [0.03, apart], "V": [-0.02, 0.0]}},
+                "end": {"motion": "free", "points": {"tip": [A, apart]}},
+            },
+            "beams": {"upper": upper, "lower": lower},
+            "loads": {"P": {"kind": "force", "point": "tip", "direction": [0.0, -1.0]}},
+            "contacts": {"touch": {"kind": "beam-beam", "between": list(order), "thick": False}},
+            "stages": [{"name": "load", "steps": "P", "stations": [1.0]}],
+            "probes": [{"of": "touch", "quantity": "force"}],
+        }
+    )
+    model = build(scene, settings)
+    (pair,) = contacts(scene, model, settings.penetration)
+    room = clear(model, pair, model.start)
+    assert 0.4 * apart < room * model.units.length < (1.0 + 1e-9) * apart
+    rng = np.random.default_rng(7)
+    for _ in range(20):
+        values = model.start.values.copy()
+        for beam in model.beams:
+            angle = rng.uniform(-np.pi, np.pi)
+            values[model.node_dofs[:2, beam.nodes]] += 0.5 * room * np.array([[np.cos(angle)], [np.sin(angle)]])
+        moved = State.of(values)
+        assert against(model, pair, model.start, moved) <= room * (1.0 + 1e-9)
+        assert zones_of(model, pair, moved).least >= -1e-12

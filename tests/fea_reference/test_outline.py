@@ -1,9 +1,11 @@
 """The nearest place of a graph, held against the roots of the cubic that it is of a parabola."""
 
+from decimal import Decimal, localcontext
+
 import numpy as np
 import pytest
 
-from fea_reference.outline import Broken, outline_of
+from fea_reference.outline import Broken, HalfPlane, outline_of
 from scene.statement import FunctionContact
 
 COEFFICIENTS = (0.013, -0.31, 0.83)
@@ -89,3 +91,28 @@ def test_beyond_its_ends_a_graph_goes_straight_back(axis):
         assert near.normal[:, 0] == pytest.approx(tangent if axis == "x" else tangent[::-1], abs=1e-12)
         assert near.bend[0] == 0.0
         assert near.corner.tolist() == [False, True]
+
+
+@pytest.mark.parametrize("edge", ["a half-plane", "a side", "a corner"])
+def test_a_distance_far_along_an_edge_has_all_its_digits(edge):
+    """Against decimals of fifty digits, of places in two parts; a place in one is a hundred times as coarse."""
+    direction = np.array([0.96, 0.28])
+    normal = np.array([-direction[1], direction[0]])
+    ends = np.stack([(1.7 if edge == "a corner" else -0.3) * direction, 2.9 * direction], axis=1)
+    outline = HalfPlane(ends[:, 0], normal) if edge == "a half-plane" else Broken(ends)
+    rng = np.random.default_rng(5)
+    along = rng.uniform(1.2, 1.6, 71)
+    y = along * direction[:, None] + 0.0037 * normal[:, None]
+    if edge == "a corner":
+        y = ends[:, :1] + 0.0037 * np.array([np.cos(along + 1.0), np.sin(along + 1.0)])
+    rest = rng.uniform(-1.0, 1.0, y.shape) * 1e-16
+    found = outline.kept(y, rest)
+    with localcontext() as context:
+        context.prec = 50
+        for i in range(along.size):
+            n = outline.near(y[:, i : i + 1]).normal[:, 0]
+            place = [Decimal(float(a)) + Decimal(float(b)) for a, b in zip(y[:, i], rest[:, i], strict=True)]
+            away = [at - Decimal(float(b)) for at, b in zip(place, ends[:, 0], strict=True)]
+            across = sum((Decimal(float(a)) * b for a, b in zip(n, away, strict=True)), Decimal(0))
+            expected = (away[0] ** 2 + away[1] ** 2).sqrt() if edge == "a corner" else across
+            assert abs(float(Decimal(float(found[i])) - expected)) < 3e-18

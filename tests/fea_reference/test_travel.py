@@ -83,6 +83,9 @@ class Ways:
         return f"{value:g}"
 
 
+WALL = 0.61803
+
+
 def test_cuts_count_in_a_row_and_a_step_that_was_cut_grows_again():
     march = Ways(narrows=tuple(0.07 * k + 0.0213 for k in range(1, 13)))
     _arrive(march, Course(0, 1.0), 1.0, watched=False)
@@ -97,12 +100,39 @@ def test_penalties_are_loosened_once_for_every_contact_that_closes():
     assert list(march.penalties) == [0.37, 0.71, 0.93]
 
 
-def test_where_there_is_no_way_steps_end():
+def test_where_there_is_no_way_steps_end(monkeypatch):
+    monkeypatch.setattr("fea_reference.travel.followed", lambda *asked: None)
     march = Ways(closings=(0.37, 0.37))
     with pytest.raises(StoppedError) as stopped:
         _arrive(march, Course(0, 1.0), 1.0, watched=False)
     assert stopped.value.ending is Ending.STEP_TOO_SMALL
     assert march.values[0] < 0.37
+    assert march.steps < 40  # 4⁻¹⁰ is twenty halvings
+
+
+@dataclass
+class Creeping(Ways):
+    """A march that comes no farther than to WALL, but a third of the way there with every step that is short enough."""
+
+    def step(self, load, value, rate):
+        self.steps += 1
+        self.iterations += 3
+        if value - self.values[load] > (WALL - self.values[load]) / 3.0:
+            return Ending.STEP_TOO_SMALL, "no way"
+        self.values[load] = value
+        return None
+
+
+def test_steps_that_grow_ever_shorter_without_leading_on_end(monkeypatch):
+    # ten cuts in a row make of the way to λ = 1 a step of 4⁻¹⁰; where a second of these fails is the end, and what
+    # succeeds in between does not count.  The distance to the wall falls by a third at the least with every success
+    monkeypatch.setattr("fea_reference.travel.followed", lambda *asked: None)
+    march = Creeping()
+    with pytest.raises(StoppedError) as stopped:
+        _arrive(march, Course(0, 1.0), 1.0, watched=False)
+    assert stopped.value.ending is Ending.STEP_TOO_SMALL
+    assert 0.0 < WALL - march.values[0] < 1e-5
+    assert march.steps < 150  # to the last digit of the wall it would be 279
 
 
 END = 0.7313

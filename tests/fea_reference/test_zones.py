@@ -34,6 +34,35 @@ def test_a_zone_between_two_places_with_slopes_of_one_sign_is_found(turned, dept
     assert zones.intervals == pytest.approx(np.array([[low, high]]), abs=1e-7)
 
 
+@pytest.mark.parametrize("width", [0.11, 3e-3, 2e-5, 7e-8])
+def test_a_zone_is_as_narrow_as_it_is_and_found_at_once(width):
+    # g = (ζ − c)² − w² between two places that are a quarter apart: its ends are c ± w
+    centre, asked = 0.1371, []
+    gap = Polynomial([centre**2 - width**2, -2.0 * centre, 1.0])
+    at, places = gap_of(gap), np.array([0.0, 0.25])
+
+    def counted(zeta, guess):
+        asked.append(zeta.size)
+        return at(zeta, guess)
+
+    zones = negative(counted, places, at(places, np.zeros(2)), np.array([True]))
+    assert zones.least == pytest.approx(-(width**2), rel=1e-6, abs=3e-18)
+    assert np.concatenate([zones.intervals[0, :1], zones.intervals[-1, 1:]]) == pytest.approx(
+        [centre - width, centre + width], abs=1e-3 * width
+    )
+    assert len(asked) < 9
+
+
+def test_a_zone_that_a_largest_value_parts_is_two():
+    # g = w² − (ζ − c)²: both places are below zero, and what is between c − w and c + w is not
+    centre, width = 0.1371, 0.043
+    gap = Polynomial([width**2 - centre**2, 2.0 * centre, -1.0])
+    at, places = gap_of(gap), np.array([0.0, 0.25])
+    zones = negative(at, places, at(places, np.zeros(2)), np.array([True]))
+    expected = np.array([[0.0, centre - width], [centre + width, 0.25]])
+    assert zones.intervals == pytest.approx(expected, abs=1e-9)
+
+
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_a_gap_is_seen_as_far_as_the_other_beam_reaches(sense):
     # two level straight lines, of which the second begins later and ends earlier: the gap is their distance there

@@ -1,0 +1,100 @@
+"""Sums of local matrices as one sparse matrix, where the entries go being found once for all that stand alike.
+
+Where they stand changes with the elements in which contacts press, and seldom else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csc_matrix
+
+from fea_reference.hermite import Index
+from scene.answer import Array
+
+_KNOWN = 32  # patterns
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Local symmetric matrices ``local`` (m, m, n) of the unknowns ``dofs`` (m, n)."""
+
+    dofs: Index
+    local: Array
+
+    @property
+    def key(self) -> tuple[bytes, ...]:
+        """Where its entries stand."""
+        return self.dofs.tobytes(), bytes(str(self.dofs.shape), "ascii")
+
+    @property
+    def rows(self) -> Index:
+        """Of the entries one after the other."""
+        return np.broadcast_to(self.dofs[:, None], self.local.shape).ravel()
+
+    @property
+    def columns(self) -> Index:
+        """Of the same."""
+        return np.broadcast_to(self.dofs[None, :], self.local.shape).ravel()
+
+    @property
+    def values(self) -> Array:
+        """The entries."""
+        return self.local.ravel()
+
+
+@dataclass(frozen=True, slots=True)
+class Single:
+    """Entries ``values`` at ``rows`` and ``columns``, (k,) each."""
+
+    rows: Index
+    columns: Index
+    values: Array
+
+    @property
+    def key(self) -> tuple[bytes, ...]:
+        """Where they stand."""
+        return self.rows.tobytes(), self.columns.tobytes()
+
+
+@dataclass(frozen=True, slots=True)
+class _Pattern:
+    """``place`` (k,) of each entry among the ``indices`` (nnz,) of a matrix, and its ``indptr``."""
+
+    place: Index
+    indices: Index
+    indptr: Index
+
+
+class Patterns:
+    """Those of one model's matrices."""
+
+    def __init__(self, size: int) -> None:
+        self._size = size
+        self._known: dict[tuple[bytes, ...], _Pattern | None] = {}
+
+    def matrix(self, blocks: Sequence[Block | Single]) -> csc_matrix:
+        """The sum of all blocks, (size, size)."""
+        shape = (self._size, self._size)
+        key = tuple(part for block in blocks for part in block.key)
+        values = np.concatenate([block.values for block in blocks])
+        known = self._known.get(key)
+        if known is not None:
+            data = np.bincount(known.place, values, known.indices.size)
+            return csc_matrix((data, known.indices, known.indptr), shape)
+        rows, columns = (np.concatenate([getattr(block, of) for block in blocks]) for of in ("rows", "columns"))
+        found = csc_matrix((values, (rows, columns)), shape)
+        if len(self._known) >= _KNOWN:
+            self._known.clear()
+        # what is seen once may never be again
+        self._known[key] = _pattern(found, rows, columns) if key in self._known else None
+        return found
+
+
+def _pattern(found: csc_matrix, rows: Index, columns: Index) -> _Pattern:
+    """Where entries at ``rows`` and ``columns`` (k,) stand in the matrix that they make."""
+    size = found.shape[0]
+    standing = np.repeat(np.arange(size), np.diff(found.indptr)) * size + found.indices
+    return _Pattern(np.searchsorted(standing, columns * size + rows), found.indices, found.indptr)
