@@ -294,7 +294,11 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
     energy = potential_energy(march.model, march.system, march.values)
     for one in before.system.touches:
         held = softest(march.model, stiffened(march.model, before.system, one, _RIGID)) if one.closed else None
-        if held is not None and held.curvature > _HELD * first.curvature and _gone(march, branch, first, one, held.curvature):
+        if (
+            held is not None
+            and held.curvature > _HELD * first.curvature
+            and _gone(march, branch, first, one, held.curvature)
+        ):
             left = softest(march.model, _without(march, one))
             return Lost(
                 value,
