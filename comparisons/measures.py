@@ -206,8 +206,8 @@ class Row:
     ``exact`` is, and where x is not of the two values' shape.
 
     ``shared`` are the other contacts with which one presses its beam at one place (:mod:`comparisons.shared`); of its
-    force ``difference``, ``same_theory`` and ``bounds`` are then those of the resultant of all of them, ``together`` (1,)
-    the CPRBM's and the finite elements', absent where some answer does not say what acts.
+    force ``difference``, ``same_theory`` and ``bounds`` are then those of the resultant of all of them,
+    ``together`` (1,) the CPRBM's and the finite elements', absent where some answer does not say what acts.
 
     ``branch`` is the number of the branch that all answers are on at the station, None where there is no such one, and
     ``place`` what that makes of it (:mod:`comparisons.branches`).  Only where it is compared there are ``bounds``; near
