@@ -15,7 +15,8 @@ contacts press is a small complementarity problem in G.
 
 A_E has dependent rows where a beam is straight between ends that do not move: turning its links by a little does not
 bring them closer, and no equation says what it pulls by.  So in a step Z may stay behind by a very little (``GIVING``)
-times Δμ, which is nothing once there is no more step: such a beam keeps the pull that it had.
+times Δμ, which is nothing once there is no more step: such a beam keeps the pull that it had.  So may the gaps, by as
+little times Δλ: two obstacles with one corner hold a beam by two rows that are one, and share its force.
 
 H is made positive definite on the feasible directions where it is not, first by the stiffness of the contacts that
 press, then by a shift.
@@ -175,7 +176,7 @@ def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System
     corner[body, body] = over_phi
     i = np.arange(first, inner)
     corner[i, i] = -1.0 / sigma
-    i = np.arange(inner, inner + len(point.A_E))
+    i = np.arange(inner, size)
     corner[i, i] = -GIVING
     for place, link in enumerate(anchors.tolist(), start=n_bodies):
         corner[place, place] = diagonal[link]
