@@ -210,7 +210,12 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> No
                 known, march.behind = [], None
                 stride, cuts, reason = size, cuts + 1, trouble
             elif not searching and march.loosen(Circle, Face, Pair):
-                searching, march.far, known, tight = True, True, [], saved
+                if watched and minimum and not march.curvature > 0.0:
+                    # what stands by a contact alone does not stand by a loose one, and whatever follows would pass
+                    march.restore(saved)
+                    searching, stride, cuts, reason = True, 0.25 * size, cuts + 1, trouble
+                else:
+                    searching, march.far, known, tight = True, True, [], saved
             else:
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
 
