@@ -62,6 +62,9 @@ counts at each.  Where a contact presses is no force: at a load that nearly vani
 may move the place along the whole beam, and says nothing of other stations. Of places each station's own counts.
 It is at least 1e-12 of the family's natural scale, for what round-off does to the numbers
 themselves.  A contact that is open in every run has no force, and nothing is left open there.
+
+Of contacts that press a beam at one place the sum of their forces is measured in place of each
+(:mod:`comparisons.shared`).
 """
 
 from __future__ import annotations
@@ -79,6 +82,7 @@ from comparisons.geometry import length
 from comparisons.order import order_of, richardson
 from comparisons.pairing import Runs
 from comparisons.scales import denominator, family_size, natural_scale, norm, probe_scale
+from comparisons.shared import resultant, sharing
 from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, Stage, StationAnswer
@@ -201,6 +205,10 @@ class Row:
     absent where none is known and empty where the contact is then open; ``true_errors`` is absent where ``bounds`` or
     ``exact`` is, and where x is not of the two values' shape.
 
+    ``shared`` are the other contacts with which one presses its beam at one place (:mod:`comparisons.shared`); of its
+    force ``difference``, ``same_theory`` and ``bounds`` are then those of the resultant of all of them,
+    ``together`` (1,) the CPRBM's and the finite elements', absent where some answer does not say what acts.
+
     ``branch`` is the number of the branch that all answers are on at the station, None where there is no such one, and
     ``place`` what that makes of it (:mod:`comparisons.branches`).  Only where it is compared there are ``bounds``; near
     a critical value there are differences alone, and elsewhere the values.
@@ -225,6 +233,8 @@ class Row:
     true_errors: TrueErrors | None = None
     place: Place = Place.COMPARED
     branch: int | None = 0
+    shared: frozenset[str] = frozenset()
+    together: tuple[Array, Array] | None = None
 
     def fraction(self, value: float) -> float | None:
         """``value`` as a fraction of the denominator; None where that says nothing."""
@@ -248,6 +258,7 @@ def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
     scales = probe_scales(scene, compared)
     unsettled = {probe.name: round_offs(scene, probe, tuple(everyone.values()), compared) for probe in scene.probes}
     stages = {stage.name: stage for stage in scene.stages}
+    one_place = sharing(scene, everyone.values())
     return _none_small_by_accident(
         tuple(
             _row(
@@ -258,6 +269,7 @@ def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
                 spot,
                 unsettled[probe.name][spot.stage, spot.value],
                 scales[spot.stage, probe.name],
+                one_place.get((spot.stage, spot.value), {}),
             )
             for spot in spots_of(scene, everyone, compared)
             for probe in scene.probes
@@ -337,12 +349,24 @@ def bare_row(
     )
 
 
-def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, spot: Spot, unsettled: float, scale: float) -> Row:
+def _row(
+    scene: Scene,
+    runs: Runs,
+    probe: Probe,
+    stage: Stage,
+    spot: Spot,
+    unsettled: float,
+    scale: float,
+    one_place: Mapping[str, frozenset[str]],
+) -> Row:
     compared = (runs.cprbm[0], runs.reference)
     value = spot.value
     stations = {name: station_of(answer, stage.name, value) for name, answer in runs.everything()}
     values = {name: station.values[probe.name] for name, station in stations.items()}
     chosen = f"fea {runs.kinematics}"
+    shared = one_place.get(probe.of, frozenset()) if probe.quantity == "force" else frozenset[str]()
+    if shared and spot.branch is not None:
+        return _of_resultants(scene, runs, probe, stage, spot, unsettled, scale, shared)
     v_c, v_f, v_b = values["cprbm"], values[chosen], values["fea bending"]
     is_stress = probe.quantity in STRESSES
     exact = _exact_station(runs, stage.name, spot)
@@ -388,6 +412,36 @@ def _row(scene: Scene, runs: Runs, probe: Probe, stage: Stage, spot: Spot, unset
         contact_model=None if formulations is None else size(formulations[0] - formulations[1]),
         true_errors=true_errors,
     )
+
+
+def _of_resultants(
+    scene: Scene,
+    runs: Runs,
+    probe: Probe,
+    stage: Stage,
+    spot: Spot,
+    unsettled: float,
+    scale: float,
+    shared: frozenset[str],
+) -> Row:
+    """The row of the force of a contact that presses at one place with others, measured by what they do together."""
+    stations = {name: station_of(answer, stage.name, spot.value) for name, answer in runs.everything()}
+    row = bare_row(scene, (runs.cprbm[0], runs.reference), probe, stage, spot.value, scale)
+    row = replace(row, place=spot.place, branch=spot.branch, shared=shared)
+    beam = scene.contacts[probe.of].beams[0]
+    found = {name: resultant(station, shared | {probe.of}, beam) for name, station in stations.items()}
+    values = {name: value for name, value in found.items() if value is not None}
+    if len(values) < len(found):
+        return row
+    v_c, v_f, v_b = values["cprbm"], values[f"fea {runs.kinematics}"], values["fea bending"]
+
+    def size(difference: Array) -> float:
+        return norm(probe.quantity, difference)
+
+    row = replace(row, difference=size(v_c - v_f), same_theory=size(v_c - v_b), together=(v_c, v_f))
+    if spot.place is not Place.COMPARED:
+        return row
+    return replace(row, bounds=bounds_of(runs, values, order_of(scene, probe), size, unsettled))
 
 
 def bounds_of(

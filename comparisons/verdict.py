@@ -16,6 +16,9 @@ The second condition makes the first one tight.  By the triangle inequality
 |v_c − v_f| ≤ |v_c − v_b| + |v_b − v_f|, so with the first alone a wrong CPRBM could hide in a large step
 between the theories; within one theory it has only the two discretisations to hide behind.
 
+Of contacts that press a beam at one place the sum of the forces alone is determined (:mod:`comparisons.shared`): a row
+that asks for one of them says DIFFER if the sums do, and UNDECIDED otherwise.
+
 Rows at which the answers are not on one branch, or near where one ends, say what their place makes them say
 (:mod:`comparisons.branches`); a critical value says what :mod:`comparisons.criticals` makes of it.
 
@@ -183,14 +186,14 @@ def _judged_rows(scene: Scene, rows: tuple[Row, ...], words: tuple[Word | None, 
 def _word(scene: Scene, row: Row) -> Word | None:
     if row.place in _OF_PLACE:
         return _OF_PLACE[row.place]
-    if _lacking(row) and not _spoken_for(scene, row):
+    if (_lacking(row) and not _spoken_for(scene, row)) or (row.shared and row.bounds is None):
         return Word.UNDECIDED
     if row.bounds is None:
         return None
     within = row.difference <= row.bounds.total and row.same_theory <= row.bounds.same_theory
     if not within or any(each.pressure > 1.0 for each in every(row)):
         return Word.DIFFER
-    tellable = max(row.bounds.total, row.bounds.same_theory) <= scene.limit(row.probe) * row.scale
+    tellable = max(row.bounds.total, row.bounds.same_theory) <= scene.limit(row.probe) * row.scale and not row.shared
     return Word.AGREE if tellable else Word.UNDECIDED
 
 
@@ -225,7 +228,7 @@ def _share(part: float, whole: float) -> float:
 
 def _pressure(scene: Scene, row: Row, word: Word) -> float:
     """How hard a row presses towards a word: a difference on its sum, or a sum on its limit."""
-    if row.bounds is None or (word is Word.UNDECIDED and _lacking(row)):
+    if row.bounds is None or (word is Word.UNDECIDED and (_lacking(row) or row.shared)):
         return float("inf")
     if word is Word.UNDECIDED:
         return _share(max(row.bounds.total, row.bounds.same_theory), scene.limit(row.probe) * row.scale)
@@ -246,6 +249,8 @@ def _sentence(scene: Scene, row: Row, word: Word, count: int, rows: int) -> str:
         return (
             f"{count} of {rows} rows cannot be told, first of all {place}: one solver's runs are on different branches."
         )
+    if row.shared and word is Word.UNDECIDED:
+        return f"{count} of {rows} rows cannot be told, first of all {place}: {_of_shared(scene, row)}"
     if row.bounds is None or (word is Word.UNDECIDED and _lacking(row)):
         return f"{place} has no value in one of the runs, and no force of that contact is asked."
     chosen, within = _between(row)
@@ -272,6 +277,16 @@ def _sentence(scene: Scene, row: Row, word: Word, count: int, rows: int) -> str:
             )
         case Word.AGREE:
             return f"All {rows} rows agree; the closest call is {place}: {said}."
+
+
+def _of_shared(scene: Scene, row: Row) -> str:
+    """Why the force of one of several contacts at one place cannot be told, and what all of them do."""
+    beam, others = scene.contacts[row.probe.of].beams[0], " and ".join(sorted(row.shared))
+    why = f"{others} and {row.probe.of} press {beam} at one place, and no mechanics says how they share the force"
+    if row.together is None:
+        return f"{why}."
+    mine, theirs = (f"{number(float(value[0]), 5)} {row.unit}" for value in row.together)
+    return f"{why}. Together they press with {mine} in the CPRBM and with {theirs} in the finite elements."
 
 
 _NAMES = {"cprbm": "the CPRBM's values", "fea": "the finite elements' in bending"}

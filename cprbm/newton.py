@@ -15,7 +15,8 @@ contacts press is a small complementarity problem in G.
 
 A_E has dependent rows where a beam is straight between ends that do not move: turning its links by a little does not
 bring them closer, and no equation says what it pulls by.  So in a step Z may stay behind by a very little (``GIVING``)
-times Δμ, which is nothing once there is no more step: such a beam keeps the pull that it had.
+times Δμ, which is nothing once there is no more step: such a beam keeps the pull that it had.  So may gaps where
+two obstacles with one corner hold a beam by two rows that are one, by as little times Δλ: they share its force.
 
 H is made positive definite on the feasible directions where it is not, first by the stiffness of the contacts that
 press, then by a shift.
@@ -39,6 +40,7 @@ from scene.answer import Array, Flags, Ints
 
 CONTACT_STIFFNESS = (1e4, 1e6)  # of pressing contacts while the energy alone is not convex, S/ℓ²; the first that helps
 MANY = 40  # contact rows beyond which the system is solved with the joints' positions as unknowns
+ALIKE = 1e-12  # 1 − cos between rows that are one
 LOCAL = 8  # joints in a row that is local
 NO_NUMBERS = np.zeros(0)
 
@@ -175,7 +177,7 @@ def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System
     corner[body, body] = over_phi
     i = np.arange(first, inner)
     corner[i, i] = -1.0 / sigma
-    i = np.arange(inner, inner + len(point.A_E))
+    i = np.concatenate((np.arange(inner, inner + len(point.A_E)), inner + len(point.A_E) + _twins(point.rows, A_I)))
     corner[i, i] = -GIVING
     for place, link in enumerate(anchors.tolist(), start=n_bodies):
         corner[place, place] = diagonal[link]
@@ -193,6 +195,17 @@ def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System
         n_equalities=len(point.A_E),
         expected=len(point.A_E) + int(np.count_nonzero(sigma > 0.0)),
     )
+
+
+def _twins(rows: Rows, A_I: Array) -> Ints:
+    """Contact rows that hold what a row of another contact holds."""
+    if len(rows.groups) < 2 or len(A_I) > MANY:
+        return np.zeros(0, dtype=np.intp)
+    size = np.sqrt((A_I * A_I).sum(axis=1))
+    apart = size[:, None] * size - A_I @ A_I.T
+    of = np.array(rows.contact)
+    alike = (apart <= ALIKE * size[:, None] * size) & (of[:, None] != of)
+    return np.flatnonzero(alike.any(axis=1))
 
 
 def _curvatures(point: Point) -> list[Factored]:

@@ -11,6 +11,9 @@ mesh has few joints, and says where the zone ends on the next.  And a force at a
 the two joints beside it bends the beam by a part of h² that depends on where between them the end falls.
 With a border at every end of a zone and a row there, and the elements between even, it is shared by none.
 
+So is the part of h² by which the beam lies elsewhere where a moment acts within an element, and its curvature jumps:
+there is a border too, as on the meshes that fit no contact (:mod:`cprbm.model`).
+
 A beam that is held at one place and pressed at another, s further on, says the force there by the curvature between:
 even over each element, it is wrong by a part (h/s)².  So a span between marks (held ends, places and ends of contact,
 dead forces near held ends) has a stated share of the beam's elements, however short it is.
@@ -45,6 +48,7 @@ BEYOND = 16  # one of so many of the beam's elements follow on a place in the si
 FIXED = 0.75  # of a beam's elements, the most that such shares may take
 SHORTEST = 0.01  # elements: marks closer than this leave the elements even
 BENT = 1e-6  # of the largest slope of a curvature beside a place: slopes that differ by less are the same
+MOMENT = ""  # of whom the mark of a moment is: no contact and no force has that name
 MOVED = 0.02  # elements: ends that have moved less since the mesh was made are where the mesh has them
 
 
@@ -118,24 +122,39 @@ def fitted(
         if not found:
             continue
         n = settings.links_of(chain.name)
-        marks, of = np.array(sorted(mark for mark, _ in found)), [name for _, name in sorted(found)]
-        # between two places of one contact the beam lies on what it touches, or nearly; a free end has no curvature;
-        # and a dead force is known whatever the curvature
-        dead = mechanism.problem.loads.keys()
-        between = [one != other and dead.isdisjoint((one, other)) for one, other in pairwise(of)]
-        needy = np.array([chain.held[0], *between, chain.held[1]])
-        numbers = _shared_out(marks, n, needy)
-        # a zone's end is a border; a place need not be one, and as it goes on its way the mesh changes evenly
-        at_end = np.array([False, *(name in names for name in of), False])
-        numbers = np.where(at_end, np.round(numbers), numbers)
-        as_they_are = not names and np.allclose(numbers[1:-1], n * marks, rtol=0.0, atol=MOVED)
-        if as_they_are or not np.all(np.diff(numbers) >= 1.0):
+        bent = [(mark, MOMENT) for mark in mechanism.problem.model.outset.bent.get(chain.name, ())]
+        # beside what presses there may be no room for a border where a moment acts
+        laid = _laid_out(mechanism, chain, n, found + bent, names) or _laid_out(mechanism, chain, n, found, names)
+        if laid is None:
             continue
-        places = np.concatenate(([0.0], marks, [1.0]))
-        numbers, places = _surrounded(numbers, places, n / BEYOND, np.flatnonzero(~at_end[1:-1]) + 1)
+        numbers, places = laid
         borders[chain.name] = np.interp(np.arange(n + 1), numbers, places)
         kept |= {name: ends[name] for name in names}
     return Fit(borders, kept, _kinks(mechanism, point, zones, eased=eased))
+
+
+def _laid_out(
+    mechanism: Mechanism, chain: Chain, n: int, found: list[tuple[float, str]], zoned: list[str]
+) -> tuple[Array, Array] | None:
+    """Numbers of n elements that end at places of a beam, and these, as shares of it; None where it is well as it is.
+
+    What was ``found`` are marks and of whom; ends of the contacts that are ``zoned``, and moments, are borders.
+    """
+    marks, of = np.array(sorted(mark for mark, _ in found)), [name for _, name in sorted(found)]
+    # between two places of one contact the beam lies on what it touches, or nearly; a free end has no curvature;
+    # and a dead force is known whatever the curvature
+    dead = {MOMENT, *mechanism.problem.loads}
+    between = [one != other and dead.isdisjoint((one, other)) for one, other in pairwise(of)]
+    needy = np.array([chain.held[0], *between, chain.held[1]])
+    numbers = _shared_out(marks, n, needy)
+    # a zone's end is a border; a place need not be one, and as it goes on its way the mesh changes evenly
+    at_end = np.array([False, *(name in zoned or name == MOMENT for name in of), False])
+    numbers = np.where(at_end, np.round(numbers), numbers)
+    as_they_are = not zoned and np.allclose(numbers[1:-1], n * marks, rtol=0.0, atol=MOVED)
+    if as_they_are or not np.all(np.diff(numbers) >= 1.0):
+        return None
+    places = np.concatenate(([0.0], marks, [1.0]))
+    return _surrounded(numbers, places, n / BEYOND, np.flatnonzero(~at_end[1:-1]) + 1)
 
 
 def _kinks(

@@ -39,9 +39,10 @@ def certify(march: March) -> Certificate:
     violation = float(np.abs(system.residual[~free]).max())
     violation = max(violation, *(-stop.room(system.z)[0] for stop in model.stops), 0.0)
     penetration = max((one.penetration / one.pair.measure for one in system.touches), default=0.0)
-    force, moment = _balance(model, march.values, system)
-    # What is left over all is the sum of what is left at every node; round-off adds up like a random walk.
-    balance = max(_BALANCE, floor * float(np.sqrt(model.node_dofs.shape[1])))
+    force, moment, largest = _balance(model, march.values, system)
+    # What is left over all is the sum of what is left at every node; round-off adds up like a random walk.  What bends
+    # a beam bears generalised forces much larger than any that acts on it from outside.
+    balance = max(_BALANCE, system.floor * float(np.sqrt(model.node_dofs.shape[1])) / largest)
     curvature = march.curvature
 
     failures = []
@@ -124,10 +125,10 @@ def _drowned(march: March) -> bool:
     return False
 
 
-def _balance(model: Model, values: Array, system: System) -> tuple[float, float]:
-    """|ΣF| and |ΣM| about the origin of loads, supports, guides and drives.
+def _balance(model: Model, values: Array, system: System) -> tuple[float, float, float]:
+    """|ΣF| and |ΣM| about the origin of loads, supports, guides and drives, and the largest force or moment in these.
 
-    Each is over the largest in it if that is no round-off.
+    Both are over that if it is no round-off.
 
     A contact's two forces are opposite on one line: they cancel in both sums, unless one of them is on what
     is rigid and fixed to the ground, which makes the other a support's.
@@ -176,4 +177,4 @@ def _balance(model: Model, values: Array, system: System) -> tuple[float, float]
     # Forces that vanish are judged by the moments, and these by them: lengths are of order one here.
     scale = max(largest_force, largest_moment)
     scale = scale if scale > NOTHING * system.floor else 1.0
-    return float(np.hypot(*sum(forces, np.zeros(2)))) / scale, abs(sum(moments)) / scale
+    return float(np.hypot(*sum(forces, np.zeros(2)))) / scale, abs(sum(moments)) / scale, scale

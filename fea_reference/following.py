@@ -15,7 +15,9 @@ A contact without friction holds with a force that may go to zero while μ, of w
 without it may have a negative curvature.  Its penalty's stiffness goes to zero with P, too, so that the equilibria
 with the penalty have a fold at some P of the third power of the penetration, and beyond it lead back without contact
 by a sharp turn.  Here P(λ) is followed to its zero.  A fold at which μ would be positive, were the penalty many times
-as stiff, is none of the mechanism's own either.
+as stiff, is none of the mechanism's own either, if P has gone to nothing: of what it was where the following began, or,
+where that began so close that there was little left, if at the rate of then it vanishes within next to nothing and what
+a rigid contact holds has not changed since.
 
 A stop's moment is an unknown; it is zero to the last digits where it lets go.
 """
@@ -53,6 +55,8 @@ _SHARE = 0.9  # of the way there, at a time
 _RIGID = 1e4  # times as stiff
 _HELD = 1e-2  # of the curvature at the beginning: that of what is held
 _NOTHING = 1e-2  # of a contact's force at the beginning
+_SOON = 1e-4  # of the span: from where a contact's force is on its last way to zero
+_AS_HELD = 0.5  # of what a rigid contact held at the beginning: it holds as ever
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,6 +231,19 @@ def _letting_go(march: March, load: int, target: float, span: float) -> Lost | N
     return None
 
 
+def _gone(march: March, branch: Branch, first: Place, one: Touch, held: float) -> bool:
+    """Whether the force of a contact that a rigid one would hold with a curvature ``held`` has come to nothing."""
+    begun = next((old for old in first.system.touches if old.pair == one.pair and old.closed), None)
+    if begun is None:
+        return False
+    if one.push < _NOTHING * begun.push:
+        return True
+    change = float(begun.foreseen(first.way).sum()) - begun.push
+    if not (change < 0.0 and begun.push * abs(first.rate) < -change * _SOON * branch.span and one.push < begun.push):
+        return False
+    return held > _AS_HELD * softest(march.model, stiffened(march.model, first.system, begun, _RIGID)).curvature
+
+
 def _next_to_go(march: March, load: int, onward: float) -> tuple[Touch, float] | None:
     """The contact whose force is first to vanish at the rate of now, and how far it is there."""
     rate = march.rate(load)
@@ -277,8 +294,11 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
     energy = potential_energy(march.model, march.system, march.values)
     for one in before.system.touches:
         held = softest(march.model, stiffened(march.model, before.system, one, _RIGID)) if one.closed else None
-        began = next((old.push for old in first.system.touches if old.pair == one.pair), 0.0)
-        if held is not None and held.curvature > _HELD * first.curvature and one.push < _NOTHING * began:
+        if (
+            held is not None
+            and held.curvature > _HELD * first.curvature
+            and _gone(march, branch, first, one, held.curvature)
+        ):
             left = softest(march.model, _without(march, one))
             return Lost(
                 value,

@@ -181,14 +181,14 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
             if trouble is None:
                 ahead = march.rate(load)
                 jumped = _jumped(saved, march, load, rate, ahead)
-                leapt = leapt or jumped
                 if _aside(saved, march, load, rate, ahead) or (watched and jumped):
                     trouble = (
                         Ending.STEP_TOO_SMALL,
                         f"beyond {saved.shown(load, saved.values[load])} the nearest equilibrium is on another branch",
                     )
-                elif watched:
-                    unstable = minimum and march.curvature <= 0.0
+                else:
+                    leapt = leapt or jumped
+                    unstable = watched and minimum and march.curvature <= 0.0
         if unstable and not follow:
             # the branch has no end near by, and this is another one
             trouble = Ending.NOT_A_MINIMUM, f"beyond {saved.shown(load, saved.values[load])} no minimum is found"
@@ -240,7 +240,12 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
                 known, march.behind = [], None
                 stride, cuts, reason = size, cuts + 1, trouble
             elif not searching and march.loosen(Circle, Face, Pair):
-                searching, march.far, known, tight = True, True, [], saved
+                if watched and minimum and not march.curvature > 0.0:
+                    # what stands by a contact alone does not stand by a loose one, and whatever follows would pass
+                    march.restore(saved)
+                    searching, stride, cuts, reason = True, 0.25 * size, cuts + 1, trouble
+                else:
+                    searching, march.far, known, tight = True, True, [], saved
             else:
                 looked = looked or tiny
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble

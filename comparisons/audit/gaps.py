@@ -145,8 +145,7 @@ def _of_rigid(
         return np.asarray(first + (places - first - moved) / turn)
 
     def surface(places: Complex) -> Feet:
-        feet = _surface(contact, still(places))
-        return Feet(feet.distance, feet.normal * turn, feet.s, feet.at_end)
+        return faced(seen, contact, places)
 
     s = A.fine
     feet, rest = surface(A.line(s)[0]), _surface(contact, A.rest.places(s))
@@ -165,6 +164,14 @@ def _of_rigid(
         # a part of what presses there may be normal to the edge beside the corner
         yield from _on_corners(name, A, s, forces, np.where(beside & np.isin(number, number[on]), number, -1))
     yield from _pressing(seen, name, a, surface(places), None, thick=contact.thick, on_corners=on)
+
+
+def faced(seen: Seen, contact: Rigid, places: Complex) -> Feet:
+    """What a contact's rigid side is to places (k,), where its body has taken it."""
+    first, moved, phi = seen.motion(contact.body)
+    turn = complex(np.exp(1j * phi))
+    feet = _surface(contact, np.asarray(first + (places - first - moved) / turn))
+    return Feet(feet.distance, feet.normal * turn, feet.s, feet.at_end)
 
 
 def _on_corners(name: str, beam: AnyBeam, s: Array, forces: Complex, number: Ints) -> Iterator[str]:

@@ -18,6 +18,7 @@ _STRIDE = 2  # of the states without a barrier, which are followed anew with it
 _AWAY = 0.85  # of the states before one that was not found
 DEEP = 0.2  # of the size: farther behind it is what has come round its end
 SUNK = 0.03  # of the size: a node that sinks deeper into a barrier is led there, and nothing gives way
+TAKEN = 1e-5  # of the size: so near to a barrier's surface a spot is on it
 _REACHED = 0.55  # of the way: a mechanism that a barrier ends before is left without it
 
 
@@ -38,6 +39,8 @@ def put_in_the_way(
             before = deepcopy(draft.data)
             try:
                 spot = spot_on(draft, model, way)
+                if _is_taken(model, spot, barriers):
+                    raise RedrawError
                 obstacle = _obstacle(draft, spot)
             except RedrawError:
                 draft.data = before
@@ -66,6 +69,14 @@ def _obstacle(draft: Draft, spot: Spot) -> Obstacle:
     found = rigid(draft.rng, spot)
     kind = found.data["kind"]
     return Obstacle({"kind": kind, "beam": spot.beam, "body": "wall"} | found.data, found.distance)
+
+
+def _is_taken(model: Estimate, spot: Spot, barriers: Sequence[Barrier]) -> bool:
+    """Whether something has its surface at a spot already: how two would share the force is no question."""
+    s = spot.s[None]
+    return any(
+        barrier.beam == spot.beam and abs(float(barrier.distance(s)[0])) < TAKEN * model.size for barrier in barriers
+    )
 
 
 def _fits(model: Estimate, obstacle: Obstacle, spot: Spot) -> bool:

@@ -1,6 +1,7 @@
 """Where a branch ends, seen by following it: a fold, a stop that comes before it, a turn sharper than a step.
 
-References: :mod:`tests.references.snap`, and a branch that is made up.
+References: :mod:`tests.references.snap`, a strip without its contact, integrated (:mod:`.faint_contact`), and a branch
+that is made up.
 """
 
 from types import SimpleNamespace
@@ -8,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import fea_reference
 from fea_reference import Settings, following
 from fea_reference.assembly import assemble_ends
 from fea_reference.branch import Place
@@ -17,6 +19,7 @@ from fea_reference.solve import prepared
 from fea_reference.travel import Course, reach
 from scene.answer import Loss
 from scene.reading import scene_from
+from tests.fea_reference import faint_contact
 from tests.together import branches
 from tests.together.branches import SNAP
 
@@ -47,6 +50,17 @@ def test_a_stop_that_acts_before_the_fold_holds_beyond_it():
     assert march.closing["stop"] == pytest.approx(0.6, rel=2e-4)
     assert "stop" in march.acting.limits
     assert march.values[0] > 1.05 * SNAP.fold.clamp
+
+
+def test_a_contact_with_little_force_left_lets_go_and_is_no_fold():
+    # reference: faint_contact.py. The following begins where the force is a hundredth of what it was, or less, and the
+    # penalty, softer and softer as it goes, has a fold before it has gone
+    v = faint_contact.lets_go(0.0033, 24.0, 2e-4, 0.18)
+    scene = scene_from(faint_contact.scene([0.0017, 0.0037]))
+    (critical,) = fea_reference.answer(scene, Settings(elements=20, kinematics="bending")).critical
+    assert (critical.loss, critical.what) == (Loss.CONTACT, "plane")
+    assert critical.value == pytest.approx(v, rel=5e-4)
+    assert critical.left < 0.0 < critical.curvature
 
 
 END, RADIUS = 0.137, 0.0021

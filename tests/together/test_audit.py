@@ -11,6 +11,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.integrate import simpson
 
 import cprbm
 import fea_reference
@@ -360,6 +361,58 @@ def test_energy_that_no_work_accounts_for_is_named():
         silent = replace(answer, critical=(), stations=tuple(replace(station, branch=0) for station in answer.stations))
         said = audited(scene, silent)
         assert any("more than the work" in sentence for sentence in said), said
+
+
+def pushed_over(stations):
+    """A strip that the edge of a slider pushes over, until it turns out of the way and the push grows less."""
+    return scene_from(
+        {
+            "name": "pushed-over",
+            "materials": {"titanium": {"youngs_modulus": 1.14e11, "poisson_ratio": 0.33}},
+            "bodies": {
+                "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
+                "slider": {"motion": "slides", "along": [-0.985, 0.173], "points": {"D": [-0.0028, -0.0451]}},
+            },
+            "beams": {
+                "strip": {
+                    "curve": {"kind": "line", "start": [0.0, 0.0], "end": [-0.0194, -0.1105]},
+                    "thickness": 0.0026,
+                    "width": 0.027,
+                    "material": "titanium",
+                    "start": {"joint": "weld", "point": "R"},
+                    "end": {"joint": "free"},
+                }
+            },
+            "drives": {"push": {"kind": "displacement", "point": "D", "direction": [-0.985, 0.173]}},
+            "contacts": {
+                "edge": {
+                    "kind": "beam-line",
+                    "beam": "strip",
+                    "body": "slider",
+                    "points": [[0.002, -0.0249], [-0.0103, -0.0765]],
+                    "side": "right",
+                }
+            },
+            "stages": [{"name": "push", "steps": "push", "stations": stations}],
+            "probes": [{"of": "scene", "quantity": "potential_energy"}, {"of": "D", "quantity": "reaction"}],
+        }
+    )
+
+
+def test_a_push_that_rises_and_falls_between_two_stations_is_no_jump():
+    # reference: the work, summed finely; between the two stations no energy is lost
+    first, last = 0.0117, 0.0236
+    fine = by_fea(pushed_over(list(np.linspace(first, last, 13))))
+    x, y = np.array([station.values["D.reaction"] for station in fine.stations]).T
+    push = (-0.985 * x + 0.173 * y) / np.hypot(0.985, 0.173)
+    energy = [station.values["scene.potential_energy"][0] for station in fine.stations]
+    assert energy[-1] - energy[0] == pytest.approx(simpson(push, dx=(last - first) / 12), rel=2e-3)
+    assert push.max() > 1.15 * max(push[0], push[-1])
+    for solve in (by_cprbm, by_fea):
+        scene = pushed_over([first, last])
+        answer = solve(scene)
+        assert answer.completed, answer.sentence
+        assert audited(scene, answer) == ()
 
 
 # ------------------------------------------------------------------------------------------ states no minima
