@@ -193,7 +193,10 @@ class Edge:
 
     def _seen(self, face: Face | Corner, A: smooth.Points, frame: Frame) -> Seen:
         """A piece from points of the beam, with D in the place of the distance and n as it is turned."""
-        seen = face.seen(frame.inwards(np.stack((A.x, A.y), axis=1)))
+        return self._of(face.seen(frame.inwards(np.stack((A.x, A.y), axis=1))), A, frame)
+
+    def _of(self, seen: Seen, A: smooth.Points, frame: Frame) -> Seen:
+        """The same of a piece that is ``seen`` as the body sees points of the beam."""
         return replace(
             seen,
             distance=seen.distance - (self._half(A.s) - self.offset),
@@ -204,7 +207,10 @@ class Edge:
         """Which places ``q`` (k, 2), as the body sees them, face a piece: before it, or behind it and none nearer."""
         if isinstance(face, Straight) and not np.any(beside := face.within(q)):
             return beside
-        mine = face.seen(q)
+        return self._facing(face, q, face.seen(q))
+
+    def _facing(self, face: Face, q: Array, mine: Seen) -> Flags:
+        """The same of a piece that has been seen from ``q``."""
         facing = mine.within & (mine.distance >= 0.0)
         if np.all(facing == mine.within):  # there is none behind it
             return np.asarray(facing)
@@ -376,10 +382,12 @@ class Edge:
     def _places(self, face: Face, line: smooth.SmoothLine, frame: Frame) -> tuple[Array, Flags]:
         """Arc lengths of the rows against one piece, and which of them move with a minimum."""
         A = line.sampled
-        s, mine = A.s, self._next_to(face, A, frame)
+        s, q = A.s, frame.inwards(np.stack((A.x, A.y), axis=1))
+        seen = face.seen(q)
+        mine = self._facing(face, q, seen)
         if not mine.any() and face not in self.pieces:  # a side has no end that is between two samples alone
             return np.zeros(0), np.zeros(0, dtype=bool)
-        seen = self._seen(face, A, frame)
+        seen = self._of(seen, A, frame)
         D = seen.distance - self.offset
         near = np.zeros(len(s), dtype=bool)
         near[::2] = D[::2] < _beside(self.a, face)
@@ -501,11 +509,13 @@ class Edge:
     def _nearest(self, A: smooth.Points, frame: Frame) -> tuple[Array, Array, Array]:
         """Of the pieces that some points face, the nearest: D (k,), infinite where there is none, n (k, 2), k (k,)."""
         least, normal, bend = np.full(len(A.s), np.inf), np.zeros((len(A.s), 2)), np.zeros(len(A.s))
+        q = frame.inwards(np.stack((A.x, A.y), axis=1))
         for face in self.faces:
-            facing = self._next_to(face, A, frame)
+            seen = face.seen(q)
+            facing = self._facing(face, q, seen)
             if not facing.any():
                 continue
-            seen = self._seen(face, A, frame)
+            seen = self._of(seen, A, frame)
             nearer = facing & (seen.distance < least)
             least = np.where(nearer, seen.distance, least)
             normal, bend = np.where(nearer[:, None], seen.normal, normal), np.where(nearer, seen.bend, bend)

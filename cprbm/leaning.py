@@ -83,5 +83,5 @@ def angle_slopes(points: smooth.Points) -> Array:
     (a1, w1), (a1_, w1_) = points.in_link_1, points.over_turn[1]
     slopes = smooth.angle_slopes(points)
     gains = np.tan(points.psi - points.tangent) * (a1 * a1_ + w1 * w1_) / points.speed**2
-    slopes[:, 2:] -= gains[:, None] * smooth.over_angles(points)
+    slopes[:, 2:] -= gains[:, None] * points.over_angles
     return slopes

@@ -118,6 +118,11 @@ class Chain:
         return np.asarray(self.lean[0] + 1j * self.lean[1])
 
     @cached_property
+    def rest_turns(self) -> Array:
+        """From each stress-free link to the next (N,)."""
+        return np.asarray(self.rest[1:] - self.rest[:-1])
+
+    @cached_property
     def rest_rates(self) -> Array:
         """Θ⁰/h of the elements (N,)."""
         return np.asarray(self.turns / self.sizes)

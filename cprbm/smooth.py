@@ -34,7 +34,7 @@ element, κ⁰′h²/8: of fifth order in h.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -51,6 +51,19 @@ LOCALS = 5  # x_i, y_i, θ_{i−1}, θ_i, θ_{i+1}
 SINE = (1.0, -1 / 6, 1 / 120, -1 / 5040, 1 / 362880, -1 / 39916800)
 VERSINE = (1 / 2, -1 / 24, 1 / 720, -1 / 40320, 1 / 3628800, -1 / 479001600)
 COTANGENT = (1.0, -1 / 3, -1 / 45, -2 / 945, -1 / 4725, -2 / 93555, -1382 / 638512875)
+
+
+def _with_slopes(*series: tuple[float, ...]) -> Array:
+    """Coefficients of some series, each before those of its first and second derivative, row by row."""
+    tables = []
+    for coefficients in np.array(series):
+        k = np.arange(len(coefficients))
+        once = np.append((k * coefficients)[1:], 0.0)
+        tables += [coefficients, once, np.append((k * once)[1:], 0.0)]
+    return np.array(tables)
+
+
+ARCS, COTANGENTS = _with_slopes(SINE, VERSINE), _with_slopes(COTANGENT)
 
 
 @dataclass(frozen=True)
@@ -162,6 +175,17 @@ class Points:
         return np.stack((self.speed * np.cos(leading), self.speed * np.sin(leading)))
 
     @cached_property
+    def arc(self) -> tuple[Array, Array]:
+        """φ (k,), and sin φ/φ and (1 − cos φ)/φ² with two derivatives over φ² each, (6, k)."""
+        phi = self.turn * self.xi
+        return phi, _series(ARCS, phi * phi)
+
+    @cached_property
+    def over_angles(self) -> Array:
+        """∂δ of the point's element over (θ_{i−1}, θ_i, θ_{i+1}), (k, 3)."""
+        return np.where(self.before[:, None], (-1.0, 1.0, 0.0), (0.0, -1.0, 1.0))
+
+    @cached_property
     def over_turn(self) -> tuple[Array, Array]:
         """∂(a, w) and ∂(a′, w′) over δ of the point's element, (2, k) each; ′ is the derivative over s."""
         return _over_turn(self)
@@ -180,7 +204,7 @@ class SmoothLine:
         chain: the beam.
         unit_length: ℓ, m.
         theta, cos, sin: angles of the links (N+1,).
-        turns, radii: δ and R of the springs (N,).
+        turns, radii: δ and R of the springs (N,); cotangents: of y = Θ/2, y cot y and its derivatives over y² (3, N).
         x, y: joints (N+2,).
         known: what contacts have found along it, by the contact's name and what it is.
         faced: by the contact's name, distances along it, and points of it and their feet for those.
@@ -193,6 +217,7 @@ class SmoothLine:
     sin: Array
     turns: Array
     radii: Array
+    cotangents: Array
     x: Array
     y: Array
     known: dict[tuple[str, str], tuple[Array, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
@@ -216,14 +241,14 @@ class SmoothLine:
     @cached_property
     def radii_1(self) -> Array:
         """∂R over δ (N,)."""
-        x, y = 0.5 * self.chain.turns, 0.5 * (self.chain.turns + self.turns)
-        return _series(SINE, x * x) * y * _series(COTANGENT_1, y * y) + 0.5 * x * _series(VERSINE, x * x)
+        sine, versine = _of_rest(self.chain)
+        return np.asarray(sine * (0.5 * (self.chain.turns + self.turns)) * self.cotangents[1] + versine)
 
     @cached_property
     def radii_2(self) -> Array:
         """∂²R over δ (N,)."""
-        x, q = 0.5 * self.chain.turns, 0.25 * (self.chain.turns + self.turns) ** 2
-        return 0.5 * _series(SINE, x * x) * (_series(COTANGENT_1, q) + 2.0 * q * _series(COTANGENT_2, q))
+        q = 0.25 * (self.chain.turns + self.turns) ** 2
+        return np.asarray(0.5 * _of_rest(self.chain)[0] * (self.cotangents[1] + 2.0 * q * self.cotangents[2]))
 
     @cached_property
     def arcs(self) -> Array:
@@ -328,7 +353,9 @@ def smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -
 
 def _smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -> SmoothLine:
     theta = state.theta[chain.links]
-    turns = np.diff(theta) - np.diff(chain.rest)
+    turns = theta[1:] - theta[:-1] - chain.rest_turns
+    turning = chain.turns + turns
+    cotangents, (sine, versine) = _series(COTANGENTS, 0.25 * turning * turning), _of_rest(chain)
     return SmoothLine(
         chain=chain,
         unit_length=unit_length,
@@ -336,37 +363,29 @@ def _smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) 
         cos=np.cos(theta),
         sin=np.sin(theta),
         turns=turns,
-        radii=_radius(chain.turns + turns, chain.turns),
+        radii=sine * cotangents[0] + turning * versine,
+        cotangents=cotangents,
         x=at.x[chain.joints],
         y=at.y[chain.joints],
     )
 
 
-def _series(coefficients: tuple[float, ...], z: Array) -> Array:
-    """Σ c_k z^k."""
-    total = coefficients[-1] * z
-    total += coefficients[-2]
-    for coefficient in coefficients[-3::-1]:
+def _series(table: Array, z: Array) -> Array:
+    """Σ c_k z^k for every row of coefficients c, at places (k,): (rows, k)."""
+    total: Array = table[:, -1:] * z
+    for k in range(table.shape[1] - 2, 0, -1):
+        total += table[:, k : k + 1]
         total *= z
-        total += coefficient
+    total += table[:, :1]
     return total
 
 
-def _slope(coefficients: tuple[float, ...]) -> tuple[float, ...]:
-    """Coefficients of the derivative."""
-    return tuple(k * coefficient for k, coefficient in enumerate(coefficients))[1:]
-
-
-SINE_1, VERSINE_1, COTANGENT_1 = _slope(SINE), _slope(VERSINE), _slope(COTANGENT)
-SINE_2, VERSINE_2, COTANGENT_2 = _slope(SINE_1), _slope(VERSINE_1), _slope(COTANGENT_1)
-
-
-def _radius(turn: Array, ratio: Array) -> Array:
-    """R."""
-    x = 0.5 * ratio
-    return np.asarray(
-        _series(SINE, x * x) * _series(COTANGENT, 0.25 * turn * turn) + 0.5 * turn * x * _series(VERSINE, x * x)
-    )
+@lru_cache(maxsize=64)
+def _of_rest(chain: Chain) -> tuple[Array, Array]:
+    """sin x/x and (1 − cos x)/(2x), what is in R of the stress-free turning, (N,) each."""
+    x = 0.5 * chain.turns
+    series = _series(ARCS, x * x)
+    return series[0], 0.5 * x * series[3]
 
 
 def _leant(lean: Array, along: Array, across: Array) -> tuple[Array, Array]:
@@ -375,34 +394,29 @@ def _leant(lean: Array, along: Array, across: Array) -> tuple[Array, Array]:
 
 
 def _over_turn(points: Points) -> tuple[Array, Array]:
-    xi, turn, R, R_1 = points.xi, points.turn, points.radius, points.line.radii_1[points.half // 2]
-    phi, q = turn * xi, (turn * xi) ** 2
-    V, R_1_P = _series(VERSINE, q), R_1 * _series(SINE, q)
-    P_1, Q_1 = 2.0 * phi * _series(SINE_1, q), V + 2.0 * q * _series(VERSINE_1, q)
+    xi, R, R_1 = points.xi, points.radius, points.line.radii_1[points.half // 2]
+    phi, (S, S1, _, V, V1, _) = points.arc
+    q = phi * phi
+    R_1_P = R_1 * S
+    P_1, Q_1 = 2.0 * phi * S1, V + 2.0 * q * V1
     u, sign, R_xi = points.h * xi, np.where(points.before, -1.0, 1.0), R * xi
     A, W = u * (R_1_P + R_xi * P_1), u * (R_1 * phi * V + R_xi * Q_1)
     cos, sin = np.cos(phi), np.sin(phi)
     A_u, W_u = R_1 * cos - R_xi * sin, R_1 * sin + R_xi * cos
-    return np.stack(_leant(points.lean, sign * A, W)), np.stack(_leant(points.lean, A_u, sign * W_u))
+    return np.array(_leant(points.lean, sign * A, W)), np.array(_leant(points.lean, A_u, sign * W_u))
 
 
 def _over_turn_twice(points: Points) -> Array:
-    xi, turn, R = points.xi, points.turn, points.radius
+    xi, R = points.xi, points.radius
     R_1, R_2 = points.line.radii_1[points.half // 2], points.line.radii_2[points.half // 2]
-    phi, q = turn * xi, (turn * xi) ** 2
-    S1, S2 = _series(SINE_1, q), _series(SINE_2, q)
-    V, V1, V2 = _series(VERSINE, q), _series(VERSINE_1, q), _series(VERSINE_2, q)
-    P, P_1, P_2 = _series(SINE, q), 2.0 * phi * S1, 2.0 * S1 + 4.0 * q * S2
+    phi, (S, S1, S2, V, V1, V2) = points.arc
+    q = phi * phi
+    P_1, P_2 = 2.0 * phi * S1, 2.0 * S1 + 4.0 * q * S2
     Q, Q_1, Q_2 = phi * V, V + 2.0 * q * V1, 6.0 * phi * V1 + 4.0 * phi * q * V2
     u, sign = points.h * xi, np.where(points.before, -1.0, 1.0)
-    A_2 = u * (R_2 * P + 2.0 * R_1 * xi * P_1 + R * xi * xi * P_2)
+    A_2 = u * (R_2 * S + 2.0 * R_1 * xi * P_1 + R * xi * xi * P_2)
     W_2 = u * (R_2 * Q + 2.0 * R_1 * xi * Q_1 + R * xi * xi * Q_2)
-    return np.stack(_leant(points.lean, sign * A_2, W_2))
-
-
-def over_angles(points: Points) -> Array:
-    """∂δ of the point's element over (θ_{i−1}, θ_i, θ_{i+1}), (k, 3)."""
-    return np.where(points.before[:, None], (-1.0, 1.0, 0.0), (0.0, -1.0, 1.0))
+    return np.array(_leant(points.lean, sign * A_2, W_2))
 
 
 def _vector(points: Points, local: Array) -> Array:
@@ -414,7 +428,7 @@ def position_slopes(points: Points) -> Array:
     """∂C over the local numbers (x_i, y_i, θ_{i−1}, θ_i, θ_{i+1}), (k, 2, 5)."""
     slopes = np.zeros((len(points.s), 2, LOCALS))
     slopes[:, 0, 0] = slopes[:, 1, 1] = 1.0
-    slopes[:, :, 2:] = _vector(points, points.over_turn[0])[:, :, None] * over_angles(points)[:, None, :]
+    slopes[:, :, 2:] = _vector(points, points.over_turn[0])[:, :, None] * points.over_angles[:, None, :]
     a, w = points.in_link
     slopes[:, :, 3] += a[:, None] * points.n - w[:, None] * points.e
     return slopes
@@ -425,7 +439,7 @@ def position_curvature(points: Points, along: Array) -> Array:
     second = np.zeros((len(points.s), LOCALS, LOCALS))
     on_e, on_n = np.sum(along * points.e, axis=1), np.sum(along * points.n, axis=1)
     once, twice = points.over_turn[0], points.over_turn_twice
-    turns = over_angles(points)
+    turns = points.over_angles
     second[:, 2:, 2:] = (twice[0] * on_e + twice[1] * on_n)[:, None, None] * turns[:, :, None] * turns[:, None, :]
     over = (once[0] * on_n - once[1] * on_e)[:, None] * turns
     second[:, 3, 2:] += over
@@ -439,7 +453,7 @@ def angle_slopes(points: Points) -> Array:
     """∂ψ over the local numbers, (k, 5)."""
     slopes = np.zeros((len(points.s), LOCALS))
     (a1, w1), (a1_, w1_) = points.in_link_1, points.over_turn[1]
-    slopes[:, 2:] = ((a1 * w1_ - w1 * a1_) / points.speed**2)[:, None] * over_angles(points)
+    slopes[:, 2:] = ((a1 * w1_ - w1 * a1_) / points.speed**2)[:, None] * points.over_angles
     slopes[:, 3] += 1.0
     return slopes
 
@@ -447,7 +461,7 @@ def angle_slopes(points: Points) -> Array:
 def tangent_slopes(points: Points) -> Array:
     """∂C_s over the local numbers, (k, 2, 5)."""
     slopes = np.zeros((len(points.s), 2, LOCALS))
-    slopes[:, :, 2:] = _vector(points, points.over_turn[1])[:, :, None] * over_angles(points)[:, None, :]
+    slopes[:, :, 2:] = _vector(points, points.over_turn[1])[:, :, None] * points.over_angles[:, None, :]
     a1, w1 = points.in_link_1
     slopes[:, :, 3] += a1[:, None] * points.n - w1[:, None] * points.e
     return slopes
