@@ -209,7 +209,7 @@ def _value(coefficients: Array, v: Array) -> Array:
 def _sampled(graph: Graph) -> tuple[Array, Array]:
     """Places of a graph from which the nearest is sought, v and f(v), (SAMPLES,) each."""
     samples = np.linspace(graph.low, graph.high, SAMPLES)
-    return samples, polynomial.polyval(samples, _derivatives(graph.coefficients)[0])
+    return samples, _value(_derivatives(graph.coefficients)[0], samples)
 
 
 @lru_cache(maxsize=GRAPHS)

@@ -163,9 +163,16 @@ class Pair:
         """The same at some of the samples of A, by their numbers (k,), which are worked out once in a state."""
         return kinked(self.a, self.kinks[0], lines[0].sampled.only(these))
 
+    def samples_on_b(self, lines: Lines, these: Ints) -> smooth.Points:
+        """The same at some of the samples of B."""
+        return kinked(self.b, self.kinks[1], lines[1].sampled.only(these))
+
     def foot(self, lines: Lines, A: smooth.Points, sigma: Array) -> smooth.Points:
         """Points of B at arc lengths ``sigma`` (k,) with the tangents of the edge that faces A."""
-        B = self.on_b(lines, sigma)
+        return self.facing(A, self.on_b(lines, sigma))
+
+    def facing(self, A: smooth.Points, B: smooth.Points) -> smooth.Points:
+        """Points of B with the tangents of the edge that faces A."""
         return leaning.facing(self.b, B, self.side, *_seen_from(B, A)) if self.tapered else B
 
     def beside(self, A: smooth.Points, B: smooth.Points) -> smooth.Points:
@@ -473,21 +480,34 @@ def _beside_any(corners: Array, sigma: Array, size: Array) -> Flags:
 
 def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Flags]:
     """Signed distance D of A from B at arc lengths ``s``: D, σ (k,), and whether a foot exists (k,)."""
-    A, G = pair.on_a(lines, s), lines[1].sampled
-    if len(s) <= FEW:
+    return _distance_of(pair, lines, pair.on_a(lines, s))
+
+
+def _distance_of(pair: Pair, lines: Lines, A: smooth.Points) -> tuple[Array, Array, Flags]:
+    """The same of points of A (k,)."""
+    G = lines[1].sampled
+    if len(A.s) <= FEW:
         nearest = ((A.x[:, None] - G.x) ** 2 + (A.y[:, None] - G.y) ** 2).argmin(axis=1)
     else:
         _, nearest = nearest_samples(_places(G), _places(A), np.inf)
-    return feet_near(pair, lines, A, G.s[nearest])
+    return _feet_from(pair, lines, A, pair.samples_on_b(lines, nearest), CLOSE)
 
 
 def feet_near(
     pair: Pair, lines: Lines, A: smooth.Points, sigma: Array, close: float = CLOSE
 ) -> tuple[Array, Array, Flags]:
     """D, σ and whether there is a foot, by Newton's method on (i) from the guess ``sigma`` to steps as ``close``."""
+    return _feet_from(pair, lines, A, pair.on_b(lines, sigma), close)
+
+
+def _feet_from(
+    pair: Pair, lines: Lines, A: smooth.Points, B: smooth.Points, close: float
+) -> tuple[Array, Array, Flags]:
+    """The same from points of B (k,)."""
+    sigma = B.s
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
-    for _ in range(FOOT_ITERATIONS if not ridges.size else CORNER_ITERATIONS):
-        B = pair.foot(lines, A, sigma)
+    for iteration in range(FOOT_ITERATIONS if not ridges.size else CORNER_ITERATIONS):
+        B = pair.facing(A, pair.on_b(lines, sigma) if iteration else B)
         along, across = _seen_from(B, A)
         # along the circle of curvature, where that is round the foot
         left = along / np.maximum(1.0 - B.bend * across, 0.2)
@@ -582,8 +602,9 @@ def _facing_ends(pair: Pair, lines: Lines) -> Places:
     near = np.flatnonzero(away < reach + a.h)
     if not near.size:
         return Places(np.zeros(0), np.zeros(0), near)
-    E, foot, facing = distance_along(pair.exchanged(), lines[::-1], ends[near])
-    E = not_gone_round(pair.exchanged(), lines[::-1], E, pair.wider(foot, ends[near]))
+    turned = pair.exchanged()
+    E, foot, facing = _distance_of(turned, lines[::-1], turned.samples_on_a(lines[::-1], near * (2 * b.n + 2)))
+    E = not_gone_round(turned, lines[::-1], E, pair.wider(foot, ends[near]))
     facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
     for i, end in enumerate(near):
         facing[i] &= not held_together(b, a, int(-end), float(foot[i]))
@@ -641,7 +662,8 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     close = np.flatnonzero(np.isfinite(rough))
     D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
     if close.size:
-        distance, sigma[close], foot = feet_near(pair, lines, pair.samples_on_a(lines, close), G.s[nearest[close]])
+        at_A, at_B = pair.samples_on_a(lines, close), pair.samples_on_b(lines, nearest[close])
+        distance, sigma[close], foot = _feet_from(pair, lines, at_A, at_B, CLOSE)
         D[close] = np.where(foot, distance, np.inf)
     return not_gone_round(pair, lines, D, pair.wider(A.s, sigma)), sigma
 

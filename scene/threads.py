@@ -9,7 +9,10 @@ from __future__ import annotations
 import sys
 from contextlib import AbstractContextManager, nullcontext
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
 
 
 def one_thread() -> AbstractContextManager[object]:
@@ -23,7 +26,7 @@ def one_thread() -> AbstractContextManager[object]:
 
 
 @lru_cache(maxsize=1)
-def _loaded(modules: int) -> Any:
+def _loaded(modules: int) -> ThreadpoolController:
     """The libraries that are loaded, for which threadpoolctl reads the process's map of memory: dear beside a solve.
 
     None is loaded but with a module that is imported, so they are those of as many ``modules``.
