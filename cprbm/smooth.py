@@ -40,7 +40,6 @@ import numpy as np
 
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
-from cprbm.pieces import CurvePieces, Piece
 from cprbm.polynomial import ComplexArray
 from scene.answer import Array, Flags, Ints
 
@@ -226,17 +225,7 @@ class SmoothLine:
     @cached_property
     def sampled(self) -> Points:
         """Points at :func:`halves`."""
-        return self._at(self.chain.halves, self.chain.at_halves)
-
-    @cached_property
-    def starts(self) -> ComplexArray:
-        """First joints of the links, x + i·y, (N+1,)."""
-        return np.asarray(self.x[:-1] + 1j * self.y[:-1])
-
-    @cached_property
-    def directions(self) -> ComplexArray:
-        """Of the links, cos θ + i·sin θ, (N+1,)."""
-        return np.asarray(self.cos + 1j * self.sin)
+        return self._at(self.chain.halves, self.chain.excess_at_halves)
 
     @cached_property
     def radii_1(self) -> Array:
@@ -266,19 +255,20 @@ class SmoothLine:
         """Points at arc lengths ``s`` (k,), units of length; beyond the ends the end itself."""
         return self._at(np.minimum(np.maximum(s, 0.0), self.chain.s[-1]), None)
 
-    def _at(self, s: Array, piece: Piece | None) -> Points:
-        """Points at arc lengths ``s`` within the beam, of a stress-free ``piece`` that is known or not."""
+    def _at(self, s: Array, excess: ComplexArray | None) -> Points:
+        """Points at arc lengths ``s`` within the beam; where it lies off the arcs by an ``excess`` (3, k), if known."""
         chain = self.chain
         half = chain.breaks.searchsorted(s, side="right")
         border, x, y, cos, sin, tangent, rate, R = self.arcs[:, half]
         off = s - border
-        if isinstance(chain.pieces, CurvePieces):
-            link = (half + 1) // 2
-            piece = piece or chain.pieces.seen(link, s, s - chain.s[link], self.unit_length)
-            return self._beside(piece, half, s, off, rate, R)
-        # stress-free piece and difference of two arcs make one arc, from the border on
-        along, across = _arc(off, rate, R)
-        tangent = tangent + rate * off
+        if chain.excess is not None:
+            excess = chain.excess.seen(half, off) if excess is None else excess
+            along, across, lead, speed, bend, gain = _beside(excess, off, rate, R)
+            tangent = tangent + lead
+        else:
+            # stress-free piece and difference of two arcs make one arc, from the border on
+            along, across = _arc(off, rate, R)
+            tangent, speed, bend, gain = tangent + rate * off, R, rate, np.zeros(len(s))
         return Points(
             line=self,
             half=half,
@@ -288,50 +278,31 @@ class SmoothLine:
             y=y + along * sin + across * cos,
             tangent=tangent,
             psi=tangent,
-            speed=R,
-            bend=rate,
-            gain=np.zeros(len(s)),
-            pace=R,
-        )
-
-    def _beside(self, piece: Piece, half: Ints, s: Array, off: Array, rate: Array, R: Array) -> Points:
-        """Points of which the stress-free ``piece`` is no arc; see :meth:`at`.
-
-        All in numbers a + i·w of the link's frame; of two arcs the first is that of Θ, the second that of Θ⁰.
-        """
-        chain, link, spring = self.chain, (half + 1) // 2, half // 2
-        rates, radii = np.empty((2, len(s))), np.ones((2, len(s)))
-        rates[0], rates[1], radii[0] = rate, chain.rest_rates[spring], R
-        turned = (0.5 * off) * rates
-        turned[turned == 0.0] = STRAIGHT
-        middle = np.empty(turned.shape, dtype=complex)
-        middle.real, middle.imag = np.cos(turned), np.sin(turned)
-        tangents = radii * middle * middle
-        bends = rates * tangents
-        off_arc = ((radii * off) * (middle.imag / turned)) * middle
-        lean = chain.leans[link]
-        place = piece.at + lean * (off_arc[0] - off_arc[1])
-        first = piece.first + lean * (tangents[0] - tangents[1])
-        second = piece.second + (1j * lean) * (bends[0] - bends[1])
-        turning = first.conj() * second
-        squared = first.real**2 + first.imag**2
-        speed = np.sqrt(squared)
-        tangent = self.theta[link] + np.arctan2(first.imag, first.real)
-        at = self.starts[link] + place * self.directions[link]
-        return Points(
-            line=self,
-            half=half,
-            s=s,
-            off=off,
-            x=at.real.copy(),
-            y=at.imag.copy(),
-            tangent=tangent,
-            psi=tangent,
             speed=speed,
-            bend=turning.imag / squared,
-            gain=turning.real / speed,
+            bend=bend,
+            gain=gain,
             pace=speed,
         )
+
+
+def _beside(excess: ComplexArray, off: Array, rate: Array, R: Array) -> tuple[Array, ...]:
+    """Of arcs with an ``excess``: the place along and across the border's tangent, how far its own leads, speed,
+    bend and gain, (k,) each.
+
+    All in numbers a + i·w from the border along its tangent.
+    """
+    turned = (0.5 * off) * rate
+    turned[turned == 0.0] = STRAIGHT
+    middle = np.empty(len(off), dtype=complex)
+    middle.real, middle.imag = np.cos(turned), np.sin(turned)
+    arc = R * middle * middle
+    place = (R * off * (middle.imag / turned)) * middle + excess[2]
+    first = arc + excess[1]
+    turning = first.conj() * ((1j * rate) * arc + excess[0])
+    squared = first.real**2 + first.imag**2
+    speed = np.sqrt(squared)
+    lead = np.arctan2(first.imag, first.real)
+    return place.real, place.imag, lead, speed, turning.imag / squared, turning.real / speed
 
 
 def _arc(off: Array, rate: Array, R: Array | float) -> tuple[Array, Array]:
