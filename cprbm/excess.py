@@ -94,7 +94,7 @@ class Tabulated:
     """E by polynomials of u.
 
     Attributes:
-        coefficients: lowest power first, of E″, E′/(d u) and E/(d u)², of all halves (points, 3, 2N).
+        coefficients: lowest power first, of E″, E′/(d u) and E/(d u)², of all halves (2N, points, 3).
         size: d (2N,).
     """
 
@@ -103,11 +103,10 @@ class Tabulated:
 
     def seen(self, half: Ints, off: Array) -> ComplexArray:
         """E″, E′ and E at places ``off`` (k,) in halves of elements (k,): (3, k)."""
-        mine, u = self.coefficients[..., half], off / self.size[half]
-        found: ComplexArray = mine[-1]
-        for coefficients in mine[-2::-1]:
-            found *= u
-            found += coefficients
+        mine = self.coefficients[half]
+        powers = np.empty((len(half), 1, mine.shape[1]), dtype=complex)
+        powers[..., 0], powers[..., 1:] = 1.0, (off / self.size[half])[:, None, None]
+        found: ComplexArray = (np.multiply.accumulate(powers, axis=2, out=powers) @ mine)[:, 0].T
         found[1] *= off
         found[2] *= off * off
         return found
@@ -117,8 +116,8 @@ def excess(halves: Halves) -> Excess:
     """E, by polynomials where these are E."""
     for points in POINTS:
         found = _through(halves, points)
-        # between the points of the polynomial
-        u = 0.5 - 0.5 * np.cos(np.pi * np.arange(points + 1) / points)
+        # at the ends and in the middle, between two points of the polynomial, where it is farthest off
+        u = 0.5 - 0.5 * np.cos(np.pi * np.array((0, points // 2, points)) / points)
         half, off = _places(halves, u)
         missed = (found.seen(half, off) - halves.exactly(half, off))[0]
         if float((np.abs(missed) * np.abs(found.size[half])).max()) <= ENOUGH:
@@ -141,4 +140,4 @@ def _through(halves: Halves, points: int) -> Tabulated:
     once = 1.0 / (powers + 1.0)
     twice = once / (powers + 2.0)
     each = np.stack((np.ones(points), once, twice), axis=1)
-    return Tabulated(coefficients[:, None, :] * each[:, :, None], halves.end - halves.border)
+    return Tabulated(coefficients.T[:, :, None] * each, halves.end - halves.border)
