@@ -40,6 +40,7 @@ from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
+from cprbm.moving import moving, position_curvature, position_slopes, tangent_slopes
 from cprbm.pairs import THINNEST, Pressed
 from cprbm.standing import Attachment
 from scene import CircleContact, Scene
@@ -169,8 +170,9 @@ class Circle:
         rho, n = self._away(A)
         across = np.stack((-n[:, 1], n[:, 0]), axis=1)
         q_s = self._across(A, n)
-        C_z, C_sz = smooth.position_slopes(A), smooth.tangent_slopes(A)
-        second = smooth.position_curvature(A, n)
+        z = moving(A)
+        C_z, C_sz = position_slopes(z), tangent_slopes(z)
+        second = position_curvature(z, n)
         if self.body >= 0:
             moves = np.tile(-np.eye(2), (len(s), 1, 1))
             C_z, C_sz = np.concatenate((C_z, moves), axis=2), np.concatenate((C_sz, 0.0 * moves), axis=2)
@@ -181,8 +183,8 @@ class Circle:
         second += q_z[:, :, None] * q_z[:, None, :] / rho[:, None, None]
         D_sz = np.einsum("mi,mik->mk", n, C_sz) + (q_s / rho)[:, None] * q_z
         D_ss = self.convexity(A) + self._leading(A) * beyond.bend
-        moving = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
-        second -= moving[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
+        going = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
+        second -= going[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
 
         link = A.link
         joints = (self.a.first_joint + link)[:, None]

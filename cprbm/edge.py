@@ -49,6 +49,7 @@ from cprbm.faces import SAME, Face, Seen, Straight, faces_of, sides_of
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
+from cprbm.moving import moving, position_curvature, position_slopes, tangent_slopes
 from cprbm.outset import anchor
 from cprbm.own_pins import ON_IT as PIN_ON_IT
 from cprbm.own_pins import own_pins
@@ -268,8 +269,8 @@ class Edge:
         second += k[:, None, None] * along[:, :, None] * along[:, None, :]
         D_sz += (k * g)[:, None] * along
         D_ss = self._convexity(A, n, k) + leading * beyond.bend
-        moving = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
-        second -= moving[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
+        going = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
+        second -= going[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
         values = self.offset - seen.distance - np.where(free, leading * beyond.integral, 0.0)
         return self._group(A, values, D_z, second, self._keys(number, s, free))
 
@@ -295,8 +296,9 @@ class Edge:
     def _slopes(self, A: smooth.Points, n: Array, frame: Frame) -> tuple[Array, Array, Array, Array]:
         """n·v_z, τ·v_z and n·C_sz (k, p), and n·C_zz + E (k, p, p), over the local numbers."""
         tau = np.stack((n[:, 1], -n[:, 0]), axis=1)
-        C_z, C_sz = smooth.position_slopes(A), smooth.tangent_slopes(A)
-        second = smooth.position_curvature(A, n)
+        z = moving(A)
+        C_z, C_sz = position_slopes(z), tangent_slopes(z)
+        second = position_curvature(z, n)
         v_z = C_z
         if self.body >= 0:
             r, turned = np.stack((A.x, A.y), axis=1) - frame.m, -tau  # J n

@@ -55,6 +55,7 @@ from cprbm.gathering import Touches, gathered
 from cprbm.kinematics import Positions, State
 from cprbm.kinks import kinked, missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
+from cprbm.moving import LOCALS, angle_slopes, moving, position_curvature, position_slopes, tangent_slopes
 from cprbm.pairs import Pressed
 from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
@@ -427,13 +428,15 @@ class Pair:
         """The constraint at feet (s, σ); where ``free`` (k,) the place moves with the minimum."""
         A = self.on_a(lines, s)
         B = self.foot(lines, A, sigma)
-        A, angle_slopes = self.beside(A, B), leaning.angle_slopes if self.tapered else smooth.angle_slopes
-        m, k = len(s), smooth.LOCALS
+        A = self.beside(A, B)
+        m, k = len(s), LOCALS
         tangent = np.stack((np.cos(B.psi), np.sin(B.psi)), axis=1)
         normal = np.stack((-tangent[:, 1], tangent[:, 0]), axis=1)
         r = np.stack((A.x - B.x, A.y - B.y), axis=1)
         distance = np.sum(normal * r, axis=1)
-        r_z = np.concatenate((smooth.position_slopes(A), -smooth.position_slopes(B)), axis=2)
+        both = moving(A, B)
+        C_z = position_slopes(both)
+        r_z = np.concatenate((C_z[:m], -C_z[m:]), axis=2)
         n_r = np.einsum("mi,mik->mk", normal, r_z)
         t_r = np.einsum("mi,mik->mk", tangent, r_z)
         facing = np.cos(A.psi - B.psi)
@@ -447,21 +450,24 @@ class Pair:
 
         def bent() -> Array:
             # ds/dz and dσ/dz from (i) and (ii)
-            zeros = np.zeros((m, k))
-            psi_B = np.concatenate((zeros, angle_slopes(B)), axis=1)
-            psi_A = np.concatenate((angle_slopes(A), zeros), axis=1)
+            psi_z = np.zeros((2, m, 2 * k))
+            psi = angle_slopes(both)
+            if self.tapered:
+                psi = leaning.angle_slopes(both, np.concatenate((A.lead, B.lead)))
+            psi_z[0, :, :k], psi_z[1, :, k:] = psi[:m], psi[m:]
+            psi_A, psi_B = psi_z
             one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
             determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.pace, 1.0)
             s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
             sigma_z = (two - (facing * A.pace)[:, None] * s_z) / of_foot[:, None]
             turning = psi_B + B.bend[:, None] * sigma_z
             second = np.zeros((m, 2 * k, 2 * k))
-            second[:, :k, :k] = smooth.position_curvature(A, normal)
-            second[:, k:, k:] = -smooth.position_curvature(B, normal)
-            n_A = np.concatenate((np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(A)), zeros), axis=1)
-            n_B = np.concatenate((zeros, np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(B))), axis=1)
+            normals = np.concatenate((normal, normal))
+            curved, n_s = position_curvature(both, normals), np.einsum("mi,mik->mk", normals, tangent_slopes(both))
+            second[:, :k, :k], second[:, k:, k:] = curved[:m], -curved[m:]
             second += -t_r[:, :, None] * turning[:, None, :]
-            second += n_A[:, :, None] * s_z[:, None, :] - n_B[:, :, None] * sigma_z[:, None, :]
+            second[:, :k] += n_s[:m, :, None] * s_z[:, None, :]
+            second[:, k:] -= n_s[m:, :, None] * sigma_z[:, None, :]
             # γ leaves a part of its own size uneven
             return np.asarray(-self.side * 0.5 * (second + np.swapaxes(second, 1, 2)))
 

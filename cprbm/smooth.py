@@ -41,10 +41,9 @@ import numpy as np
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
 from cprbm.polynomial import ComplexArray
-from scene.answer import Array, Flags, Ints
+from scene.answer import Array, Ints
 
 STRAIGHT = 1e-150  # rad: what turns less is straight, and its sine the angle
-LOCALS = 5  # x_i, y_i, θ_{i−1}, θ_i, θ_{i+1}
 
 # Taylor coefficients, lowest first, of sin z/z and (1 − cos z)/z² in z² and of y cot y in y²
 SINE = (1.0, -1 / 6, 1 / 120, -1 / 5040, 1 / 362880, -1 / 39916800)
@@ -68,8 +67,6 @@ ARCS, COTANGENTS = _with_slopes(SINE, VERSINE), _with_slopes(COTANGENT)
 @dataclass(frozen=True)
 class Points:
     """Some points of one beam's smooth line, arrays (k,) unless said otherwise.
-
-    What its first derivatives over the local numbers need besides is worked out where it is asked.
 
     Attributes:
         line: whose points they are.
@@ -115,84 +112,10 @@ class Points:
         """The link each lies on, in the beam's own numbering."""
         return (self.half + 1) // 2
 
-    @cached_property
-    def before(self) -> Flags:
-        """Whether each lies before the border, in the element of the link's first joint."""
-        return np.asarray(self.half % 2 == 1)
-
-    @cached_property
-    def h(self) -> Array:
-        """Of the element h."""
-        return self.line.chain.sizes[self.half // 2]
-
-    @cached_property
-    def xi(self) -> Array:
-        """ξ."""
-        return np.abs(self.off) / self.h
-
-    @cached_property
-    def ratio(self) -> Array:
-        """Of the element Θ⁰."""
-        return self.line.chain.turns[self.half // 2]
-
-    @cached_property
-    def turn(self) -> Array:
-        """Of the element Θ."""
-        return self.ratio + self.line.turns[self.half // 2]
-
-    @cached_property
-    def radius(self) -> Array:
-        """Of the element R."""
-        return self.line.radii[self.half // 2]
-
-    @cached_property
-    def lean(self) -> Array:
-        """Cos and sin of the tangent at the border against the link, (2, k)."""
-        return self.line.chain.lean[:, self.link]
-
-    @cached_property
-    def e(self) -> Array:
-        """Direction of the link, (k, 2)."""
-        return np.stack((self.line.cos[self.link], self.line.sin[self.link]), axis=1)
-
-    @cached_property
-    def n(self) -> Array:
-        """Left normal of the link, (k, 2)."""
-        return np.stack((-self.line.sin[self.link], self.line.cos[self.link]), axis=1)
-
-    @cached_property
-    def in_link(self) -> Array:
-        """Coordinates a and w in the link's frame, (2, k)."""
-        x, y = self.x - self.line.x[self.link], self.y - self.line.y[self.link]
-        cos, sin = self.e[:, 0], self.e[:, 1]
-        return np.stack((cos * x + sin * y, cos * y - sin * x))
-
-    @cached_property
-    def in_link_1(self) -> Array:
-        """Derivatives of a and w over s, (2, k)."""
-        leading = self.tangent - self.line.theta[self.link]
-        return np.stack((self.speed * np.cos(leading), self.speed * np.sin(leading)))
-
-    @cached_property
-    def arc(self) -> tuple[Array, Array]:
-        """φ (k,), and sin φ/φ and (1 − cos φ)/φ² with two derivatives over φ² each, (6, k)."""
-        phi = self.turn * self.xi
-        return phi, _series(ARCS, phi * phi)
-
-    @cached_property
-    def over_angles(self) -> Array:
-        """∂δ of the point's element over (θ_{i−1}, θ_i, θ_{i+1}), (k, 3)."""
-        return np.where(self.before[:, None], (-1.0, 1.0, 0.0), (0.0, -1.0, 1.0))
-
-    @cached_property
-    def over_turn(self) -> tuple[Array, Array]:
-        """∂(a, w) and ∂(a′, w′) over δ of the point's element, (2, k) each; ′ is the derivative over s."""
-        return _over_turn(self)
-
-    @cached_property
-    def over_turn_twice(self) -> Array:
-        """∂²(a, w) over δ of the point's element, (2, k)."""
-        return _over_turn_twice(self)
+    @property
+    def lead(self) -> Array:
+        """ψ less the angle of the line's tangent (k,)."""
+        return self.psi - self.tangent
 
 
 @dataclass(frozen=True)
@@ -250,6 +173,16 @@ class SmoothLine:
         links = np.stack((chain.borders, x, y, cos, sin, self.theta + np.arctan2(lean_sin, lean_cos)))
         springs = np.stack(((chain.turns + self.turns) / chain.sizes, self.radii))
         return np.concatenate((np.repeat(links, 2, axis=1)[:, 1:-1], np.repeat(springs, 2, axis=1)))
+
+    @cached_property
+    def carried(self) -> Array:
+        """Of every half of an element x and y of its link's joint, cos and sin of the tangent at its border, h, Θ, R,
+        ∂R and ∂²R over δ, (9, 2N).
+        """
+        turns = self.chain.turns + self.turns
+        springs = np.array((self.chain.sizes, turns, self.radii, self.radii_1, self.radii_2))
+        joints = np.repeat(np.array((self.x[:-1], self.y[:-1])), 2, axis=1)[:, 1:-1]
+        return np.concatenate((joints, self.arcs[3:5], np.repeat(springs, 2, axis=1)))
 
     def at(self, s: Array) -> Points:
         """Points at arc lengths ``s`` (k,), units of length; beyond the ends the end itself."""
@@ -326,7 +259,7 @@ def _smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) 
     theta = state.theta[chain.links]
     turns = theta[1:] - theta[:-1] - chain.rest_turns
     turning = chain.turns + turns
-    cotangents, (sine, versine) = _series(COTANGENTS, 0.25 * turning * turning), _of_rest(chain)
+    cotangents, (sine, versine) = series(COTANGENTS, 0.25 * turning * turning), _of_rest(chain)
     return SmoothLine(
         chain=chain,
         unit_length=unit_length,
@@ -341,7 +274,7 @@ def _smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) 
     )
 
 
-def _series(table: Array, z: Array) -> Array:
+def series(table: Array, z: Array) -> Array:
     """Σ c_k z^k for every row of coefficients c, at places (k,): (rows, k)."""
     total: Array = table[:, -1:] * z
     for k in range(table.shape[1] - 2, 0, -1):
@@ -355,84 +288,5 @@ def _series(table: Array, z: Array) -> Array:
 def _of_rest(chain: Chain) -> tuple[Array, Array]:
     """sin x/x and (1 − cos x)/(2x), what is in R of the stress-free turning, (N,) each."""
     x = 0.5 * chain.turns
-    series = _series(ARCS, x * x)
-    return series[0], 0.5 * x * series[3]
-
-
-def _leant(lean: Array, along: Array, across: Array) -> tuple[Array, Array]:
-    """Coordinates in the link's frame of a vector given along and across the border's tangent."""
-    return lean[0] * along - lean[1] * across, lean[1] * along + lean[0] * across
-
-
-def _over_turn(points: Points) -> tuple[Array, Array]:
-    xi, R, R_1 = points.xi, points.radius, points.line.radii_1[points.half // 2]
-    phi, (S, S1, _, V, V1, _) = points.arc
-    q = phi * phi
-    R_1_P = R_1 * S
-    P_1, Q_1 = 2.0 * phi * S1, V + 2.0 * q * V1
-    u, sign, R_xi = points.h * xi, np.where(points.before, -1.0, 1.0), R * xi
-    A, W = u * (R_1_P + R_xi * P_1), u * (R_1 * phi * V + R_xi * Q_1)
-    cos, sin = np.cos(phi), np.sin(phi)
-    A_u, W_u = R_1 * cos - R_xi * sin, R_1 * sin + R_xi * cos
-    return np.array(_leant(points.lean, sign * A, W)), np.array(_leant(points.lean, A_u, sign * W_u))
-
-
-def _over_turn_twice(points: Points) -> Array:
-    xi, R = points.xi, points.radius
-    R_1, R_2 = points.line.radii_1[points.half // 2], points.line.radii_2[points.half // 2]
-    phi, (S, S1, S2, V, V1, V2) = points.arc
-    q = phi * phi
-    P_1, P_2 = 2.0 * phi * S1, 2.0 * S1 + 4.0 * q * S2
-    Q, Q_1, Q_2 = phi * V, V + 2.0 * q * V1, 6.0 * phi * V1 + 4.0 * phi * q * V2
-    u, sign = points.h * xi, np.where(points.before, -1.0, 1.0)
-    A_2 = u * (R_2 * S + 2.0 * R_1 * xi * P_1 + R * xi * xi * P_2)
-    W_2 = u * (R_2 * Q + 2.0 * R_1 * xi * Q_1 + R * xi * xi * Q_2)
-    return np.array(_leant(points.lean, sign * A_2, W_2))
-
-
-def _vector(points: Points, local: Array) -> Array:
-    """Vectors (k, 2) from their coordinates (2, k) in the links' frames."""
-    return np.asarray(local[0][:, None] * points.e + local[1][:, None] * points.n)
-
-
-def position_slopes(points: Points) -> Array:
-    """∂C over the local numbers (x_i, y_i, θ_{i−1}, θ_i, θ_{i+1}), (k, 2, 5)."""
-    slopes = np.zeros((len(points.s), 2, LOCALS))
-    slopes[:, 0, 0] = slopes[:, 1, 1] = 1.0
-    slopes[:, :, 2:] = _vector(points, points.over_turn[0])[:, :, None] * points.over_angles[:, None, :]
-    a, w = points.in_link
-    slopes[:, :, 3] += a[:, None] * points.n - w[:, None] * points.e
-    return slopes
-
-
-def position_curvature(points: Points, along: Array) -> Array:
-    """Second derivatives of along·C over the local numbers for directions ``along`` (k, 2): (k, 5, 5)."""
-    second = np.zeros((len(points.s), LOCALS, LOCALS))
-    on_e, on_n = np.sum(along * points.e, axis=1), np.sum(along * points.n, axis=1)
-    once, twice = points.over_turn[0], points.over_turn_twice
-    turns = points.over_angles
-    second[:, 2:, 2:] = (twice[0] * on_e + twice[1] * on_n)[:, None, None] * turns[:, :, None] * turns[:, None, :]
-    over = (once[0] * on_n - once[1] * on_e)[:, None] * turns
-    second[:, 3, 2:] += over
-    second[:, 2:, 3] += over
-    a, w = points.in_link
-    second[:, 3, 3] -= a * on_e + w * on_n
-    return second
-
-
-def angle_slopes(points: Points) -> Array:
-    """∂ψ over the local numbers, (k, 5)."""
-    slopes = np.zeros((len(points.s), LOCALS))
-    (a1, w1), (a1_, w1_) = points.in_link_1, points.over_turn[1]
-    slopes[:, 2:] = ((a1 * w1_ - w1 * a1_) / points.speed**2)[:, None] * points.over_angles
-    slopes[:, 3] += 1.0
-    return slopes
-
-
-def tangent_slopes(points: Points) -> Array:
-    """∂C_s over the local numbers, (k, 2, 5)."""
-    slopes = np.zeros((len(points.s), 2, LOCALS))
-    slopes[:, :, 2:] = _vector(points, points.over_turn[1])[:, :, None] * points.over_angles[:, None, :]
-    a1, w1 = points.in_link_1
-    slopes[:, :, 3] += a1[:, None] * points.n - w1[:, None] * points.e
-    return slopes
+    found = series(ARCS, x * x)
+    return found[0], 0.5 * x * found[3]
