@@ -222,7 +222,7 @@ class Circle:
             )
 
         together = self._beside_clamps(keys)
-        alone = np.setdiff1d(np.arange(len(s)), np.concatenate([np.zeros(0, dtype=np.intp), *together]))
+        alone = np.delete(np.arange(len(s)), np.concatenate(together)) if together else np.arange(len(s))
         groups = [rows(two[None]) for two in together]
         return (*groups, rows(alone[:, None])) if alone.size else tuple(groups)
 

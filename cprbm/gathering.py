@@ -88,7 +88,7 @@ def gathered(
     angles, lefts = [], []
     for chain, begin, width in zip(chains, first, widths, strict=True):
         # beyond a beam's ends the end itself: what is there has no share
-        angles.append(chain.first_link + np.clip(begin[:, None] - 1 + np.arange(width), 0, chain.n))
+        angles.append(chain.first_link + np.minimum(np.maximum(begin[:, None] - 1 + np.arange(width), 0), chain.n))
         lefts.append(np.repeat(begin, q))
     # where a place's local numbers stand among its row's, and those of the links in between
     place, size = np.arange(m * q), 4 + int(widths.sum())

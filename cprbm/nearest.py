@@ -392,7 +392,7 @@ class Pair:
         B = self.foot(lines, A, sigma)
         ratio = (B.pace - B.bend * _seen_from(B, A)[1]) / (np.cos(A.psi - B.psi) * A.speed)  # ds/dσ
         borders = self.b.borders
-        after = np.clip(np.searchsorted(borders, sigma), 1, self.b.n)
+        after = np.minimum(np.maximum(np.searchsorted(borders, sigma), 1), self.b.n)
         # the length on A in steps, so that it does not change with the state where it is differentiated
         stretch = np.round(np.abs(ratio) / STRETCH) * STRETCH
         ahead, behind = borders[after] - sigma, borders[after - 1] - sigma
