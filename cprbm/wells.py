@@ -66,7 +66,8 @@ def bottom(
         close: a step whose square is nothing.
     """
     s, (low, high) = start, within
-    D_s, D_ss = (each.reshape(2, -1).mean(axis=0) for each in slope(np.minimum(np.maximum(start + BORDER, low), high).ravel()))
+    beside = np.minimum(np.maximum(start + BORDER, low), high).ravel()
+    D_s, D_ss = (each.reshape(2, -1).mean(axis=0) for each in slope(beside))
     step = np.zeros(len(s))
     for iteration in range(ITERATIONS if s.size else 0):
         if iteration:
