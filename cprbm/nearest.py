@@ -65,6 +65,8 @@ CORNER_ITERATIONS = 40  # where edges have corners that stand out, at each of wh
 NO_RIDGES = np.zeros(0)
 CLOSE = 1e-9  # units of length: a step whose square is nothing
 CLOSEST_ITERATIONS = 50
+PATIENCE = 4  # iterations of Newton's method, after which a minimum may be sought where B has ended
+LIPSCHITZ = 1.2  # a way along B's tangent over the arc length of A that makes it, with something to spare
 LEAST_CURVATURE = 1e-3  # of D, 1/ℓ: elements that end elsewhere on either beam leave as much in a zone
 REACH = 0.1  # minima and ends with gaps wider than this part of the longest beam are no constraints yet
 ARCHING = 1.0  # of what the largest force bends one element by: unlike elements of two beams arch by as much
@@ -719,7 +721,7 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     sigma = np.where(ahead == 0.0, sigma[here], sigma[here] + share * (sigma[beside] - sigma[here]))
     s = s[here] + ahead
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
-    for _ in range(CLOSEST_ITERATIONS):
+    for iteration in range(CLOSEST_ITERATIONS):
         A = pair.on_a(lines, s)
         B = pair.foot(lines, A, sigma)
         A = pair.beside(A, B)
@@ -741,6 +743,8 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
         there = (np.abs(step) < CLOSE) & (np.abs(along) < CLOSE) & (np.abs(slope) < SETTLED)
         if not ridges.size:  # no slope as steep as that goes through zero in so little
             there |= (high - low < CLOSE) & (np.abs(slope) > STEEP)
+            if iteration > PATIENCE:
+                there |= _beyond_ends(pair.b, B.s, along, high - low) & (shortened > 0.0)
         if np.all(there):
             break
     held = found.held(pair.side * across - pair.wider(s, sigma) - pair.offset)
@@ -748,6 +752,12 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     # beyond an end of B there is no foot: what lies there faces that end, which has a row of its own
     settled &= (np.abs(along) < SETTLED) | ((sigma > 0.0) & (sigma < pair.b.s[-1]))
     return s[settled], sigma[settled]
+
+
+def _beyond_ends(b: Chain, sigma: Array, along: Array, within: Array) -> Flags:
+    """Which places of A lie so far beyond an end of B that no other place ``within`` as much (k,) of A has a foot."""
+    out = np.where(sigma <= 0.0, -along, np.where(sigma >= b.s[-1], along, -np.inf))
+    return np.asarray(out > LIPSCHITZ * within)
 
 
 def reach(one: Chain, other: Chain) -> float:
