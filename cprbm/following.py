@@ -119,6 +119,7 @@ class Follower:
     def go(self, way: Way, accept: Callable[[Point, dict[str, float]], None]) -> Reached:
         """Go all the way, directly or in steps; ``accept`` sees every next minimum before it is the present one."""
         done, step, iterations, refused = 0.0, 1.0, 0, False
+        doubted: tuple[float, Equilibrium] | None = None
         self.values, self.reached, self.locked = dict(way.begin), way.value(0.0), None
         problem = self.mechanism.problem
         here = there = rate(problem, self.point, way.change)
@@ -128,11 +129,17 @@ class Follower:
             values = way.at(fraction)
             ahead = None if refused else continued(problem, values, self._known, way.value(fraction))
             doubtful = 0.0
-            for start in [self.point] if ahead is None else [ahead, self.point]:
-                most = self.settings.iterations if start is self.point else SOON
-                farthest = self._farthest((fraction - done) * here)
-                found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
-                iterations += found.iterations
+            # what was found before in too long a step may be believed from nearer
+            before = doubted[1] if doubted is not None and doubted[0] == fraction else None
+            starts = [None if before is None else before.point, ahead, self.point]
+            for start in [each for each in starts if each is not None]:
+                if before is not None and start is before.point:
+                    found = before
+                else:
+                    most = self.settings.iterations if start is self.point else SOON
+                    farthest = self._farthest((fraction - done) * here)
+                    found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
+                    iterations += found.iterations
                 certificate, ending = certify(self.mechanism, self.settings, found)
                 if ending is Ending.COMPLETED:
                     there = rate(problem, found.point, way.change)
@@ -141,7 +148,8 @@ class Follower:
                     if ending is Ending.COMPLETED and self._uneven(found.point, *ways):
                         iterations += 1
                         doubtful = doubt(problem, way.at(0.5 * (done + fraction)), self.point, found.point, *ways)
-                        ending, sentence = (ending, "") if doubtful <= 1.0 else (Ending.STEP_TOO_SMALL, ELSEWHERE)
+                        if doubtful > 1.0:
+                            ending, sentence, doubted = Ending.STEP_TOO_SMALL, ELSEWHERE, (fraction, found)
                 else:
                     sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
                 if ending is Ending.COMPLETED:
