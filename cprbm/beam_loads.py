@@ -25,6 +25,7 @@ import numpy as np
 from cprbm import smooth
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
+from cprbm.moving import moving, position_curvature, position_slopes
 from scene import Scene
 from scene.answer import Array
 from scene.statement import BeamForce, BeamMoment, DistributedLoad
@@ -165,8 +166,9 @@ def beam_work(model: Model, load: BeamLoad, state: State, at: Positions) -> Beam
     on_joints = np.zeros((model.n_joints, 2))
     np.add.at(on_joints, joints, load.forces)
     # by the angles of the link before, of the link itself and of the one behind; what is beyond an end has no share
-    slopes = np.einsum("ki,kij->kj", load.forces, smooth.position_slopes(points))[:, 2:]
-    second = smooth.position_curvature(points, load.forces)[:, 2:, 2:]
+    z = moving(points)
+    slopes = np.einsum("ki,kij->kj", load.forces, position_slopes(z))[:, 2:]
+    second = position_curvature(z, load.forces)[:, 2:, 2:]
     links = chain.first_link + points.link[:, None] + np.arange(-1, 2)
     gradient, diagonal = np.zeros(model.n_links + 2), np.zeros(model.n_links + 2)
     off = np.zeros(model.n_links + 1)

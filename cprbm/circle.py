@@ -40,6 +40,7 @@ from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
+from cprbm.moving import moving, position_curvature, position_slopes, tangent_slopes
 from cprbm.pairs import THINNEST, Pressed
 from cprbm.standing import Attachment
 from scene import CircleContact, Scene
@@ -168,9 +169,10 @@ class Circle:
         A = line.at(s)
         rho, n = self._away(A)
         across = np.stack((-n[:, 1], n[:, 0]), axis=1)
-        q_s = self._across(A, n)
-        C_z, C_sz = smooth.position_slopes(A), smooth.tangent_slopes(A)
-        second = smooth.position_curvature(A, n)
+        q_s = A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi))
+        z = moving(A)
+        C_z, C_sz = position_slopes(z), tangent_slopes(z)
+        second = position_curvature(z, n)
         if self.body >= 0:
             moves = np.tile(-np.eye(2), (len(s), 1, 1))
             C_z, C_sz = np.concatenate((C_z, moves), axis=2), np.concatenate((C_sz, 0.0 * moves), axis=2)
@@ -180,16 +182,17 @@ class Circle:
         q_z = np.einsum("mi,mik->mk", across, C_z)
         second += q_z[:, :, None] * q_z[:, None, :] / rho[:, None, None]
         D_sz = np.einsum("mi,mik->mk", n, C_sz) + (q_s / rho)[:, None] * q_z
-        D_ss = self.convexity(A) + self._leading(A) * beyond.bend
-        moving = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
-        second -= moving[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
+        _, convexity, leading = self.course(A)
+        D_ss = convexity + leading * beyond.bend
+        going = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
+        second -= going[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
 
         link = A.link
         joints = (self.a.first_joint + link)[:, None]
         order = ALONE
         if self.body >= 0:
             joints, order = np.stack((joints[:, 0], np.full(len(s), self.mark)), axis=1), WITH_CENTRE
-        values = self.offset - self.distance(A) - np.where(free, self._leading(A) * beyond.integral, 0.0)
+        values = self.offset - self.distance(A) - np.where(free, leading * beyond.integral, 0.0)
         slopes, second = -D_z[:, order], second[:, order[:, None], order]
         angles = self.a.first_link + np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n)), axis=1)
         keys = np.where(free, -1, np.searchsorted(self.a.s, s))
@@ -219,7 +222,7 @@ class Circle:
             )
 
         together = self._beside_clamps(keys)
-        alone = np.setdiff1d(np.arange(len(s)), np.concatenate([np.zeros(0, dtype=np.intp), *together]))
+        alone = np.delete(np.arange(len(s)), np.concatenate(together)) if together else np.arange(len(s))
         groups = [rows(two[None]) for two in together]
         return (*groups, rows(alone[:, None])) if alone.size else tuple(groups)
 
@@ -232,25 +235,14 @@ class Circle:
                 found.append(rows if outer < inner else rows[::-1])
         return found
 
-    def _leading(self, A: smooth.Points) -> Array:
-        """By how much D_s grows as the tangent leads, ±1: whether the circle is on the beam's right or left."""
-        return np.where((A.y - self.y) * np.cos(A.psi) > (A.x - self.x) * np.sin(A.psi), 1.0, -1.0)
-
-    def _across(self, A: smooth.Points, n: Array) -> Array:
-        """Part of C_s across n, along the circle clockwise."""
-        return np.asarray(A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi)))
-
-    def slope(self, A: smooth.Points) -> Array:
-        """D_s."""
-        _, n = self._away(A)
-        return np.asarray(A.speed * (n[:, 0] * np.cos(A.psi) + n[:, 1] * np.sin(A.psi)) - self.widening(A.s))
-
-    def convexity(self, A: smooth.Points) -> Array:
-        """D_ss."""
+    def course(self, A: smooth.Points) -> tuple[Array, Array, Array]:
+        """D_s, D_ss, and by how much D_s grows as the tangent leads, ±1: whether the circle is on the beam's right."""
         rho, n = self._away(A)
         cos, sin = np.cos(A.psi), np.sin(A.psi)
         facing, leaning = n[:, 1] * cos - n[:, 0] * sin, n[:, 0] * cos + n[:, 1] * sin
-        return np.asarray(facing * A.speed * A.bend + leaning * A.gain + self._across(A, n) ** 2 / rho)
+        across = A.speed * facing
+        convexity = across * A.bend + leaning * A.gain + across * across / rho
+        return A.speed * leaning - self.widening(A.s), convexity, np.where(facing > 0.0, 1.0, -1.0)
 
     def _places(self, line: smooth.SmoothLine) -> tuple[Array, Flags]:
         """Arc lengths of the rows, and which of them move with a minimum."""
@@ -262,7 +254,7 @@ class Circle:
         # of an end that cannot move against the circle the gap is no unknown
         near[[0, -1]] &= ~np.array(self.held)
         # at an end that is lowest the minimum lies within if the way to it rises
-        slope = self.slope(A)
+        slope, convexity, _ = self.course(A)
         fence = [
             np.inf if inwards and not fixed else -np.inf
             for inwards, fixed in zip((slope[0] < -ON_IT, slope[-1] > ON_IT), self.held, strict=True)
@@ -271,7 +263,7 @@ class Circle:
         # the two joints beside a clamp on the circle press together, a place of its own among them would part them
         first, last = (4 if clamped else -1 for clamped in self.clamped)
         lowest = lowest[self.own_places & (lowest > first) & (lowest < 2 * (self.a.n + 1) - last)]
-        found = wells.wells(self.a, D, self.convexity(A)[::2], lowest, LEAST_CURVATURE, self.kinks.places)
+        found = wells.wells(self.a, D, convexity[::2], lowest, LEAST_CURVATURE, self.kinks.places)
         places, distance, settled = self._refined(line, D, found.samples)
         places = places[settled & found.held(distance - self.offset)]
         for place in places:
@@ -290,8 +282,8 @@ class Circle:
 
         def slope(s: Array) -> tuple[Array, Array]:
             A, beyond = line.at(s), missed(self.a, self.kinks, s)
-            leading = self._leading(A)
-            return self.slope(A) + leading * beyond.angle, self.convexity(A) + leading * beyond.bend
+            slope, convexity, leading = self.course(A)
+            return slope + leading * beyond.angle, convexity + leading * beyond.bend
 
         within = np.clip(np.stack((start - self.a.h, start + self.a.h)), 0.0, self.a.s[-1])
         s, settled = wells.bottom(slope, s, within, LEAST_CURVATURE, CLOSE)

@@ -51,6 +51,7 @@ from cprbm.faces import SAME, Face, Seen, Straight, faces_of, sides_of
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
+from cprbm.moving import moving, position_curvature, position_slopes, tangent_slopes
 from cprbm.outset import anchor
 from cprbm.own_pins import ON_IT as PIN_ON_IT
 from cprbm.own_pins import own_pins
@@ -195,7 +196,10 @@ class Edge:
 
     def _seen(self, face: Face | Corner, A: smooth.Points, frame: Frame) -> Seen:
         """A piece from points of the beam, with D in the place of the distance and n as it is turned."""
-        seen = face.seen(frame.inwards(np.stack((A.x, A.y), axis=1)))
+        return self._of(face.seen(frame.inwards(np.stack((A.x, A.y), axis=1))), A, frame)
+
+    def _of(self, seen: Seen, A: smooth.Points, frame: Frame) -> Seen:
+        """The same of a piece that is ``seen`` as the body sees points of the beam."""
         return replace(
             seen,
             distance=seen.distance - (self._half(A.s) - self.offset),
@@ -206,7 +210,10 @@ class Edge:
         """Which places ``q`` (k, 2), as the body sees them, face a piece: before it, or behind it and none nearer."""
         if isinstance(face, Straight) and not np.any(beside := face.within(q)):
             return beside
-        mine = face.seen(q)
+        return self._facing(face, q, face.seen(q))
+
+    def _facing(self, face: Face, q: Array, mine: Seen) -> Flags:
+        """The same of a piece that has been seen from ``q``."""
         facing = mine.within & (mine.distance >= 0.0)
         if np.all(facing == mine.within):  # there is none behind it
             return np.asarray(facing)
@@ -262,8 +269,8 @@ class Edge:
         second += k[:, None, None] * along[:, :, None] * along[:, None, :]
         D_sz += (k * g)[:, None] * along
         D_ss = self._convexity(A, n, k) + leading * beyond.bend
-        moving = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
-        second -= moving[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
+        going = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
+        second -= going[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
         values = self.offset - seen.distance - np.where(free, leading * beyond.integral, 0.0)
         return self._group(A, values, D_z, second, self._keys(number, s, free))
 
@@ -289,8 +296,9 @@ class Edge:
     def _slopes(self, A: smooth.Points, n: Array, frame: Frame) -> tuple[Array, Array, Array, Array]:
         """n·v_z, τ·v_z and n·C_sz (k, p), and n·C_zz + E (k, p, p), over the local numbers."""
         tau = np.stack((n[:, 1], -n[:, 0]), axis=1)
-        C_z, C_sz = smooth.position_slopes(A), smooth.tangent_slopes(A)
-        second = smooth.position_curvature(A, n)
+        z = moving(A)
+        C_z, C_sz = position_slopes(z), tangent_slopes(z)
+        second = position_curvature(z, n)
         v_z = C_z
         if self.body >= 0:
             r, turned = np.stack((A.x, A.y), axis=1) - frame.m, -tau  # J n
@@ -376,10 +384,12 @@ class Edge:
     def _places(self, face: Face, line: smooth.SmoothLine, frame: Frame) -> tuple[Array, Flags]:
         """Arc lengths of the rows against one piece, and which of them move with a minimum."""
         A = line.sampled
-        s, mine = A.s, self._next_to(face, A, frame)
+        s, q = A.s, frame.inwards(np.stack((A.x, A.y), axis=1))
+        seen = face.seen(q)
+        mine = self._facing(face, q, seen)
         if not mine.any() and face not in self.pieces:  # a side has no end that is between two samples alone
             return np.zeros(0), np.zeros(0, dtype=bool)
-        seen = self._seen(face, A, frame)
+        seen = self._of(seen, A, frame)
         D = seen.distance - self.offset
         near = np.zeros(len(s), dtype=bool)
         near[::2] = D[::2] < _beside(self.a, face)
@@ -501,11 +511,13 @@ class Edge:
     def _nearest(self, A: smooth.Points, frame: Frame) -> tuple[Array, Array, Array]:
         """Of the pieces that some points face, the nearest: D (k,), infinite where there is none, n (k, 2), k (k,)."""
         least, normal, bend = np.full(len(A.s), np.inf), np.zeros((len(A.s), 2)), np.zeros(len(A.s))
+        q = frame.inwards(np.stack((A.x, A.y), axis=1))
         for face in self.faces:
-            facing = self._next_to(face, A, frame)
+            seen = face.seen(q)
+            facing = self._facing(face, q, seen)
             if not facing.any():
                 continue
-            seen = self._seen(face, A, frame)
+            seen = self._of(seen, A, frame)
             nearer = facing & (seen.distance < least)
             least = np.where(nearer, seen.distance, least)
             normal, bend = np.where(nearer[:, None], seen.normal, normal), np.where(nearer, seen.bend, bend)

@@ -22,6 +22,7 @@ SHORT, LONG = 3, 6  # iterations of a circle: in which residuals alone tell it, 
 IDLE, BETTER = 15, 0.7  # iterations in a row that lead nowhere: none leaves such a part of what the best one left
 CIRCLES = 4  # returns that end the search for places of their own, and as many more that with steady rows
 AWAY = 6  # steps in a row, each longer than the one before
+STILL = 1e-12  # rad: a state from which a step leads no farther is where it would lead
 NOTHING = 1e-12  # S: moments below it are no load at all, and what is left is measured by S
 EPS = float(np.finfo(float).eps)
 
@@ -103,6 +104,8 @@ def equilibrium(
         longest = float(np.abs(change[: model.n_links]).max())
         if not np.isfinite(longest):
             return Equilibrium(point, now, iteration, converged=False)
+        if longest <= STILL and _settled(now, longest, tolerance) and np.array_equal(lam > 0.0, point.lam > 0.0):
+            return Equilibrium(point, now, iteration, converged=True)
         grown, last = grown + 1 if longest > last else 0, longest
         if grown == AWAY and np.isfinite(farthest):
             return Equilibrium(point, now, iteration, converged=False)

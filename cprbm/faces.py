@@ -163,35 +163,53 @@ class Graph:
 
     def curvature(self, v: Array) -> Array:
         """κ at some v (k,)."""
-        f1, f2 = (polynomial.polyval(v, each) for each in _derivatives(self.coefficients)[1:])
+        return self._curved(*(_value(each, v) for each in _derivatives(self.coefficients)[1:]))
+
+    def _curved(self, f1: Array, f2: Array) -> Array:
         return np.asarray(-self.side * f2 / (1.0 + f1 * f1) ** 1.5)
 
     def seen(self, q: Array) -> Seen:
         """The piece from places ``q`` (k, 2)."""
         v, w = (q[:, ::-1] if self.swapped else q).T + np.array(self.origin)[:, None]
         f, f1, f2 = _derivatives(self.coefficients)
-        samples = np.linspace(self.low, self.high, SAMPLES)
-        heights = polynomial.polyval(samples, f)
+        samples, heights = _sampled(self)
         at = samples[np.argmin((samples - v[:, None]) ** 2 + (heights - w[:, None]) ** 2, axis=1)]
         for _ in range(NEWTON_STEPS):
-            slope, rest = polynomial.polyval(at, f1), polynomial.polyval(at, f) - w
-            bent = 1.0 + slope**2 + rest * polynomial.polyval(at, f2)
+            slope, rest, second = _value(f1, at), _value(f, at) - w, _value(f2, at)
+            bent = 1.0 + slope**2 + rest * second
             # beyond the centre of curvature the place is farthest; it stays at its sample
             step = np.where(bent > 0.0, (at - v + rest * slope) / np.where(bent > 0.0, bent, 1.0), 0.0)
-            moved = np.clip(at - step, self.low, self.high)
-            if np.max(np.abs(moved - at), initial=0.0) < 1e-15:
+            moved = np.minimum(np.maximum(at - step, self.low), self.high)
+            if np.abs(moved - at).max(initial=0.0) < 1e-15:
                 break
             at = moved
-        slope = polynomial.polyval(at, f1)
+        else:
+            slope, rest, second = _value(f1, at), _value(f, at) - w, _value(f2, at)
         size = np.hypot(1.0, slope)
         tau = np.stack((1.0 / size, slope / size), axis=1)
         n = self.side * np.stack((-slope / size, 1.0 / size), axis=1)
-        rv, rw = v - at, w - polynomial.polyval(at, f)
+        rv, rw = v - at, -rest
         along, distance = rv * tau[:, 0] + rw * tau[:, 1], rv * n[:, 0] + rw * n[:, 1]
         within = ~(((at <= self.low) & (along < 0.0)) | ((at >= self.high) & (along > 0.0)))
-        kappa = self.curvature(at)
+        kappa = self._curved(slope, second)
         bend = np.where(within, kappa / (1.0 + kappa * distance), 0.0)
         return Seen(distance, n[:, ::-1] if self.swapped else n, bend, within)
+
+
+def _value(coefficients: Array, v: Array) -> Array:
+    """A polynomial at some places (k,), by Horner's rule."""
+    found = np.full(len(v), coefficients[-1])
+    for coefficient in coefficients[-2::-1].tolist():
+        found *= v
+        found += coefficient
+    return found
+
+
+@lru_cache(maxsize=GRAPHS)
+def _sampled(graph: Graph) -> tuple[Array, Array]:
+    """Places of a graph from which the nearest is sought, v and f(v), (SAMPLES,) each."""
+    samples = np.linspace(graph.low, graph.high, SAMPLES)
+    return samples, _value(_derivatives(graph.coefficients)[0], samples)
 
 
 @lru_cache(maxsize=GRAPHS)

@@ -120,6 +120,7 @@ class Follower:
     def go(self, way: Way, accept: Callable[[Point, dict[str, float]], None]) -> Reached:
         """Go all the way, directly or in steps; ``accept`` sees every next minimum before it is the present one."""
         done, step, iterations, refused = 0.0, 1.0, 0, False
+        doubted: tuple[float, Equilibrium] | None = None
         self.values, self.reached, self.locked = dict(way.begin), way.value(0.0), None
         problem = self.mechanism.problem
         here = there = rate(problem, self.point, way.change)
@@ -129,11 +130,16 @@ class Follower:
             values = way.at(fraction)
             ahead = None if refused else continued(problem, values, self._known, way.value(fraction))
             doubtful = 0.0
-            for start in self._starts(ahead, values):
-                most = SOON if start is ahead else self.settings.iterations
-                farthest = self._farthest((fraction - done) * here)
-                found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
-                iterations += found.iterations
+            # what was found before in too long a step may be believed from nearer
+            before = doubted[1] if doubted is not None and doubted[0] == fraction else None
+            for start in self._starts(before, ahead, values):
+                if before is not None and start is before.point:
+                    found = before
+                else:
+                    most = SOON if start is ahead else self.settings.iterations
+                    farthest = self._farthest((fraction - done) * here)
+                    found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
+                    iterations += found.iterations
                 certificate, ending = certify(self.mechanism, self.settings, found)
                 if ending is Ending.COMPLETED:
                     there = rate(problem, found.point, way.change)
@@ -142,7 +148,8 @@ class Follower:
                     if ending is Ending.COMPLETED and self._uneven(found.point, *ways):
                         iterations += 1
                         doubtful = doubt(problem, way.at(0.5 * (done + fraction)), self.point, found.point, *ways)
-                        ending, sentence = (ending, "") if doubtful <= 1.0 else (Ending.STEP_TOO_SMALL, ELSEWHERE)
+                        if doubtful > 1.0:
+                            ending, sentence, doubted = Ending.STEP_TOO_SMALL, ELSEWHERE, (fraction, found)
                 else:
                     sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
                 if ending is Ending.COMPLETED:
@@ -182,8 +189,13 @@ class Follower:
                 ending = ending if found.converged else Ending.STEP_TOO_SMALL
                 return Reached(ending, sentence, certificate=None)
 
-    def _starts(self, ahead: Point | None, values: dict[str, float]) -> Iterator[Point]:
-        """Where Newton's method begins, until it finds what is sought: first where the last minima lead, if known."""
+    def _starts(self, before: Equilibrium | None, ahead: Point | None, values: dict[str, float]) -> Iterator[Point]:
+        """Where Newton's method begins, until it finds what is sought: first where the last minima lead, if known.
+
+        What was found ``before`` under these values needs no solving, and comes before that.
+        """
+        if before is not None:
+            yield before.point
         if ahead is not None:
             yield ahead
         yield self.point

@@ -22,10 +22,10 @@ from functools import cached_property
 
 import numpy as np
 
-from cprbm import smooth
 from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions
 from cprbm.model import Chain
+from cprbm.moving import LOCALS
 from scene.answer import Array, Flags, Ints
 
 
@@ -56,7 +56,7 @@ class Touches:
 
     def exchanged(self) -> Touches:
         """The same with the parts of A and B exchanged."""
-        turned = (np.arange(2 * smooth.LOCALS) + smooth.LOCALS) % (2 * smooth.LOCALS)
+        turned = (np.arange(2 * LOCALS) + LOCALS) % (2 * LOCALS)
         return Touches(
             self.values, self.slopes[:, turned], lambda: self.second[:, turned[:, None], turned], self.links[::-1]
         )
@@ -88,17 +88,17 @@ def gathered(
     angles, lefts = [], []
     for chain, begin, width in zip(chains, first, widths, strict=True):
         # beyond a beam's ends the end itself: what is there has no share
-        angles.append(chain.first_link + np.clip(begin[:, None] - 1 + np.arange(width), 0, chain.n))
+        angles.append(chain.first_link + np.minimum(np.maximum(begin[:, None] - 1 + np.arange(width), 0), chain.n))
         lefts.append(np.repeat(begin, q))
     # where a place's local numbers stand among its row's, and those of the links in between
     place, size = np.arange(m * q), 4 + int(widths.sum())
-    columns = np.zeros((m * q, 2 * smooth.LOCALS), dtype=np.intp)
+    columns = np.zeros((m * q, 2 * LOCALS), dtype=np.intp)
     passed: list[tuple[Ints, Ints, int, Array, Array]] = []
     column = 4
     for beam, (chain, link, left, width) in enumerate(zip(chains, touches.links, lefts, widths, strict=True)):
-        x = smooth.LOCALS * beam
+        x = LOCALS * beam
         columns[:, x], columns[:, x + 1] = beam, 2 + beam
-        columns[:, x + 2 : x + smooth.LOCALS] = (column + link - left)[:, None] + np.arange(3)
+        columns[:, x + 2 : x + LOCALS] = (column + link - left)[:, None] + np.arange(3)
         for k in range(width - 3):
             past = np.flatnonzero(left + k < link)
             crossed = chain.first_link + left[past] + k

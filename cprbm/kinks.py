@@ -57,6 +57,8 @@ class Missed:
     @property
     def angle(self) -> Array:
         """γ (k,)."""
+        if not self.active.any():
+            return np.zeros(len(self.u))
         u, h, p, q = self.u, self.h, self.before, self.behind
         v = h - u
         return np.where(self.active, (p + q) * h * h / 24.0 - u * v / (2.0 * h) * (p * u + q * v), 0.0)
@@ -64,6 +66,8 @@ class Missed:
     @property
     def bend(self) -> Array:
         """dγ/ds (k,)."""
+        if not self.active.any():
+            return np.zeros(len(self.u))
         u, h, p, q = self.u, self.h, self.before, self.behind
         v = h - u
         return np.where(self.active, -(p * u * (2.0 * v - u) + q * v * (v - 2.0 * u)) / (2.0 * h), 0.0)
@@ -71,6 +75,8 @@ class Missed:
     @property
     def integral(self) -> Array:
         """Γ (k,), units of length, nought at both borders of the element."""
+        if not self.active.any():
+            return np.zeros(len(self.u))
         u, h, p, q = self.u, self.h, self.before, self.behind
         bent = p * u**3 * (h / 3.0 - u / 4.0) + q * u**2 * (h * h / 2.0 - 2.0 * h * u / 3.0 + u * u / 4.0)
         return np.where(self.active, (p + q) * h * h / 24.0 * u - bent / (2.0 * h), 0.0)

@@ -23,8 +23,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from cprbm import smooth
+from cprbm import moving, smooth
 from cprbm.model import Chain
+from cprbm.moving import Moving
 from scene.answer import Array, Flags
 
 CORNER = 1e13  # 1/ℓ: the curvature of an edge at a corner
@@ -78,10 +79,8 @@ def at_corner(points: smooth.Points) -> Flags:
     return np.asarray(np.abs(points.bend) >= CORNER)
 
 
-def angle_slopes(points: smooth.Points) -> Array:
-    """∂(ψ + λ) over the local numbers, (k, 5)."""
-    (a1, w1), (a1_, w1_) = points.in_link_1, points.over_turn[1]
-    slopes = smooth.angle_slopes(points)
-    gains = np.tan(points.psi - points.tangent) * (a1 * a1_ + w1 * w1_) / points.speed**2
-    slopes[:, 2:] -= gains[:, None] * smooth.over_angles(points)
+def angle_slopes(z: Moving, lead: Array) -> Array:
+    """∂(ψ + λ) over the local numbers of places whose edge leads the line's tangent by ``lead`` (k,), (k, 5)."""
+    slopes = moving.angle_slopes(z)
+    slopes[:, 2:] -= (np.tan(lead) * moving.turned_by(z).real)[:, None] * z.over_angles
     return slopes

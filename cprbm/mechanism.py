@@ -24,7 +24,7 @@ from cprbm.kinematics import Positions, State, most_turned, positions
 from cprbm.made import Made
 from cprbm.model import EVEN, Fit, Model, build
 from cprbm.nearest import Pair, distance_along, pair_of
-from cprbm.overlap import may_be_beyond
+from cprbm.overlap import may_be_beyond, never_beyond
 from cprbm.point import Point, Problem
 from cprbm.related import related_joints
 from cprbm.rigid import RigidCircle, rigid_circle
@@ -138,7 +138,9 @@ class Mechanism:
                 across = gone and self._crossed_between(pair, before, after, way, WAY)
                 if not across and most_turned(before.state, after.state) > PASSING:
                     # or aside of where it would be beyond
-                    across = _gone_through(pair, [start, *way(), end], self._allowed(pair, before, after, WAY))
+                    allowed = self._allowed(pair, before, after, WAY)
+                    states = [start, *way(), end]
+                    across = not never_beyond(pair, states[1:], allowed) and _gone_through(pair, states, allowed)
             if across:
                 return pair.name
         return ""

@@ -25,8 +25,9 @@ from functools import cached_property
 import numpy as np
 
 from cprbm.curves import NeutralLine
+from cprbm.excess import Excess, Halves, excess
 from cprbm.outset import Outset, outset_of
-from cprbm.pieces import Piece, Pieces, pieces
+from cprbm.pieces import CurvePieces, Pieces, pieces
 from cprbm.polynomial import ComplexArray, Places
 from cprbm.posture import Linear, points_of
 from cprbm.section import Section
@@ -94,12 +95,33 @@ class Chain:
         return s
 
     @cached_property
-    def at_halves(self) -> Piece | None:
-        """What the links carry at :attr:`halves`, but of a straight beam."""
-        if self.pieces is None:
+    def excess(self) -> Excess | None:
+        """By what the stress-free line lies off the arcs of the elements, where its curvature varies."""
+        if not isinstance(self.pieces, CurvePieces):
             return None
-        link = np.minimum(np.arange(2 * self.n + 3) // 2, self.n)
-        return self.pieces.seen(link, self.halves, self.halves - self.s[link], self.line.length / float(self.s[-1]))
+        half = np.arange(2 * self.n)
+        link, spring = (half + 1) // 2, half // 2
+        return excess(
+            Halves(
+                pieces=self.pieces,
+                unit_length=self.line.length / float(self.s[-1]),
+                border=self.borders[link],
+                end=self.s[spring + 1],
+                link=link,
+                begin=self.s[link],
+                at=(self.at_borders[0] + 1j * self.at_borders[1])[link],
+                lean=(self.lean[0] + 1j * self.lean[1])[link],
+                rate=(self.turns / self.sizes)[spring],
+            )
+        )
+
+    @cached_property
+    def excess_at_halves(self) -> ComplexArray | None:
+        """The same at :attr:`halves`, (3, 2N+3)."""
+        if self.excess is None:
+            return None
+        half = self.breaks.searchsorted(self.halves, side="right")
+        return self.excess.seen(half, self.halves - self.borders[(half + 1) // 2])
 
     @cached_property
     def at_home(self) -> Chain:
@@ -113,14 +135,9 @@ class Chain:
         return self.line.at(self.s[1:-1] * (self.line.length / float(self.s[-1])))
 
     @cached_property
-    def leans(self) -> ComplexArray:
-        """:attr:`lean` as numbers cos + i·sin (N+1,)."""
-        return np.asarray(self.lean[0] + 1j * self.lean[1])
-
-    @cached_property
-    def rest_rates(self) -> Array:
-        """Θ⁰/h of the elements (N,)."""
-        return np.asarray(self.turns / self.sizes)
+    def rest_turns(self) -> Array:
+        """From each stress-free link to the next (N,)."""
+        return np.asarray(self.rest[1:] - self.rest[:-1])
 
     @cached_property
     def breaks(self) -> Array:
@@ -139,7 +156,7 @@ class Chain:
 
     def size_at(self, arc: Array) -> Array:
         """h of the elements at arc lengths ``arc`` (k,), units of length."""
-        return np.asarray(self.sizes[np.clip(np.searchsorted(self.borders, arc) - 1, 0, self.n - 1)])
+        return np.asarray(self.sizes[np.minimum(np.maximum(np.searchsorted(self.borders, arc) - 1, 0), self.n - 1)])
 
     @cached_property
     def joints(self) -> slice:

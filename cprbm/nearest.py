@@ -55,6 +55,7 @@ from cprbm.gathering import Touches, gathered
 from cprbm.kinematics import Positions, State
 from cprbm.kinks import kinked, missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
+from cprbm.moving import LOCALS, angle_slopes, moving, position_curvature, position_slopes, tangent_slopes
 from cprbm.pairs import Pressed
 from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
@@ -64,6 +65,8 @@ CORNER_ITERATIONS = 40  # where edges have corners that stand out, at each of wh
 NO_RIDGES = np.zeros(0)
 CLOSE = 1e-9  # units of length: a step whose square is nothing
 CLOSEST_ITERATIONS = 50
+PATIENCE = 4  # iterations of Newton's method, after which a minimum may be sought where B has ended
+LIPSCHITZ = 1.2  # a way along B's tangent over the arc length of A that makes it, with something to spare
 LEAST_CURVATURE = 1e-3  # of D, 1/ℓ: elements that end elsewhere on either beam leave as much in a zone
 REACH = 0.1  # minima and ends with gaps wider than this part of the longest beam are no constraints yet
 ARCHING = 1.0  # of what the largest force bends one element by: unlike elements of two beams arch by as much
@@ -163,9 +166,16 @@ class Pair:
         """The same at some of the samples of A, by their numbers (k,), which are worked out once in a state."""
         return kinked(self.a, self.kinks[0], lines[0].sampled.only(these))
 
+    def samples_on_b(self, lines: Lines, these: Ints) -> smooth.Points:
+        """The same at some of the samples of B."""
+        return kinked(self.b, self.kinks[1], lines[1].sampled.only(these))
+
     def foot(self, lines: Lines, A: smooth.Points, sigma: Array) -> smooth.Points:
         """Points of B at arc lengths ``sigma`` (k,) with the tangents of the edge that faces A."""
-        B = self.on_b(lines, sigma)
+        return self.facing(A, self.on_b(lines, sigma))
+
+    def facing(self, A: smooth.Points, B: smooth.Points) -> smooth.Points:
+        """Points of B with the tangents of the edge that faces A."""
         return leaning.facing(self.b, B, self.side, *_seen_from(B, A)) if self.tapered else B
 
     def beside(self, A: smooth.Points, B: smooth.Points) -> smooth.Points:
@@ -384,7 +394,7 @@ class Pair:
         B = self.foot(lines, A, sigma)
         ratio = (B.pace - B.bend * _seen_from(B, A)[1]) / (np.cos(A.psi - B.psi) * A.speed)  # ds/dσ
         borders = self.b.borders
-        after = np.clip(np.searchsorted(borders, sigma), 1, self.b.n)
+        after = np.minimum(np.maximum(np.searchsorted(borders, sigma), 1), self.b.n)
         # the length on A in steps, so that it does not change with the state where it is differentiated
         stretch = np.round(np.abs(ratio) / STRETCH) * STRETCH
         ahead, behind = borders[after] - sigma, borders[after - 1] - sigma
@@ -420,13 +430,15 @@ class Pair:
         """The constraint at feet (s, σ); where ``free`` (k,) the place moves with the minimum."""
         A = self.on_a(lines, s)
         B = self.foot(lines, A, sigma)
-        A, angle_slopes = self.beside(A, B), leaning.angle_slopes if self.tapered else smooth.angle_slopes
-        m, k = len(s), smooth.LOCALS
+        A = self.beside(A, B)
+        m, k = len(s), LOCALS
         tangent = np.stack((np.cos(B.psi), np.sin(B.psi)), axis=1)
         normal = np.stack((-tangent[:, 1], tangent[:, 0]), axis=1)
         r = np.stack((A.x - B.x, A.y - B.y), axis=1)
         distance = np.sum(normal * r, axis=1)
-        r_z = np.concatenate((smooth.position_slopes(A), -smooth.position_slopes(B)), axis=2)
+        both = moving(A, B)
+        C_z = position_slopes(both)
+        r_z = np.concatenate((C_z[:m], -C_z[m:]), axis=2)
         n_r = np.einsum("mi,mik->mk", normal, r_z)
         t_r = np.einsum("mi,mik->mk", tangent, r_z)
         facing = np.cos(A.psi - B.psi)
@@ -440,21 +452,24 @@ class Pair:
 
         def bent() -> Array:
             # ds/dz and dσ/dz from (i) and (ii)
-            zeros = np.zeros((m, k))
-            psi_B = np.concatenate((zeros, angle_slopes(B)), axis=1)
-            psi_A = np.concatenate((angle_slopes(A), zeros), axis=1)
+            psi_z = np.zeros((2, m, 2 * k))
+            psi = angle_slopes(both)
+            if self.tapered:
+                psi = leaning.angle_slopes(both, np.concatenate((A.lead, B.lead)))
+            psi_z[0, :, :k], psi_z[1, :, k:] = psi[:m], psi[m:]
+            psi_A, psi_B = psi_z
             one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
             determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.pace, 1.0)
             s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
             sigma_z = (two - (facing * A.pace)[:, None] * s_z) / of_foot[:, None]
             turning = psi_B + B.bend[:, None] * sigma_z
             second = np.zeros((m, 2 * k, 2 * k))
-            second[:, :k, :k] = smooth.position_curvature(A, normal)
-            second[:, k:, k:] = -smooth.position_curvature(B, normal)
-            n_A = np.concatenate((np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(A)), zeros), axis=1)
-            n_B = np.concatenate((zeros, np.einsum("mi,mik->mk", normal, smooth.tangent_slopes(B))), axis=1)
+            normals = np.concatenate((normal, normal))
+            curved, n_s = position_curvature(both, normals), np.einsum("mi,mik->mk", normals, tangent_slopes(both))
+            second[:, :k, :k], second[:, k:, k:] = curved[:m], -curved[m:]
             second += -t_r[:, :, None] * turning[:, None, :]
-            second += n_A[:, :, None] * s_z[:, None, :] - n_B[:, :, None] * sigma_z[:, None, :]
+            second[:, :k] += n_s[:m, :, None] * s_z[:, None, :]
+            second[:, k:] -= n_s[m:, :, None] * sigma_z[:, None, :]
             # γ leaves a part of its own size uneven
             return np.asarray(-self.side * 0.5 * (second + np.swapaxes(second, 1, 2)))
 
@@ -473,21 +488,34 @@ def _beside_any(corners: Array, sigma: Array, size: Array) -> Flags:
 
 def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Flags]:
     """Signed distance D of A from B at arc lengths ``s``: D, σ (k,), and whether a foot exists (k,)."""
-    A, G = pair.on_a(lines, s), lines[1].sampled
-    if len(s) <= FEW:
+    return _distance_of(pair, lines, pair.on_a(lines, s))
+
+
+def _distance_of(pair: Pair, lines: Lines, A: smooth.Points) -> tuple[Array, Array, Flags]:
+    """The same of points of A (k,)."""
+    G = lines[1].sampled
+    if len(A.s) <= FEW:
         nearest = ((A.x[:, None] - G.x) ** 2 + (A.y[:, None] - G.y) ** 2).argmin(axis=1)
     else:
         _, nearest = nearest_samples(_places(G), _places(A), np.inf)
-    return feet_near(pair, lines, A, G.s[nearest])
+    return _feet_from(pair, lines, A, pair.samples_on_b(lines, nearest), CLOSE)
 
 
 def feet_near(
     pair: Pair, lines: Lines, A: smooth.Points, sigma: Array, close: float = CLOSE
 ) -> tuple[Array, Array, Flags]:
     """D, σ and whether there is a foot, by Newton's method on (i) from the guess ``sigma`` to steps as ``close``."""
+    return _feet_from(pair, lines, A, pair.on_b(lines, sigma), close)
+
+
+def _feet_from(
+    pair: Pair, lines: Lines, A: smooth.Points, B: smooth.Points, close: float
+) -> tuple[Array, Array, Flags]:
+    """The same from points of B (k,)."""
+    sigma = B.s
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
-    for _ in range(FOOT_ITERATIONS if not ridges.size else CORNER_ITERATIONS):
-        B = pair.foot(lines, A, sigma)
+    for iteration in range(FOOT_ITERATIONS if not ridges.size else CORNER_ITERATIONS):
+        B = pair.facing(A, pair.on_b(lines, sigma) if iteration else B)
         along, across = _seen_from(B, A)
         # along the circle of curvature, where that is round the foot
         left = along / np.maximum(1.0 - B.bend * across, 0.2)
@@ -582,8 +610,9 @@ def _facing_ends(pair: Pair, lines: Lines) -> Places:
     near = np.flatnonzero(away < reach + a.h)
     if not near.size:
         return Places(np.zeros(0), np.zeros(0), near)
-    E, foot, facing = distance_along(pair.exchanged(), lines[::-1], ends[near])
-    E = not_gone_round(pair.exchanged(), lines[::-1], E, pair.wider(foot, ends[near]))
+    turned = pair.exchanged()
+    E, foot, facing = _distance_of(turned, lines[::-1], turned.samples_on_a(lines[::-1], near * (2 * b.n + 2)))
+    E = not_gone_round(turned, lines[::-1], E, pair.wider(foot, ends[near]))
     facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
     for i, end in enumerate(near):
         facing[i] &= not held_together(b, a, int(-end), float(foot[i]))
@@ -641,7 +670,8 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     close = np.flatnonzero(np.isfinite(rough))
     D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
     if close.size:
-        distance, sigma[close], foot = feet_near(pair, lines, pair.samples_on_a(lines, close), G.s[nearest[close]])
+        at_A, at_B = pair.samples_on_a(lines, close), pair.samples_on_b(lines, nearest[close])
+        distance, sigma[close], foot = _feet_from(pair, lines, at_A, at_B, CLOSE)
         D[close] = np.where(foot, distance, np.inf)
     return not_gone_round(pair, lines, D, pair.wider(A.s, sigma)), sigma
 
@@ -691,7 +721,7 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     sigma = np.where(ahead == 0.0, sigma[here], sigma[here] + share * (sigma[beside] - sigma[here]))
     s = s[here] + ahead
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
-    for _ in range(CLOSEST_ITERATIONS):
+    for iteration in range(CLOSEST_ITERATIONS):
         A = pair.on_a(lines, s)
         B = pair.foot(lines, A, sigma)
         A = pair.beside(A, B)
@@ -713,6 +743,8 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
         there = (np.abs(step) < CLOSE) & (np.abs(along) < CLOSE) & (np.abs(slope) < SETTLED)
         if not ridges.size:  # no slope as steep as that goes through zero in so little
             there |= (high - low < CLOSE) & (np.abs(slope) > STEEP)
+            if iteration > PATIENCE:
+                there |= _beyond_ends(pair.b, B.s, along, high - low) & (shortened > 0.0)
         if np.all(there):
             break
     held = found.held(pair.side * across - pair.wider(s, sigma) - pair.offset)
@@ -720,6 +752,12 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     # beyond an end of B there is no foot: what lies there faces that end, which has a row of its own
     settled &= (np.abs(along) < SETTLED) | ((sigma > 0.0) & (sigma < pair.b.s[-1]))
     return s[settled], sigma[settled]
+
+
+def _beyond_ends(b: Chain, sigma: Array, along: Array, within: Array) -> Flags:
+    """Which places of A lie so far beyond an end of B that no other place ``within`` as much (k,) of A has a foot."""
+    out = np.where(sigma <= 0.0, -along, np.where(sigma >= b.s[-1], along, -np.inf))
+    return np.asarray(out > LIPSCHITZ * within)
 
 
 def reach(one: Chain, other: Chain) -> float:

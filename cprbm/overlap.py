@@ -21,6 +21,8 @@ which tells about where D is least.  There it is worked out.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from cprbm import wells
@@ -67,7 +69,7 @@ def _of_circle(circle: Circle, state: State, at: Positions) -> float:
     lowest = wells.lowest(D, circle.offset + LOWER * circle.a.h)
     if lowest.size:
         A = line.at(A.s[lowest] + wells.lowest_of_parabola(A.s, D, lowest))
-        slope, bend = here.slope(A), here.convexity(A)
+        slope, bend, _ = here.course(A)
         # on to where the slope is nought
         ahead = np.where(bend > 0.0, 0.5 * slope * slope / np.where(bend > 0.0, bend, 1.0), 0.0)
         least = min(least, float((here.distance(A) - ahead).min()))
@@ -109,6 +111,36 @@ def may_be_beyond(pair: Pair, state: State, at: Positions) -> bool:
     x, y = B.x[[0, -1]], B.y[[0, -1]]
     d, s = _on_circles(pair.across, x, y, A, _nearest_springs(x, y, A)[1])
     return bool(((d < least) & (np.abs(s - 0.5 * pair.a.s[-1]) < 0.5 * pair.a.s[-1] + pair.a.h)).any())
+
+
+def never_beyond(pair: Pair, way: Sequence[tuple[State, Positions]], allowed: float) -> bool:
+    """Whether the joints tell of some states that no joint of A with a foot on B has D < −``allowed`` there.
+
+    The foot lies beside a joint p of B, e ≤ h along B from it, and that joint is no farther than the nearest by more
+    than h.  B turns by at most Θ in an element, at rest and since, so that with n̄ the normal there
+
+        n̄·(C_A − p) ≤ D cos Θ + e²Θ/(2h) + hΘ/8 < −allowed·cos Θ + ¾ hΘ,
+
+    the last but one what the line is off its joint.  Where no such joint says so there is no such place.
+    """
+    if pair.tapered or not way:
+        return False
+    a, b = pair.a, pair.b
+    theta = np.stack([state.theta[b.links] for state, _ in way])
+    h, turn = float(b.sizes.max()), float((np.abs(np.diff(theta)) + np.abs(b.turns)).max())
+    most = -allowed * np.cos(turn) + 0.75 * h * turn
+    if turn > 0.5 * np.pi or most >= 0.0 or len(a.s) * len(b.s) > FEW:
+        return False
+    psi = np.concatenate((theta[:, :1], 0.5 * (theta[:, 1:] + theta[:, :-1]), theta[:, -1:]), axis=1)[:, None]
+    x, y = (
+        np.stack([each[a.joints] for each in parts])[:, :, None] - np.stack([each[b.joints] for each in parts])[:, None]
+        for parts in zip(*((at.x, at.y) for _, at in way), strict=True)
+    )
+    beyond = pair.side * (np.cos(psi) * y - np.sin(psi) * x) < most
+    if not beyond.any():
+        return True
+    away = np.hypot(x, y)
+    return not (beyond & (away <= away.min(axis=2, keepdims=True) + h)).any()
 
 
 def _from_springs(pair: Pair, lines: Lines) -> tuple[Array, Array, Array, Array]:

@@ -33,6 +33,7 @@ from cprbm.kinematics import State
 from cprbm.kinks import kinks_at, within
 from cprbm.mechanism import Mechanism
 from cprbm.model import Chain, Fit, Kinks, Model
+from cprbm.pairs import Pressed
 from cprbm.point import Point, point_at
 from cprbm.settings import Settings
 from cprbm.zones import Zone, zones_of
@@ -110,13 +111,13 @@ def fitted(
 
     ``eased`` lets kinks go half of the way only to what they are in this state.
     """
-    ends = ends_of(mechanism, zones)
+    ends, pressed = ends_of(mechanism, zones), _pressed(mechanism, point, zones)
     borders: dict[str, Array] = {}
     kept: dict[str, Array] = {}
     for chain in mechanism.problem.model.chains:
         names = [name for name in ends if mechanism.pairs[name].a is chain]
         found = [(float(place), name) for name in names for place in ends[name]]
-        found += _places_on(mechanism, point, zones, chain)
+        found += _places_on(mechanism, pressed, chain)
         if settings.formulation == "auto":
             found += _forces_on(mechanism, chain)
         if not found:
@@ -130,7 +131,19 @@ def fitted(
         numbers, places = laid
         borders[chain.name] = np.interp(np.arange(n + 1), numbers, places)
         kept |= {name: ends[name] for name in names}
-    return Fit(borders, kept, _kinks(mechanism, point, zones, eased=eased))
+    return Fit(borders, kept, _kinks(mechanism, point, pressed, eased=eased))
+
+
+def _pressed(
+    mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]]
+) -> dict[str, tuple[Pressed, ...]]:
+    """What contacts without a long zone press in their places, on their first beam and on their second."""
+    found = {}
+    for name, mine in zones.items():
+        if not any(zone.long for zone in mine):
+            middles = np.array([0.5 * (zone.begin + zone.end) for zone in mine])
+            found[name] = mechanism.pairs[name].pressed(point.state, point.at, middles)
+    return found
 
 
 def _laid_out(
@@ -158,15 +171,12 @@ def _laid_out(
 
 
 def _kinks(
-    mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]], *, eased: bool
+    mechanism: Mechanism, point: Point, pressed: Mapping[str, tuple[Pressed, ...]], *, eased: bool
 ) -> dict[str, tuple[Kinks, ...]]:
-    """Those of the contacts in points, of their first beam and of their second; none where a beam's end presses."""
+    """Those of what is ``pressed`` in places, of a contact's first beam and of its second; none where an end is."""
     found = {}
-    for name, mine in zones.items():
-        if any(zone.long for zone in mine):
-            continue
-        pair, middles = mechanism.pairs[name], np.array([0.5 * (zone.begin + zone.end) for zone in mine])
-        places = [at for _, at, _ in pair.pressed(point.state, point.at, middles)]
+    for name, both in pressed.items():
+        pair, places = mechanism.pairs[name], [at for _, at, _ in both]
         inner = np.all([within(chain, arc) for chain, arc in zip(pair.chains, places, strict=True)], axis=0)
         if np.any(inner):
             now = tuple(
@@ -178,16 +188,12 @@ def _kinks(
 
 
 def _places_on(
-    mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]], chain: Chain
+    mechanism: Mechanism, pressed: Mapping[str, tuple[Pressed, ...]], chain: Chain
 ) -> list[tuple[float, str]]:
-    """Where contacts without a long zone press within a beam, as shares of its length, and which."""
+    """Where what is ``pressed`` in places lies within a beam, as shares of its length, and by which contact."""
     found = []
-    for name, mine in zones.items():
-        if any(zone.long for zone in mine):
-            continue
-        middles = np.array([0.5 * (zone.begin + zone.end) for zone in mine])
-        pair = mechanism.pairs[name]
-        for of, (_, at, _) in zip(pair.chains, pair.pressed(point.state, point.at, middles), strict=True):
+    for name, both in pressed.items():
+        for of, (_, at, _) in zip(mechanism.pairs[name].chains, both, strict=True):
             if of is chain:
                 found += [(float(place), name) for place in at / chain.s[-1] if 0.0 < place < 1.0]
     return found

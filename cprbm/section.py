@@ -44,26 +44,35 @@ class Section:
 
     def thickness_at(self, s: Array) -> Array:
         """t at arc lengths ``s`` (n,)."""
+        if self.level:
+            return np.full(s.shape, self.thickness[0])
         return np.asarray(np.interp(s, self.places, self.thickness))
 
     def thinning_at(self, s: Array) -> Array:
         """dt/ds at arc lengths ``s`` (n,); at a kink what follows."""
+        if self.level:
+            return np.zeros(s.shape)
         piece = np.clip(np.searchsorted(self.places, s, side="right") - 1, 0, len(self.places) - 2)
         return np.asarray((np.diff(self.thickness) / np.diff(self.places))[piece])
 
-    @property
+    @cached_property
+    def level(self) -> bool:
+        """Whether the beam is as thick everywhere."""
+        return float(self.thickness.min()) == float(self.thickness.max())
+
+    @cached_property
     def ridges(self) -> Array:
         """Arc lengths (k,) at which the edges have a corner that stands out."""
         steeper, least = self._steeper
         return np.asarray(self.places[1:-1][steeper < -least])
 
-    @property
+    @cached_property
     def corners(self) -> Array:
         """Arc lengths (k,) at which the edges have a corner, whether that stands out or not."""
         steeper, least = self._steeper
         return np.asarray(self.places[1:-1][np.abs(steeper) > least])
 
-    @property
+    @cached_property
     def _steeper(self) -> tuple[Array, float]:
         """By how much dt/ds steps at the inner places, and what is no step."""
         slopes = np.diff(self.thickness) / np.diff(self.places)
@@ -77,7 +86,7 @@ class Section:
     @cached_property
     def even(self) -> bool:
         """Whether the beam is as thick and as wide everywhere."""
-        return all(float(size.min()) == float(size.max()) for size in (self.thickness, self.width))
+        return self.level and float(self.width.min()) == float(self.width.max())
 
     def flexibility(self, borders: Array) -> Array:
         """f_i of the elements between ``borders`` (N+1,), ascending: (N,)."""

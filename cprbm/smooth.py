@@ -34,18 +34,16 @@ element, κ⁰′h²/8: of fifth order in h.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
-from cprbm.pieces import CurvePieces, Piece
 from cprbm.polynomial import ComplexArray
-from scene.answer import Array, Flags, Ints
+from scene.answer import Array, Ints
 
 STRAIGHT = 1e-150  # rad: what turns less is straight, and its sine the angle
-LOCALS = 5  # x_i, y_i, θ_{i−1}, θ_i, θ_{i+1}
 
 # Taylor coefficients, lowest first, of sin z/z and (1 − cos z)/z² in z² and of y cot y in y²
 SINE = (1.0, -1 / 6, 1 / 120, -1 / 5040, 1 / 362880, -1 / 39916800)
@@ -53,11 +51,22 @@ VERSINE = (1 / 2, -1 / 24, 1 / 720, -1 / 40320, 1 / 3628800, -1 / 479001600)
 COTANGENT = (1.0, -1 / 3, -1 / 45, -2 / 945, -1 / 4725, -2 / 93555, -1382 / 638512875)
 
 
+def _with_slopes(*series: tuple[float, ...]) -> Array:
+    """Coefficients of some series, each before those of its first and second derivative, row by row."""
+    tables = []
+    for coefficients in np.array(series):
+        k = np.arange(len(coefficients))
+        once = np.append((k * coefficients)[1:], 0.0)
+        tables += [coefficients, once, np.append((k * once)[1:], 0.0)]
+    return np.array(tables)
+
+
+ARCS, COTANGENTS = _with_slopes(SINE, VERSINE), _with_slopes(COTANGENT)
+
+
 @dataclass(frozen=True)
 class Points:
     """Some points of one beam's smooth line, arrays (k,) unless said otherwise.
-
-    What its first derivatives over the local numbers need besides is worked out where it is asked.
 
     Attributes:
         line: whose points they are.
@@ -103,73 +112,10 @@ class Points:
         """The link each lies on, in the beam's own numbering."""
         return (self.half + 1) // 2
 
-    @cached_property
-    def before(self) -> Flags:
-        """Whether each lies before the border, in the element of the link's first joint."""
-        return np.asarray(self.half % 2 == 1)
-
-    @cached_property
-    def h(self) -> Array:
-        """Of the element h."""
-        return self.line.chain.sizes[self.half // 2]
-
-    @cached_property
-    def xi(self) -> Array:
-        """ξ."""
-        return np.abs(self.off) / self.h
-
-    @cached_property
-    def ratio(self) -> Array:
-        """Of the element Θ⁰."""
-        return self.line.chain.turns[self.half // 2]
-
-    @cached_property
-    def turn(self) -> Array:
-        """Of the element Θ."""
-        return self.ratio + self.line.turns[self.half // 2]
-
-    @cached_property
-    def radius(self) -> Array:
-        """Of the element R."""
-        return self.line.radii[self.half // 2]
-
-    @cached_property
-    def lean(self) -> Array:
-        """Cos and sin of the tangent at the border against the link, (2, k)."""
-        return self.line.chain.lean[:, self.link]
-
-    @cached_property
-    def e(self) -> Array:
-        """Direction of the link, (k, 2)."""
-        return np.stack((self.line.cos[self.link], self.line.sin[self.link]), axis=1)
-
-    @cached_property
-    def n(self) -> Array:
-        """Left normal of the link, (k, 2)."""
-        return np.stack((-self.line.sin[self.link], self.line.cos[self.link]), axis=1)
-
-    @cached_property
-    def in_link(self) -> Array:
-        """Coordinates a and w in the link's frame, (2, k)."""
-        x, y = self.x - self.line.x[self.link], self.y - self.line.y[self.link]
-        cos, sin = self.e[:, 0], self.e[:, 1]
-        return np.stack((cos * x + sin * y, cos * y - sin * x))
-
-    @cached_property
-    def in_link_1(self) -> Array:
-        """Derivatives of a and w over s, (2, k)."""
-        leading = self.tangent - self.line.theta[self.link]
-        return np.stack((self.speed * np.cos(leading), self.speed * np.sin(leading)))
-
-    @cached_property
-    def over_turn(self) -> tuple[Array, Array]:
-        """∂(a, w) and ∂(a′, w′) over δ of the point's element, (2, k) each; ′ is the derivative over s."""
-        return _over_turn(self)
-
-    @cached_property
-    def over_turn_twice(self) -> Array:
-        """∂²(a, w) over δ of the point's element, (2, k)."""
-        return _over_turn_twice(self)
+    @property
+    def lead(self) -> Array:
+        """ψ less the angle of the line's tangent (k,)."""
+        return self.psi - self.tangent
 
 
 @dataclass(frozen=True)
@@ -180,7 +126,7 @@ class SmoothLine:
         chain: the beam.
         unit_length: ℓ, m.
         theta, cos, sin: angles of the links (N+1,).
-        turns, radii: δ and R of the springs (N,).
+        turns, radii: δ and R of the springs (N,); cotangents: of y = Θ/2, y cot y and its derivatives over y² (3, N).
         x, y: joints (N+2,).
         known: what contacts have found along it, by the contact's name and what it is.
         faced: by the contact's name, distances along it, and points of it and their feet for those.
@@ -193,6 +139,7 @@ class SmoothLine:
     sin: Array
     turns: Array
     radii: Array
+    cotangents: Array
     x: Array
     y: Array
     known: dict[tuple[str, str], tuple[Array, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
@@ -201,29 +148,19 @@ class SmoothLine:
     @cached_property
     def sampled(self) -> Points:
         """Points at :func:`halves`."""
-        return self._at(self.chain.halves, self.chain.at_halves)
-
-    @cached_property
-    def starts(self) -> ComplexArray:
-        """First joints of the links, x + i·y, (N+1,)."""
-        return np.asarray(self.x[:-1] + 1j * self.y[:-1])
-
-    @cached_property
-    def directions(self) -> ComplexArray:
-        """Of the links, cos θ + i·sin θ, (N+1,)."""
-        return np.asarray(self.cos + 1j * self.sin)
+        return self._at(self.chain.halves, self.chain.excess_at_halves)
 
     @cached_property
     def radii_1(self) -> Array:
         """∂R over δ (N,)."""
-        x, y = 0.5 * self.chain.turns, 0.5 * (self.chain.turns + self.turns)
-        return _series(SINE, x * x) * y * _series(COTANGENT_1, y * y) + 0.5 * x * _series(VERSINE, x * x)
+        sine, versine = _of_rest(self.chain)
+        return np.asarray(sine * (0.5 * (self.chain.turns + self.turns)) * self.cotangents[1] + versine)
 
     @cached_property
     def radii_2(self) -> Array:
         """∂²R over δ (N,)."""
-        x, q = 0.5 * self.chain.turns, 0.25 * (self.chain.turns + self.turns) ** 2
-        return 0.5 * _series(SINE, x * x) * (_series(COTANGENT_1, q) + 2.0 * q * _series(COTANGENT_2, q))
+        q = 0.25 * (self.chain.turns + self.turns) ** 2
+        return np.asarray(0.5 * _of_rest(self.chain)[0] * (self.cotangents[1] + 2.0 * q * self.cotangents[2]))
 
     @cached_property
     def arcs(self) -> Array:
@@ -237,23 +174,34 @@ class SmoothLine:
         springs = np.stack(((chain.turns + self.turns) / chain.sizes, self.radii))
         return np.concatenate((np.repeat(links, 2, axis=1)[:, 1:-1], np.repeat(springs, 2, axis=1)))
 
+    @cached_property
+    def carried(self) -> Array:
+        """Of every half of an element x and y of its link's joint, cos and sin of the tangent at its border, h, Θ, R,
+        ∂R and ∂²R over δ, (9, 2N).
+        """
+        turns = self.chain.turns + self.turns
+        springs = np.array((self.chain.sizes, turns, self.radii, self.radii_1, self.radii_2))
+        joints = np.repeat(np.array((self.x[:-1], self.y[:-1])), 2, axis=1)[:, 1:-1]
+        return np.concatenate((joints, self.arcs[3:5], np.repeat(springs, 2, axis=1)))
+
     def at(self, s: Array) -> Points:
         """Points at arc lengths ``s`` (k,), units of length; beyond the ends the end itself."""
         return self._at(np.minimum(np.maximum(s, 0.0), self.chain.s[-1]), None)
 
-    def _at(self, s: Array, piece: Piece | None) -> Points:
-        """Points at arc lengths ``s`` within the beam, of a stress-free ``piece`` that is known or not."""
+    def _at(self, s: Array, excess: ComplexArray | None) -> Points:
+        """Points at arc lengths ``s`` within the beam; where it lies off the arcs by an ``excess`` (3, k), if known."""
         chain = self.chain
         half = chain.breaks.searchsorted(s, side="right")
         border, x, y, cos, sin, tangent, rate, R = self.arcs[:, half]
         off = s - border
-        if isinstance(chain.pieces, CurvePieces):
-            link = (half + 1) // 2
-            piece = piece or chain.pieces.seen(link, s, s - chain.s[link], self.unit_length)
-            return self._beside(piece, half, s, off, rate, R)
-        # stress-free piece and difference of two arcs make one arc, from the border on
-        along, across = _arc(off, rate, R)
-        tangent = tangent + rate * off
+        if chain.excess is not None:
+            excess = chain.excess.seen(half, off) if excess is None else excess
+            along, across, lead, speed, bend, gain = _beside(excess, off, rate, R)
+            tangent = tangent + lead
+        else:
+            # stress-free piece and difference of two arcs make one arc, from the border on
+            along, across = _arc(off, rate, R)
+            tangent, speed, bend, gain = tangent + rate * off, R, rate, np.zeros(len(s))
         return Points(
             line=self,
             half=half,
@@ -263,50 +211,31 @@ class SmoothLine:
             y=y + along * sin + across * cos,
             tangent=tangent,
             psi=tangent,
-            speed=R,
-            bend=rate,
-            gain=np.zeros(len(s)),
-            pace=R,
-        )
-
-    def _beside(self, piece: Piece, half: Ints, s: Array, off: Array, rate: Array, R: Array) -> Points:
-        """Points of which the stress-free ``piece`` is no arc; see :meth:`at`.
-
-        All in numbers a + i·w of the link's frame; of two arcs the first is that of Θ, the second that of Θ⁰.
-        """
-        chain, link, spring = self.chain, (half + 1) // 2, half // 2
-        rates, radii = np.empty((2, len(s))), np.ones((2, len(s)))
-        rates[0], rates[1], radii[0] = rate, chain.rest_rates[spring], R
-        turned = (0.5 * off) * rates
-        turned[turned == 0.0] = STRAIGHT
-        middle = np.empty(turned.shape, dtype=complex)
-        middle.real, middle.imag = np.cos(turned), np.sin(turned)
-        tangents = radii * middle * middle
-        bends = rates * tangents
-        off_arc = ((radii * off) * (middle.imag / turned)) * middle
-        lean = chain.leans[link]
-        place = piece.at + lean * (off_arc[0] - off_arc[1])
-        first = piece.first + lean * (tangents[0] - tangents[1])
-        second = piece.second + (1j * lean) * (bends[0] - bends[1])
-        turning = first.conj() * second
-        squared = first.real**2 + first.imag**2
-        speed = np.sqrt(squared)
-        tangent = self.theta[link] + np.arctan2(first.imag, first.real)
-        at = self.starts[link] + place * self.directions[link]
-        return Points(
-            line=self,
-            half=half,
-            s=s,
-            off=off,
-            x=at.real.copy(),
-            y=at.imag.copy(),
-            tangent=tangent,
-            psi=tangent,
             speed=speed,
-            bend=turning.imag / squared,
-            gain=turning.real / speed,
+            bend=bend,
+            gain=gain,
             pace=speed,
         )
+
+
+def _beside(excess: ComplexArray, off: Array, rate: Array, R: Array) -> tuple[Array, ...]:
+    """Of arcs with an ``excess``: the place along and across the border's tangent, how far its own leads, speed,
+    bend and gain, (k,) each.
+
+    All in numbers a + i·w from the border along its tangent.
+    """
+    turned = (0.5 * off) * rate
+    turned[turned == 0.0] = STRAIGHT
+    middle = np.empty(len(off), dtype=complex)
+    middle.real, middle.imag = np.cos(turned), np.sin(turned)
+    arc = R * middle * middle
+    place = (R * off * (middle.imag / turned)) * middle + excess[2]
+    first = arc + excess[1]
+    turning = first.conj() * ((1j * rate) * arc + excess[0])
+    squared = first.real**2 + first.imag**2
+    speed = np.sqrt(squared)
+    lead = np.arctan2(first.imag, first.real)
+    return place.real, place.imag, lead, speed, turning.imag / squared, turning.real / speed
 
 
 def _arc(off: Array, rate: Array, R: Array | float) -> tuple[Array, Array]:
@@ -328,7 +257,9 @@ def smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -
 
 def _smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -> SmoothLine:
     theta = state.theta[chain.links]
-    turns = np.diff(theta) - np.diff(chain.rest)
+    turns = theta[1:] - theta[:-1] - chain.rest_turns
+    turning = chain.turns + turns
+    cotangents, (sine, versine) = series(COTANGENTS, 0.25 * turning * turning), _of_rest(chain)
     return SmoothLine(
         chain=chain,
         unit_length=unit_length,
@@ -336,118 +267,26 @@ def _smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) 
         cos=np.cos(theta),
         sin=np.sin(theta),
         turns=turns,
-        radii=_radius(chain.turns + turns, chain.turns),
+        radii=sine * cotangents[0] + turning * versine,
+        cotangents=cotangents,
         x=at.x[chain.joints],
         y=at.y[chain.joints],
     )
 
 
-def _series(coefficients: tuple[float, ...], z: Array) -> Array:
-    """Σ c_k z^k."""
-    total = coefficients[-1] * z
-    total += coefficients[-2]
-    for coefficient in coefficients[-3::-1]:
+def series(table: Array, z: Array) -> Array:
+    """Σ c_k z^k for every row of coefficients c, at places (k,): (rows, k)."""
+    total: Array = table[:, -1:] * z
+    for k in range(table.shape[1] - 2, 0, -1):
+        total += table[:, k : k + 1]
         total *= z
-        total += coefficient
+    total += table[:, :1]
     return total
 
 
-def _slope(coefficients: tuple[float, ...]) -> tuple[float, ...]:
-    """Coefficients of the derivative."""
-    return tuple(k * coefficient for k, coefficient in enumerate(coefficients))[1:]
-
-
-SINE_1, VERSINE_1, COTANGENT_1 = _slope(SINE), _slope(VERSINE), _slope(COTANGENT)
-SINE_2, VERSINE_2, COTANGENT_2 = _slope(SINE_1), _slope(VERSINE_1), _slope(COTANGENT_1)
-
-
-def _radius(turn: Array, ratio: Array) -> Array:
-    """R."""
-    x = 0.5 * ratio
-    return np.asarray(
-        _series(SINE, x * x) * _series(COTANGENT, 0.25 * turn * turn) + 0.5 * turn * x * _series(VERSINE, x * x)
-    )
-
-
-def _leant(lean: Array, along: Array, across: Array) -> tuple[Array, Array]:
-    """Coordinates in the link's frame of a vector given along and across the border's tangent."""
-    return lean[0] * along - lean[1] * across, lean[1] * along + lean[0] * across
-
-
-def _over_turn(points: Points) -> tuple[Array, Array]:
-    xi, turn, R, R_1 = points.xi, points.turn, points.radius, points.line.radii_1[points.half // 2]
-    phi, q = turn * xi, (turn * xi) ** 2
-    V, R_1_P = _series(VERSINE, q), R_1 * _series(SINE, q)
-    P_1, Q_1 = 2.0 * phi * _series(SINE_1, q), V + 2.0 * q * _series(VERSINE_1, q)
-    u, sign, R_xi = points.h * xi, np.where(points.before, -1.0, 1.0), R * xi
-    A, W = u * (R_1_P + R_xi * P_1), u * (R_1 * phi * V + R_xi * Q_1)
-    cos, sin = np.cos(phi), np.sin(phi)
-    A_u, W_u = R_1 * cos - R_xi * sin, R_1 * sin + R_xi * cos
-    return np.stack(_leant(points.lean, sign * A, W)), np.stack(_leant(points.lean, A_u, sign * W_u))
-
-
-def _over_turn_twice(points: Points) -> Array:
-    xi, turn, R = points.xi, points.turn, points.radius
-    R_1, R_2 = points.line.radii_1[points.half // 2], points.line.radii_2[points.half // 2]
-    phi, q = turn * xi, (turn * xi) ** 2
-    S1, S2 = _series(SINE_1, q), _series(SINE_2, q)
-    V, V1, V2 = _series(VERSINE, q), _series(VERSINE_1, q), _series(VERSINE_2, q)
-    P, P_1, P_2 = _series(SINE, q), 2.0 * phi * S1, 2.0 * S1 + 4.0 * q * S2
-    Q, Q_1, Q_2 = phi * V, V + 2.0 * q * V1, 6.0 * phi * V1 + 4.0 * phi * q * V2
-    u, sign = points.h * xi, np.where(points.before, -1.0, 1.0)
-    A_2 = u * (R_2 * P + 2.0 * R_1 * xi * P_1 + R * xi * xi * P_2)
-    W_2 = u * (R_2 * Q + 2.0 * R_1 * xi * Q_1 + R * xi * xi * Q_2)
-    return np.stack(_leant(points.lean, sign * A_2, W_2))
-
-
-def over_angles(points: Points) -> Array:
-    """∂δ of the point's element over (θ_{i−1}, θ_i, θ_{i+1}), (k, 3)."""
-    return np.where(points.before[:, None], (-1.0, 1.0, 0.0), (0.0, -1.0, 1.0))
-
-
-def _vector(points: Points, local: Array) -> Array:
-    """Vectors (k, 2) from their coordinates (2, k) in the links' frames."""
-    return np.asarray(local[0][:, None] * points.e + local[1][:, None] * points.n)
-
-
-def position_slopes(points: Points) -> Array:
-    """∂C over the local numbers (x_i, y_i, θ_{i−1}, θ_i, θ_{i+1}), (k, 2, 5)."""
-    slopes = np.zeros((len(points.s), 2, LOCALS))
-    slopes[:, 0, 0] = slopes[:, 1, 1] = 1.0
-    slopes[:, :, 2:] = _vector(points, points.over_turn[0])[:, :, None] * over_angles(points)[:, None, :]
-    a, w = points.in_link
-    slopes[:, :, 3] += a[:, None] * points.n - w[:, None] * points.e
-    return slopes
-
-
-def position_curvature(points: Points, along: Array) -> Array:
-    """Second derivatives of along·C over the local numbers for directions ``along`` (k, 2): (k, 5, 5)."""
-    second = np.zeros((len(points.s), LOCALS, LOCALS))
-    on_e, on_n = np.sum(along * points.e, axis=1), np.sum(along * points.n, axis=1)
-    once, twice = points.over_turn[0], points.over_turn_twice
-    turns = over_angles(points)
-    second[:, 2:, 2:] = (twice[0] * on_e + twice[1] * on_n)[:, None, None] * turns[:, :, None] * turns[:, None, :]
-    over = (once[0] * on_n - once[1] * on_e)[:, None] * turns
-    second[:, 3, 2:] += over
-    second[:, 2:, 3] += over
-    a, w = points.in_link
-    second[:, 3, 3] -= a * on_e + w * on_n
-    return second
-
-
-def angle_slopes(points: Points) -> Array:
-    """∂ψ over the local numbers, (k, 5)."""
-    slopes = np.zeros((len(points.s), LOCALS))
-    (a1, w1), (a1_, w1_) = points.in_link_1, points.over_turn[1]
-    slopes[:, 2:] = ((a1 * w1_ - w1 * a1_) / points.speed**2)[:, None] * over_angles(points)
-    slopes[:, 3] += 1.0
-    return slopes
-
-
-def tangent_slopes(points: Points) -> Array:
-    """∂C_s over the local numbers, (k, 2, 5)."""
-    slopes = np.zeros((len(points.s), 2, LOCALS))
-    slopes[:, :, 2:] = _vector(points, points.over_turn[1])[:, :, None] * over_angles(points)[:, None, :]
-    a1, w1 = points.in_link_1
-    slopes[:, :, 3] += a1[:, None] * points.n - w1[:, None] * points.e
-    return slopes
+@lru_cache(maxsize=64)
+def _of_rest(chain: Chain) -> tuple[Array, Array]:
+    """sin x/x and (1 − cos x)/(2x), what is in R of the stress-free turning, (N,) each."""
+    x = 0.5 * chain.turns
+    found = series(ARCS, x * x)
+    return found[0], 0.5 * x * found[3]

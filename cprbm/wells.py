@@ -66,7 +66,8 @@ def bottom(
         close: a step whose square is nothing.
     """
     s, (low, high) = start, within
-    D_s, D_ss = (each.reshape(2, -1).mean(axis=0) for each in slope(np.clip(start + BORDER, low, high).ravel()))
+    beside = np.minimum(np.maximum(start + BORDER, low), high).ravel()
+    D_s, D_ss = (each.reshape(2, -1).mean(axis=0) for each in slope(beside))
     step = np.zeros(len(s))
     for iteration in range(ITERATIONS if s.size else 0):
         if iteration:
@@ -120,7 +121,7 @@ def _parted(parting: Array, samples: Ints, least: float) -> Flags:
     last = len(parting) - 1
     first, behind = samples // 2, (samples + 1) // 2
     # the ends have the curvature of the springs next to them
-    around = np.clip(np.stack((first - 1, first, behind, behind + 1)), 1, last - 1)
+    around = np.minimum(np.maximum(np.array((first - 1, first, behind, behind + 1)), 1), last - 1)
     return np.asarray(np.all(parting[around] > least, axis=0))
 
 

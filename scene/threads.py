@@ -6,14 +6,31 @@ the threads that the process was given, and the program ``cprbm`` gives itself o
 
 from __future__ import annotations
 
+import sys
 from contextlib import AbstractContextManager, nullcontext
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
 
 
 def one_thread() -> AbstractContextManager[object]:
     """Hold the libraries of linear algebra that are loaded to one thread each, as far as that can be done."""
     try:
-        from threadpoolctl import threadpool_limits
+        libraries = _loaded(len(sys.modules))
     except ImportError:
         return nullcontext()
-    limits: AbstractContextManager[object] = threadpool_limits(limits=1, user_api="blas")
+    limits: AbstractContextManager[object] = libraries.limit(limits=1, user_api="blas")
     return limits
+
+
+@lru_cache(maxsize=1)
+def _loaded(modules: int) -> ThreadpoolController:
+    """The libraries that are loaded, for which threadpoolctl reads the process's map of memory: dear beside a solve.
+
+    None is loaded but with a module that is imported, so they are those of as many ``modules``.
+    """
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import cprbm
+from cprbm import following
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import rest_state
@@ -93,3 +94,25 @@ def test_a_driven_gripper_and_one_under_that_force_are_one():
     for one, other in zip(driven.stations, loaded.stations, strict=True):
         assert other.values["A.displacement"] == pytest.approx(one.values["A.displacement"], abs=1e-9)
         assert other.values["circle.force"] == pytest.approx(one.values["circle.force"], abs=1e-6)
+
+
+def test_a_load_at_which_a_state_was_doubted_is_not_solved_again(monkeypatch):
+    # 16 N at once leave a doubt half-way; from 8 N the same state is believed
+    scene, solved, seen = gripper("gripper", "F", [16.0]), [], following.doubt
+
+    def noted(problem, values, *given, **named):
+        found = equilibrium(problem, values, *given, **named)
+        solved.extend([values["F"]] * found.converged)
+        return found
+
+    doubts = []
+    monkeypatch.setattr(following, "equilibrium", noted)
+    monkeypatch.setattr(following, "doubt", lambda *given: doubts.append(seen(*given)) or doubts[-1])
+    answer = cprbm.answer(scene, asked((30, 40)))
+    assert answer.completed, answer.sentence
+    assert max(doubts) > 1.0
+    assert len(solved) > 1
+    assert sorted(solved) == sorted(set(solved))
+    # reference: IPOPT on the same minimisation
+    place, _ = MINIMA[30, 40]
+    assert answer.stations[-1].values["A.displacement"] == pytest.approx(place, rel=1e-6)

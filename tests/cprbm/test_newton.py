@@ -57,6 +57,22 @@ def test_a_step_squares_the_distance_where_a_contact_alone_keeps_the_energy_conv
     assert left[0] / left[1] == pytest.approx(100.0, rel=0.3)
 
 
+def test_an_equilibrium_is_its_own_and_what_is_near_is_not(leaning):
+    problem, values, there = leaning
+    n = problem.model.n_links
+    again = equilibrium(problem, values, there, SETTINGS.tolerance, 1)
+    assert again.converged
+    assert np.max(np.abs(again.point.state.theta - there.state.theta)) <= 1e-12
+    away = np.random.default_rng(5).standard_normal(there.state.theta.size + 3)
+    away[problem.closure.fixed] = 0.0
+    for size in (1e-8, 3e-11):
+        state = there.state.moved(size * away, n)
+        start = point_at(problem, values, state, there.mu, there.lam, there.rows)
+        back = equilibrium(problem, values, start, SETTINGS.tolerance, 4)
+        assert back.converged
+        assert np.max(np.abs(back.point.state.theta - there.state.theta)) <= 2e-12
+
+
 def test_what_presses_across_a_gap_and_what_overlaps_is_measured(leaning):
     # reference: force times gap over the largest of the terms that balance, by hand
     problem, values, there = leaning

@@ -7,7 +7,7 @@ import cprbm
 from cprbm import nearest
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.mechanism import mechanism_of
-from cprbm.overlap import may_be_beyond, overlap
+from cprbm.overlap import may_be_beyond, never_beyond, overlap
 from tests.cprbm.test_nearest import beams, line
 
 THICKNESS = 2e-3
@@ -49,6 +49,24 @@ def test_beams_of_which_one_went_through_the_other():
 def test_springs_never_deny_that_a_beam_is_beyond(wave):
     pair, state, at = bent(0.004, wave)
     assert may_be_beyond(pair, state, at) >= pair.gone_round(state, at)
+
+
+@pytest.mark.parametrize("allowed", [0.003, 0.01, 0.03, 0.1])
+@pytest.mark.parametrize("wave", [0.05, -0.05, 0.3, -0.3, -0.5, 1.5])
+def test_joints_never_deny_that_a_joint_is_beyond(wave, allowed):
+    pair, state, at = bent(0.004, wave)
+    D, _, foot = nearest.distance_along(pair, pair.lines(state, at), pair.a.s)
+    if never_beyond(pair, [(state, at)], allowed):
+        assert np.all(D[foot] >= -allowed)
+
+
+def test_joints_tell_that_none_is_beyond():
+    pair, state, at = bent(0.004, 0.2)
+    assert never_beyond(pair, [(state, at)], 0.01)
+    # from a fifth of a radian on the waves reach the other beam, and go through it
+    beyond = bent(0.004, -0.5)
+    assert not never_beyond(*beyond[:1], [beyond[1:]], 0.01)
+    assert not never_beyond(pair, [(state, at), beyond[1:]], 0.01)
 
 
 @pytest.mark.parametrize("end", [0.0304, 0.0337, 0.0372, 0.0425, 0.0456, 0.0531])

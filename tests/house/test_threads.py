@@ -58,6 +58,20 @@ with one_thread():
     assert after == before
 
 
+def test_a_library_that_is_loaded_later_has_one_too():
+    program = f"""
+import json
+from scene.threads import one_thread
+with one_thread():
+    pass
+import scipy.linalg
+from threadpoolctl import threadpool_info
+with one_thread():
+    {THREADS}
+"""
+    assert _run(program) == [[1]]
+
+
 @pytest.mark.parametrize("room", ["cprbm.solver", "fea_reference.solve", "fea_reference.solid.solve"])
 def test_each_solver_works_within_it(room, monkeypatch):
     """Seen from inside: the march is asked only while the threads are held."""
