@@ -99,13 +99,8 @@ def fitted(
     point: Point,
     zones: Mapping[str, tuple[Zone, ...]],
     settings: Settings,
-    *,
-    eased: bool = False,
 ) -> Fit:
-    """Elements that end where contacts do, even between; where these are much closer than that, even ones.
-
-    ``eased`` lets kinks go half of the way only to what they are in this state.
-    """
+    """Elements that end where contacts do, even between; where these are much closer than that, even ones."""
     ends = ends_of(mechanism, zones)
     borders: dict[str, Array] = {}
     kept: dict[str, Array] = {}
@@ -135,12 +130,10 @@ def fitted(
         numbers, places = _surrounded(numbers, places, n / BEYOND, np.flatnonzero(~at_end[1:-1]) + 1)
         borders[chain.name] = np.interp(np.arange(n + 1), numbers, places)
         kept |= {name: ends[name] for name in names}
-    return Fit(borders, kept, _kinks(mechanism, point, zones, eased=eased))
+    return Fit(borders, kept, _kinks(mechanism, point, zones))
 
 
-def _kinks(
-    mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]], *, eased: bool
-) -> dict[str, tuple[Kinks, ...]]:
+def _kinks(mechanism: Mechanism, point: Point, zones: Mapping[str, tuple[Zone, ...]]) -> dict[str, tuple[Kinks, ...]]:
     """Those of the contacts in points, of their first beam and of their second; none where a beam's end presses."""
     found = {}
     for name, mine in zones.items():
@@ -150,11 +143,9 @@ def _kinks(
         places = [at for _, at, _ in pair.pressed(point.state, point.at, middles)]
         inner = np.all([within(chain, arc) for chain, arc in zip(pair.chains, places, strict=True)], axis=0)
         if np.any(inner):
-            now = tuple(
+            found[name] = tuple(
                 kinks_at(chain, point.state, arc[inner]) for chain, arc in zip(pair.chains, places, strict=True)
             )
-            made = mechanism.fit.kinks.get(name)
-            found[name] = tuple(map(Kinks.eased, now, made)) if eased and made is not None else now
     return found
 
 
