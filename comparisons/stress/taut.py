@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 Attached = WeldedEnd | PinnedEnd | FreeEnd
 TAUT = 0.97  # of L: a beam whose shortest way is longer is as good as taut
 LONGER = 1.005  # of L: a beam that is drawn straight is taut, and no longer than it is as nearly as this is known
+ROOM = 0.01  # of the size, between an end that is led and what it would run into, unless it is closer at rest
 PLACES = 48  # of a line that is pulled tight, less one
 ROUNDS = 60
 PARTS = 3  # of the way of its ends from one state to the next
@@ -40,7 +41,7 @@ def slack(model: Estimate, states: Sequence[State], barriers: Sequence[Barrier])
     """Values of loads and drives as far as no drive has pulled a beam taut on the way through the states.
 
     A line follows each beam's ends from rest on, past what is in its way.  A beam that is hardly longer at rest is taut
-    where the line becomes longer than it is.
+    where the line becomes longer than it is.  Nor does an end run into something.
     """
     beams = [name for name, beam in model.scene.beams.items() if _led(model.scene, beam.start, beam.end)]
     mine = {name: [barrier for barrier in barriers if barrier.beam == name] for name in beams}
@@ -51,18 +52,31 @@ def slack(model: Estimate, states: Sequence[State], barriers: Sequence[Barrier])
         name: (TAUT if length(line) < TAUT * model.lengths[name] else LONGER) * model.lengths[name]
         for name, line in lines.items()
     }
+    fences = {
+        name: [np.minimum(b.distance(line[[0, -1]]), b.apart + ROOM * model.size) for b in mine[name]]
+        for name, line in lines.items()
+    }
+
+    def beyond(lines: dict[str, Array]) -> bool:
+        """Whether a beam would be longer, or one of its ends within something."""
+        return any(
+            length(line) > limits[name]
+            or any(np.any(b.distance(line[[0, -1]]) < at) for b, at in zip(mine[name], fences[name], strict=True))
+            for name, line in lines.items()
+        )
+
     before: dict[str, float] = {}
     for state in states:
         ends = {name: model.shape(state.q, name)[[0, -1]] for name in lines}
         after = {name: led(line, ends[name], mine[name]) for name, line in lines.items()}
         driven = any(state.values.get(name, 0.0) != before.get(name, 0.0) for name in model.scene.drives)
-        if driven and any(length(after[name]) > limit for name, limit in limits.items()):
+        if driven and beyond(after):
             low, high = 0.0, 1.0
             for _ in range(HALVINGS):
                 share = 0.5 * (low + high)
                 there = {name: line[[0, -1]] + share * (ends[name] - line[[0, -1]]) for name, line in lines.items()}
-                long = any(length(led(lines[name], there[name], mine[name])) > limit for name, limit in limits.items())
-                low, high = (low, share) if long else (share, high)
+                far = beyond({name: led(line, there[name], mine[name]) for name, line in lines.items()})
+                low, high = (low, share) if far else (share, high)
             return {
                 name: before.get(name, 0.0) + low * (value - before.get(name, 0.0))
                 for name, value in state.values.items()
