@@ -25,6 +25,7 @@ from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.point import Point, point_at
 from cprbm.refining import all_zones, carried_over, fits, fitted
 from cprbm.settings import Settings
+from cprbm.steadied import Turn, steadied
 from scene import Scene
 
 Stood = tuple[float, Point]  # a value of what is stepped, and the march's state there
@@ -36,8 +37,8 @@ SHORTEST = 1e-6  # of the way: a step behind which there is no equilibrium witho
 EXACTLY = 1e-10  # of the way
 BEGUN = 1e-3  # of the way: what touches where it begins has parted by then, or never does
 NEARLY = 0.05  # of a closing value: it lies no farther from that on even elements
-NEARBY = (1e-3, 1e-2)  # of the way, on either side of where a less fitted mesh closes
-FITS = 6  # of the mesh to where the other contacts are, at most
+NEARBY = (1e-3, 1e-2, 3e-2)  # of the way, on either side of where a less fitted mesh closes
+FITS = 10  # of the mesh to where the other contacts are, at most
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +79,8 @@ class Closings:
         if low == high:
             return low
         closing = gap.root(low, high, target - value)
-        return self._fitted(gap, closing, target - value)
+        # of the whole way of the stage: where it was cut is not asked
+        return self._fitted(gap, closing, closing - opened[0][0])
 
     def _gap(self, mechanism: Mechanism, contact: str, value: float, point: Point) -> Gap:
         """Of a mechanism with the contact, whose state near ``value`` is about known."""
@@ -89,11 +91,14 @@ class Closings:
 
     def _fitted(self, gap: Gap, closing: float, way: float) -> float:
         """v_c on the mesh that is fitted to where the other contacts are then."""
+        last: Turn | None = None
         for _ in range(FITS):
             mechanism, point = gap.mechanism, gap.nearest(closing)
             fit = fitted(mechanism, point, all_zones(mechanism, point), self.settings)
             if fits(mechanism, fit):
                 break
+            now = mechanism.fit, fit
+            fit, last = steadied(now, last), now
             target = mechanism_of(self.scene, self.settings, fit, mechanism)
             start = carried_over(mechanism, point, target, gap.at(closing))
             gap = self._gap(target, gap.contact, closing, start)

@@ -33,6 +33,7 @@ from cprbm.refining import all_zones, carried_over, carried_state, fits, fitted,
 from cprbm.remarks import Remarks
 from cprbm.settings import Settings
 from cprbm.statics import statics
+from cprbm.steadied import Turn, steadied
 from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAnswer
 from scene.told import station_reached
 
@@ -40,9 +41,8 @@ _SAYS = logging.getLogger(__name__)
 
 AGAIN = 12  # iterations on a mesh that fits a little better
 LAST = 4  # meshes less one, on one of which there is an equilibrium
-FITS, TURNS = 5, 2  # PASSES and STRAIGHT where contacts are long
+FITS = 5  # PASSES where contacts are long
 PASSES = 8  # of fitting the mesh to where contact is, at most
-STRAIGHT = 6  # of them before two that take turns are eased
 BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is no doubt that it has ended
 ENDS = 10  # of branches between two stations
 ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all branches are near
@@ -270,7 +270,8 @@ class March:
         """The station where the last ones lead on the meshes that were fitted, without the march going there.
 
         None where the march has to go: where another stage begins from there, ends of branches are asked for, other
-        contacts press, no state is found soon, or the links did not go as their rates say.
+        contacts press, no state is found soon, the mesh does not fit or joints share what is a place's (either hangs on
+        where one comes from), or the links did not go as their rates say.
         """
         asked, stood = self.family[-1], self.stood
         if not stood or stage is not self.scene.stages[-1] or stage.beyond is not None:
@@ -295,6 +296,8 @@ class March:
         if found is None or pressing(found[1]) != pressing(before):
             return None
         mechanism, point, refit = found
+        if not fits(mechanism, fitted(mechanism, point, all_zones(mechanism, point), asked)) or _halved(point):
+            return None
         change = point.state.theta - carried_state(last.problem.model, before.state, mechanism.problem.model).theta
         rates = rate(last.problem, before, way.change), rate(mechanism.problem, point, way.change)
         if strayed(mechanism.problem.model.lengths, change, *rates) or mechanism.passed(before, point):
@@ -337,16 +340,16 @@ class March:
         The equilibrium is ``found`` where the first mesh fits.
         """
         asked, seen = self.family[-1], [(mechanism, found)] if found is not None else []
+        last: Turn | None = None
         for turn, settings in enumerate(meshes):
             zones = all_zones(mechanism, point)
             long = long_ones(zones)
             if settings is not asked and not long:
                 continue  # a few places need no mesh between the coarsest and the finest
-            passes, straight = (FITS, TURNS) if long else (PASSES, STRAIGHT)
-            turns = turn - (len(meshes) - PASSES)
-            if turns >= passes:
+            passes = FITS if long else PASSES
+            if turn - (len(meshes) - PASSES) >= passes:
                 break
-            fit = fitted(mechanism, point, zones, settings, eased=turns > straight)
+            fit = fitted(mechanism, point, zones, settings)
             if settings is now and fits(mechanism, fit):
                 if found is None or found.converged:
                     break
@@ -355,6 +358,9 @@ class March:
                     break
                 point = found.point
                 continue
+            if settings is now:
+                turned_to = (mechanism.fit, fit)
+                fit, last = steadied(turned_to, last), turned_to
             target = mechanism_of(self.scene, settings, fit, mechanism)
             carried = carried_state(mechanism.problem.model, point.state, target.problem.model)
             solved = self._resumed(turn, target, carried, values, station)
@@ -470,6 +476,11 @@ class March:
     def asked(self) -> Mechanism:
         """The scene on even elements of the mesh that was asked."""
         return self.whole if len(self.family) == 1 else mechanism_of(self.scene, self.family[-1], before=self.whole)
+
+
+def _halved(point: Point) -> bool:
+    """Whether joints press that share the force of a place."""
+    return any(lam > 0.0 and key >= 0 for (_, key), lam in zip(point.rows.keys, point.lam, strict=True))
 
 
 def _near(found: Equilibrium) -> bool:

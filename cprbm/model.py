@@ -314,12 +314,6 @@ class Kinks:
     before: Array
     behind: Array
 
-    def eased(self, before: Kinks) -> Kinks:
-        """These places with the mean of these slopes and those ``before``, lest the two take turns."""
-        if len(before.places) != len(self.places):
-            return self
-        return Kinks(self.places, 0.5 * (self.before + before.before), 0.5 * (self.behind + before.behind))
-
     @property
     def largest(self) -> float:
         """The largest of the slopes."""

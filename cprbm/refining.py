@@ -104,13 +104,8 @@ def fitted(
     point: Point,
     zones: Mapping[str, tuple[Zone, ...]],
     settings: Settings,
-    *,
-    eased: bool = False,
 ) -> Fit:
-    """Elements that end where contacts do, even between; where these are much closer than that, even ones.
-
-    ``eased`` lets kinks go half of the way only to what they are in this state.
-    """
+    """Elements that end where contacts do, even between; where these are much closer than that, even ones."""
     ends, pressed = ends_of(mechanism, zones), _pressed(mechanism, point, zones)
     borders: dict[str, Array] = {}
     kept: dict[str, Array] = {}
@@ -131,7 +126,7 @@ def fitted(
         numbers, places = laid
         borders[chain.name] = np.interp(np.arange(n + 1), numbers, places)
         kept |= {name: ends[name] for name in names}
-    return Fit(borders, kept, _kinks(mechanism, point, pressed, eased=eased))
+    return Fit(borders, kept, _kinks(mechanism, point, pressed))
 
 
 def _pressed(
@@ -171,7 +166,7 @@ def _laid_out(
 
 
 def _kinks(
-    mechanism: Mechanism, point: Point, pressed: Mapping[str, tuple[Pressed, ...]], *, eased: bool
+    mechanism: Mechanism, point: Point, pressed: Mapping[str, tuple[Pressed, ...]]
 ) -> dict[str, tuple[Kinks, ...]]:
     """Those of what is ``pressed`` in places, of a contact's first beam and of its second; none where an end is."""
     found = {}
@@ -179,11 +174,9 @@ def _kinks(
         pair, places = mechanism.pairs[name], [at for _, at, _ in both]
         inner = np.all([within(chain, arc) for chain, arc in zip(pair.chains, places, strict=True)], axis=0)
         if np.any(inner):
-            now = tuple(
+            found[name] = tuple(
                 kinks_at(chain, point.state, arc[inner]) for chain, arc in zip(pair.chains, places, strict=True)
             )
-            made = mechanism.fit.kinks.get(name)
-            found[name] = tuple(map(Kinks.eased, now, made)) if eased and made is not None else now
     return found
 
 

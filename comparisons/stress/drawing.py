@@ -20,6 +20,7 @@ from comparisons.stress.estimate import Estimate, State
 from comparisons.stress.mechanisms import MECHANISMS
 from comparisons.stress.pushers import push
 from comparisons.stress.stopping import put_stops
+from comparisons.stress.taut import slack
 from comparisons.stress.theories import made_thin, share_of
 from comparisons.stress.toml import toml_of
 from comparisons.stress.whole import WHOLE
@@ -90,7 +91,12 @@ def _act(draft: Draft) -> None:
         state = states[-1]
     put_stops(draft, model, states)
     way, barriers = put_in_the_way(draft, model, states, [action.name for action in actions])
-    last = {name: value for name, value in way[-1].values.items() if value}
+    rigid = [
+        barrier
+        for barrier, contact in zip(barriers, draft.data.get("contacts", {}).values(), strict=True)
+        if contact["kind"] != "beam-beam"
+    ]
+    last = {name: value for name, value in slack(model, way, rigid).items() if value}
     for stage in stages:
         stage["stations"] = stations_to(rng, last.get(stage["steps"], 0.0))
     begun = [stage for stage in stages if stage["steps"] in last]

@@ -21,6 +21,7 @@ from comparisons.stress.draft import THINNEST, Data, Draft
 STOUTEST_COLUMN = 120.0  # times as long as thick
 STOUTEST_HELD = 60.0  # the same of a beam with both ends held, which has to stretch where it can bend but little
 TAUT = 0.95  # of a beam's length, between its ends
+FLAT = 0.93  # of the way on which a beam comes to lie flat
 
 
 def rolled(draft: Draft) -> None:
@@ -105,12 +106,15 @@ def lying(draft: Draft) -> None:
     draft.body("tip", "free", {"T": (radius * sin(turn), radius * (1.0 - cos(turn)))})
     curve: Data = arc_of_turn(draft.place("R"), draft.place("T"), up * turn)
     draft.beam_of("beam1", curve, {"joint": "pin", "point": "R"}, _weld("T"))
-    n, down = draft.frame.direction((0.0, 1.0)), draft.frame.direction((between(rng, -0.1, 0.1), -1.0))
+    lean = between(rng, -0.1, 0.1)
+    n, down = draft.frame.direction((0.0, 1.0)), draft.frame.direction((lean, -1.0))
     contact: Data = {"kind": "beam-half-plane", "beam": "beam1", "body": "wall", "point": list(draft.place("R"))}
     # the arc begins along the plane: written with few digits its normal would have the beam behind it
     draft.data["contacts"] = {"contact1": contact | {"normal": list(n), "thick": False}}
     draft.data["drives"] = {"press": {"kind": "displacement", "point": "T", "direction": [round(c, 3) for c in down]}}
-    depth = rounded(draft.frame.size * between(rng, 0.1, 0.4))
+    # the beam, whose length is one, lies flat on the plane then, and its tip can follow the drive no farther
+    flat = radius * (1.0 - cos(turn)) + max(lean, 0.0) * (1.0 - radius * sin(turn))
+    depth = rounded(draft.frame.size * min(between(rng, 0.1, 0.4), FLAT * flat / float(np.hypot(1.0, lean))))
     draft.data["stages"] = [{"name": "stage1", "steps": "press", "stations": [rounded(0.4 * depth), depth]}]
 
 

@@ -19,7 +19,7 @@ from comparisons.stress.obstacles import Obstacle
 from comparisons.stress.pushers import leaves_alone
 from comparisons.stress.theories import LARGEST_SHARE, made_thin, share_of
 from comparisons.stress.toml import toml_of
-from comparisons.stress.whole import assembled, column
+from comparisons.stress.whole import assembled, column, lying
 from scene.reading import read, scene_from
 from tests.cprbm.scenes import LENGTH, THICKNESS, cantilever_data, force
 
@@ -133,6 +133,24 @@ def test_a_crank_never_draws_its_beam_straight():
         # the beam is at least as long as from one of its ends to the other
         assert chord.max() <= 0.951 * abs(complex(*curve["end"]) - root)
     assert seen > 5
+
+
+def test_a_beam_pressed_on_a_plane_is_pressed_no_farther_than_flat():
+    # closed form: pinned at the plane, its tip on it and as far from the pin as the beam is long
+    for data in filter(None, (laid_out(lying, seed) for seed in range(40))):
+        (contact,), (drive,) = data["contacts"].values(), data["drives"].values()
+        curve = data["beams"]["beam1"]["curve"]
+        end, center, n, d = (
+            np.array(each) for each in (curve["end"], curve["center"], contact["normal"], drive["direction"])
+        )
+        n, d = n / np.hypot(*n), d / np.hypot(*d)
+        chord = np.hypot(*end)
+        radius = np.hypot(*center)
+        length = 2.0 * radius * np.arcsin(0.5 * chord / radius)
+        along = end - (end @ n) * n
+        flat = length * along / np.hypot(*along)
+        farthest = max((flat - end) @ d, (along - end) @ d)
+        assert 0.0 < data["stages"][0]["stations"][-1] <= 0.94 * farthest
 
 
 def test_a_column_between_driven_ends_is_bent():
