@@ -104,7 +104,9 @@ def equilibrium(
         longest = float(np.abs(change[: model.n_links]).max())
         if not np.isfinite(longest):
             return Equilibrium(point, now, iteration, converged=False)
-        if longest <= STILL and _settled(now, longest, tolerance) and np.array_equal(lam > 0.0, point.lam > 0.0):
+        # not at once: which rows there are was asked of the start under other values
+        still = iteration > 1 and longest <= STILL and np.array_equal(lam > 0.0, point.lam > 0.0)
+        if still and _settled(now, longest, tolerance):
             return Equilibrium(point, now, iteration, converged=True)
         grown, last = grown + 1 if longest > last else 0, longest
         if grown == AWAY and np.isfinite(farthest):

@@ -43,6 +43,7 @@ AGAIN = 12  # iterations on a mesh that fits a little better
 LAST = 4  # meshes less one, on one of which there is an equilibrium
 FITS = 5  # PASSES where contacts are long
 PASSES = 8  # of fitting the mesh to where contact is, at most
+STRAIGHT = 6  # of them before meshes that take turns are led to the one between
 BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is no doubt that it has ended
 ENDS = 10  # of branches between two stations
 ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all branches are near
@@ -358,7 +359,7 @@ class March:
                     break
                 point = found.point
                 continue
-            if settings is now:
+            if settings is now and turn - (len(meshes) - PASSES) > STRAIGHT:
                 turned_to = (mechanism.fit, fit)
                 fit, last = steadied(turned_to, last), turned_to
             target = mechanism_of(self.scene, settings, fit, mechanism)

@@ -72,12 +72,8 @@ def bottom(
     for iteration in range(ITERATIONS if s.size else 0):
         if iteration:
             D_s, D_ss = slope(s)
-        low, high = np.where(D_s < 0.0, s, low), np.where(D_s < 0.0, high, s)
-        # beside a border the slope may fall before it rises through zero
-        ahead = s - D_s / np.where(D_ss > least, D_ss, np.inf)
-        newton = (D_ss > least) & (ahead >= low) & (ahead <= high)
-        step = np.where(newton, ahead, 0.5 * (low + high)) - s
-        s = s + step
+        step = -D_s / np.where(D_ss > least, D_ss, np.inf)
+        s = np.minimum(np.maximum(s + step, low), high)
         if np.max(np.abs(step)) < close:
             break
     return s, (D_ss > least) & (np.abs(step) < SETTLED)

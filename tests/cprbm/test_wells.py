@@ -26,20 +26,6 @@ def test_where_elements_meet_round_off_does_not_say_whether_there_is_a_minimum(o
     assert s == pytest.approx([here - 0.011 / 1.9], abs=1e-12)
 
 
-def test_a_minimum_is_found_beyond_where_the_slope_falls_first():
-    # closed form: −0.013 − 0.4 u falls to −0.025 at u = 0.03, and rises by 1.3 from there
-    here, start = 0.41, np.array([0.41])
-
-    def slope(s):
-        u = s - here
-        low = np.minimum(u, 0.03)
-        return -0.013 - 0.4 * low + 1.3 * (u - low), np.where(u < 0.03, -0.4, 1.3)
-
-    s, settled = wells.bottom(slope, start, np.stack((start - 0.1, start + 0.1)), 1e-6, 1e-13)
-    assert settled.tolist() == [True]
-    assert s == pytest.approx([here + 0.03 + 0.025 / 1.3], abs=1e-12)
-
-
 def test_nothing_settles_where_the_slope_falls_or_has_no_zero_within():
     start = np.array([0.23, 0.41])
 
