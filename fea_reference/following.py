@@ -14,17 +14,18 @@ if λ turns back there, and the branch goes there along φ; otherwise it is a bi
 A contact without friction holds with a force that may go to zero while μ, of what it holds, is positive; what is left
 without it may have a negative curvature.  Its penalty's stiffness goes to zero with P, too, so that the equilibria
 with the penalty have a fold at some P of the third power of the penetration, and beyond it lead back without contact
-by a sharp turn.  Here P(λ) is followed to its zero.  A fold at which μ would be positive, were the penalty many times
-as stiff, is none of the mechanism's own either, if P has gone to nothing: of what it was where the following began, or,
-where that began so close that there was little left, if at the rate of then it vanishes within next to nothing and what
-a rigid contact holds has not changed since.
+by a sharp turn.  Here P(λ) is followed to its zero.  Where a contact presses in several places, each of them may let
+go.  A fold at which μ would be positive, were the penalty many times as stiff, is none of the mechanism's own either,
+if P has gone to nothing: of what it was where the following began, or, where that began so close that there was little
+left, if at the rate of then it vanishes within next to nothing and what a rigid contact holds has not changed since.
 
 A stop's moment is an unknown; it is zero to the last digits where it lets go.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -48,6 +49,7 @@ _PAST = 5  # steps
 _ROOTS = 60
 _FINE = 1e-8  # of the span
 _SHORT = 1e-4  # of a step
+_BETWEEN = 1.0  # elements: between places that are farther apart along the beam there is no contact
 _ALONG = 0.5  # cosine between branch and φ at a fold
 _TURNING = 0.1  # of dλ/ds at the beginning: what is left of it at a fold
 _APPROACHED = 1e-8  # of the span: from where a contact's force is zero
@@ -231,11 +233,29 @@ def _letting_go(march: March, load: int, target: float, span: float) -> Lost | N
     return None
 
 
-def _gone(march: March, branch: Branch, first: Place, one: Touch, held: float) -> bool:
-    """Whether the force of a contact that a rigid one would hold with a curvature ``held`` has come to nothing."""
-    begun = next((old for old in first.system.touches if old.pair == one.pair and old.closed), None)
-    if begun is None:
-        return False
+def _holding(first: System, now: System) -> Iterator[tuple[Touch, Touch]]:
+    """What may have let go: of each contact that presses ``now`` all of it at ``first`` and now, then each of its zones
+    that are as many as then.
+    """
+    begun = {old.pair: old for old in first.touches if old.closed}
+    both = [(begun[one.pair], one) for one in now.touches if one.closed and one.pair in begun]
+    for old, one in both:
+        yield old, one
+        zones, before = _zones(one), _zones(old)
+        if len(zones) == len(before) > 1:
+            yield from zip(before, zones, strict=True)
+
+
+def _zones(one: Touch) -> list[Touch]:
+    """A contact as that of each of its zones alone, along the first beam."""
+    order = np.argsort(one.zeta, kind="stable")
+    number = np.empty(len(order), dtype=int)
+    number[order] = np.concatenate(([0], np.cumsum(np.diff(one.zeta[order]) > _BETWEEN)))
+    return [replace(one, stiffness=np.where(number == i, one.stiffness, 0.0)) for i in range(number.max() + 1)]
+
+
+def _gone(march: March, branch: Branch, first: Place, begun: Touch, one: Touch, held: float) -> bool:
+    """Whether the force of what a rigid contact would hold with a curvature ``held`` has come to nothing."""
     if one.push < _NOTHING * begun.push:
         return True
     change = float(begun.foreseen(first.way).sum()) - begun.push
@@ -292,20 +312,17 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
     uncertainty = float(abs(behind.value - before.value) + np.spacing(abs(value)))
     march.values, march.system = branch.at(before.value), before.system
     energy = potential_energy(march.model, march.system, march.values)
-    for one in before.system.touches:
-        held = softest(march.model, stiffened(march.model, before.system, one, _RIGID)) if one.closed else None
-        if (
-            held is not None
-            and held.curvature > _HELD * first.curvature
-            and _gone(march, branch, first, one, held.curvature)
-        ):
-            left = softest(march.model, _without(march, one))
+    for begun, one in _holding(first.system, before.system):
+        held = softest(march.model, stiffened(march.model, before.system, one, _RIGID)).curvature
+        if held > _HELD * first.curvature and _gone(march, branch, first, begun, one, held):
+            # a zone of several leaves the others
+            left = softest(march.model, stiffened(march.model, before.system, one, 0.0))
             return Lost(
                 value,
                 uncertainty,
                 Loss.CONTACT,
                 one.pair.name,
-                held.curvature,
+                held,
                 left.curvature,
                 energy,
                 before.system,
