@@ -365,14 +365,14 @@ def _row(
     values = {name: station.values[probe.name] for name, station in stations.items()}
     chosen = f"fea {runs.kinematics}"
     shared = one_place.get(probe.of, frozenset()) if probe.quantity == "force" else frozenset[str]()
-    if shared and spot.branch is not None:
-        return _of_resultants(scene, runs, probe, stage, spot, unsettled, scale, shared)
     v_c, v_f, v_b = values["cprbm"], values[chosen], values["fea bending"]
     is_stress = probe.quantity in STRESSES
     exact = _exact_station(runs, stage.name, spot)
     row = replace(bare_row(scene, compared, probe, stage, value, scale), place=spot.place, branch=spot.branch)
     if spot.branch is None:
         return row
+    if shared:
+        return _of_resultants(scene, runs, replace(row, shared=shared), stations, unsettled)
     row = replace(
         row,
         largest=abs(norm(probe.quantity, v_c) - norm(probe.quantity, v_f)) if is_stress else None,
@@ -414,22 +414,13 @@ def _row(
     )
 
 
-def _of_resultants(
-    scene: Scene,
-    runs: Runs,
-    probe: Probe,
-    stage: Stage,
-    spot: Spot,
-    unsettled: float,
-    scale: float,
-    shared: frozenset[str],
-) -> Row:
-    """The row of the force of a contact that presses at one place with others, measured by what they do together."""
-    stations = {name: station_of(answer, stage.name, spot.value) for name, answer in runs.everything()}
-    row = bare_row(scene, (runs.cprbm[0], runs.reference), probe, stage, spot.value, scale)
-    row = replace(row, place=spot.place, branch=spot.branch, shared=shared)
+def _of_resultants(scene: Scene, runs: Runs, row: Row, stations: Mapping[str, StationAnswer], unsettled: float) -> Row:
+    """The bare ``row`` of the force of a contact that presses at one place with those that it names as ``shared``,
+    measured by what they do together in all runs' ``stations``.
+    """
+    probe = row.probe
     beam = scene.contacts[probe.of].beams[0]
-    found = {name: resultant(station, shared | {probe.of}, beam) for name, station in stations.items()}
+    found = {name: resultant(station, row.shared | {probe.of}, beam) for name, station in stations.items()}
     values = {name: value for name, value in found.items() if value is not None}
     if len(values) < len(found):
         return row
@@ -439,7 +430,7 @@ def _of_resultants(
         return norm(probe.quantity, difference)
 
     row = replace(row, difference=size(v_c - v_f), same_theory=size(v_c - v_b), together=(v_c, v_f))
-    if spot.place is not Place.COMPARED:
+    if row.place is not Place.COMPARED:
         return row
     return replace(row, bounds=bounds_of(runs, values, order_of(scene, probe), size, unsettled))
 

@@ -23,7 +23,7 @@ from __future__ import annotations
 import numpy as np
 
 from fea_reference.acting import Acting
-from fea_reference.energy import penalised_energy
+from fea_reference.energy import penalised_energy, potential_energy
 from fea_reference.model import DrivePart, Model
 from fea_reference.system import System, load_direction
 from scene.answer import Array
@@ -64,7 +64,7 @@ def _force(model: Model, load: int, system: System, values: Array, h: float) -> 
     more, less = values.copy(), values.copy()
     more[load] += h
     less[load] -= h
-    return (penalised_energy(model, system, more) - penalised_energy(model, system, less)) / (2.0 * h)
+    return (potential_energy(model, system, more) - potential_energy(model, system, less)) / (2.0 * h)
 
 
 def _bend(model: Model, load: int, system: System, rate: Array, acting: Acting) -> float:

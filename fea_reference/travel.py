@@ -71,29 +71,26 @@ def reach(march: March, course: Course, target: float) -> None:
     Raises:
         StoppedError: it cannot be reached.
     """
-    origin = march.saved()
+    origin, failed = march.saved(), None
     try:
-        leapt = _reach(march, course, target)
+        passed = _reach(march, course, target)
     except StoppedError as stopped:
         if course.beyond is not None or stopped.ending is Ending.BRANCH_ENDS:
             raise
-        march.restore(origin)
-        march.critical, march.behind = list(origin.critical), None
-        try:
-            _reach(march, replace(course, beyond="stop"), target)
-        except StoppedError as looking:
-            raise looking if looking.ending is Ending.BRANCH_ENDS else stopped from None
-    else:
-        if course.beyond is None and leapt:
-            there = march.saved()
-            march.restore(origin)
-            march.behind = None
-            try:
-                _reach(march, replace(course, beyond="stop"), target)
-            except StoppedError as looking:
-                if looking.ending is Ending.BRANCH_ENDS:
-                    raise
-                march.restore(there)
+        passed, failed = True, stopped
+    if course.beyond is not None or not passed:
+        return
+    there = march.saved()
+    march.restore(origin)
+    march.critical, march.behind = list(origin.critical), None
+    try:
+        _reach(march, replace(course, beyond="stop"), target)
+    except StoppedError as looking:
+        if looking.ending is Ending.BRANCH_ENDS:
+            raise
+        if failed is not None:
+            raise failed from None
+        march.restore(there)
 
 
 def _reach(march: March, course: Course, target: float) -> bool:

@@ -23,7 +23,7 @@ from functools import cached_property
 
 import numpy as np
 
-from comparisons.audit.rest import Complex, Rest
+from comparisons.audit.rest import Complex, Rest, coordinates
 from scene.answer import Area, Array, Shape
 from scene.geometry import points_on, tangents_on
 
@@ -177,5 +177,4 @@ def _of_elements(grid: Complex) -> Array:
     for i in range(3):
         for k in range(3):
             found[:, :, i, k] = grid[i : i + 2 * n - 1 : 2, k : k + 2 * m - 1 : 2]
-    flat = found.reshape(n, m, 9)
-    return np.stack((flat.real, flat.imag), axis=-1)
+    return coordinates(found.reshape(n, m, 9))

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from comparisons.audit.areas import AreaOfBeam
-from comparisons.audit.rest import Complex
+from comparisons.audit.rest import Complex, coordinates
 from comparisons.audit.seen import Seen
 from scene.answer import Array, Flags
 
@@ -108,8 +108,7 @@ def nearest(places: Complex, line: Complex) -> tuple[Array, Complex]:
     """Distances (k,) of places from a closed line, and unit normals of the pieces where it is nearest."""
     if not places.size:
         return np.zeros(0), places
-    tree = cKDTree(np.stack((line.real, line.imag), axis=1)[:-1])
-    at = tree.query(np.stack((places.real, places.imag), axis=1))[1]
+    at = cKDTree(coordinates(line)[:-1]).query(coordinates(places))[1]
     best, normal = np.full(places.size, np.inf), np.zeros(places.size, dtype=complex)
     for first in ((at - 1) % (line.size - 1), at):
         step = line[first + 1] - line[first]

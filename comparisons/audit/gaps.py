@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 
 from comparisons.audit import edges
 from comparisons.audit.corners import Corners, corners_of, ends_of, leaning
-from comparisons.audit.rest import Complex
+from comparisons.audit.rest import Complex, coordinates
 from comparisons.audit.seen import AnyBeam, Seen
 from scene.answer import Array, Flags, Ints
 from scene.statement import (
@@ -86,22 +86,16 @@ def _of_areas(seen: Seen, name: str, contact: BeamContact | Rigid) -> Iterator[s
                 yield from _deepest(f"{a} and {b} of {name}", s, -depth, np.ones(len(s), dtype=bool), allowed)
         return
     A = edges.areas(seen)[contact.beam]
-    first, moved, phi = seen.motion(contact.body)
-    turn = complex(np.exp(1j * phi))
-
-    def still(places: Complex) -> Complex:
-        return np.asarray(first + (places - first - moved) / turn)
-
     t = A.rest.thickness(A.fine)
     for side in (0, -1):
-        places = still(A.edge(side))
+        places = _still(seen, contact.body, A.edge(side))
         feet, rest = _surface(contact, places), _surface(contact, A.resting_edge(side))
         overlapping = rest.distance < -1e-12 * seen.longest
         counted = ~feet.at_end & ~_spread(A.fine, overlapping, float(t.max())) & ~_round_an_end(contact, places, feet)
         allowed = edges.DEEP * float(t.mean())
         yield from _deepest(f"{contact.beam} and what is rigid in {name}", A.fine, feet.distance, counted, allowed)
     for on, s, places, forces in edges.pressing(seen, name):
-        feet = _surface(contact, still(places))
+        feet = _surface(contact, _still(seen, contact.body, places))
         off = np.abs(feet.distance) - edges.APART * A.rest.thickness(s)
         if off.size and off.max() > 0.0:
             worst = int(np.argmax(off))
@@ -141,9 +135,6 @@ def _of_rigid(
     first, moved, phi = seen.motion(contact.body)
     turn = complex(np.exp(1j * phi))
 
-    def still(places: Complex) -> Complex:
-        return np.asarray(first + (places - first - moved) / turn)
-
     def surface(places: Complex) -> Feet:
         return faced(seen, contact, places)
 
@@ -152,7 +143,7 @@ def _of_rigid(
     half = 0.5 * A.rest.thickness(s) if contact.thick else np.zeros(len(s))
     overlapping = rest.distance < half * (1.0 - 1e-9) - 1e-12 * seen.longest
     counted = ~feet.at_end & ~_spread(s, overlapping, BESIDE * float(A.rest.thickness(s).max()))
-    counted &= ~_round_an_end(contact, still(A.line(s)[0]), feet)
+    counted &= ~_round_an_end(contact, _still(seen, contact.body, A.line(s)[0]), feet)
     allowed = DEEP * 2.0 * float(half.mean()) if contact.thick else SUNK * seen.longest
     yield from _deepest(f"{a} and what is rigid in {name}", s, feet.distance - half, counted, allowed)
     s, places, forces = _pressed(seen, name, a)
@@ -168,10 +159,15 @@ def _of_rigid(
 
 def faced(seen: Seen, contact: Rigid, places: Complex) -> Feet:
     """What a contact's rigid side is to places (k,), where its body has taken it."""
-    first, moved, phi = seen.motion(contact.body)
-    turn = complex(np.exp(1j * phi))
-    feet = _surface(contact, np.asarray(first + (places - first - moved) / turn))
+    feet = _surface(contact, _still(seen, contact.body, places))
+    turn = complex(np.exp(1j * seen.motion(contact.body)[2]))
     return Feet(feet.distance, feet.normal * turn, feet.s, feet.at_end)
+
+
+def _still(seen: Seen, body: str, places: Complex) -> Complex:
+    """Where places (k,) would be, had their body not moved."""
+    first, moved, phi = seen.motion(body)
+    return np.asarray(first + (places - first - moved) / complex(np.exp(1j * phi)))
 
 
 def _on_corners(name: str, beam: AnyBeam, s: Array, forces: Complex, number: Ints) -> Iterator[str]:
@@ -244,7 +240,7 @@ def _feet(places: Complex, beam: AnyBeam) -> Feet:
     line = beam.line(s)[0]
     if not places.size:
         return Feet(np.zeros(0), places, np.zeros(0), np.zeros(0, dtype=bool))
-    nearest = cKDTree(_pairs(line)).query(_pairs(places))[1]
+    nearest = cKDTree(coordinates(line)).query(coordinates(places))[1]
     return _projected(places, line, s, np.asarray(nearest))
 
 
@@ -333,13 +329,8 @@ def _pieces(contact: LineContact | FunctionContact, places: Complex, corners: Co
     last = len(corners) - 2
     if isinstance(contact, LineContact):
         return np.broadcast_to(np.arange(last + 1), (len(places), last + 1))
-    nearest = cKDTree(_pairs(corners)).query(_pairs(places))[1]
+    nearest = cKDTree(coordinates(corners)).query(coordinates(places))[1]
     return np.stack((np.maximum(nearest - 1, 0), np.minimum(nearest, last)), axis=1)
-
-
-def _pairs(places: Complex) -> Array:
-    """Complex places (k,) as coordinates (k, 2)."""
-    return np.stack((places.real, places.imag), axis=1)
 
 
 def _left(contact: LineContact | FunctionContact) -> bool:
@@ -399,7 +390,7 @@ def _near_at_rest(seen: Seen, a: str, b: str, s: Array) -> Flags:
     A, B = seen.rests[a], seen.rests[b]
     line = B.places(seen.beams[b].fine)
     places = A.places(s)
-    nearest = cKDTree(_pairs(line)).query(_pairs(places))[1]
+    nearest = cKDTree(coordinates(line)).query(coordinates(places))[1]
     feet = _projected(places, line, seen.beams[b].fine, np.asarray(nearest))
     T = 0.5 * (A.thickness(s) + B.thickness(feet.s))
     return _spread(s, ~feet.at_end & (feet.distance < T * (1.0 - 1e-6)), float(T.max()))
@@ -458,7 +449,7 @@ def _intersections(a: Complex, b: Complex) -> tuple[np.ndarray, Complex]:
     """Pieces of the line a that cross b, ascending, and where."""
     u, v = np.diff(a), np.diff(b)
     reach = 0.5 * (np.abs(u).max() + np.abs(v).max())
-    trees = [cKDTree(_pairs(m)) for m in (0.5 * (a[1:] + a[:-1]), 0.5 * (b[1:] + b[:-1]))]
+    trees = [cKDTree(coordinates(m)) for m in (0.5 * (a[1:] + a[:-1]), 0.5 * (b[1:] + b[:-1]))]
     pairs = trees[0].sparse_distance_matrix(trees[1], reach, output_type="ndarray")
     i, j = pairs["i"], pairs["j"]
     cross = (np.conj(u[i]) * v[j]).imag

@@ -73,6 +73,11 @@ class Rest:
         return np.asarray(np.bincount(number, (integrand * weights).sum(axis=1), len(borders) - 1), dtype=float)
 
 
+def coordinates(places: Complex) -> Array:
+    """Complex places of any shape as coordinates, (…, 2)."""
+    return np.stack((places.real, places.imag), axis=-1)
+
+
 def rests_of(scene: Scene) -> dict[str, Rest]:
     """All beams of a scene."""
     found = {}
