@@ -12,7 +12,7 @@ branch's end is closed in on from the side where it stands.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -20,12 +20,13 @@ from cprbm.certifying import certify
 from cprbm.critical import Minimum, foreseen
 from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import KEPT, continued
+from cprbm.falling import falling
 from cprbm.kinematics import most_turned
 from cprbm.locking import Locked, between_ends, drawn_taut, locked_on, pressed_on, taut
 from cprbm.mechanism import Mechanism
 from cprbm.midway import doubt, uneven
 from cprbm.point import Point
-from cprbm.rate import carried_by_others, rate, strayed
+from cprbm.rate import Rate, carried_by_others, rate, strayed
 from cprbm.settings import Settings
 from cprbm.stretching import stretched
 from scene import Certificate, Ending
@@ -44,6 +45,8 @@ ROUNDED = 1e-12  # of the way: less than this is left of it by round-off
 NEARLY_TAUT = 1e-3  # of the way: so near what ends it, forces tell whether that is a beam which is taut
 JUST = 2.0  # smallest steps, to see that there is nothing beyond
 TRAIL = 30  # minima that are kept
+TOO_LONG = 2.0  # doubt of a step in which a fold may hide
+FALLING = "what holds the drive falls by more than it can on one branch"
 ELSEWHERE = "half-way of a load step the branch is not where the rates at its ends say"
 
 
@@ -103,6 +106,7 @@ class Follower:
         point, values: the state, and the values (SI) of all loads and drives.
         trail: minima since it was cleared, the last ones.
         reached, refused: the values up to which the last way was gone, and at which its last step was refused.
+        beyond: those (SI) of all loads and drives at which it was.
         careful: whether no end of a branch may be passed.
         locked: the straight beam that the last way asked to change its length, where it could not be gone.
     """
@@ -114,6 +118,7 @@ class Follower:
     trail: list[Minimum]
     reached: float = 0.0
     refused: float = 0.0
+    beyond: Mapping[str, float] = field(default_factory=dict)
     careful: bool = False
     locked: Locked | None = None
 
@@ -137,19 +142,25 @@ class Follower:
                     found = before
                 else:
                     most = SOON if start is ahead else self.settings.iterations
-                    farthest = self._farthest((fraction - done) * here)
+                    farthest = self._farthest((fraction - done) * here.links)
                     found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
                     iterations += found.iterations
                 certificate, ending = certify(self.mechanism, self.settings, found)
                 if ending is Ending.COMPLETED:
                     there = rate(problem, found.point, way.change)
-                    ways = (fraction - done) * here, (fraction - done) * there
+                    h = fraction - done
+                    ways = h * here.links, h * there.links
                     ending, sentence = self._strayed(found.point, *ways)
                     if ending is Ending.COMPLETED and self._uneven(found.point, *ways):
                         iterations += 1
                         doubtful = doubt(problem, way.at(0.5 * (done + fraction)), self.point, found.point, *ways)
                         if doubtful > 1.0:
                             ending, sentence, doubted = Ending.STEP_TOO_SMALL, ELSEWHERE, (fraction, found)
+                    if ending is Ending.COMPLETED and falling(
+                        (here.force, there.force), (h * here.rise, h * there.rise)
+                    ):
+                        doubtful = TOO_LONG
+                        ending, sentence, doubted = Ending.STEP_TOO_SMALL, FALLING, (fraction, found)
                 else:
                     sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
                 if ending is Ending.COMPLETED:
@@ -167,12 +178,12 @@ class Follower:
                 # nothing ends here: the step was too long to be believed
                 step = max(min(0.5, max(doubtful**-2, LEAST)) * step, self.settings.smallest_step)
                 continue
+            self.refused, self.beyond = way.value(fraction), values
             if done == 0.0 and not refused:
-                self.refused = way.value(fraction)
                 self.locked = locked_on(problem, self.point, way.change)
                 if self.locked is not None:
                     return Reached(Ending.STEP_TOO_SMALL, self.locked.told, certificate=None)
-            step, refused, self.refused = self._cut(way, done, 0.5 * step), True, way.value(fraction)
+            step, refused = self._cut(way, done, 0.5 * step), True
             if abs(self.refused - self.reached) <= NEARLY_TAUT * abs(way.value(1.0) - way.value(0.0)):
                 limit = taut(self._minima, self.refused)
                 if limit is not None:
@@ -203,12 +214,12 @@ class Follower:
         if held is not None:
             yield held
 
-    def _longest(self, here: Array) -> float:
+    def _longest(self, here: Rate) -> float:
         """The largest part of the way that may be taken at once, on which links turn at the rate ``here``.
 
         So far that no end of a branch hides in it if none may be passed; else as far as a link may turn at all.
         """
-        turn, most = float(np.max(np.abs(here))), SHORT if self.careful else self.settings.largest_turn
+        turn, most = float(np.max(np.abs(here.links))), SHORT if self.careful else self.settings.largest_turn
         return max(most / turn, self.settings.smallest_step) if turn > most else 1.0
 
     @property

@@ -20,9 +20,11 @@ from cprbm.contact import NO_ROWS
 from cprbm.critical import BranchEnd, Minimum, at_rest, branch_end, told
 from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import FITTED, KEPT, alike, continued, led
+from cprbm.falling import falling
 from cprbm.following import Follower, Reached, Way, pressing, to
 from cprbm.kinematics import State, most_turned, rest_state
 from cprbm.leap import Landed, leap
+from cprbm.leaving import left
 from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.model import Fit
@@ -125,7 +127,7 @@ class March:
 
         for _ in range(ENDS):
             reached = self.on.go(to(stage.steps, self.on.values, target), accept)
-            end = self._end(reached)
+            end = self._end(reached, stage.steps)
             if end is None:
                 return reached
             finer = self._finer(stage.steps, end)
@@ -134,7 +136,7 @@ class March:
                 if again.certificate is not None:
                     self.on, self.before = finer, {}
                     return again
-                sharper = branch_end(finer.mechanism, finer.trail, finer.refused)
+                sharper = self._told(finer, stage.steps)
                 if sharper is not None:
                     self.on, end = finer, sharper
             landed, reached = self._ended(stage, target, end)
@@ -142,12 +144,19 @@ class March:
                 return reached
         return Reached(Ending.STEP_TOO_SMALL, f"{ENDS} branches ended one after the other", certificate=None)
 
-    def _end(self, reached: Reached) -> BranchEnd | None:
+    def _end(self, reached: Reached, load: str) -> BranchEnd | None:
         """Where the branch ends, if that is why a way has no certificate at its end."""
         on = self.on
         if on.locked is not None:
             return at_rest(on.mechanism, on.point, on.reached) if on.locked.buckles else None
-        return branch_end(on.mechanism, on.trail, on.refused) if reached.certificate is None else None
+        return self._told(on, load) if reached.certificate is None else None
+
+    def _told(self, on: Follower, load: str) -> BranchEnd | None:
+        """Where the branch ends by what goes to zero there, or by where the energy's decrease leads just beyond."""
+        end = branch_end(on.mechanism, on.trail, on.refused)
+        if end is not None or not on.trail:
+            return end
+        return left(on.mechanism, on.settings, on.trail[-1], Way(load, on.values, on.beyond))
 
     def _finer(self, load: str, end: BranchEnd) -> Follower | None:
         """From a little before the end, the same branch on the mesh that was asked, fitted to where contact is then.
@@ -228,7 +237,7 @@ class March:
             on.mechanism, on.point, on.trail, on.careful = part.mechanism, part.start, [], True
             reached = on.go(Way("", part.begin, part.target), _unseen)
             if reached.certificate is None:
-                end = self._end(reached)
+                end = self._end(reached, "")
                 ending = reached.ending if end is None else Ending.BRANCH_ENDS
                 sentence = reached.sentence if end is None else told(end.loss, end.what)
                 return ending, f"{ending.value}: as {part.sentence}, {sentence}"
@@ -301,7 +310,10 @@ class March:
             return None
         change = point.state.theta - carried_state(last.problem.model, before.state, mechanism.problem.model).theta
         rates = rate(last.problem, before, way.change), rate(mechanism.problem, point, way.change)
-        if strayed(mechanism.problem.model.lengths, change, *rates) or mechanism.passed(before, point):
+        ways = rates[0].links, rates[1].links
+        if strayed(mechanism.problem.model.lengths, change, *ways) or mechanism.passed(before, point):
+            return None
+        if falling((rates[0].force, rates[1].force), (rates[0].rise, rates[1].rise)):
             return None
         assert refit is not None
         certificate, ending = certify(mechanism, asked, refit)
