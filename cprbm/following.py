@@ -20,7 +20,7 @@ from cprbm.certifying import certify
 from cprbm.critical import Minimum, foreseen
 from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import KEPT, continued
-from cprbm.falling import falling
+from cprbm.falling import falling, turned
 from cprbm.kinematics import most_turned
 from cprbm.locking import Locked, between_ends, drawn_taut, locked_on, pressed_on, taut
 from cprbm.mechanism import Mechanism
@@ -107,6 +107,7 @@ class Follower:
         trail: minima since it was cleared, the last ones.
         reached, refused: the values up to which the last way was gone, and at which its last step was refused.
         beyond: those (SI) of all loads and drives at which it was.
+        topped: minima before steps of the last way in which what holds the drive came to fall, and the values after.
         careful: whether no end of a branch may be passed.
         locked: the straight beam that the last way asked to change its length, where it could not be gone.
     """
@@ -119,6 +120,7 @@ class Follower:
     reached: float = 0.0
     refused: float = 0.0
     beyond: Mapping[str, float] = field(default_factory=dict)
+    topped: list[tuple[Minimum, float]] = field(default_factory=list)
     careful: bool = False
     locked: Locked | None = None
 
@@ -127,6 +129,7 @@ class Follower:
         done, step, iterations, refused = 0.0, 1.0, 0, False
         doubted: tuple[float, Equilibrium] | None = None
         self.values, self.reached, self.locked = dict(way.begin), way.value(0.0), None
+        self.topped = []
         problem = self.mechanism.problem
         here = there = rate(problem, self.point, way.change)
         while True:
@@ -167,6 +170,8 @@ class Follower:
                     break
             if ending is Ending.COMPLETED:
                 accept(found.point, values)
+                if self.trail and turned((here.rise, there.rise)):
+                    self.topped.append((self.trail[-1], way.value(fraction)))
                 self.point, self.values, done, here = found.point, values, fraction, there
                 self.reached = way.value(fraction)
                 self.trail = [*self.trail[-TRAIL:], Minimum(way.value(fraction), self.point.bare, certificate)]
@@ -247,12 +252,12 @@ class Follower:
 
         ``start`` and ``end`` are the ways that the rates at both ends of the step make of it, (n_links,).
         """
-        turned = most_turned(self.point.state, found.state)
-        if turned > self.settings.largest_turn:
-            return Ending.STEP_TOO_SMALL, f"a link turned by {turned:.2f} rad in one load step"
+        most = most_turned(self.point.state, found.state)
+        if most > self.settings.largest_turn:
+            return Ending.STEP_TOO_SMALL, f"a link turned by {most:.2f} rad in one load step"
         if crossed := self.mechanism.passed(self.point, found, (start, end)):
             return Ending.BEAMS_CROSSED, f"in contact '{crossed}' the beam went across what it may touch"
-        if self.careful and turned > ISOLATED and pressing(found) != pressing(self.point):
+        if self.careful and most > ISOLATED and pressing(found) != pressing(self.point):
             return Ending.STEP_TOO_SMALL, "a contact or stop closes or opens on the way"
         change = found.state.theta - self.point.state.theta
         model = self.mechanism.problem.model

@@ -17,6 +17,7 @@ from cprbm.settings import Settings
 from cprbm.stability import softest
 from scene import Loss
 
+STEPS = 40  # of a motion that leads away; one that goes on for longer goes in circles
 NEAR = 1e-3  # of the value beyond: an end that is not known better than that is none
 
 
@@ -33,7 +34,7 @@ def left(mechanism: Mechanism, settings: Settings, last: Minimum, way: Way) -> B
         return None
     problem = mechanism.problem
     soft = softest(problem, last.point)
-    landed = leap(mechanism, settings, way.at(1.0), last.point, soft.direction)
+    landed = leap(mechanism, settings, way.at(1.0), last.point, soft.direction, STEPS)
     if landed is None:
         return None
     change = landed.point.state.theta - last.point.state.theta

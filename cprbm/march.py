@@ -126,12 +126,17 @@ class March:
                     opened.append((values[stage.steps], point))
 
         for _ in range(ENDS):
+            opened = {name: list(stood) for name, stood in self.opened.items()}
+            noted = dict(self.closed_at), list(self.events)
             reached = self.on.go(to(stage.steps, self.on.values, target), accept)
             end = self._end(reached, stage.steps)
             if end is None:
-                return reached
-            finer = self._finer(stage.steps, end)
-            if finer is not None:
+                hidden = self._hidden(stage.steps)
+                if hidden is None:
+                    return reached
+                self.on, end = hidden
+                self.opened, (self.closed_at, self.events) = opened, noted
+            elif (finer := self._finer(stage.steps, end)) is not None:
                 again = finer.go(to(stage.steps, finer.values, target), accept)
                 if again.certificate is not None:
                     self.on, self.before = finer, {}
@@ -158,6 +163,22 @@ class March:
             return end
         return left(on.mechanism, on.settings, on.trail[-1], Way(load, on.values, on.beyond))
 
+    def _hidden(self, load: str) -> tuple[Follower, BranchEnd] | None:
+        """A fold of the mesh that was asked on the last way, which the coarsest, having none, went on over.
+
+        It is looked for where what holds a drive came to fall.
+        """
+        if len(self.family) == 1 or self.on.mechanism is not self.whole:
+            return None
+        for before, after in self.on.topped:
+            finer = self._asked_from(before, load)
+            if finer is None or finer.go(to(load, finer.values, after), _unseen).certificate is not None:
+                continue
+            end = self._told(finer, load)
+            if end is not None:
+                return finer, end
+        return None
+
     def _finer(self, load: str, end: BranchEnd) -> Follower | None:
         """From a little before the end, the same branch on the mesh that was asked, fitted to where contact is then.
 
@@ -170,16 +191,21 @@ class March:
         for start in reversed(on.trail):
             if abs(end.value - start.value) < FURTHER * width:
                 continue
-            values = {**on.values, load: start.value}
-            found = self._fitted(start.point, values, start.certificate)
-            if found is None:
-                continue
-            mechanism, point, certificate = found
-            if mechanism is on.mechanism:
-                return None
-            stood = Minimum(start.value, point, certificate)
-            return Follower(mechanism, self.family[-1], point, values, [stood], careful=on.careful)
+            finer = self._asked_from(start, load)
+            if finer is not None:
+                return finer if finer.mechanism is not on.mechanism else None
         return None
+
+    def _asked_from(self, start: Minimum, load: str) -> Follower | None:
+        """The mesh that was asked from a minimum on; None where the branch is not found on it."""
+        on = self.on
+        values = {**on.values, load: start.value}
+        found = self._fitted(start.point, values, start.certificate)
+        if found is None:
+            return None
+        mechanism, point, certificate = found
+        stood = Minimum(start.value, point, certificate)
+        return Follower(mechanism, self.family[-1], point, values, [stood], careful=on.careful)
 
     def _ended(self, stage: Stage, target: float, end: BranchEnd) -> tuple[Landed | None, Reached]:
         """Note that the branch ends, and leap from there if the stage goes on, to what is the present state then."""
