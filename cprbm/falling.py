@@ -28,11 +28,6 @@ def falling(forces: tuple[float, float], rates: tuple[float, float]) -> bool:
     """
     rise, (w_a, w_b) = forces[1] - forces[0], rates
     least = NOTICED * max(map(abs, forces))
-    if turned(rates) and min(w_a, -w_b) > least:
+    if w_a > 0.0 > w_b and min(w_a, -w_b) > least:
         return True
     return 0.5 * (w_a + w_b) - rise > max(DROPPED * max(abs(rise), abs(w_a), abs(w_b)), least)
-
-
-def turned(rates: tuple[float, float]) -> bool:
-    """Whether F rises where a step begins and falls where it ends."""
-    return rates[0] > 0.0 > rates[1]

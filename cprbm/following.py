@@ -20,7 +20,7 @@ from cprbm.certifying import certify
 from cprbm.critical import Minimum, foreseen
 from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import KEPT, continued
-from cprbm.falling import falling, turned
+from cprbm.falling import falling
 from cprbm.kinematics import most_turned
 from cprbm.locking import Locked, between_ends, drawn_taut, locked_on, pressed_on, taut
 from cprbm.mechanism import Mechanism
@@ -107,7 +107,6 @@ class Follower:
         trail: minima since it was cleared, the last ones.
         reached, refused: the values up to which the last way was gone, and at which its last step was refused.
         beyond: those (SI) of all loads and drives at which it was.
-        topped: minima before steps of the last way in which what holds the drive came to fall, and the values after.
         careful: whether no end of a branch may be passed.
         locked: the straight beam that the last way asked to change its length, where it could not be gone.
     """
@@ -120,7 +119,6 @@ class Follower:
     reached: float = 0.0
     refused: float = 0.0
     beyond: Mapping[str, float] = field(default_factory=dict)
-    topped: list[tuple[Minimum, float]] = field(default_factory=list)
     careful: bool = False
     locked: Locked | None = None
 
@@ -129,7 +127,6 @@ class Follower:
         done, step, iterations, refused = 0.0, 1.0, 0, False
         doubted: tuple[float, Equilibrium] | None = None
         self.values, self.reached, self.locked = dict(way.begin), way.value(0.0), None
-        self.topped = []
         problem = self.mechanism.problem
         here = there = rate(problem, self.point, way.change)
         while True:
@@ -170,8 +167,6 @@ class Follower:
                     break
             if ending is Ending.COMPLETED:
                 accept(found.point, values)
-                if self.trail and turned((here.rise, there.rise)):
-                    self.topped.append((self.trail[-1], way.value(fraction)))
                 self.point, self.values, done, here = found.point, values, fraction, there
                 self.reached = way.value(fraction)
                 self.trail = [*self.trail[-TRAIL:], Minimum(way.value(fraction), self.point.bare, certificate)]

@@ -47,6 +47,7 @@ FITS = 5  # PASSES where contacts are long
 PASSES = 8  # of fitting the mesh to where contact is, at most
 STRAIGHT = 6  # of them before meshes that take turns are led to the one between
 BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is no doubt that it has ended
+BESIDE = 0.3  # rad: a state in which links are turned by no more is beside another
 ENDS = 10  # of branches between two stations
 ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all branches are near
 FURTHER = 30.0  # times as far before it, the fitted mesh is on the branch still
@@ -126,17 +127,12 @@ class March:
                     opened.append((values[stage.steps], point))
 
         for _ in range(ENDS):
-            opened = {name: list(stood) for name, stood in self.opened.items()}
-            noted = dict(self.closed_at), list(self.events)
             reached = self.on.go(to(stage.steps, self.on.values, target), accept)
             end = self._end(reached, stage.steps)
             if end is None:
-                hidden = self._hidden(stage.steps)
-                if hidden is None:
-                    return reached
-                self.on, end = hidden
-                self.opened, (self.closed_at, self.events) = opened, noted
-            elif (finer := self._finer(stage.steps, end)) is not None:
+                return reached
+            finer = self._finer(stage.steps, end)
+            if finer is not None:
                 again = finer.go(to(stage.steps, finer.values, target), accept)
                 if again.certificate is not None:
                     self.on, self.before = finer, {}
@@ -163,22 +159,6 @@ class March:
             return end
         return left(on.mechanism, on.settings, on.trail[-1], Way(load, on.values, on.beyond))
 
-    def _hidden(self, load: str) -> tuple[Follower, BranchEnd] | None:
-        """A fold of the mesh that was asked on the last way, which the coarsest, having none, went on over.
-
-        It is looked for where what holds a drive came to fall.
-        """
-        if len(self.family) == 1 or self.on.mechanism is not self.whole:
-            return None
-        for before, after in self.on.topped:
-            finer = self._asked_from(before, load)
-            if finer is None or finer.go(to(load, finer.values, after), _unseen).certificate is not None:
-                continue
-            end = self._told(finer, load)
-            if end is not None:
-                return finer, end
-        return None
-
     def _finer(self, load: str, end: BranchEnd) -> Follower | None:
         """From a little before the end, the same branch on the mesh that was asked, fitted to where contact is then.
 
@@ -191,41 +171,45 @@ class March:
         for start in reversed(on.trail):
             if abs(end.value - start.value) < FURTHER * width:
                 continue
-            finer = self._asked_from(start, load)
-            if finer is not None:
-                return finer if finer.mechanism is not on.mechanism else None
+            values = {**on.values, load: start.value}
+            found = self._fitted(start.point, values, start.certificate)
+            if found is None:
+                continue
+            mechanism, point, certificate = found
+            if mechanism is on.mechanism:
+                return None
+            stood = Minimum(start.value, point, certificate)
+            return Follower(mechanism, self.family[-1], point, values, [stood], careful=on.careful)
         return None
 
-    def _asked_from(self, start: Minimum, load: str) -> Follower | None:
-        """The mesh that was asked from a minimum on; None where the branch is not found on it."""
-        on = self.on
-        values = {**on.values, load: start.value}
-        found = self._fitted(start.point, values, start.certificate)
-        if found is None:
-            return None
-        mechanism, point, certificate = found
-        stood = Minimum(start.value, point, certificate)
-        return Follower(mechanism, self.family[-1], point, values, [stood], careful=on.careful)
-
     def _ended(self, stage: Stage, target: float, end: BranchEnd) -> tuple[Landed | None, Reached]:
-        """Note that the branch ends, and leap from there if the stage goes on, to what is the present state then."""
+        """Note that the branch ends, and leap from there if the stage goes on, to what is the present state then.
+
+        Where a stage says nothing of what is beyond, it goes on over an end beside which that is.
+        """
         self.before = {}
         on, of = self.on, f"{told(end.loss, end.what)} at {stage.steps} = {end.value:.6g}"
         problem = on.mechanism.problem
         before, after = potential_energy(problem, on.point) * problem.model.unit_moment, None
         landed, reached = None, Reached(Ending.BRANCH_ENDS, of, certificate=None)
-        if stage.beyond == "jump":
+        if stage.beyond != "stop":
             ends = (end.value, on.refused)
             furthest = max(ends) if target > on.reached else min(ends)
             step = max(BEYOND * abs(on.refused - on.reached), ONWARD * abs(target - furthest))
             value = furthest + np.copysign(min(step, abs(target - furthest)), target - furthest)
             values = {**on.values, stage.steps: value}
             landed = leap(on.mechanism, on.settings, values, on.point, end.direction)
+            if stage.beyond is None and landed is not None and most_turned(on.point.state, landed.point.state) > BESIDE:
+                landed = None
+        if stage.beyond == "jump":
             reached = Reached(Ending.STEP_TOO_SMALL, f"no minimum found to which {of} leads", certificate=None)
         if landed is not None:
             after = potential_energy(problem, landed.point) * problem.model.unit_moment
             reached = Reached(Ending.COMPLETED, "", landed.certificate)
             self.on = self._evened(Minimum(value, landed.point, landed.certificate), values)
+        if landed is not None and stage.beyond is None:
+            self.remarks.passed.append(of)
+            return landed, reached
         self.critical.append(
             Critical(
                 stage=stage.name,
