@@ -20,13 +20,12 @@ from cprbm.certifying import certify
 from cprbm.critical import Minimum, foreseen
 from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import KEPT, continued
-from cprbm.falling import falling
 from cprbm.kinematics import most_turned
 from cprbm.locking import Locked, between_ends, drawn_taut, locked_on, pressed_on, taut
 from cprbm.mechanism import Mechanism
 from cprbm.midway import doubt, uneven
 from cprbm.point import Point
-from cprbm.rate import Rate, carried_by_others, rate, strayed
+from cprbm.rate import carried_by_others, rate, strayed
 from cprbm.settings import Settings
 from cprbm.stretching import stretched
 from scene import Certificate, Ending
@@ -45,8 +44,6 @@ ROUNDED = 1e-12  # of the way: less than this is left of it by round-off
 NEARLY_TAUT = 1e-3  # of the way: so near what ends it, forces tell whether that is a beam which is taut
 JUST = 2.0  # smallest steps, to see that there is nothing beyond
 TRAIL = 30  # minima that are kept
-TOO_LONG = 2.0  # doubt of a step in which a fold may hide
-FALLING = "what holds the drive falls by more than it can on one branch"
 ELSEWHERE = "half-way of a load step the branch is not where the rates at its ends say"
 
 
@@ -142,25 +139,19 @@ class Follower:
                     found = before
                 else:
                     most = SOON if start is ahead else self.settings.iterations
-                    farthest = self._farthest((fraction - done) * here.links)
+                    farthest = self._farthest((fraction - done) * here)
                     found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
                     iterations += found.iterations
                 certificate, ending = certify(self.mechanism, self.settings, found)
                 if ending is Ending.COMPLETED:
                     there = rate(problem, found.point, way.change)
-                    h = fraction - done
-                    ways = h * here.links, h * there.links
+                    ways = (fraction - done) * here, (fraction - done) * there
                     ending, sentence = self._strayed(found.point, *ways)
                     if ending is Ending.COMPLETED and self._uneven(found.point, *ways):
                         iterations += 1
                         doubtful = doubt(problem, way.at(0.5 * (done + fraction)), self.point, found.point, *ways)
                         if doubtful > 1.0:
                             ending, sentence, doubted = Ending.STEP_TOO_SMALL, ELSEWHERE, (fraction, found)
-                    if ending is Ending.COMPLETED and falling(
-                        (here.force, there.force), (h * here.rise, h * there.rise)
-                    ):
-                        doubtful = TOO_LONG
-                        ending, sentence, doubted = Ending.STEP_TOO_SMALL, FALLING, (fraction, found)
                 else:
                     sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
                 if ending is Ending.COMPLETED:
@@ -214,12 +205,12 @@ class Follower:
         if held is not None:
             yield held
 
-    def _longest(self, here: Rate) -> float:
+    def _longest(self, here: Array) -> float:
         """The largest part of the way that may be taken at once, on which links turn at the rate ``here``.
 
         So far that no end of a branch hides in it if none may be passed; else as far as a link may turn at all.
         """
-        turn, most = float(np.max(np.abs(here.links))), SHORT if self.careful else self.settings.largest_turn
+        turn, most = float(np.max(np.abs(here))), SHORT if self.careful else self.settings.largest_turn
         return max(most / turn, self.settings.smallest_step) if turn > most else 1.0
 
     @property
@@ -247,12 +238,12 @@ class Follower:
 
         ``start`` and ``end`` are the ways that the rates at both ends of the step make of it, (n_links,).
         """
-        most = most_turned(self.point.state, found.state)
-        if most > self.settings.largest_turn:
-            return Ending.STEP_TOO_SMALL, f"a link turned by {most:.2f} rad in one load step"
+        turned = most_turned(self.point.state, found.state)
+        if turned > self.settings.largest_turn:
+            return Ending.STEP_TOO_SMALL, f"a link turned by {turned:.2f} rad in one load step"
         if crossed := self.mechanism.passed(self.point, found, (start, end)):
             return Ending.BEAMS_CROSSED, f"in contact '{crossed}' the beam went across what it may touch"
-        if self.careful and most > ISOLATED and pressing(found) != pressing(self.point):
+        if self.careful and turned > ISOLATED and pressing(found) != pressing(self.point):
             return Ending.STEP_TOO_SMALL, "a contact or stop closes or opens on the way"
         change = found.state.theta - self.point.state.theta
         model = self.mechanism.problem.model

@@ -38,7 +38,7 @@ def left(mechanism: Mechanism, settings: Settings, last: Minimum, way: Way) -> B
     if landed is None:
         return None
     change = landed.point.state.theta - last.point.state.theta
-    ways = [rate(problem, point, way.change).links for point in (last.point, landed.point)]
+    ways = [rate(problem, point, way.change) for point in (last.point, landed.point)]
     shifted = carried_by_others(problem.model, last.point, landed.point)
     if not strayed(problem.model.lengths, change, ways[0], ways[1], shifted):
         return None

@@ -20,7 +20,6 @@ from cprbm.contact import NO_ROWS
 from cprbm.critical import BranchEnd, Minimum, at_rest, branch_end, told
 from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import FITTED, KEPT, alike, continued, led
-from cprbm.falling import falling
 from cprbm.following import Follower, Reached, Way, pressing, to
 from cprbm.kinematics import State, most_turned, rest_state
 from cprbm.leap import Landed, leap
@@ -36,7 +35,7 @@ from cprbm.remarks import Remarks
 from cprbm.settings import Settings
 from cprbm.statics import statics
 from cprbm.steadied import Turn, steadied
-from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAnswer
+from scene import Certificate, Critical, Ending, Event, Loss, Scene, Stage, StationAnswer
 from scene.told import station_reached
 
 _SAYS = logging.getLogger(__name__)
@@ -192,14 +191,16 @@ class March:
         problem = on.mechanism.problem
         before, after = potential_energy(problem, on.point) * problem.model.unit_moment, None
         landed, reached = None, Reached(Ending.BRANCH_ENDS, of, certificate=None)
-        if stage.beyond != "stop":
+        # where another branch goes off, either of its sides is as good as the other
+        beside = stage.beyond is None and end.loss is not Loss.BIFURCATION
+        if beside or stage.beyond == "jump":
             ends = (end.value, on.refused)
             furthest = max(ends) if target > on.reached else min(ends)
             step = max(BEYOND * abs(on.refused - on.reached), ONWARD * abs(target - furthest))
             value = furthest + np.copysign(min(step, abs(target - furthest)), target - furthest)
             values = {**on.values, stage.steps: value}
             landed = leap(on.mechanism, on.settings, values, on.point, end.direction)
-            if stage.beyond is None and landed is not None and most_turned(on.point.state, landed.point.state) > BESIDE:
+            if beside and landed is not None and most_turned(on.point.state, landed.point.state) > BESIDE:
                 landed = None
         if stage.beyond == "jump":
             reached = Reached(Ending.STEP_TOO_SMALL, f"no minimum found to which {of} leads", certificate=None)
@@ -207,7 +208,7 @@ class March:
             after = potential_energy(problem, landed.point) * problem.model.unit_moment
             reached = Reached(Ending.COMPLETED, "", landed.certificate)
             self.on = self._evened(Minimum(value, landed.point, landed.certificate), values)
-        if landed is not None and stage.beyond is None:
+        if landed is not None and beside:
             self.remarks.passed.append(of)
             return landed, reached
         self.critical.append(
@@ -320,10 +321,7 @@ class March:
             return None
         change = point.state.theta - carried_state(last.problem.model, before.state, mechanism.problem.model).theta
         rates = rate(last.problem, before, way.change), rate(mechanism.problem, point, way.change)
-        ways = rates[0].links, rates[1].links
-        if strayed(mechanism.problem.model.lengths, change, *ways) or mechanism.passed(before, point):
-            return None
-        if falling((rates[0].force, rates[1].force), (rates[0].rise, rates[1].rise)):
+        if strayed(mechanism.problem.model.lengths, change, *rates) or mechanism.passed(before, point):
             return None
         assert refit is not None
         certificate, ending = certify(mechanism, asked, refit)

@@ -111,15 +111,14 @@ class System:
         """Whether the Hessian is positive definite where the equalities and the contacts that press hold."""
         return self.kept.negative <= self.expected + int(np.count_nonzero(self.active))
 
-    def solved(self, f: Array, Z: Array) -> tuple[Array, Array]:
-        """Δq (n_links + 3B,) and Δμ by which ∂L changes by ``f`` and Z by ``Z``, and no gap that presses."""
+    def solved(self, f: Array, Z: Array) -> Array:
+        """Δq (n_links + 3B,) by which ∂L changes by ``f`` and Z by ``Z``, and no gap that presses."""
         n = len(f) - self.n_bodies
         right = np.zeros(self.kept.corner.shape[0])
         right[: self.n_bodies] = f[n:]
         right[self.n_bodies : self.n_bodies + len(self.anchors)] = f[self.anchors]
         right[self.equalities] = Z
-        a, b = self.kept.solve(f[:n], right)
-        return self.change(a, b), b[self.equalities]
+        return self.change(*self.kept.solve(f[:n], right))
 
     def change(self, a: Array, b: Array) -> Array:
         """Change of q, from that over θ and the border's solution."""

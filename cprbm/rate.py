@@ -3,7 +3,6 @@
 ======  ==============================================================================
 v, θ    part of the way on which loads, drives or ends go evenly; link angles
 r       dθ/dv on the branch, from Newton's system with the contacts that press
-F       dΠ/dv on the branch, of drives: −μ·(−∂Z/∂v)
 f       part of a step that lies before a contact closes or opens
 ======  ==============================================================================
 
@@ -17,7 +16,6 @@ What a leap to another branch adds to this is in no proportion to the step.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -33,37 +31,18 @@ SHIFTED = 0.002  # rad: links turn by less where contact only comes to be carrie
 OTHERS = 0.1  # of what one element bends by: the same where a place of its own becomes joints, or joints a place
 
 
-@dataclass(frozen=True, slots=True)
-class Rate:
-    """What moves at an equilibrium, per unit of the way.
-
-    Attributes:
-        links: r (n_links,), rad.
-        force: F, without units; nought where nothing is driven.
-        rise: dF/dv.
-    """
-
-    links: Array
-    force: float
-    rise: float
-
-
-def rate(problem: Problem, point: Point, change: Mapping[str, float]) -> Rate:
-    """The rates on a way on which named values (SI) ``change``; nought in a singular system."""
+def rate(problem: Problem, point: Point, change: Mapping[str, float]) -> Array:
+    """r (n_links,), rad per unit of a way on which named values (SI) ``change``; nought in a singular system."""
     model = problem.model
     moved = {name: load for name, load in problem.loads.items() if change.get(name, 0.0)}
     f = load_work(model, moved, dict(change), point.state, point.at).gradient
     f[problem.closure.fixed] = 0.0
-    asked = driven(problem, change)
     try:
         if many(point.rows):
-            links, mu = _local(problem, point, f, asked)
-        else:
-            q, mu = own_system(problem, point).solved(f, asked)
-            links = q[: model.n_links]
+            return _local(problem, point, f, driven(problem, change))
+        return own_system(problem, point).solved(f, driven(problem, change))[: model.n_links]
     except (np.linalg.LinAlgError, RuntimeError):
-        links, mu = np.zeros(model.n_links), np.zeros(problem.closure.rows)
-    return Rate(links, -float(asked @ point.mu), -float(asked @ mu))
+        return np.zeros(model.n_links)
 
 
 def driven(problem: Problem, change: Mapping[str, float]) -> Array:
@@ -75,14 +54,13 @@ def driven(problem: Problem, change: Mapping[str, float]) -> Array:
     return np.array(asked)
 
 
-def _local(problem: Problem, point: Point, f: Array, asked: Array) -> tuple[Array, Array]:
+def _local(problem: Problem, point: Point, f: Array, asked: Array) -> Array:
     found, active = local_system_at(problem, point), point.lam > 0.0
     n, first = problem.model.n_links, found.n_links + 2 * found.n_joints
     right = np.zeros(found.size + int(np.sum(active)))
     right[:n], right[first : first + found.n_bodies] = f[:n], f[n:]
     right[found.first_mu : found.size] = asked
-    solution = np.asarray(found.factorised(active).solve(right))
-    return solution[:n], solution[found.first_mu : found.size]
+    return np.asarray(found.factorised(active).solve(right)[:n])
 
 
 def carried_by_others(model: Model, before: Point, after: Point) -> float:

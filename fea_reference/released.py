@@ -52,10 +52,8 @@ def released(
     if missing > _OFF * off + rounded:
         return True
     changes = (forces[1] - forces[0], h * bends[0], h * bends[1])
-    size, least = max(map(abs, changes)), _NOTICED * max(map(abs, forces))
     dropped = float(np.sign(h)) * (0.5 * (changes[1] + changes[2]) - changes[0])
-    turned = changes[1] * h > 0.0 > changes[2] * h and min(abs(changes[1]), abs(changes[2])) > least
-    return bool(turned or dropped > max(_DROPPED * size, least))
+    return bool(dropped > max(_DROPPED * max(map(abs, changes)), _NOTICED * max(map(abs, forces))))
 
 
 def _force(model: Model, load: int, system: System, values: Array, h: float) -> float:

@@ -309,9 +309,11 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
         f"{lost.curvature:.3g} there, and what is left has {lost.left:.3g}"
     )
     before, after = march.saved(), None
-    if course.beyond != "stop":
+    beside = course.beyond in (None, "beside")
+    # where another branch goes off, either of its sides is as good as the other
+    if course.beyond == "jump" or (beside and lost.loss is not Loss.BIFURCATION):
         after = descended(march, load, target, course.span, lost)
-    if course.beyond == "beside":
+    if beside:
         if after is not None and march.moved(march.system, before.system.z) <= _BESIDE:
             march.left.append(sentence)
             return
