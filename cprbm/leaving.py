@@ -17,7 +17,7 @@ from cprbm.settings import Settings
 from cprbm.stability import softest
 from scene import Loss
 
-STEPS = 40  # of a motion that leads away; one that goes on for longer goes in circles
+STEPS = 30  # of a motion that leads to a state beside: one that goes on for longer leads far away, or in circles
 NEAR = 1e-3  # of the value beyond: an end that is not known better than that is none
 
 

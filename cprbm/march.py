@@ -22,7 +22,8 @@ from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import FITTED, KEPT, alike, continued, led
 from cprbm.following import Follower, Reached, Way, pressing, to
 from cprbm.kinematics import State, most_turned, rest_state
-from cprbm.leap import Landed, leap
+from cprbm.leap import STEPS, Landed, leap
+from cprbm.leaving import STEPS as NEARBY
 from cprbm.leaving import left
 from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of
@@ -199,7 +200,8 @@ class March:
             step = max(BEYOND * abs(on.refused - on.reached), ONWARD * abs(target - furthest))
             value = furthest + np.copysign(min(step, abs(target - furthest)), target - furthest)
             values = {**on.values, stage.steps: value}
-            landed = leap(on.mechanism, on.settings, values, on.point, end.direction)
+            steps = NEARBY if beside else STEPS
+            landed = leap(on.mechanism, on.settings, values, on.point, end.direction, steps)
             if beside and landed is not None and most_turned(on.point.state, landed.point.state) > BESIDE:
                 landed = None
         if stage.beyond == "jump":

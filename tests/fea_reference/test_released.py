@@ -43,8 +43,8 @@ def test_where_nothing_is_asked_the_march_goes_on_beside_it_and_says_so():
     told = re.search(r"press = (\S+)", said)
     assert told is not None
     assert float(told[1]) == pytest.approx(ENDS, rel=0.01)
-    # what it came to is what the other solver, with twice the links, comes to
-    other = cprbm.answer(flat(None), cprbm.Settings(links=80))
-    assert other.completed, other.sentence
+    # the chain comes to the same, and to within a part of its links' squares
+    chain = cprbm.answer(flat(None), cprbm.Settings(links=37))
+    assert chain.completed, chain.sentence
     for probe in ("scene.potential_energy", "plane.force"):
-        assert found.stations[-1].values[probe] == pytest.approx(other.stations[-1].values[probe], rel=0.02)
+        assert found.stations[-1].values[probe] == pytest.approx(chain.stations[-1].values[probe], rel=0.015)
