@@ -12,7 +12,7 @@ branch's end is closed in on from the side where it stands.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -103,6 +103,7 @@ class Follower:
         point, values: the state, and the values (SI) of all loads and drives.
         trail: minima since it was cleared, the last ones.
         reached, refused: the values up to which the last way was gone, and at which its last step was refused.
+        beyond: those (SI) of all loads and drives at which it was.
         careful: whether no end of a branch may be passed.
         locked: the straight beam that the last way asked to change its length, where it could not be gone.
     """
@@ -114,6 +115,7 @@ class Follower:
     trail: list[Minimum]
     reached: float = 0.0
     refused: float = 0.0
+    beyond: Mapping[str, float] = field(default_factory=dict)
     careful: bool = False
     locked: Locked | None = None
 
@@ -167,12 +169,12 @@ class Follower:
                 # nothing ends here: the step was too long to be believed
                 step = max(min(0.5, max(doubtful**-2, LEAST)) * step, self.settings.smallest_step)
                 continue
+            self.refused, self.beyond = way.value(fraction), values
             if done == 0.0 and not refused:
-                self.refused = way.value(fraction)
                 self.locked = locked_on(problem, self.point, way.change)
                 if self.locked is not None:
                     return Reached(Ending.STEP_TOO_SMALL, self.locked.told, certificate=None)
-            step, refused, self.refused = self._cut(way, done, 0.5 * step), True, way.value(fraction)
+            step, refused = self._cut(way, done, 0.5 * step), True
             if abs(self.refused - self.reached) <= NEARLY_TAUT * abs(way.value(1.0) - way.value(0.0)):
                 limit = taut(self._minima, self.refused)
                 if limit is not None:

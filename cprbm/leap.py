@@ -37,7 +37,7 @@ STEP = 0.3  # rad: the most that a link turns by in a step
 SLOW = 0.1  # rad: a step of less lets the drag fall
 STILL = 0.02  # rad: after such a step it is seen whether there is a minimum near by
 EASED, RAISED = 0.4, 4.0
-STEPS = 400
+STEPS = 400  # at most, to where a leap ends
 ROUNDED = 1e-10  # of the energy
 
 
@@ -50,7 +50,12 @@ class Landed:
 
 
 def leap(
-    mechanism: Mechanism, settings: Settings, values: dict[str, float], start: Point, direction: Array
+    mechanism: Mechanism,
+    settings: Settings,
+    values: dict[str, float],
+    start: Point,
+    direction: Array,
+    steps: int = STEPS,
 ) -> Landed | None:
     """Go down from ``start``, which is about in equilibrium, to a certified minimum; None where none is found.
 
@@ -59,6 +64,7 @@ def leap(
         values: of all loads and drives (SI), just beyond those at which the branch ended.
         start: the branch's last state.
         direction: of the curvature that was lost, (n_links,); of its two senses the one that leads lower is taken.
+        steps: at most so many.
     """
     nudge = NUDGE * direction / max(float(np.max(np.abs(direction))), 1e-300)
     tried = [
@@ -67,7 +73,7 @@ def leap(
     begun = [one for one in tried if one is not None]
     point = min(begun, key=lambda one: potential_energy(mechanism.problem, one)) if begun else start
     strength, iterations = FIRST, 0
-    for _ in range(STEPS):
+    for _ in range(steps):
         ahead = _step(mechanism, settings, values, point, strength)
         iterations += 1
         if ahead is None:

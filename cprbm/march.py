@@ -22,7 +22,9 @@ from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import FITTED, KEPT, alike, continued, led
 from cprbm.following import Follower, Reached, Way, pressing, to
 from cprbm.kinematics import State, most_turned, rest_state
-from cprbm.leap import Landed, leap
+from cprbm.leap import STEPS, Landed, leap
+from cprbm.leaving import STEPS as NEARBY
+from cprbm.leaving import left
 from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.model import Fit
@@ -34,7 +36,7 @@ from cprbm.remarks import Remarks
 from cprbm.settings import Settings
 from cprbm.statics import statics
 from cprbm.steadied import Turn, steadied
-from scene import Certificate, Critical, Ending, Event, Scene, Stage, StationAnswer
+from scene import Certificate, Critical, Ending, Event, Loss, Scene, Stage, StationAnswer
 from scene.told import station_reached
 
 _SAYS = logging.getLogger(__name__)
@@ -45,6 +47,7 @@ FITS = 5  # PASSES where contacts are long
 PASSES = 8  # of fitting the mesh to where contact is, at most
 STRAIGHT = 6  # of them before meshes that take turns are led to the one between
 BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is no doubt that it has ended
+BESIDE = 0.3  # rad: a state in which links are turned by no more is beside another
 ENDS = 10  # of branches between two stations
 ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all branches are near
 FURTHER = 30.0  # times as far before it, the fitted mesh is on the branch still
@@ -125,7 +128,7 @@ class March:
 
         for _ in range(ENDS):
             reached = self.on.go(to(stage.steps, self.on.values, target), accept)
-            end = self._end(reached)
+            end = self._end(reached, stage.steps)
             if end is None:
                 return reached
             finer = self._finer(stage.steps, end)
@@ -134,7 +137,7 @@ class March:
                 if again.certificate is not None:
                     self.on, self.before = finer, {}
                     return again
-                sharper = branch_end(finer.mechanism, finer.trail, finer.refused)
+                sharper = self._told(finer, stage.steps)
                 if sharper is not None:
                     self.on, end = finer, sharper
             landed, reached = self._ended(stage, target, end)
@@ -142,12 +145,19 @@ class March:
                 return reached
         return Reached(Ending.STEP_TOO_SMALL, f"{ENDS} branches ended one after the other", certificate=None)
 
-    def _end(self, reached: Reached) -> BranchEnd | None:
+    def _end(self, reached: Reached, load: str) -> BranchEnd | None:
         """Where the branch ends, if that is why a way has no certificate at its end."""
         on = self.on
         if on.locked is not None:
             return at_rest(on.mechanism, on.point, on.reached) if on.locked.buckles else None
-        return branch_end(on.mechanism, on.trail, on.refused) if reached.certificate is None else None
+        return self._told(on, load) if reached.certificate is None else None
+
+    def _told(self, on: Follower, load: str) -> BranchEnd | None:
+        """Where the branch ends by what goes to zero there, or by where the energy's decrease leads just beyond."""
+        end = branch_end(on.mechanism, on.trail, on.refused)
+        if end is not None or not on.trail:
+            return end
+        return left(on.mechanism, on.settings, on.trail[-1], Way(load, on.values, on.beyond))
 
     def _finer(self, load: str, end: BranchEnd) -> Follower | None:
         """From a little before the end, the same branch on the mesh that was asked, fitted to where contact is then.
@@ -173,24 +183,36 @@ class March:
         return None
 
     def _ended(self, stage: Stage, target: float, end: BranchEnd) -> tuple[Landed | None, Reached]:
-        """Note that the branch ends, and leap from there if the stage goes on, to what is the present state then."""
+        """Note that the branch ends, and leap from there if the stage goes on, to what is the present state then.
+
+        Where a stage says nothing of what is beyond, it goes on over an end beside which that is.
+        """
         self.before = {}
         on, of = self.on, f"{told(end.loss, end.what)} at {stage.steps} = {end.value:.6g}"
         problem = on.mechanism.problem
         before, after = potential_energy(problem, on.point) * problem.model.unit_moment, None
         landed, reached = None, Reached(Ending.BRANCH_ENDS, of, certificate=None)
-        if stage.beyond == "jump":
+        # where another branch goes off, either of its sides is as good as the other
+        beside = stage.beyond is None and end.loss is not Loss.BIFURCATION
+        if beside or stage.beyond == "jump":
             ends = (end.value, on.refused)
             furthest = max(ends) if target > on.reached else min(ends)
             step = max(BEYOND * abs(on.refused - on.reached), ONWARD * abs(target - furthest))
             value = furthest + np.copysign(min(step, abs(target - furthest)), target - furthest)
             values = {**on.values, stage.steps: value}
-            landed = leap(on.mechanism, on.settings, values, on.point, end.direction)
+            steps = NEARBY if beside else STEPS
+            landed = leap(on.mechanism, on.settings, values, on.point, end.direction, steps)
+            if beside and landed is not None and most_turned(on.point.state, landed.point.state) > BESIDE:
+                landed = None
+        if stage.beyond == "jump":
             reached = Reached(Ending.STEP_TOO_SMALL, f"no minimum found to which {of} leads", certificate=None)
         if landed is not None:
             after = potential_energy(problem, landed.point) * problem.model.unit_moment
             reached = Reached(Ending.COMPLETED, "", landed.certificate)
             self.on = self._evened(Minimum(value, landed.point, landed.certificate), values)
+        if landed is not None and beside:
+            self.remarks.passed.append(of)
+            return landed, reached
         self.critical.append(
             Critical(
                 stage=stage.name,
@@ -228,7 +250,7 @@ class March:
             on.mechanism, on.point, on.trail, on.careful = part.mechanism, part.start, [], True
             reached = on.go(Way("", part.begin, part.target), _unseen)
             if reached.certificate is None:
-                end = self._end(reached)
+                end = self._end(reached, "")
                 ending = reached.ending if end is None else Ending.BRANCH_ENDS
                 sentence = reached.sentence if end is None else told(end.loss, end.what)
                 return ending, f"{ending.value}: as {part.sentence}, {sentence}"

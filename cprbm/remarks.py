@@ -30,11 +30,13 @@ class Remarks:
     Attributes:
         beside_pins: where a joint first pressed next to the beam's own pin, by contact.
         even: stations on even elements though there is contact, in order.
+        passed: ends of branches beside which the march went on, in order.
         misfits: the most by which a polynomial missed its points, and where, by contact; units of length.
     """
 
     beside_pins: dict[str, str] = field(default_factory=dict)
     even: list[str] = field(default_factory=list)
+    passed: list[str] = field(default_factory=list)
     misfits: dict[str, tuple[float, str]] = field(default_factory=dict)
 
     def look(self, mechanism: Mechanism, point: Point, where: str) -> None:
@@ -60,6 +62,10 @@ class Remarks:
                 f"at {', '.join(self.even)} no mesh fitted to where contact is had a certified state: the values are "
                 "of even elements, and their error changes unevenly with the number of links"
             )
+        said += [
+            f"the branch ends, {end}, and was left for the state beside it to which the decrease of the energy leads"
+            for end in self.passed
+        ]
         said += [
             f"in contact '{name}' the polynomial misses the points that it is fitted to by up to {most * unit:.1e} m, "
             f"at {where}: more links do not take that away"

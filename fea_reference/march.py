@@ -97,13 +97,13 @@ class March:
 
     ``values`` are those of all that is stepped, without units; ``acting`` which pins and stops do; ``penalties`` the
     contacts that have closed so far, with their stiffness; ``closing`` the value of the stepped load or drive at which
-    each did, and each stop first; ``switched`` that at which each stop last closed or let go; ``critical`` are the ends
-    of branches that have been passed; ``iterations`` are counted since the last station; ``far`` is whether zones have
-    been too far from one station to the last for tight penalties and have not come nearer since, so that the way to
-    the next one begins with loose ones on what is rigid; ``loose`` whether penalties were loosened since they were
-    tightened; ``course`` are the load, value and curvature of the step before, where ends of branches are looked for
-    and penalties are tight; ``known`` is the last system whose smallest curvature was asked for, with that; ``behind``
-    is the last step, if it went along a branch.
+    each did, and each stop first; ``switched`` that at which each stop last closed or let go; ``critical`` are the
+    ends of branches that have been passed, and ``left`` what is said of those that nothing asked for; ``iterations``
+    are counted since the last station; ``far`` is whether zones have been too far from one station to the last for
+    tight penalties and have not come nearer since, so that the way to the next one begins with loose ones on what is
+    rigid; ``loose`` whether penalties were loosened since they were tightened; ``course`` are the load, value and
+    curvature of the step before, where ends of branches are looked for and penalties are tight; ``known`` is the last
+    system whose smallest curvature was asked for, with that; ``behind`` is the last step, if it went along a branch.
     """
 
     model: Model
@@ -116,6 +116,7 @@ class March:
     closing: dict[str, float] = field(default_factory=dict)
     switched: dict[str, float] = field(default_factory=dict)
     critical: list[Critical] = field(default_factory=list)
+    left: list[str] = field(default_factory=list)
     iterations: int = 0
     far: bool = False
     loose: bool = False
@@ -153,6 +154,7 @@ class March:
             closing=dict(self.closing),
             switched=dict(self.switched),
             critical=list(self.critical),
+            left=list(self.left),
         )
 
     def restore(self, saved: March) -> None:

@@ -14,8 +14,9 @@ Along a branch Π changes by the integral of F, which the rule of Hermite has to
 
 A jump leaves less.  However short the step is then, what is missing stays, while what F changes by in it, the measure
 of what the rule may be off by, goes to zero with h but for the jump of F itself.  In a long step what is missing hides
-behind that; there it is F that has dropped where F_a + h (F′_a + F′_b)/2 says otherwise.  Where a contact lets go
-within a step it seems to, but the less the shorter the step.
+behind that; there it is F that has dropped where F_a + h (F′_a + F′_b)/2 says otherwise, or that rises where the step
+begins and falls where it ends: before a fold F falls ever faster, and the branch beyond may fall as well.  Where a
+contact lets go within a step, or F has a smooth top, either seems so, but the less the shorter the step.
 """
 
 from __future__ import annotations
@@ -52,8 +53,10 @@ def released(
     if missing > _OFF * off + rounded:
         return True
     changes = (forces[1] - forces[0], h * bends[0], h * bends[1])
+    size, least = max(map(abs, changes)), _NOTICED * max(map(abs, forces))
     dropped = float(np.sign(h)) * (0.5 * (changes[1] + changes[2]) - changes[0])
-    return bool(dropped > max(_DROPPED * max(map(abs, changes)), _NOTICED * max(map(abs, forces))))
+    turned = changes[1] * h > 0.0 > changes[2] * h and min(abs(changes[1]), abs(changes[2])) > least
+    return bool(turned or dropped > max(_DROPPED * size, least))
 
 
 def _force(model: Model, load: int, system: System, values: Array, h: float) -> float:

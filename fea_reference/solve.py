@@ -80,7 +80,10 @@ class Prepared:
             events=tuple(events),
             critical=tuple(march.critical),
             seconds=self.seconds + time.perf_counter() - began,
-            notes=tuple(tested),
+            notes=(
+                *tested,
+                *(f"{end}; it was left for the state beside it to which the energy leads" for end in march.left),
+            ),
         )
 
 

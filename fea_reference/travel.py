@@ -44,6 +44,7 @@ _ASIDE = 0.15  # of a step's own way: by which it may end aside of the mean of i
 _UNEVEN = 0.6  # of the way by which its rates differ
 _NOWHERE = 1e-6  # rad (and lengths): a way that is none
 _RISES = 10.0  # times what had sunk in: the way of something else
+_BESIDE = 0.3  # rad (and lengths): a state in which nothing has moved by more is beside another
 _HALF = 0.5  # of the way to where the curvature is foreseen to vanish
 _NEAR = 1e-2  # of the span: a step shorter than this is left to following the branch
 _TIRED = 3  # cuts in a row after which that is tried
@@ -53,13 +54,14 @@ _TIRED = 3  # cuts in a row after which that is tried
 class Course:
     """What is stepped: number ``load``, over a ``span`` without units, in a ``stage``; what to do ``beyond`` its end.
 
-    The assembly is no stage, and has no name.  Where nothing is asked of the end of the branch, steps look for none.
+    The assembly is no stage, and has no name.  Where nothing is asked of the end of the branch, steps look for none; if
+    one must be, they go on over it to a state ``beside`` it.
     """
 
     load: int
     span: float
     stage: str = ""
-    beyond: Literal["stop", "jump"] | None = "stop"
+    beyond: Literal["stop", "jump", "beside"] | None = "stop"
 
 
 def reach(march: March, course: Course, target: float) -> None:
@@ -83,14 +85,16 @@ def reach(march: March, course: Course, target: float) -> None:
     there = march.saved()
     march.restore(origin)
     march.critical, march.behind = list(origin.critical), None
+    march.left = list(origin.left)
     try:
-        _reach(march, replace(course, beyond="stop"), target)
+        _reach(march, replace(course, beyond="beside"), target)
     except StoppedError as looking:
         if looking.ending is Ending.BRANCH_ENDS:
             raise
         if failed is not None:
             raise failed from None
         march.restore(there)
+        march.left = list(there.left)
 
 
 def _reach(march: March, course: Course, target: float) -> bool:
@@ -304,7 +308,17 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
         f"at {march.shown(load, lost.value)} the branch of minima ends, {why}: the smallest curvature comes to "
         f"{lost.curvature:.3g} there, and what is left has {lost.left:.3g}"
     )
-    after = descended(march, load, target, course.span, lost) if course.beyond == "jump" else None
+    before, after = march.saved(), None
+    beside = course.beyond in (None, "beside")
+    # where another branch goes off, either of its sides is as good as the other
+    if course.beyond == "jump" or (beside and lost.loss is not Loss.BIFURCATION):
+        after = descended(march, load, target, course.span, lost)
+    if beside:
+        if after is not None and march.moved(march.system, before.system.z) <= _BESIDE:
+            march.left.append(sentence)
+            return
+        march.restore(before)
+        after = None
     if course.stage:
         march.critical.append(
             Critical(

@@ -529,7 +529,8 @@ class Stage(Record):
     ``beyond`` asks where the branch that is followed ends because it is no minimum of the potential energy any more,
     and says what happens there: ``stop``, or ``jump`` to the state that the decrease of the energy leads to.  Then
     steps are so short that no end is passed.  Without it they are as long as they can be, and an end is told of only
-    where a step finds no way past it.  ``shown`` are the stations that tables and pictures are to show beside the last
+    where a step finds no way past it; where the energy's decrease leads to a state beside it, both solvers go on there
+    and say so in a note.  ``shown`` are the stations that tables and pictures are to show beside the last
     of all.  ``critical_limit`` (in the unit of the stations) is how far apart and how uncertain critical values may be
     within one theory with which the stage still wants to hear AGREE; without it what is usual.
     """

@@ -14,6 +14,7 @@ def pressed_arc(
     section: tuple[Any, float],
     planes: dict[str, tuple[tuple[float, float], tuple[float, float]]],
     stations: list[float],
+    beyond: str | None = None,
 ) -> Scene:
     """The scene, by E and ν of the ``material``, thickness and width, and of each of the ``planes`` a point and normal.
 
@@ -48,7 +49,12 @@ def pressed_arc(
                 name: {"kind": "beam-half-plane", "beam": "beam", "body": "wall", "point": point, "normal": normal}
                 for name, (point, normal) in planes.items()
             },
-            "stages": [{"name": "press", "steps": "press", "stations": stations}],
-            "probes": [{"of": name, "quantity": "force"} for name in planes],
+            "stages": [
+                {"name": "press", "steps": "press", "stations": stations} | ({"beyond": beyond} if beyond else {})
+            ],
+            "probes": [
+                {"of": "scene", "quantity": "potential_energy"},
+                *({"of": name, "quantity": "force"} for name in planes),
+            ],
         }
     )

@@ -1,0 +1,46 @@
+"""Whether a branch has ended where no law says why: what the decrease of the energy leads to from its last state.
+
+Where what lies flat lifts off, a contact's place goes from element to element, and the chain's equilibrium may cease at
+a border between two while the smallest curvature is still positive: nothing goes to zero by which the end could be
+foretold.  What tells it is that just beyond, under nearly the same loads, a motion with drag (:mod:`cprbm.leap`) leads
+far away.  If there were an equilibrium near the last one, that is where it would come to rest.
+"""
+
+from __future__ import annotations
+
+from cprbm.critical import BranchEnd, Minimum
+from cprbm.following import Way
+from cprbm.leap import leap
+from cprbm.mechanism import Mechanism
+from cprbm.rate import carried_by_others, rate, strayed
+from cprbm.settings import Settings
+from cprbm.stability import softest
+from scene import Loss
+
+STEPS = 30  # of a motion that leads to a state beside: one that goes on for longer leads far away, or in circles
+NEAR = 1e-3  # of the value beyond: an end that is not known better than that is none
+
+
+def left(mechanism: Mechanism, settings: Settings, last: Minimum, way: Way) -> BranchEnd | None:
+    """The fold between the ``last`` minimum, where a ``way`` begins, and where that leads to; None where none is told.
+
+    Args:
+        mechanism, settings: what was followed.
+        last: the last minimum on the branch.
+        way: to the nearest values at which no minimum was found that continues the branch.
+    """
+    width = abs(way.value(1.0) - last.value)
+    if width > NEAR * abs(way.value(1.0)):
+        return None
+    problem = mechanism.problem
+    soft = softest(problem, last.point)
+    landed = leap(mechanism, settings, way.at(1.0), last.point, soft.direction, STEPS)
+    if landed is None:
+        return None
+    change = landed.point.state.theta - last.point.state.theta
+    ways = [rate(problem, point, way.change) for point in (last.point, landed.point)]
+    shifted = carried_by_others(problem.model, last.point, landed.point)
+    if not strayed(problem.model.lengths, change, ways[0], ways[1], shifted):
+        return None
+    value = 0.5 * (last.value + way.value(1.0))
+    return BranchEnd(value, width, Loss.FOLD, "", last.curvature, last.curvature, soft.direction)
