@@ -10,12 +10,13 @@ f_j         generalised force on joint j; F_i = Σ_{j>i} f_j of the same beam
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
-from cprbm.model import Model
+from cprbm.model import Layout, Model
 from cprbm.posture import Posture, posture
 from cprbm.standing import Attachment
 from scene.answer import Array, Ints
@@ -83,18 +84,38 @@ class Positions:
 
 def positions(model: Model, state: State) -> Positions:
     """Eq. (6) for all beams."""
-    layout = model.layout
-    links, joints = np.empty((2, model.n_links)), np.empty((2, model.n_joints))
-    np.cos(state.theta, out=links[0])
-    np.sin(state.theta, out=links[1])
-    links *= model.lengths
-    roots = layout.places.values(state.posture).reshape(2, -1)
-    joints[:, layout.roots] = roots
-    for c, (own, behind) in enumerate(zip(layout.links, layout.behind, strict=True)):
-        further = joints[:, behind]
-        np.add.accumulate(links[:, own], axis=1, out=further)
-        further += roots[:, c : c + 1]
+    links, joints = _placed(model, state.theta, _roots(model.layout, state))
     return Positions(joints[0], joints[1], links[0], links[1])
+
+
+def positions_of(model: Model, states: Sequence[State]) -> list[Positions]:
+    """The same for some states at once."""
+    layout = model.layout
+    roots = np.array([_roots(layout, state) for state in states])
+    links, joints = _placed(model, np.array([state.theta for state in states]), roots)
+    return [Positions(*mine, *parts) for mine, parts in zip(joints, links, strict=True)]
+
+
+def _roots(layout: Layout, state: State) -> Array:
+    """x and y of what chains begin at, and of the marks, (2, k)."""
+    places = layout.places
+    # where nothing of that moves nobody asks how bodies stand
+    return (places.values(state.posture) if layout.moving.size else places.base).reshape(2, -1)
+
+
+def _placed(model: Model, theta: Array, roots: Array) -> tuple[Array, Array]:
+    """Links' components (..., 2, n_links) and joints (..., 2, n_joints), of angles (..., n_links) and :func:`_roots`."""
+    layout = model.layout
+    links, joints = np.empty((*roots.shape[:-1], model.n_links)), np.empty((*roots.shape[:-1], model.n_joints))
+    np.cos(theta, out=links[..., 0, :])
+    np.sin(theta, out=links[..., 1, :])
+    links *= model.lengths
+    joints[..., layout.roots] = roots
+    for c, (own, behind) in enumerate(zip(layout.links, layout.behind, strict=True)):
+        further = joints[..., behind]
+        np.add.accumulate(links[..., own], axis=-1, out=further)
+        further += roots[..., c : c + 1]
+    return links, joints
 
 
 def beyond(model: Model, fx: Array, fy: Array) -> Array:
