@@ -9,10 +9,10 @@ b       linearised violation of each gap if nothing pressed
 ======  =======================================================================
 
 λ is the minimum of ½ λᵀGλ − bᵀλ over λ ≥ 0 (Lawson and Hanson 1974, NNLS): from the rows that pressed before, those
-that would pull go, then one row is added at a time, the most violated, and every step descends.  Rules that only count signs
-and change all wrong ones at once (Júdice and Pires 1994, Murty) press with all of some tens of neighbours at first, go
-through many sets of them whose compliances are the same but for round-off, and lose their way there; a set that was
-built by descent has the few rows that press, after about as many steps.
+that would pull go, then one row is added at a time, the most violated, and every step descends.  Rules that only count
+signs and change all wrong ones at once (Júdice and Pires 1994, Murty) press with all of some tens of neighbours at
+first, go through many sets of them whose compliances are the same but for round-off, and lose their way there; a set
+that was built by descent has the few rows that press, after about as many steps.
 """
 
 from __future__ import annotations

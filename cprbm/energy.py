@@ -150,7 +150,8 @@ def load_work(
     gradient = np.zeros(model.n_unknowns)
     diagonal, off = np.zeros(model.n_links), np.zeros(model.n_links - 1)
     on_x, on_y = np.zeros(model.n_joints), np.zeros(model.n_joints)
-    on_beams, moments = list[tuple[BeamLoad, float]](), list[tuple[MomentOnBeam, float]]()
+    on_beams: list[tuple[BeamLoad, float]] = []
+    moments: list[tuple[MomentOnBeam, float]] = []
     for name, load in loads.items():
         value = values.get(name, 0.0)
         if isinstance(load, DeadLoad):

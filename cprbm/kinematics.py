@@ -41,7 +41,7 @@ class State:
 
 def most_turned(before: State, after: State) -> float:
     """The most that a link turns by between two states, rad."""
-    return float(np.max(np.abs(after.theta - before.theta)))
+    return float(np.abs(after.theta - before.theta).max())
 
 
 def rest_state(model: Model) -> State:
@@ -104,7 +104,7 @@ def _roots(layout: Layout, state: State) -> Array:
 
 
 def _placed(model: Model, theta: Array, roots: Array) -> tuple[Array, Array]:
-    """Links' components (..., 2, n_links) and joints (..., 2, n_joints), of angles (..., n_links) and :func:`_roots`."""
+    """Links' components (..., 2, n_links) and joints (..., 2, n_joints), of ``theta`` (..., n_links)."""
     layout = model.layout
     links, joints = np.empty((*roots.shape[:-1], model.n_links)), np.empty((*roots.shape[:-1], model.n_joints))
     np.cos(theta, out=links[..., 0, :])
@@ -134,32 +134,36 @@ def pulled_back(model: Model, state: State, at: Positions, fx: Array, fy: Array)
         gradient over θ (n_links,) and over the bodies (3B,) of Σ f_j·p_j, and its second derivatives:
         the diagonal over θ (n_links,) and over φ of each body (B,).
     """
-    sums = beyond(model, fx, fy)
-    Fx, Fy = sums[:, model.layout.next_joints]
-    over_bodies, second_bodies = _held(model, state, sums)
-    return at.dx * Fy - at.dy * Fx, over_bodies, -(at.dx * Fx + at.dy * Fy), second_bodies
+    sums = summed(model, fx, fy)
+    Fx, Fy = sums[:, : model.n_links]
+    over_bodies, _ = _held(model, state, sums)
+    return at.dx * Fy - at.dy * Fx, over_bodies, *twice(model, state, at, sums)
+
+
+def summed(model: Model, fx: Array, fy: Array) -> Array:
+    """Sums of forces on all that hangs on each link, and on each start or mark on a body, (2, ..., n_links + k)."""
+    return beyond(model, fx, fy)[..., model.layout.hung]
+
+
+def twice(model: Model, state: State, at: Positions, sums: Array) -> tuple[Array, Array]:
+    """Second derivatives of Σ f_j·p_j from :func:`summed` forces: over θ (n_links,) and over φ of each body (B,)."""
+    Fx, Fy = sums[:, : model.n_links]
+    return -(at.dx * Fx + at.dy * Fy), _held(model, state, sums)[1]
 
 
 def over_unknowns(model: Model, state: State, at: Positions, fx: Array, fy: Array) -> Array:
     """The gradients (r, n_links + 3B) of r sums Σ f_j·p_j over all unknowns, for rows of forces (r, n_joints)."""
-    sums = beyond(model, fx, fy)
-    rows = np.empty((len(fx), model.n_unknowns))
-    for links, behind in zip(model.layout.links, model.layout.behind, strict=True):
-        np.multiply(at.dx[links], sums[1][:, behind], out=rows[:, links])
-        rows[:, links] -= at.dy[links] * sums[0][:, behind]
-    rows[:, model.n_links :], _ = _held(model, state, sums)
-    return rows
+    return over_unknowns_by(model, state, at, *summed(model, fx, fy))
 
 
 def behind(model: Model, joints: Ints) -> Array:
     """Which links, and which starts and marks on bodies, each of some ``joints`` (p,) hangs on: (p, n_links + k).
 
-    Ones and noughts, the product of forces on the joints with which is what :func:`beyond` sums.
+    Ones and noughts, the product of forces on the joints with which is what :func:`summed` sums.
     """
     alone = np.zeros((len(joints), model.n_joints))
     alone[np.arange(len(joints)), joints] = 1.0
-    sums = beyond(model, alone, alone)[0]
-    return np.concatenate((sums[:, model.layout.next_joints], sums[:, model.layout.moving]), axis=1)
+    return np.asarray(summed(model, alone, alone)[0])
 
 
 def over_unknowns_by(model: Model, state: State, at: Positions, fx: Array, fy: Array) -> Array:
@@ -168,18 +172,14 @@ def over_unknowns_by(model: Model, state: State, at: Positions, fx: Array, fy: A
     rows = np.empty((len(fx), model.n_unknowns))
     np.multiply(at.dx, fy[:, :n], out=rows[:, :n])
     rows[:, :n] -= at.dy * fx[:, :n]
-    if not model.layout.moving.size:
-        rows[:, n:] = 0.0
-        return rows
-    rows[:, n:], _ = model.layout.moved.gradient(state.posture, np.concatenate((fx[:, n:], fy[:, n:]), axis=1))
+    rows[:, n:], _ = _held(model, state, (fx, fy))
     return rows
 
 
-def _held(model: Model, state: State, sums: Array) -> tuple[Array, Array]:
-    """What forces, in :func:`beyond` summed, mean for the bodies that beams' starts and marks are on."""
-    moving, count = model.layout.moving, len(model.free_bodies)
-    if not moving.size:
-        shape = sums.shape[1:-1]
+def _held(model: Model, state: State, sums: Array | tuple[Array, Array]) -> tuple[Array, Array]:
+    """What :func:`summed` forces mean for the bodies that beams' starts and marks are on."""
+    (fx, fy), n, count = sums, model.n_links, len(model.free_bodies)
+    if not model.layout.moving.size:
+        shape = fx.shape[:-1]
         return np.zeros((*shape, 3 * count)), np.zeros((*shape, count))
-    held = np.concatenate((sums[0][..., moving], sums[1][..., moving]), axis=-1)
-    return model.layout.moved.gradient(state.posture, held)
+    return model.layout.moved.gradient(state.posture, np.concatenate((fx[..., n:], fy[..., n:]), axis=-1))

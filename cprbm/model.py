@@ -172,6 +172,7 @@ class Layout:
         links, behind: of each chain, its links and the joints behind them.
         joints_back: of each chain, all its joints from the last to the first.
         next_joints: the joint behind each link (n_links,).
+        hung: these, then ``moving``: on what lies beyond them, links and bodies feel forces (n_links + k,).
         roots: the first joint of each chain, then the marks (k,): these are points of bodies or of the ground.
         places: their x, then their y (2k,).
         moving, moved: the same of those that are on bodies.
@@ -181,6 +182,7 @@ class Layout:
     behind: tuple[slice, ...]
     joints_back: tuple[slice, ...]
     next_joints: Ints
+    hung: Ints
     roots: Ints
     places: Linear
     moving: Ints
@@ -256,13 +258,15 @@ class Model:
         roots = np.array([*firsts, *range(self.first_mark, self.n_joints)], dtype=np.intp)
         held = [*(chain.start for chain in self.chains), *self.marks.values()]
         on_bodies = np.array([at.body >= 0 for at in held], dtype=bool)
+        next_joints = np.concatenate([np.arange(each.start, each.stop) for each in behind])
         points = points_of([(at.body, at.point) for at in held], self.references)
         base, over = points.base.reshape(-1, 2).T, points.over.reshape(len(held), 2, -1).transpose(1, 0, 2)
         return Layout(
             links=tuple(chain.links for chain in self.chains),
             behind=behind,
             joints_back=tuple(slice(each.stop - 1, each.start - 2 if each.start > 1 else None, -1) for each in behind),
-            next_joints=np.concatenate([np.arange(each.start, each.stop) for each in behind]),
+            next_joints=next_joints,
+            hung=np.concatenate((next_joints, roots[on_bodies])),
             roots=roots,
             places=Linear(base.ravel(), over.reshape(2 * len(held), -1)),
             moving=roots[on_bodies],
@@ -281,6 +285,11 @@ class Model:
         off = -self.couplings
         diagonal.flags.writeable = off.flags.writeable = False
         return diagonal, off
+
+    @cached_property
+    def stiffest(self) -> float:
+        """The largest of the springs' stiffnesses."""
+        return float(self.couplings.max())
 
     @cached_property
     def first_mark(self) -> int:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cprbm.bordered import generic
+from cprbm.bordered import Held, generic
 from cprbm.closure import Closure, closure_rows, closure_values
 from cprbm.contact import Formulation, Rows
 from cprbm.energy import AnyLoad, LoadWork, load_work, strain_energy, strain_gradient, strain_hessian
@@ -79,14 +79,14 @@ class Problem:
         return np.array(first, dtype=np.intp)
 
     @cached_property
-    def still(self) -> Ints:
+    def still(self) -> Held:
         """The :attr:`loose` ones and those that do not turn."""
-        return np.concatenate((self.loose, self.closure.fixed))
+        return Held(np.concatenate((self.loose, self.closure.fixed)), self.model.n_links)
 
     @cached_property
     def generic(self) -> Array:
         """A right-hand side with a part in every direction, :func:`cprbm.bordered.generic`, (n_links,)."""
-        return generic(self.model.lengths, self.still)
+        return generic(self.model.lengths, self.still.unknowns)
 
     def stiffened(self) -> Array:
         """What the drag adds to the second derivatives over θ (n_links,)."""
@@ -136,6 +136,11 @@ class Point:
     def held(self) -> Array:
         """∂(μ·Z) over q (n_links + 3B,)."""
         return np.asarray(self.mu @ self.A_E)
+
+    @cached_property
+    def unbalanced(self) -> Array:
+        """∂L over q (n_links + 3B,)."""
+        return self.gradient + self.held + self.pressed
 
     @cached_property
     def pressed(self) -> Array:
