@@ -56,6 +56,9 @@ def _over_unknowns(model: Model, state: State, at: Positions, part: Local) -> Ar
         # twice as many rows, x and y in turns
         sums = part.slopes[:, : 2 * p].reshape(2 * r, p) @ part.behind
         rows = kinematics.over_unknowns_by(model, state, at, sums[::2], sums[1::2])
+    elif p and model.hanging is not None:
+        sums = part.slopes[:, : 2 * p].reshape(r, 2, p) @ model.hanging[part.joints]
+        rows = kinematics.over_unknowns_by(model, state, at, sums[:, 0], sums[:, 1])
     else:
         forces = np.zeros((2, r, model.n_joints))
         if part.alike:

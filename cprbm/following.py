@@ -94,6 +94,19 @@ class Reached:
     certificate: Certificate | None
 
 
+@dataclass(frozen=True, slots=True)
+class Doubted:
+    """A certified minimum at a ``fraction`` of a way, found in a step that was too long to be believed.
+
+    ``there`` are the rates of the links (n_links,).
+    """
+
+    fraction: float
+    found: Equilibrium
+    certificate: Certificate
+    there: Array
+
+
 @dataclass
 class Follower:
     """Where on a branch we are: the state of the one loop that steps.
@@ -120,7 +133,7 @@ class Follower:
     def go(self, way: Way, accept: Callable[[Point, dict[str, float]], None]) -> Reached:
         """Go all the way, directly or in steps; ``accept`` sees every next minimum before it is the present one."""
         done, step, iterations, refused = 0.0, 1.0, 0, False
-        doubted: tuple[float, Equilibrium] | None = None
+        doubted: Doubted | None = None
         self.values, self.reached, self.locked = dict(way.begin), way.value(0.0), None
         problem = self.mechanism.problem
         here = there = rate(problem, self.point, way.change)
@@ -131,25 +144,27 @@ class Follower:
             ahead = None if refused else continued(problem, values, self._known, way.value(fraction))
             doubtful = 0.0
             # what was found before in too long a step may be believed from nearer
-            before = doubted[1] if doubted is not None and doubted[0] == fraction else None
-            for start in self._starts(before, ahead, values):
-                if before is not None and start is before.point:
-                    found = before
+            before = doubted if doubted is not None and doubted.fraction == fraction else None
+            for start in self._starts(before.found.point if before else None, ahead, values):
+                if before is not None and start is before.found.point:
+                    found, certificate, there, ending = before.found, before.certificate, before.there, Ending.COMPLETED
                 else:
                     most = SOON if start is ahead else self.settings.iterations
                     farthest = self._farthest((fraction - done) * here)
                     found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
                     iterations += found.iterations
-                certificate, ending = certify(self.mechanism, self.settings, found)
+                    certificate, ending = certify(self.mechanism, self.settings, found)
+                    if ending is Ending.COMPLETED:
+                        there = rate(problem, found.point, way.change)
                 if ending is Ending.COMPLETED:
-                    there = rate(problem, found.point, way.change)
                     ways = (fraction - done) * here, (fraction - done) * there
                     ending, sentence = self._strayed(found.point, *ways)
                     if ending is Ending.COMPLETED and self._uneven(found.point, *ways):
                         iterations += 1
                         doubtful = doubt(problem, way.at(0.5 * (done + fraction)), self.point, found.point, *ways)
                         if doubtful > 1.0:
-                            ending, sentence, doubted = Ending.STEP_TOO_SMALL, ELSEWHERE, (fraction, found)
+                            ending, sentence = Ending.STEP_TOO_SMALL, ELSEWHERE
+                            doubted = Doubted(fraction, found, certificate, there)
                 else:
                     sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
                 if ending is Ending.COMPLETED:
@@ -189,13 +204,13 @@ class Follower:
                 ending = ending if found.converged else Ending.STEP_TOO_SMALL
                 return Reached(ending, sentence, certificate=None)
 
-    def _starts(self, before: Equilibrium | None, ahead: Point | None, values: dict[str, float]) -> Iterator[Point]:
+    def _starts(self, before: Point | None, ahead: Point | None, values: dict[str, float]) -> Iterator[Point]:
         """Where Newton's method begins, until it finds what is sought: first where the last minima lead, if known.
 
         What was found ``before`` under these values needs no solving, and comes before that.
         """
         if before is not None:
-            yield before.point
+            yield before
         if ahead is not None:
             yield ahead
         yield self.point

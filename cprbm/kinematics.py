@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 
 from cprbm.model import Layout, Model
-from cprbm.posture import Posture, posture
+from cprbm.posture import Posture, posture, stood
 from cprbm.standing import Attachment
 from scene.answer import Array, Ints
 
@@ -91,7 +91,8 @@ def positions(model: Model, state: State) -> Positions:
 def positions_of(model: Model, states: Sequence[State]) -> list[Positions]:
     """The same for some states at once."""
     layout = model.layout
-    roots = np.array([_roots(layout, state) for state in states])
+    w = stood(np.array([state.bodies for state in states]))
+    roots = (layout.places.base + w @ layout.places.over.T).reshape(len(states), 2, -1)
     links, joints = _placed(model, np.array([state.theta for state in states]), roots)
     return [Positions(*mine, *parts) for mine, parts in zip(joints, links, strict=True)]
 
@@ -161,6 +162,8 @@ def behind(model: Model, joints: Ints) -> Array:
 
     Ones and noughts, the product of forces on the joints with which is what :func:`summed` sums.
     """
+    if model.hanging is not None:
+        return np.asarray(model.hanging[joints])
     alone = np.zeros((len(joints), model.n_joints))
     alone[np.arange(len(joints)), joints] = 1.0
     return np.asarray(summed(model, alone, alone)[0])

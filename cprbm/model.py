@@ -38,6 +38,8 @@ from scene import Scene
 from scene.answer import Array, Ints
 from scene.frozendict import frozendict
 
+LARGE = 400  # joints
+
 
 @dataclass(frozen=True, eq=False)
 class Chain:
@@ -275,6 +277,22 @@ class Model:
                 over[:, on_bodies].reshape(2 * int(on_bodies.sum()), 5 * len(self.free_bodies)),
             ),
         )
+
+    @cached_property
+    def hanging(self) -> Array | None:
+        """Which links, starts and marks on bodies each joint hangs on: ones and noughts (n_joints, n_links + k).
+
+        None where that is a large table.
+        """
+        if self.n_joints > LARGE:
+            return None
+        moving, found = self.layout.moving.tolist(), np.zeros((self.n_joints, len(self.layout.hung)))
+        for chain in self.chains:
+            found[chain.joints, chain.links] = np.tri(chain.n + 2, chain.n + 1, -1)
+        ends = {chain.first_joint: chain.joints.stop for chain in self.chains}
+        for column, root in enumerate(moving, start=self.n_links):
+            found[root : ends.get(root, root + 1), column] = 1.0
+        return found
 
     @cached_property
     def stiffness(self) -> tuple[Array, Array]:

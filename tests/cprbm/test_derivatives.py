@@ -98,6 +98,19 @@ def test_rows_are_derivatives_of_closures_and_gaps(bent):
         )
 
 
+@pytest.mark.parametrize("formulation", ["auto", "paper"])
+def test_rows_of_a_large_model_are_those_of_a_small_one(formulation, monkeypatch):
+    """Forces on joints are summed along the beams where a table of what hangs on what would be large."""
+    mechanism, state = bent_hinge(formulation, hinge)
+    small = mechanism.problem
+    monkeypatch.setattr("cprbm.model.LARGE", 20)
+    large = mechanism_of(hinge(), Settings(links={"beam1": 23, "beam2": 29}, formulation=formulation)).problem
+    none = np.zeros(small.closure.rows)
+    one, other = (point_at(problem, {}, state, none, np.zeros(0), NO_ROWS) for problem in (small, large))
+    assert small.model.hanging is not None and large.model.hanging is None and one.rows.size
+    assert contact_rows(large.model, other) == pytest.approx(contact_rows(small.model, one), abs=1e-13)
+
+
 def test_the_newton_system_is_the_derivative_of_the_gradient(bent):
     problem, point = bent
     n = problem.model.n_links
