@@ -36,22 +36,22 @@ def pressing(G: Array, b: Array, first: Flags) -> tuple[Array, Flags]:
     compliance = G.diagonal()
     # a gap between places that cannot move is no unknown: it is open or the question has no answer
     yields = compliance > RIGID * compliance.max(initial=0.0)
-    if not yields.all():
+    lam, active = np.zeros(len(b)), np.zeros(len(b), dtype=bool)
+    rows = yields.nonzero()[0]
+    if rows.size < len(b):
         if (b[~yields] > 0.0).any():
             raise np.linalg.LinAlgError("a closed contact that nothing yields to")
-        lam, active = np.zeros(len(b)), np.zeros(len(b), dtype=bool)
-        if yields.any():
-            lam[yields], active[yields] = pressing(G[np.ix_(yields, yields)], b[yields], first[yields])
-        return lam, active
+        if not rows.size:
+            return lam, active
+        G, b, first, compliance = G[rows[:, None], rows], b[rows], first[rows], compliance[rows]
     scale = np.sqrt(compliance)
     # rows in units of their own compliance; a trace of the identity parts rows that are the same twice
     H = G / scale
     H /= scale[:, None]
     H.reshape(-1)[:: len(b) + 1] += TRACE
     held, force = _descended(H, b / scale, first.nonzero()[0])
-    lam, active = np.zeros(len(b)), np.zeros(len(b), dtype=bool)
     if held.size:
-        lam[held], active[held] = force / scale[held], True
+        lam[rows[held]], active[rows[held]] = force / scale[held], True
     return lam, active
 
 

@@ -294,11 +294,20 @@ class Rows:
 
     def sums(self, multipliers: Array, model: Model) -> Array:
         """∂(λ·c) over x and y of all joints, summed as :func:`cprbm.kinematics.summed` says (2, n_links + k)."""
-        if len(self.groups) == 1 and self.groups[0].behind is not None:
-            behind = self.groups[0].behind
-            return (multipliers @ self.groups[0].slopes)[: 2 * len(behind)].reshape(2, -1) @ behind
-        fx, fy, _ = self.forces(multipliers, model.n_joints, model.n_unknowns)
-        return kinematics.summed(model, fx, fy)
+        if model.hanging is None:
+            fx, fy, _ = self.forces(multipliers, model.n_joints, model.n_unknowns)
+            return kinematics.summed(model, fx, fy)
+        found = np.zeros((2, model.hanging.shape[1]))
+        for group, lam in self.shares(multipliers):
+            pressing, p = lam.nonzero()[0], group.joints.shape[1]
+            if group.shared:
+                behind = model.hanging[group.joints[0]] if group.behind is None else group.behind
+                found += (lam @ group.slopes)[: 2 * p].reshape(2, p) @ behind
+            elif pressing.size and p:
+                local = lam[pressing, None] * group.slopes[pressing, : 2 * p]
+                forces = local.reshape(-1, 2, p).swapaxes(0, 1).reshape(2, -1)
+                found += forces @ model.hanging[group.joints[pressing].ravel()]
+        return found
 
     def over_unknowns(self, model: Model, state: State, at: Positions) -> Array:
         """∂c over all unknowns (m, n_links + 3B)."""

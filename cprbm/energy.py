@@ -96,10 +96,9 @@ def strain_energy(model: Model, state: State) -> float:
     return float(0.5 * (model.couplings @ (delta * delta)))
 
 
-def strain_gradient(model: Model, state: State) -> Array:
-    """∂/∂θ of the strain energy (n_links,)."""
-    moments = spring_moments(model, state)
-    gradient = np.zeros(model.n_links)
+def strain_gradient(moments: Array) -> Array:
+    """∂/∂θ of the strain energy (n_links,), from the springs' ``moments`` (n_links−1,)."""
+    gradient = np.zeros(len(moments) + 1)
     gradient[1:] = moments
     gradient[:-1] -= moments
     return gradient

@@ -10,7 +10,6 @@ from math import sqrt
 
 import numpy as np
 
-from cprbm.energy import spring_moments
 from cprbm.kinematics import most_turned
 from cprbm.newton import known_system, many, newton_step
 from cprbm.point import Point, Problem, point_at, point_under
@@ -54,7 +53,7 @@ def measure(problem: Problem, point: Point) -> Measure:
     """Residuals of the optimality conditions over the largest terms in them; over S where there is no load."""
     model, c = problem.model, point.rows.values
     terms = np.abs(point.gradient) + np.abs(point.held) + np.abs(point.pressed)
-    scale = max(float(terms.max()), float(np.abs(spring_moments(model, point.state)).max()))
+    scale = max(float(terms.max()), float(np.abs(point.moments).max()))
     scale = scale if scale > NOTHING else 1.0
     # an angle is known to eps·|θ|, a spring's moment to the stiffness times that
     turned = max(1.0, float(np.abs(point.state.theta).max()))

@@ -158,8 +158,10 @@ class Follower:
                         there = rate(problem, found.point, way.change)
                 if ending is Ending.COMPLETED:
                     ways = (fraction - done) * here, (fraction - done) * there
-                    ending, sentence = self._strayed(found.point, *ways)
-                    if ending is Ending.COMPLETED and self._uneven(found.point, *ways):
+                    shifted = carried_by_others(problem.model, self.point, found.point)
+                    ending, sentence = self._strayed(found.point, *ways, shifted)
+                    change = found.point.state.theta - self.point.state.theta
+                    if ending is Ending.COMPLETED and uneven(problem.model.lengths, change, *ways, shifted):
                         iterations += 1
                         doubtful = doubt(problem, way.at(0.5 * (done + fraction)), self.point, found.point, *ways)
                         if doubtful > 1.0:
@@ -246,10 +248,11 @@ class Follower:
         problem, tolerance = self.mechanism.problem, self.settings.tolerance
         return equilibrium(problem, values, start, tolerance, most, settle=settle, farthest=farthest)
 
-    def _strayed(self, found: Point, start: Array, end: Array) -> tuple[Ending, str]:
+    def _strayed(self, found: Point, start: Array, end: Array, shifted: float) -> tuple[Ending, str]:
         """Why a minimum is not on the branch; COMPLETED where it is.
 
-        ``start`` and ``end`` are the ways that the rates at both ends of the step make of it, (n_links,).
+        ``start`` and ``end`` are the ways that the rates at both ends of the step make of it, (n_links,); links may
+        turn by ``shifted`` besides, rad.
         """
         turned = most_turned(self.point.state, found.state)
         if turned > self.settings.largest_turn:
@@ -259,16 +262,9 @@ class Follower:
         if self.careful and turned > ISOLATED and pressing(found) != pressing(self.point):
             return Ending.STEP_TOO_SMALL, "a contact or stop closes or opens on the way"
         change = found.state.theta - self.point.state.theta
-        model = self.mechanism.problem.model
-        if strayed(model.lengths, change, start, end, carried_by_others(model, self.point, found)):
+        if strayed(self.mechanism.problem.model.lengths, change, start, end, shifted):
             return Ending.STEP_TOO_SMALL, "the links went another way than their rates say, to another branch"
         return Ending.COMPLETED, ""
-
-    def _uneven(self, found: Point, start: Array, end: Array) -> bool:
-        """Whether what the rates at both ends say leaves a doubt where the branch is between them."""
-        model = self.mechanism.problem.model
-        change = found.state.theta - self.point.state.theta
-        return uneven(model.lengths, change, start, end, carried_by_others(model, self.point, found))
 
     def _cut(self, way: Way, done: float, step: float) -> float:
         """A step that ends before what is about to end the branch does, or just beyond where that is near."""

@@ -179,7 +179,10 @@ class Mechanism:
         """By how much beams may sag between their joints, which are all that ``paper`` holds; units of length."""
         if not self.boundaries:
             return 0.0
-        return max(SAG * chain.h * float(np.max(np.abs(np.diff(state.theta[chain.links])))) for chain in pair.chains)
+        bends = np.abs(state.theta[1:] - state.theta[:-1])
+        return max(
+            SAG * chain.h * float(bends[chain.links.start : chain.links.stop - 1].max()) for chain in pair.chains
+        )
 
 
 def _turned(before: State, after: State) -> float:

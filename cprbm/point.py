@@ -20,7 +20,7 @@ import numpy as np
 from cprbm.bordered import Held, generic
 from cprbm.closure import Closure, closure_rows, closure_values
 from cprbm.contact import Formulation, Rows
-from cprbm.energy import AnyLoad, LoadWork, load_work, strain_energy, strain_gradient, strain_hessian
+from cprbm.energy import AnyLoad, LoadWork, load_work, spring_moments, strain_energy, strain_gradient, strain_hessian
 from cprbm.kinematics import Positions, State, positions, pulled_back
 from cprbm.model import Model
 from scene.answer import Array, Ints
@@ -103,6 +103,7 @@ class Point:
         state, at: the unknowns and the joints' positions.
         mu, lam: multipliers of the equalities and of the contact rows.
         Z, rows: equalities (mE,) and contact constraints.
+        moments: of the springs (n_links−1,).
         gradient: of the potential energy (n,).
         A_E: derivatives of Z over q.
         work: of the loads.
@@ -117,6 +118,7 @@ class Point:
     lam: Array
     Z: Array
     rows: Rows
+    moments: Array
     gradient: Array
     A_E: Array
     work: LoadWork
@@ -172,7 +174,8 @@ def _point(
     model = problem.model
     work = load_work(model, problem.loads, values, state, at)
     gradient = -work.gradient
-    gradient[: model.n_links] += strain_gradient(model, state)
+    moments = spring_moments(model, state)
+    gradient[: model.n_links] += strain_gradient(moments)
     if problem.drag is not None:
         gradient[: model.n_links] += problem.stiffened() * (state.theta - problem.drag.theta)
     return Point(
@@ -184,6 +187,7 @@ def _point(
         lam=lam,
         Z=closure_values(model, problem.closure, state, at, values),
         rows=rows,
+        moments=moments,
         gradient=gradient,
         A_E=closure_rows(model, problem.closure, state, at),
         work=work,
