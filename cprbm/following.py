@@ -94,19 +94,6 @@ class Reached:
     certificate: Certificate | None
 
 
-@dataclass(frozen=True, slots=True)
-class Doubted:
-    """A certified minimum at a ``fraction`` of a way, found in a step that was too long to be believed.
-
-    ``there`` are the rates of the links (n_links,).
-    """
-
-    fraction: float
-    found: Equilibrium
-    certificate: Certificate
-    there: Array
-
-
 @dataclass
 class Follower:
     """Where on a branch we are: the state of the one loop that steps.
@@ -133,7 +120,8 @@ class Follower:
     def go(self, way: Way, accept: Callable[[Point, dict[str, float]], None]) -> Reached:
         """Go all the way, directly or in steps; ``accept`` sees every next minimum before it is the present one."""
         done, step, iterations, refused = 0.0, 1.0, 0, False
-        doubted: Doubted | None = None
+        doubted: tuple[float, Equilibrium] | None = None
+        believed: Certificate | None = None  # of what is doubted, if that is known
         self.values, self.reached, self.locked = dict(way.begin), way.value(0.0), None
         problem = self.mechanism.problem
         here = there = rate(problem, self.point, way.change)
@@ -144,29 +132,28 @@ class Follower:
             ahead = None if refused else continued(problem, values, self._known, way.value(fraction))
             doubtful = 0.0
             # what was found before in too long a step may be believed from nearer
-            before = doubted if doubted is not None and doubted.fraction == fraction else None
-            for start in self._starts(before.found.point if before else None, ahead, values):
-                if before is not None and start is before.found.point:
-                    found, certificate, there, ending = before.found, before.certificate, before.there, Ending.COMPLETED
+            before = doubted[1] if doubted is not None and doubted[0] == fraction else None
+            for start in self._starts(before, ahead, values):
+                if before is not None and start is before.point:
+                    found = before
                 else:
                     most = SOON if start is ahead else self.settings.iterations
                     farthest = self._farthest((fraction - done) * here)
                     found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
                     iterations += found.iterations
+                if found is before and believed is not None:
+                    certificate, ending = believed, Ending.COMPLETED
+                else:
                     certificate, ending = certify(self.mechanism, self.settings, found)
-                    if ending is Ending.COMPLETED:
-                        there = rate(problem, found.point, way.change)
                 if ending is Ending.COMPLETED:
+                    there = rate(problem, found.point, way.change)
                     ways = (fraction - done) * here, (fraction - done) * there
-                    shifted = carried_by_others(problem.model, self.point, found.point)
-                    ending, sentence = self._strayed(found.point, *ways, shifted)
-                    change = found.point.state.theta - self.point.state.theta
-                    if ending is Ending.COMPLETED and uneven(problem.model.lengths, change, *ways, shifted):
+                    ending, sentence = self._strayed(found.point, *ways)
+                    if ending is Ending.COMPLETED and self._uneven(found.point, *ways):
                         iterations += 1
                         doubtful = doubt(problem, way.at(0.5 * (done + fraction)), self.point, found.point, *ways)
                         if doubtful > 1.0:
-                            ending, sentence = Ending.STEP_TOO_SMALL, ELSEWHERE
-                            doubted = Doubted(fraction, found, certificate, there)
+                            ending, sentence, doubted = Ending.STEP_TOO_SMALL, ELSEWHERE, (fraction, found)
                 else:
                     sentence = certificate.failures[0] if found.converged else "Newton's method did not settle"
                 if ending is Ending.COMPLETED:
@@ -182,6 +169,7 @@ class Follower:
                 continue
             if doubtful > 1.0 and step > self.settings.smallest_step and iterations <= self.settings.iteration_limit:
                 # nothing ends here: the step was too long to be believed
+                believed = certificate if doubted is not None and found is doubted[1] else None
                 step = max(min(0.5, max(doubtful**-2, LEAST)) * step, self.settings.smallest_step)
                 continue
             if done == 0.0 and not refused:
@@ -206,13 +194,13 @@ class Follower:
                 ending = ending if found.converged else Ending.STEP_TOO_SMALL
                 return Reached(ending, sentence, certificate=None)
 
-    def _starts(self, before: Point | None, ahead: Point | None, values: dict[str, float]) -> Iterator[Point]:
+    def _starts(self, before: Equilibrium | None, ahead: Point | None, values: dict[str, float]) -> Iterator[Point]:
         """Where Newton's method begins, until it finds what is sought: first where the last minima lead, if known.
 
         What was found ``before`` under these values needs no solving, and comes before that.
         """
         if before is not None:
-            yield before
+            yield before.point
         if ahead is not None:
             yield ahead
         yield self.point
@@ -248,11 +236,10 @@ class Follower:
         problem, tolerance = self.mechanism.problem, self.settings.tolerance
         return equilibrium(problem, values, start, tolerance, most, settle=settle, farthest=farthest)
 
-    def _strayed(self, found: Point, start: Array, end: Array, shifted: float) -> tuple[Ending, str]:
+    def _strayed(self, found: Point, start: Array, end: Array) -> tuple[Ending, str]:
         """Why a minimum is not on the branch; COMPLETED where it is.
 
-        ``start`` and ``end`` are the ways that the rates at both ends of the step make of it, (n_links,); links may
-        turn by ``shifted`` besides, rad.
+        ``start`` and ``end`` are the ways that the rates at both ends of the step make of it, (n_links,).
         """
         turned = most_turned(self.point.state, found.state)
         if turned > self.settings.largest_turn:
@@ -262,9 +249,16 @@ class Follower:
         if self.careful and turned > ISOLATED and pressing(found) != pressing(self.point):
             return Ending.STEP_TOO_SMALL, "a contact or stop closes or opens on the way"
         change = found.state.theta - self.point.state.theta
-        if strayed(self.mechanism.problem.model.lengths, change, start, end, shifted):
+        model = self.mechanism.problem.model
+        if strayed(model.lengths, change, start, end, carried_by_others(model, self.point, found)):
             return Ending.STEP_TOO_SMALL, "the links went another way than their rates say, to another branch"
         return Ending.COMPLETED, ""
+
+    def _uneven(self, found: Point, start: Array, end: Array) -> bool:
+        """Whether what the rates at both ends say leaves a doubt where the branch is between them."""
+        model = self.mechanism.problem.model
+        change = found.state.theta - self.point.state.theta
+        return uneven(model.lengths, change, start, end, carried_by_others(model, self.point, found))
 
     def _cut(self, way: Way, done: float, step: float) -> float:
         """A step that ends before what is about to end the branch does, or just beyond where that is near."""
