@@ -139,9 +139,12 @@ def never_beyond(pair: Pair, way: Sequence[tuple[State, Positions]], allowed: fl
     if not beyond.any():
         return True
     # as seen from every joint of B, that is not one of the nearest
-    squares = (A * A).sum(axis=1)[:, :, None] + (B * B).sum(axis=1)[:, None] - 2.0 * (A.transpose(0, 2, 1) @ B)
-    away = np.sqrt(np.maximum(squares, 0.0, out=squares), out=squares)
-    return not (beyond & (away <= away.min(axis=2, keepdims=True) + h)).any()
+    # (squares of the distances, but for that of C_A itself, which is the same for all of B)
+    apart = (-2.0 * A).transpose(0, 2, 1) @ B
+    apart += (B * B).sum(axis=1)[:, None]
+    own = (A * A).sum(axis=1)
+    reach = np.sqrt(np.maximum(apart.min(axis=2) + own, 0.0)) + h
+    return not (beyond & (apart <= (reach * reach - own)[:, :, None])).any()
 
 
 def _from_springs(pair: Pair, lines: Lines) -> tuple[Array, Array, Array, Array]:
