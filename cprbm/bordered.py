@@ -251,4 +251,6 @@ class Bordered:
 def bordered(tridiagonal: Tridiagonal, border: Array, corner: Array) -> Bordered:
     """Form S."""
     solved = tridiagonal.solve(border)
-    return Bordered(tridiagonal, border, corner, solved, corner - border.T @ solved)
+    schur = corner - border.T @ solved
+    # where Q is nearly singular the two halves differ by more than round-off
+    return Bordered(tridiagonal, border, corner, solved, 0.5 * (schur + schur.T))
