@@ -46,12 +46,19 @@ def generic(metric: Array, held: Ints) -> Array:
     return np.asarray(metric * vector / np.sqrt(metric @ vector**2))
 
 
-def without(diagonal: Array, off: Array, held: Ints) -> tuple[Array, Array]:
+class Held:
+    """Some of n ``unknowns`` that have an equation each to themselves; ``beside`` are their places off the diagonal."""
+
+    def __init__(self, unknowns: Ints, n: int) -> None:
+        self.unknowns = unknowns
+        self.beside = np.concatenate((unknowns[unknowns < n - 1], unknowns[unknowns > 0] - 1))
+
+
+def without(diagonal: Array, off: Array, held: Held) -> tuple[Array, Array]:
     """A tridiagonal matrix in which the unknowns ``held`` have an equation each to themselves."""
     diagonal, off = diagonal.copy(), off.copy()
-    diagonal[held] = 1.0
-    off[held[held < len(off)]] = 0.0
-    off[held[held > 0] - 1] = 0.0
+    diagonal[held.unknowns] = 1.0
+    off[held.beside] = 0.0
     return diagonal, off
 
 
@@ -66,7 +73,7 @@ def anchored(diagonal: Array, off: Array, metric: Array, given: Ints, held: Ints
     anchors = given
     for _ in range(ANCHORS):
         gone = np.concatenate((anchors, held))
-        kept, beside = without(diagonal, off, gone)
+        kept, beside = without(diagonal, off, Held(gone, len(diagonal)))
         factors = factorised(kept + ROUNDED * float(np.max(np.abs(kept))), beside)
         # two steps of inverse iteration
         vector = factors.solve(generic(metric, gone)[:, None])[:, 0]
@@ -111,7 +118,7 @@ class Tridiagonal:
         """ν(Q), by Sturm sequences where Q is not positive definite."""
         if self.positive:
             return 0
-        lowest = -2.0 * float(np.abs(self.diagonal).max() + 2.0 * np.abs(self.off).max(initial=0.0))
+        lowest = -2.0 * float(np.abs(self.diagonal).max() + 2.0 * np.abs(self.off).max())
         # of the eigenvalues from there to zero only the number is wanted: they need not be parted from each other
         by_values, unsorted = 1, "B"
         number, _, _, _, info = lapack.dstebz(self.diagonal, self.off, by_values, lowest, 0.0, 1, 1, -lowest, unsorted)
@@ -158,8 +165,8 @@ class Symmetric:
         if info != 0:
             raise np.linalg.LinAlgError("singular Schur complement")
         # of every block of two one eigenvalue is negative, and two entries of the pivots are
-        paired = self._pivots < 0
-        self.negative = int(np.count_nonzero((self._factors.diagonal() < 0.0) & ~paired)) + int(paired.sum()) // 2
+        paired, below = self._pivots < 0, self._factors.diagonal() < 0.0
+        self.negative = int(np.count_nonzero(below & ~paired)) + int(np.count_nonzero(paired)) // 2
 
     def solve(self, right: Array) -> Array:
         """Solution for columns (m, k)."""
@@ -245,4 +252,5 @@ def bordered(tridiagonal: Tridiagonal, border: Array, corner: Array) -> Bordered
     """Form S."""
     solved = tridiagonal.solve(border)
     schur = corner - border.T @ solved
+    # where Q is nearly singular the two halves differ by more than round-off
     return Bordered(tridiagonal, border, corner, solved, 0.5 * (schur + schur.T))

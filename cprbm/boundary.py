@@ -105,7 +105,7 @@ class FittedBoundary:
         Raises:
             np.linalg.LinAlgError: the points do not determine the polynomial.
         """
-        m, n, size = len(self.joints), len(self.points), self.degree + 1
+        m, n = len(self.joints), len(self.points)
         joints, points, links = self._spans
         _, nx, ny = offset_vectors(state.theta[links], self.side * self.offset)
         bx, by = at.x[points] + nx, at.y[points] + ny
@@ -113,7 +113,7 @@ class FittedBoundary:
             A, B, a, o = bx, by, at.x[joints], at.y[joints]
         else:
             A, B, a, o = by, bx, at.y[joints], at.x[joints]
-        low, high = float(np.minimum.reduce(A)), float(np.maximum.reduce(A))
+        low, high = float(A.min()), float(A.max())
         centre, width = 0.5 * (high + low), 0.5 * (high - low)
         D = _derivative(self.degree) / width
         # the basis at points and joints, a row for each polynomial
@@ -131,24 +131,26 @@ class FittedBoundary:
 
         # dq over A and B, and with it the slopes of c over (a, o, A, B)
         V1 = D.T @ V
-        q_A = -inverse @ (V1 * rest + V * P1)
-        over_A, over_B = self.sense * (at_joints.T @ q_A), self.sense * (at_joints.T @ q_B)
+        q_AB = np.concatenate((-inverse @ (V1 * rest + V * P1), q_B), axis=1)
+        over_AB = self.sense * (at_joints.T @ q_AB)
         # (A, B) over (x, y, τ) of the boundary's joints; τ halves onto two links
-        nA, nB = (nx, ny) if self.along_x else (ny, nx)
-        tA, tB = (-ny, nx) if self.along_x else (nx, -ny)
+        normal = np.concatenate((nx, ny) if self.along_x else (ny, nx))
+        half_tA, half_tB = (-0.5 * ny, 0.5 * nx) if self.along_x else (0.5 * nx, -0.5 * ny)
 
-        def over_locals(k: int, over_A: Array, over_B: Array) -> tuple[Array, int, int]:
+        def over_locals(k: int, over_AB: Array) -> tuple[Array, int, int]:
             """(A, B) to (x of ``k`` joints and the points, y of the same, θ of links), and where a and o begin."""
-            found = np.zeros((len(over_A), 2 * (k + n) + n + 1))
+            over_A, over_B = over_AB[:, :n], over_AB[:, n:]
+            found = np.zeros((len(over_AB), 2 * (k + n) + n + 1))
             along, across = (0, k + n) if self.along_x else (k + n, 0)
             found[:, along + k : along + k + n] = over_A
             found[:, across + k : across + k + n] = over_B
-            half = over_A * (0.5 * tA) + over_B * (0.5 * tB)
+            half = over_A * half_tA
+            half += over_B * half_tB
             found[:, -n - 1 : -1] = half
             found[:, -n:] += half
             return found, along, across
 
-        slopes, along, across = over_locals(m, over_A, over_B)
+        slopes, along, across = over_locals(m, over_AB)
         diagonal, next_row = slopes.reshape(-1), slopes.shape[1] + 1
         diagonal[along : m * (next_row - 1) : next_row] = self.sense * g1
         diagonal[across : m * (next_row - 1) : next_row] = -self.sense
@@ -161,23 +163,21 @@ class FittedBoundary:
             mu1 = D @ mu
             U, U1, U2 = np.array((mu, mu1, D @ mu1)) @ V
             # over (a, A, B)
-            second, C, K = np.zeros((k + 2 * n, k + 2 * n)), np.zeros((k + 2 * n, size)), np.zeros((size, k + 2 * n))
-            i, j = np.arange(k), np.arange(k, k + n)
-            second[i, i] = w * g2[pressing]
-            second[j, j] = U2 * rest + 2.0 * U1 * P1 + U * P2
-            second[j, j + n] = second[j + n, j] = -U1
-            C[:k], C[k : k + n] = (w * (D.T @ phi)).T, (U1 * V + U * V1).T
-            K[:, k : k + n], K[:, k + n :] = q_A, q_B
-            product = C @ K
-            second += product
-            second += product.T
+            second, size = np.zeros((k + 2 * n, k + 2 * n)), k + 2 * n
+            second[: k + n, k:] = np.concatenate((w * (D.T @ phi), U1 * V + U * V1), axis=1).T @ q_AB
+            second += second.T
+            flat = second.reshape(-1)
+            flat[: k * size : size + 1] += w * g2[pressing]
+            flat[k * (size + 1) : (k + n) * size : size + 1] += U2 * rest + 2.0 * U1 * P1 + U * P2
+            flat[k * (size + 1) + n : (k + n) * size : size + 1] -= U1
+            flat[(k + n) * (size + 1) - n :: size + 1] -= U1
             sigma, vectors, failed = lapack.dsyevd(second)
             if failed:
                 raise np.linalg.LinAlgError("no eigenvalues of a boundary's second derivative")
             size_of = np.abs(sigma)
             real = (size_of > REAL * size_of.max()).nonzero()[0]
             over = vectors.T[real]
-            columns, along, _ = over_locals(k, over[:, k : k + n], over[:, k + n :])
+            columns, along, _ = over_locals(k, over[:, k:])
             columns[:, along : along + k] = over[:, :k]
             joints = np.concatenate((self.joints[pressing], self.points))
             links_behind = None if self.behind is None else np.concatenate((self.behind[pressing], self.behind[m:]))
@@ -185,7 +185,7 @@ class FittedBoundary:
                 Local(joints[None], self.links[None], columns, alike=True, behind=links_behind),
                 sigma[real],
                 # the offset points turn with τ: d²(A, B)/dτ² = −(nA, nB)
-                turning=-(multipliers @ over_A) * nA - (multipliers @ over_B) * nB,
+                turning=-((multipliers @ over_AB) * normal).reshape(2, n).sum(axis=0),
             )
 
         each, angles = self._local

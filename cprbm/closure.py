@@ -23,7 +23,7 @@ import numpy as np
 
 from cprbm.hinging import Hinge
 from cprbm.holding import Hold
-from cprbm.kinematics import Positions, State
+from cprbm.kinematics import Positions, State, behind
 from cprbm.model import Model
 from cprbm.posture import Linear, points_of, stacked, turn_of
 from scene.answer import Array, Ints
@@ -43,6 +43,7 @@ class Closure:
         own: Z less the last joints' places and the welded links' angles, without drives.
         whole: the same with what the last joints go with the points where their beams start.
         weld_links: the links of ``welds``.
+        behind: of the last joints, as :func:`cprbm.kinematics.behind` says (ends, n_links + k).
         welded: derivatives of Z over the welded links, which are the same in all states, (rows, n_links + 3B).
         given: name of each value that is given, its row, and what the row has of it per unit (SI).
     """
@@ -56,6 +57,7 @@ class Closure:
     own: Linear
     whole: Linear
     weld_links: Ints
+    behind: Array
     welded: Array
     given: tuple[tuple[str, int, float], ...]
 
@@ -109,9 +111,10 @@ def closure_of(
     moved[: 2 * len(ends)] += points_of(starts, model.references).over
     welded = np.zeros((len(own.base), model.n_unknowns))
     welded[2 * len(ends) + np.arange(len(welds)), weld_links] = 1.0
+    end_joints = np.array([model.chains[c].joints.stop - 1 for c in ends], dtype=np.intp)
     return Closure(
         ends=tuple(ends),
-        end_joints=np.array([model.chains[c].joints.stop - 1 for c in ends], dtype=np.intp),
+        end_joints=end_joints,
         welds=tuple(welds),
         fixed=np.array(fixed, dtype=np.intp),
         hinges=hinges,
@@ -119,6 +122,7 @@ def closure_of(
         own=own,
         whole=Linear(own.base, moved),
         weld_links=weld_links,
+        behind=behind(model, end_joints),
         welded=welded,
         given=tuple(given),
     )
@@ -159,6 +163,11 @@ def closure_forces(model: Model, closure: Closure, multipliers: Array) -> tuple[
     fx[closure.end_joints] = multipliers[0:k:2]
     fy[closure.end_joints] = multipliers[1:k:2]
     return fx, fy
+
+
+def closure_sums(closure: Closure, multipliers: Array) -> Array:
+    """The same, as :func:`cprbm.kinematics.summed` sums them (2, n_links + k)."""
+    return np.asarray(multipliers[: 2 * len(closure.ends)].reshape(-1, 2).T @ closure.behind)
 
 
 def closure_second(model: Model, closure: Closure, state: State, multipliers: Array) -> Array:

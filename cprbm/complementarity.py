@@ -8,11 +8,11 @@ b       linearised violation of each gap if nothing pressed
 λ, w    contact forces, remaining gaps
 ======  =======================================================================
 
-Block principal pivoting (Júdice and Pires 1994): all wrong signs are changed at once as long as their number
-falls.  When it stalls, the same λ is found as the minimum of ½ λᵀGλ − bᵀλ over λ ≥ 0 (Lawson and Hanson 1974, NNLS):
-one row is added at a time, the most violated, and every step descends.  Rules that only count signs, like
-Murty's, go through sets of many neighbours whose compliances are the same but for round-off, and lose their
-way there; a set that was built by descent has the few rows that press.
+λ is the minimum of ½ λᵀGλ − bᵀλ over λ ≥ 0 (Lawson and Hanson 1974, NNLS): from the rows that pressed before, those
+that would pull go, then one row is added at a time, the most violated, and every step descends.  Rules that only count
+signs and change all wrong ones at once (Júdice and Pires 1994, Murty) press with all of some tens of neighbours at
+first, go through many sets of them whose compliances are the same but for round-off, and lose their way there; a set
+that was built by descent has the few rows that press, after about as many steps.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from scipy.linalg import lapack
 
 from scene.answer import Array, Flags, Ints
 
-PATIENCE = 4
 RIGID = 1e-13  # of the largest compliance
 TRACE = 1e-13  # of every row's own compliance
+ROUNDED = 1e-14  # of the largest violation, and of one
 
 
 def pressing(G: Array, b: Array, first: Flags) -> tuple[Array, Flags]:
@@ -36,84 +36,59 @@ def pressing(G: Array, b: Array, first: Flags) -> tuple[Array, Flags]:
     compliance = G.diagonal()
     # a gap between places that cannot move is no unknown: it is open or the question has no answer
     yields = compliance > RIGID * compliance.max(initial=0.0)
-    if not yields.all():
+    lam, active = np.zeros(len(b)), np.zeros(len(b), dtype=bool)
+    rows = yields.nonzero()[0]
+    if rows.size < len(b):
         if (b[~yields] > 0.0).any():
             raise np.linalg.LinAlgError("a closed contact that nothing yields to")
-        lam, active = np.zeros(len(b)), np.zeros(len(b), dtype=bool)
-        if yields.any():
-            lam[yields], active[yields] = pressing(G[np.ix_(yields, yields)], b[yields], first[yields])
-        return lam, active
-    m = len(b)
+        if not rows.size:
+            return lam, active
+        G, b, first, compliance = G[rows[:, None], rows], b[rows], first[rows], compliance[rows]
     scale = np.sqrt(compliance)
     # rows in units of their own compliance; a trace of the identity parts rows that are the same twice
-    H = G / (scale * scale[:, None])
-    H.flat[:: m + 1] += TRACE
-    c = b / scale
-    active = first.copy()
-    fewest, patience = m + 1, PATIENCE
-    slack = 1e-14 * (1.0 + float(np.abs(c).max(initial=0.0)))
-    while patience > 0:
-        force, gap = np.zeros(m), -c
-        held = active.nonzero()[0]
-        if held.size:
-            force[held] = _balancing(H, c, held)
-            gap = H[:, held] @ force[held] - c
-        wrong = np.where(active, force, gap) < -slack
-        count = int(np.count_nonzero(wrong))
-        if count == 0:
-            return _sharpened(H, force, active) / scale, active
-        if count < fewest:
-            fewest, patience = count, PATIENCE
-        else:
-            patience -= 1
-        active = active ^ wrong
-    force, active = _descended(H, c, first, slack)
-    return _sharpened(H, force, active) / scale, active
-
-
-def _sharpened(H: Array, force: Array, active: Flags) -> Array:
-    """Forces (m,) without what the trace leaves the gaps open by."""
-    held = active.nonzero()[0]
+    H = G / scale
+    H /= scale[:, None]
+    H.reshape(-1)[:: len(b) + 1] += TRACE
+    held, force = _descended(H, b / scale, first.nonzero()[0])
     if held.size:
-        force[held] += _balancing(H, TRACE * force, held)
-    return np.maximum(force, 0.0)
+        lam[rows[held]], active[rows[held]] = force / scale[held], True
+    return lam, active
 
 
-def _balancing(H: Array, c: Array, held: Ints) -> Array:
-    """Forces of the rows ``held`` (k,) by which their gaps are closed, (k,).
+def _descended(H: Array, c: Array, held: Ints) -> tuple[Ints, Array]:
+    """The minimum of ½ λᵀHλ − cᵀλ over λ ≥ 0, from the rows ``held``: those that press and their forces (k,).
 
     Raises:
-        np.linalg.LinAlgError: two of them are the same.
+        np.linalg.LinAlgError: two of them are the same, or it was not found.
     """
-    _, _, force, info = lapack.dgesv(H[held[:, None], held], c[held])
-    if info != 0:
-        raise np.linalg.LinAlgError("contacts that are the same")
-    return np.asarray(force)
-
-
-def _descended(H: Array, c: Array, first: Flags, slack: float) -> tuple[Array, Flags]:
-    """The minimum of ½ λᵀHλ − cᵀλ over λ ≥ 0, from the rows ``first``."""
-    m = len(c)
-    force, active, barred, added = np.zeros(m), first.copy(), np.zeros(m, dtype=bool), np.zeros(m, dtype=bool)
-    for _ in range(50 + 10 * m):
-        while np.any(active):
-            aim = np.zeros(m)
-            aim[active] = _balancing(H, c, active.nonzero()[0])
-            pulling = active & (aim <= 0.0)
-            if not np.any(pulling):
+    slack = ROUNDED * (1.0 + float(np.abs(c).max()))
+    force, barred, added = np.zeros(held.size), held[:0], -1
+    for _ in range(50 + 10 * len(c)):
+        while held.size:
+            across = H.take(held, axis=0)
+            factors, pivots, aim, failed = lapack.dgesv(across.take(held, axis=1), c[held])
+            if failed:
+                raise np.linalg.LinAlgError("contacts that are the same")
+            if aim.min() >= -slack:
                 force = aim
                 break
             # towards the aim until the first force vanishes
-            parts = force[pulling] / np.maximum(force[pulling] - aim[pulling], np.finfo(float).tiny)
-            force = force + np.min(parts) * (aim - force)
-            active[np.flatnonzero(pulling)[parts <= np.min(parts)]] = False
-            force[~active] = 0.0
-        # a row that is added and leaves at once is violated by round-off only
-        barred = (barred | added) & ~np.any(added & active)
-        violated = np.where(active | barred, -np.inf, c - H @ force)
-        worst = int(np.argmax(violated))
-        if violated[worst] <= slack:
-            return force, active
-        added = np.arange(m) == worst
-        active[worst] = True
+            pulling = aim < -slack
+            parts = np.full(held.size, np.inf)
+            parts[pulling] = force[pulling] / (force[pulling] - aim[pulling])
+            least = parts.min()
+            kept = parts > least
+            # a row that is added and leaves at once is violated by round-off only
+            barred = np.concatenate((barred, held[~kept & (held == added)]))
+            held, force = held[kept], (force + least * (aim - force))[kept]
+        violated = c - force @ across if held.size else c.copy()
+        violated[held] = violated[barred] = -np.inf
+        added = int(violated.argmax())
+        if violated[added] <= slack:
+            if held.size:
+                # without what the trace leaves the gaps open by
+                more, _ = lapack.dgetrs(factors, pivots, TRACE * force)
+                force = np.maximum(force + more, 0.0)
+            return held, force
+        held, force = np.concatenate((held, (added,))), np.concatenate((force, (0.0,)))
     raise np.linalg.LinAlgError("no complementary solution")

@@ -31,7 +31,7 @@ class Local:
     Attributes:
         joints, angles: what enters each row, (r, p) and (r, a), or all of them, (1, p) and (1, a).
         slopes: derivatives over x of the joints, y of the joints, angles (r, 2p + a).
-        alike: whether the same enters all rows, and nothing twice.
+        alike: whether the same enters all rows, and nothing twice; the angles are then those of neighbouring links.
         behind: where the rows are alike and the joints few, what :func:`cprbm.kinematics.behind` says of these.
     """
 
@@ -56,6 +56,9 @@ def _over_unknowns(model: Model, state: State, at: Positions, part: Local) -> Ar
         # twice as many rows, x and y in turns
         sums = part.slopes[:, : 2 * p].reshape(2 * r, p) @ part.behind
         rows = kinematics.over_unknowns_by(model, state, at, sums[::2], sums[1::2])
+    elif p and model.hanging is not None:
+        sums = part.slopes[:, : 2 * p].reshape(r, 2, p) @ model.hanging[part.joints]
+        rows = kinematics.over_unknowns_by(model, state, at, sums[:, 0], sums[:, 1])
     else:
         forces = np.zeros((2, r, model.n_joints))
         if part.alike:
@@ -68,7 +71,8 @@ def _over_unknowns(model: Model, state: State, at: Positions, part: Local) -> Ar
             np.add.at(across, places, part.slopes[:, p : 2 * p].ravel())
         rows = kinematics.over_unknowns(model, state, at, forces[0], forces[1])
     if part.alike and a:
-        rows[:, part.angles[0]] += part.slopes[:, 2 * p :]
+        first = int(part.angles[0, 0])
+        rows[:, first : first + a] += part.slopes[:, 2 * p :]
     elif a:
         places = (np.arange(r)[:, None] * model.n_unknowns + part.angles).ravel()
         np.add.at(rows.reshape(-1), places, part.slopes[:, 2 * p :].ravel())
@@ -140,7 +144,8 @@ class Group:
         arc: arc length on the contact's first beam where each row acts (m,).
         reach: length of the first beam, before and behind ``arc``, whose joints have these rows and no others.
         itself: whether a beam touches itself, at two places of which the first has the first joint.
-        shared: whether the joints and angles of all rows are the same, no joint among them twice.
+        shared: whether the joints and angles of all rows are the same, no joint among them twice, and the angles
+            those of neighbouring links.
         behind: of shared joints, as :class:`Local` has it.
         factors: λ (m,) ↦ the same second derivative by its factors, where these are known.
     """
@@ -221,6 +226,14 @@ class Rows:
         """What each row is: its contact and its key there."""
         return tuple((group.contact, key) for group in self.groups for key in group.keys)
 
+    def pressed(self, multipliers: Array) -> frozenset[tuple[str, int]]:
+        """Keys of the rows whose multiplier is positive."""
+        return frozenset(
+            (group.contact, group.keys[row])
+            for group, lam in self.shares(multipliers)
+            for row in (lam > 0.0).nonzero()[0].tolist()
+        )
+
     @cached_property
     def contact(self) -> tuple[str, ...]:
         """Name of each row's contact."""
@@ -257,7 +270,7 @@ class Rows:
 
     def pressing(self, multipliers: Array) -> set[str]:
         """Names of the contacts and stops that have a row whose multiplier is positive."""
-        return {group.contact for group, lam in self.shares(multipliers) if np.any(lam > 0.0)}
+        return {group.contact for group, lam in self.shares(multipliers) if (lam > 0.0).any()}
 
     def forces(self, multipliers: Array, n_joints: int, n_unknowns: int) -> tuple[Array, Array, Array]:
         """∂(λ·c) over x and y of all joints (n_joints,), and what is over unknown angles at once (n_unknowns,)."""
@@ -268,16 +281,33 @@ class Rows:
                 continue
             p = group.joints.shape[1]
             if group.shared:
-                total = lam @ group.slopes
+                total, first = lam @ group.slopes, int(group.angles[0, 0])
                 fx[group.joints[0]] += total[:p]
                 fy[group.joints[0]] += total[p : 2 * p]
-                moments[group.angles[0]] += total[2 * p :]
+                moments[first : first + len(total) - 2 * p] += total[2 * p :]
                 continue
             local, joints = lam[pressing, None] * group.slopes[pressing], group.joints[pressing].ravel()
             np.add.at(fx, joints, local[:, :p].ravel())
             np.add.at(fy, joints, local[:, p : 2 * p].ravel())
             np.add.at(moments, group.angles[pressing].ravel(), local[:, 2 * p :].ravel())
         return fx, fy, moments
+
+    def sums(self, multipliers: Array, model: Model) -> Array:
+        """∂(λ·c) over x and y of all joints, summed as :func:`cprbm.kinematics.summed` says (2, n_links + k)."""
+        if model.hanging is None:
+            fx, fy, _ = self.forces(multipliers, model.n_joints, model.n_unknowns)
+            return kinematics.summed(model, fx, fy)
+        found = np.zeros((2, model.hanging.shape[1]))
+        for group, lam in self.shares(multipliers):
+            pressing, p = lam.nonzero()[0], group.joints.shape[1]
+            if group.shared:
+                behind = model.hanging[group.joints[0]] if group.behind is None else group.behind
+                found += (lam @ group.slopes)[: 2 * p].reshape(2, p) @ behind
+            elif pressing.size and p:
+                local = lam[pressing, None] * group.slopes[pressing, : 2 * p]
+                forces = local.reshape(-1, 2, p).swapaxes(0, 1).reshape(2, -1)
+                found += forces @ model.hanging[group.joints[pressing].ravel()]
+        return found
 
     def over_unknowns(self, model: Model, state: State, at: Positions) -> Array:
         """∂c over all unknowns (m, n_links + 3B)."""

@@ -96,10 +96,9 @@ def strain_energy(model: Model, state: State) -> float:
     return float(0.5 * (model.couplings @ (delta * delta)))
 
 
-def strain_gradient(model: Model, state: State) -> Array:
-    """∂/∂θ of the strain energy (n_links,)."""
-    moments = spring_moments(model, state)
-    gradient = np.zeros(model.n_links)
+def strain_gradient(moments: Array) -> Array:
+    """∂/∂θ of the strain energy (n_links,), from the springs' ``moments`` (n_links−1,)."""
+    gradient = np.zeros(len(moments) + 1)
     gradient[1:] = moments
     gradient[:-1] -= moments
     return gradient
@@ -150,7 +149,8 @@ def load_work(
     gradient = np.zeros(model.n_unknowns)
     diagonal, off = np.zeros(model.n_links), np.zeros(model.n_links - 1)
     on_x, on_y = np.zeros(model.n_joints), np.zeros(model.n_joints)
-    on_beams, moments = list[tuple[BeamLoad, float]](), list[tuple[MomentOnBeam, float]]()
+    on_beams: list[tuple[BeamLoad, float]] = []
+    moments: list[tuple[MomentOnBeam, float]] = []
     for name, load in loads.items():
         value = values.get(name, 0.0)
         if isinstance(load, DeadLoad):

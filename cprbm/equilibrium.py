@@ -10,7 +10,6 @@ from math import sqrt
 
 import numpy as np
 
-from cprbm.energy import spring_moments
 from cprbm.kinematics import most_turned
 from cprbm.newton import known_system, many, newton_step
 from cprbm.point import Point, Problem, point_at, point_under
@@ -52,21 +51,19 @@ class Equilibrium:
 
 def measure(problem: Problem, point: Point) -> Measure:
     """Residuals of the optimality conditions over the largest terms in them; over S where there is no load."""
-    model = problem.model
-    parts = np.array((point.gradient, point.held, point.pressed))
-    terms, moments = np.abs(parts).sum(axis=0), np.abs(spring_moments(model, point.state))
-    scale = max(float(terms.max(initial=0.0)), float(moments.max(initial=0.0)))
+    model, c = problem.model, point.rows.values
+    terms = np.abs(point.gradient) + np.abs(point.held) + np.abs(point.pressed)
+    scale = max(float(terms.max()), float(np.abs(point.moments).max()))
     scale = scale if scale > NOTHING else 1.0
-    residual = problem.moves * parts.sum(axis=0)
     # an angle is known to eps·|θ|, a spring's moment to the stiffness times that
     turned = max(1.0, float(np.abs(point.state.theta).max()))
-    floor = 4.0 * EPS * float(model.couplings.max()) * turned + 4.0 * EPS * sqrt(model.n_links) * scale
+    floor = 4.0 * EPS * model.stiffest * turned + 4.0 * EPS * sqrt(model.n_links) * scale
     return Measure(
-        residual=float(np.abs(residual).max(initial=0.0)) / scale,
+        residual=float(np.abs(problem.moves * point.unbalanced).max()) / scale,
         floor=floor / scale,
         violation=float(np.abs(point.Z).max(initial=0.0)),
-        overlap=float(point.rows.values.max(initial=0.0)),
-        complementarity=float(np.abs(point.lam * point.rows.values).max(initial=0.0)) / scale,
+        overlap=float(c.max(initial=0.0)),
+        complementarity=float(np.abs(point.lam * c).max(initial=0.0)) / scale,
     )
 
 
@@ -149,13 +146,15 @@ def _serves(problem: Problem, before: Point, point: Point, left: float, toleranc
 
 def _left(now: Measure, tolerance: float) -> float:
     """What is left to be put right: the residual, and once there is none, what is violated; nought below all limits."""
-    parts = (now.residual, max(tolerance, now.floor)), (max(now.violation, now.overlap), max(tolerance, 100.0 * EPS))
-    return next((left for left, allowed in parts if left > allowed), 0.0)
+    if now.residual > max(tolerance, now.floor):
+        return now.residual
+    violated = max(now.violation, now.overlap)
+    return violated if violated > max(tolerance, 100.0 * EPS) else 0.0
 
 
 def _held(point: Point) -> Held:
     """The rows that press."""
-    return frozenset(key for key, force in zip(point.rows.keys, point.lam, strict=True) if force > 0.0)
+    return point.rows.pressed(point.lam)
 
 
 def _steady(seen: list[tuple[float, Held]]) -> bool:
@@ -172,11 +171,10 @@ def _returns(seen: list[tuple[float, Held]], here: tuple[float, Held]) -> bool:
     left, held = here
     if left == 0.0:
         return False
-    return any(
-        abs(left - before) < SAME * before and (ago <= SHORT or those == held)
-        for ago, (before, those) in enumerate(reversed(seen[-LONG:]), start=1)
-        if ago > 1
-    )
+    for ago, (before, those) in enumerate(seen[-2 : -LONG - 1 : -1], start=2):
+        if abs(left - before) < SAME * before and (ago <= SHORT or those == held):
+            return True
+    return False
 
 
 def _settled(now: Measure, longest: float, tolerance: float) -> bool:

@@ -123,6 +123,7 @@ class Follower:
         """Go all the way, directly or in steps; ``accept`` sees every next minimum before it is the present one."""
         done, step, iterations, refused = 0.0, 1.0, 0, False
         doubted: tuple[float, Equilibrium] | None = None
+        believed: Certificate | None = None  # of what is doubted, if that is known
         self.values, self.reached, self.locked = dict(way.begin), way.value(0.0), None
         problem = self.mechanism.problem
         here = there = rate(problem, self.point, way.change)
@@ -142,7 +143,10 @@ class Follower:
                     farthest = self._farthest((fraction - done) * here)
                     found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
                     iterations += found.iterations
-                certificate, ending = certify(self.mechanism, self.settings, found)
+                if found is before and believed is not None:
+                    certificate, ending = believed, Ending.COMPLETED
+                else:
+                    certificate, ending = certify(self.mechanism, self.settings, found)
                 if ending is Ending.COMPLETED:
                     there = rate(problem, found.point, way.change)
                     ways = (fraction - done) * here, (fraction - done) * there
@@ -167,6 +171,7 @@ class Follower:
                 continue
             if doubtful > 1.0 and step > self.settings.smallest_step and iterations <= self.settings.iteration_limit:
                 # nothing ends here: the step was too long to be believed
+                believed = certificate if doubted is not None and found is doubted[1] else None
                 step = max(min(0.5, max(doubtful**-2, LEAST)) * step, self.settings.smallest_step)
                 continue
             self.refused, self.beyond = way.value(fraction), values

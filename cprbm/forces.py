@@ -94,7 +94,7 @@ def _supports(problem: Problem, point: Point, contact: ContactForces) -> tuple[S
     forces = np.array((fx - contact.fx - point.work.fx, fy - contact.fy - point.work.fy))
     on_beams = np.add.reduceat(forces, model.layout.roots, axis=1).T
     # ∂L/∂θ of the whole, whose entry at a link that does not turn is the moment that holds it
-    held = point.gradient + point.held + point.pressed
+    held = point.unbalanced
     found = []
     for chain, force in zip(model.chains, on_beams, strict=False):
         if chain.start.body < 0:

@@ -10,13 +10,14 @@ f_j         generalised force on joint j; F_i = Σ_{j>i} f_j of the same beam
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
-from cprbm.model import Model
-from cprbm.posture import Posture, posture
+from cprbm.model import Layout, Model
+from cprbm.posture import Posture, posture, stood
 from cprbm.standing import Attachment
 from scene.answer import Array, Ints
 
@@ -40,7 +41,7 @@ class State:
 
 def most_turned(before: State, after: State) -> float:
     """The most that a link turns by between two states, rad."""
-    return float(np.max(np.abs(after.theta - before.theta)))
+    return float(np.abs(after.theta - before.theta).max())
 
 
 def rest_state(model: Model) -> State:
@@ -83,18 +84,39 @@ class Positions:
 
 def positions(model: Model, state: State) -> Positions:
     """Eq. (6) for all beams."""
-    layout = model.layout
-    links, joints = np.empty((2, model.n_links)), np.empty((2, model.n_joints))
-    np.cos(state.theta, out=links[0])
-    np.sin(state.theta, out=links[1])
-    links *= model.lengths
-    roots = layout.places.values(state.posture).reshape(2, -1)
-    joints[:, layout.roots] = roots
-    for c, (own, behind) in enumerate(zip(layout.links, layout.behind, strict=True)):
-        further = joints[:, behind]
-        np.add.accumulate(links[:, own], axis=1, out=further)
-        further += roots[:, c : c + 1]
+    links, joints = _placed(model, state.theta, _roots(model.layout, state))
     return Positions(joints[0], joints[1], links[0], links[1])
+
+
+def positions_of(model: Model, states: Sequence[State]) -> list[Positions]:
+    """The same for some states at once."""
+    layout = model.layout
+    w = stood(np.array([state.bodies for state in states]))
+    roots = (layout.places.base + w @ layout.places.over.T).reshape(len(states), 2, -1)
+    links, joints = _placed(model, np.array([state.theta for state in states]), roots)
+    return [Positions(*mine, *parts) for mine, parts in zip(joints, links, strict=True)]
+
+
+def _roots(layout: Layout, state: State) -> Array:
+    """x and y of what chains begin at, and of the marks, (2, k)."""
+    places = layout.places
+    # where nothing of that moves nobody asks how bodies stand
+    return (places.values(state.posture) if layout.moving.size else places.base).reshape(2, -1)
+
+
+def _placed(model: Model, theta: Array, roots: Array) -> tuple[Array, Array]:
+    """Links' components (..., 2, n_links) and joints (..., 2, n_joints), of ``theta`` (..., n_links)."""
+    layout = model.layout
+    links, joints = np.empty((*roots.shape[:-1], model.n_links)), np.empty((*roots.shape[:-1], model.n_joints))
+    np.cos(theta, out=links[..., 0, :])
+    np.sin(theta, out=links[..., 1, :])
+    links *= model.lengths
+    joints[..., layout.roots] = roots
+    for c, (own, behind) in enumerate(zip(layout.links, layout.behind, strict=True)):
+        further = joints[..., behind]
+        np.add.accumulate(links[..., own], axis=-1, out=further)
+        further += roots[..., c : c + 1]
+    return links, joints
 
 
 def beyond(model: Model, fx: Array, fy: Array) -> Array:
@@ -113,32 +135,38 @@ def pulled_back(model: Model, state: State, at: Positions, fx: Array, fy: Array)
         gradient over θ (n_links,) and over the bodies (3B,) of Σ f_j·p_j, and its second derivatives:
         the diagonal over θ (n_links,) and over φ of each body (B,).
     """
-    sums = beyond(model, fx, fy)
-    Fx, Fy = sums[:, model.layout.next_joints]
-    over_bodies, second_bodies = _held(model, state, sums)
-    return at.dx * Fy - at.dy * Fx, over_bodies, -(at.dx * Fx + at.dy * Fy), second_bodies
+    sums = summed(model, fx, fy)
+    Fx, Fy = sums[:, : model.n_links]
+    over_bodies, _ = _held(model, state, sums)
+    return at.dx * Fy - at.dy * Fx, over_bodies, *twice(model, state, at, sums)
+
+
+def summed(model: Model, fx: Array, fy: Array) -> Array:
+    """Sums of forces on all that hangs on each link, and on each start or mark on a body, (2, ..., n_links + k)."""
+    return beyond(model, fx, fy)[..., model.layout.hung]
+
+
+def twice(model: Model, state: State, at: Positions, sums: Array) -> tuple[Array, Array]:
+    """Second derivatives of Σ f_j·p_j from :func:`summed` forces: over θ (n_links,) and over φ of each body (B,)."""
+    Fx, Fy = sums[:, : model.n_links]
+    return -(at.dx * Fx + at.dy * Fy), _held(model, state, sums)[1]
 
 
 def over_unknowns(model: Model, state: State, at: Positions, fx: Array, fy: Array) -> Array:
     """The gradients (r, n_links + 3B) of r sums Σ f_j·p_j over all unknowns, for rows of forces (r, n_joints)."""
-    sums = beyond(model, fx, fy)
-    rows = np.empty((len(fx), model.n_unknowns))
-    for links, behind in zip(model.layout.links, model.layout.behind, strict=True):
-        np.multiply(at.dx[links], sums[1][:, behind], out=rows[:, links])
-        rows[:, links] -= at.dy[links] * sums[0][:, behind]
-    rows[:, model.n_links :], _ = _held(model, state, sums)
-    return rows
+    return over_unknowns_by(model, state, at, *summed(model, fx, fy))
 
 
 def behind(model: Model, joints: Ints) -> Array:
     """Which links, and which starts and marks on bodies, each of some ``joints`` (p,) hangs on: (p, n_links + k).
 
-    Ones and noughts, the product of forces on the joints with which is what :func:`beyond` sums.
+    Ones and noughts, the product of forces on the joints with which is what :func:`summed` sums.
     """
+    if model.hanging is not None:
+        return np.asarray(model.hanging[joints])
     alone = np.zeros((len(joints), model.n_joints))
     alone[np.arange(len(joints)), joints] = 1.0
-    sums = beyond(model, alone, alone)[0]
-    return np.concatenate((sums[:, model.layout.next_joints], sums[:, model.layout.moving]), axis=1)
+    return np.asarray(summed(model, alone, alone)[0])
 
 
 def over_unknowns_by(model: Model, state: State, at: Positions, fx: Array, fy: Array) -> Array:
@@ -147,18 +175,14 @@ def over_unknowns_by(model: Model, state: State, at: Positions, fx: Array, fy: A
     rows = np.empty((len(fx), model.n_unknowns))
     np.multiply(at.dx, fy[:, :n], out=rows[:, :n])
     rows[:, :n] -= at.dy * fx[:, :n]
-    if not model.layout.moving.size:
-        rows[:, n:] = 0.0
-        return rows
-    rows[:, n:], _ = model.layout.moved.gradient(state.posture, np.concatenate((fx[:, n:], fy[:, n:]), axis=1))
+    rows[:, n:], _ = _held(model, state, (fx, fy))
     return rows
 
 
-def _held(model: Model, state: State, sums: Array) -> tuple[Array, Array]:
-    """What forces, in :func:`beyond` summed, mean for the bodies that beams' starts and marks are on."""
-    moving, count = model.layout.moving, len(model.free_bodies)
-    if not moving.size:
-        shape = sums.shape[1:-1]
+def _held(model: Model, state: State, sums: Array | tuple[Array, Array]) -> tuple[Array, Array]:
+    """What :func:`summed` forces mean for the bodies that beams' starts and marks are on."""
+    (fx, fy), n, count = sums, model.n_links, len(model.free_bodies)
+    if not model.layout.moving.size:
+        shape = fx.shape[:-1]
         return np.zeros((*shape, 3 * count)), np.zeros((*shape, count))
-    held = np.concatenate((sums[0][..., moving], sums[1][..., moving]), axis=-1)
-    return model.layout.moved.gradient(state.posture, held)
+    return model.layout.moved.gradient(state.posture, np.concatenate((fx[..., n:], fy[..., n:]), axis=-1))

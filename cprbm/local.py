@@ -22,10 +22,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cprbm.closure import Closure, closure_forces, closure_second
+from cprbm.closure import Closure, closure_second, closure_sums
 from cprbm.contact import Rows
 from cprbm.energy import LoadWork, strain_hessian
-from cprbm.kinematics import Positions, State, arm, pulled_back
+from cprbm.kinematics import Positions, State, arm, twice
 from cprbm.model import Model
 from scene.answer import Array, Flags, Ints
 
@@ -137,9 +137,7 @@ def local_system(
     first_mu = first_rho + 2 * (n + len(model.chains) + len(model.marks))
     size = first_mu + closure.rows
 
-    fx, fy = closure_forces(model, closure, mu)
-    cx, cy, _ = rows.forces(lam, J, model.n_unknowns)
-    _, _, second, second_bodies = pulled_back(model, state, at, fx + cx, fy + cy)
+    second, second_bodies = twice(model, state, at, closure_sums(closure, mu) + rows.sums(lam, model))
     over_phi = second_bodies + closure_second(model, closure, state, mu) - work.second
     diagonal, off = strain_hessian(model)
     diagonal, off = diagonal - work.diagonal, off - work.off

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
@@ -20,7 +20,7 @@ from cprbm.energy import dead_loads, end_moments
 from cprbm.hinging import hinges_of
 from cprbm.holding import holds_of
 from cprbm.itself import Itself, itself_of
-from cprbm.kinematics import Positions, State, most_turned, positions
+from cprbm.kinematics import Positions, State, most_turned, positions_of
 from cprbm.made import Made
 from cprbm.model import EVEN, Fit, Model, build
 from cprbm.nearest import Pair, distance_along, pair_of
@@ -117,7 +117,7 @@ class Mechanism:
         @cache
         def way() -> list[tuple[State, Positions]]:
             between = _between(before.state, after.state, rates)
-            return [(state, positions(self.problem.model, state)) for state in between]
+            return list(zip(between, positions_of(self.problem.model, between), strict=True))
 
         if len(names) > NARROWED:
             parts = pairwise([start, *way(), end])
@@ -179,7 +179,10 @@ class Mechanism:
         """By how much beams may sag between their joints, which are all that ``paper`` holds; units of length."""
         if not self.boundaries:
             return 0.0
-        return max(SAG * chain.h * float(np.max(np.abs(np.diff(state.theta[chain.links])))) for chain in pair.chains)
+        bends = np.abs(state.theta[1:] - state.theta[:-1])
+        return max(
+            SAG * chain.h * float(bends[chain.links.start : chain.links.stop - 1].max()) for chain in pair.chains
+        )
 
 
 def _turned(before: State, after: State) -> float:
@@ -188,7 +191,7 @@ def _turned(before: State, after: State) -> float:
     return max(most_turned(before, after), float(bodies))
 
 
-def _between(before: State, after: State, rates: Rates | None) -> Iterator[State]:
+def _between(before: State, after: State, rates: Rates | None) -> list[State]:
     """States on the way from one to another: the bodies going evenly, the links by cubics if ``rates`` are known.
 
     These are no longer than STEEP times what the links turn by: a cubic would swing out.
@@ -196,10 +199,11 @@ def _between(before: State, after: State, rates: Rates | None) -> Iterator[State
     turned = after.theta - before.theta
     most = STEEP * float(np.max(np.abs(turned), initial=0.0))
     first, last = (turned, turned) if rates is None else (_shortened(rate, most) for rate in rates)
-    for part in BETWEEN:
-        rest = 1.0 - part
-        swing = part * rest * (rest * (first - turned) - part * (last - turned))
-        yield State(before.theta + part * turned + swing, before.bodies + part * (after.bodies - before.bodies))
+    part = BETWEEN[:, None]
+    rest = 1.0 - part
+    swing = part * rest * (rest * (first - turned) - part * (last - turned))
+    bodies = before.bodies + part[:, None] * (after.bodies - before.bodies)
+    return [State(*each) for each in zip(before.theta + part * turned + swing, bodies, strict=True)]
 
 
 def _shortened(rate: Array, most: float) -> Array:

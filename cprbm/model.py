@@ -38,6 +38,8 @@ from scene import Scene
 from scene.answer import Array, Ints
 from scene.frozendict import frozendict
 
+LARGE = 400  # joints
+
 
 @dataclass(frozen=True, eq=False)
 class Chain:
@@ -172,6 +174,7 @@ class Layout:
         links, behind: of each chain, its links and the joints behind them.
         joints_back: of each chain, all its joints from the last to the first.
         next_joints: the joint behind each link (n_links,).
+        hung: these, then ``moving``: on what lies beyond them, links and bodies feel forces (n_links + k,).
         roots: the first joint of each chain, then the marks (k,): these are points of bodies or of the ground.
         places: their x, then their y (2k,).
         moving, moved: the same of those that are on bodies.
@@ -181,6 +184,7 @@ class Layout:
     behind: tuple[slice, ...]
     joints_back: tuple[slice, ...]
     next_joints: Ints
+    hung: Ints
     roots: Ints
     places: Linear
     moving: Ints
@@ -256,13 +260,15 @@ class Model:
         roots = np.array([*firsts, *range(self.first_mark, self.n_joints)], dtype=np.intp)
         held = [*(chain.start for chain in self.chains), *self.marks.values()]
         on_bodies = np.array([at.body >= 0 for at in held], dtype=bool)
+        next_joints = np.concatenate([np.arange(each.start, each.stop) for each in behind])
         points = points_of([(at.body, at.point) for at in held], self.references)
         base, over = points.base.reshape(-1, 2).T, points.over.reshape(len(held), 2, -1).transpose(1, 0, 2)
         return Layout(
             links=tuple(chain.links for chain in self.chains),
             behind=behind,
             joints_back=tuple(slice(each.stop - 1, each.start - 2 if each.start > 1 else None, -1) for each in behind),
-            next_joints=np.concatenate([np.arange(each.start, each.stop) for each in behind]),
+            next_joints=next_joints,
+            hung=np.concatenate((next_joints, roots[on_bodies])),
             roots=roots,
             places=Linear(base.ravel(), over.reshape(2 * len(held), -1)),
             moving=roots[on_bodies],
@@ -273,6 +279,22 @@ class Model:
         )
 
     @cached_property
+    def hanging(self) -> Array | None:
+        """Which links, starts and marks on bodies each joint hangs on: ones and noughts (n_joints, n_links + k).
+
+        None where that is a large table.
+        """
+        if self.n_joints > LARGE:
+            return None
+        moving, found = self.layout.moving.tolist(), np.zeros((self.n_joints, len(self.layout.hung)))
+        for chain in self.chains:
+            found[chain.joints, chain.links] = np.tri(chain.n + 2, chain.n + 1, -1)
+        ends = {chain.first_joint: chain.joints.stop for chain in self.chains}
+        for column, root in enumerate(moving, start=self.n_links):
+            found[root : ends.get(root, root + 1), column] = 1.0
+        return found
+
+    @cached_property
     def stiffness(self) -> tuple[Array, Array]:
         """Diagonal (n_links,) and off-diagonal (n_links−1,) of the strain energy's Hessian."""
         diagonal = np.zeros(self.n_links)
@@ -281,6 +303,11 @@ class Model:
         off = -self.couplings
         diagonal.flags.writeable = off.flags.writeable = False
         return diagonal, off
+
+    @cached_property
+    def stiffest(self) -> float:
+        """The largest of the springs' stiffnesses."""
+        return float(self.couplings.max())
 
     @cached_property
     def first_mark(self) -> int:

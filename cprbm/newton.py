@@ -29,16 +29,17 @@ from functools import cached_property
 
 import numpy as np
 
-from cprbm.bordered import Bordered, Kept, Symmetric, anchored, bordered, factorised, without
-from cprbm.closure import closure_forces, closure_second
+from cprbm.bordered import Bordered, Held, Kept, Symmetric, anchored, bordered, factorised, without
+from cprbm.closure import closure_second, closure_sums
 from cprbm.complementarity import pressing
 from cprbm.contact import Factored, Rows, over_unknowns
-from cprbm.kinematics import pulled_back
+from cprbm.kinematics import twice
 from cprbm.local import GIVING, LocalSystem, local_step, local_system
 from cprbm.point import Point, Problem
 from scene.answer import Array, Flags, Ints
 
-CONTACT_STIFFNESS = (1e4, 1e6)  # of pressing contacts while the energy alone is not convex, S/ℓ²; the first that helps
+# stiffness of pressing contacts and shift while the energy alone is not convex, S/ℓ²; the first that helps
+TRIES = ((0.0, 0.0), (1e4, 0.0), (1e6, 0.0), *((0.0, 4.0**i) for i in range(1, 12)))
 MANY = 40  # contact rows beyond which the system is solved with the joints' positions as unknowns
 ALIKE = 1e-12  # 1 − cos between rows that are one
 LOCAL = 8  # joints in a row that is local
@@ -127,19 +128,18 @@ class System:
         return change
 
 
-def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System:
-    """Assemble and factorise; ``stiff`` (m,) are stiffnesses of contacts that are added, nought of most.
+def system(problem: Problem, point: Point, stiffness: float, shift: float) -> System:
+    """Assemble and factorise, with a ``stiffness`` of the contacts that press and a ``shift`` added.
 
     Raises:
         np.linalg.LinAlgError: the tridiagonal part is exactly singular.
     """
     model, closure, A_I = problem.model, problem.closure, point.slopes
     n, n_bodies = model.n_links, 3 * len(model.free_bodies)
-    fx, fy = closure_forces(model, closure, point.mu)
+    sums = closure_sums(closure, point.mu)
     if point.lam.any():
-        cx, cy, _ = point.rows.forces(point.lam, model.n_joints, model.n_unknowns)
-        fx, fy = fx + cx, fy + cy
-    _, _, second, second_bodies = pulled_back(model, point.state, point.at, fx, fy)
+        sums += point.rows.sums(point.lam, model)
+    second, second_bodies = twice(model, point.state, point.at, sums)
     diagonal, off = problem.springs
     diagonal, off = diagonal + second - point.work.diagonal, off - point.work.off
     if shift:
@@ -156,31 +156,33 @@ def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System
             diagonal[links[:-1]] += quarter
             diagonal[links[1:]] += quarter
             off[links[:-1]] += quarter
-    if stiff.any():
-        low_rank = np.concatenate((low_rank, A_I[stiff > 0.0]))
-        sigma = np.concatenate((sigma, stiff[stiff > 0.0]))
-        added = np.concatenate((added, -point.rows.values[stiff > 0.0]))
+    active = point.lam > 0.0
+    if stiffness:
+        low_rank = np.concatenate((low_rank, A_I[active]))
+        sigma = np.concatenate((sigma, np.full(np.count_nonzero(active), stiffness)))
+        added = np.concatenate((added, -point.rows.values[active]))
     anchors = problem.loose
     tridiagonal = factorised(*without(diagonal, off, problem.still))
     if tridiagonal.nearly_singular(problem.generic, model.lengths):
         anchors = anchored(diagonal, off, model.lengths, anchors, closure.fixed)
-        tridiagonal = factorised(*without(diagonal, off, np.concatenate((anchors, closure.fixed))))
+        gone = Held(np.concatenate((anchors, closure.fixed)), n)
+        tridiagonal = factorised(*without(diagonal, off, gone))
 
     r, k = len(sigma), len(anchors)
     first, inner = n_bodies + k, n_bodies + k + r
     size = inner + len(point.A_E) + len(A_I)
-    border, corner = np.zeros((n, size), order="F"), np.zeros((size, size))
+    border, corner, own = np.zeros((n, size), order="F"), np.zeros((size, size)), np.zeros(size)
     wide = np.concatenate((low_rank, point.A_E, A_I))
     border[:, first:] = wide[:, :n].T
     corner[:n_bodies, first:] = wide[:, n:].T
-    body = np.arange(2, n_bodies, 3)
-    corner[body, body] = over_phi
-    i = np.arange(first, inner)
-    corner[i, i] = -1.0 / sigma
-    i = np.concatenate((np.arange(inner, inner + len(point.A_E)), inner + len(point.A_E) + _twins(point.rows, A_I)))
-    corner[i, i] = -GIVING
+    own[2:n_bodies:3] = over_phi
+    own[n_bodies:first] = diagonal[anchors]
+    own[first:inner] = -1.0 / sigma
+    own[inner : inner + len(point.A_E)] = -GIVING
+    if len(point.rows.groups) > 1:
+        own[inner + len(point.A_E) :][_twins(point.rows, A_I)] = -GIVING
+    corner.reshape(-1)[:: size + 1] = own
     for place, link in enumerate(anchors.tolist(), start=n_bodies):
-        corner[place, place] = diagonal[link]
         corner[place, first:] = border[link, first:]
         border[link + 1 : link + 2, place] = off[link : link + 1]
         border[max(link - 1, 0) : link, place] = off[max(link - 1, 0) : link]
@@ -190,7 +192,7 @@ def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System
         factors=bordered(tridiagonal, border, corner),
         anchors=anchors,
         n_bodies=n_bodies,
-        active=point.lam > 0.0,
+        active=active,
         added=added,
         n_equalities=len(point.A_E),
         expected=len(point.A_E) + int(np.count_nonzero(sigma > 0.0)),
@@ -199,7 +201,7 @@ def system(problem: Problem, point: Point, stiff: Array, shift: float) -> System
 
 def _twins(rows: Rows, A_I: Array) -> Ints:
     """Contact rows that hold what a row of another contact holds."""
-    if len(rows.groups) < 2 or len(A_I) > MANY:
+    if len(A_I) > MANY:
         return np.zeros(0, dtype=np.intp)
     size = np.sqrt((A_I * A_I).sum(axis=1))
     apart = size[:, None] * size - A_I @ A_I.T
@@ -221,7 +223,7 @@ def own_system(problem: Problem, point: Point) -> System:
     """
     found = known_system(problem, point)
     if found is None:
-        found = system(problem, point, np.zeros(point.rows.size), 0.0)
+        found = system(problem, point, 0.0, 0.0)
         point.systems.append((problem, found))
     return found
 
@@ -237,15 +239,12 @@ def _convex_system(problem: Problem, point: Point) -> System:
     Raises:
         np.linalg.LinAlgError: no shift up to the springs' own stiffness helped.
     """
-    none = np.zeros(point.rows.size)
-    tries = [(none, 0.0)]
-    if point.lam.any():
-        tries += [(np.where(point.lam > 0.0, stiffness, 0.0), 0.0) for stiffness in CONTACT_STIFFNESS]
-    tries += [(none, 4.0**i) for i in range(1, 12)]
-    for stiff, shift in tries:
+    for stiffness, shift in TRIES:
+        if stiffness and not point.lam.any():
+            continue
         try:
-            plain = shift == 0.0 and not stiff.any()
-            found = own_system(problem, point) if plain else system(problem, point, stiff, shift)
+            plain = not (stiffness or shift)
+            found = own_system(problem, point) if plain else system(problem, point, stiffness, shift)
             if found.convex:
                 return found
         except np.linalg.LinAlgError:
@@ -294,7 +293,7 @@ def newton_step(
         return local_step(local_system_at(problem, point), point.lam > 0.0)
     found = _convex_system(problem, point) if near is None else own_system(problem, near)
     n, base = problem.model.n_links, found.n_base
-    f = -problem.moves * (point.gradient + point.held + point.pressed)
+    f = -problem.moves * point.unbalanced
     right = np.concatenate((f[n:], f[found.anchors], found.added, -point.Z))
     f[found.anchors] = 0.0
     first = found.factors.tridiagonal.solve(f[:n, None])[:, 0]

@@ -126,21 +126,25 @@ def never_beyond(pair: Pair, way: Sequence[tuple[State, Positions]], allowed: fl
     if pair.tapered or not way:
         return False
     a, b = pair.a, pair.b
-    theta = np.stack([state.theta[b.links] for state, _ in way])
-    h, turn = float(b.sizes.max()), float((np.abs(np.diff(theta)) + np.abs(b.turns)).max())
+    theta = np.array([state.theta[b.links] for state, _ in way])
+    h, turn = float(b.sizes.max()), float((np.abs(theta[:, 1:] - theta[:, :-1]) + np.abs(b.turns)).max())
     most = -allowed * np.cos(turn) + 0.75 * h * turn
     if turn > 0.5 * np.pi or most >= 0.0 or len(a.s) * len(b.s) > FEW:
         return False
-    psi = np.concatenate((theta[:, :1], 0.5 * (theta[:, 1:] + theta[:, :-1]), theta[:, -1:]), axis=1)[:, None]
-    x, y = (
-        np.stack([each[a.joints] for each in parts])[:, :, None] - np.stack([each[b.joints] for each in parts])[:, None]
-        for parts in zip(*((at.x, at.y) for _, at in way), strict=True)
-    )
-    beyond = pair.side * (np.cos(psi) * y - np.sin(psi) * x) < most
+    psi = np.concatenate((theta[:, :1], 0.5 * (theta[:, 1:] + theta[:, :-1]), theta[:, -1:]), axis=1)
+    A, B = (np.array([(at.x[chain.joints], at.y[chain.joints]) for _, at in way]) for chain in (a, b))
+    normals = pair.side * np.array((-np.sin(psi), np.cos(psi))).transpose(1, 0, 2)
+    # of each state and joint of A those of B with n̄·(C_A − p) below that
+    beyond = A.transpose(0, 2, 1) @ normals < ((normals * B).sum(axis=1) + most)[:, None]
     if not beyond.any():
         return True
-    away = np.hypot(x, y)
-    return not (beyond & (away <= away.min(axis=2, keepdims=True) + h)).any()
+    # as seen from every joint of B, that is not one of the nearest
+    # (squares of the distances, but for that of C_A itself, which is the same for all of B)
+    apart = (-2.0 * A).transpose(0, 2, 1) @ B
+    apart += (B * B).sum(axis=1)[:, None]
+    own = (A * A).sum(axis=1)
+    reach = np.sqrt(np.maximum(apart.min(axis=2) + own, 0.0)) + h
+    return not (beyond & (apart <= (reach * reach - own)[:, :, None])).any()
 
 
 def _from_springs(pair: Pair, lines: Lines) -> tuple[Array, Array, Array, Array]:

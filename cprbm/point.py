@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cprbm.bordered import generic
+from cprbm.bordered import Held, generic
 from cprbm.closure import Closure, closure_rows, closure_values
 from cprbm.contact import Formulation, Rows
-from cprbm.energy import AnyLoad, LoadWork, load_work, strain_energy, strain_gradient, strain_hessian
+from cprbm.energy import AnyLoad, LoadWork, load_work, spring_moments, strain_energy, strain_gradient, strain_hessian
 from cprbm.kinematics import Positions, State, positions, pulled_back
 from cprbm.model import Model
 from scene.answer import Array, Ints
@@ -79,14 +79,14 @@ class Problem:
         return np.array(first, dtype=np.intp)
 
     @cached_property
-    def still(self) -> Ints:
+    def still(self) -> Held:
         """The :attr:`loose` ones and those that do not turn."""
-        return np.concatenate((self.loose, self.closure.fixed))
+        return Held(np.concatenate((self.loose, self.closure.fixed)), self.model.n_links)
 
     @cached_property
     def generic(self) -> Array:
         """A right-hand side with a part in every direction, :func:`cprbm.bordered.generic`, (n_links,)."""
-        return generic(self.model.lengths, self.still)
+        return generic(self.model.lengths, self.still.unknowns)
 
     def stiffened(self) -> Array:
         """What the drag adds to the second derivatives over θ (n_links,)."""
@@ -103,6 +103,7 @@ class Point:
         state, at: the unknowns and the joints' positions.
         mu, lam: multipliers of the equalities and of the contact rows.
         Z, rows: equalities (mE,) and contact constraints.
+        moments: of the springs (n_links−1,).
         gradient: of the potential energy (n,).
         A_E: derivatives of Z over q.
         work: of the loads.
@@ -117,6 +118,7 @@ class Point:
     lam: Array
     Z: Array
     rows: Rows
+    moments: Array
     gradient: Array
     A_E: Array
     work: LoadWork
@@ -136,6 +138,11 @@ class Point:
     def held(self) -> Array:
         """∂(μ·Z) over q (n_links + 3B,)."""
         return np.asarray(self.mu @ self.A_E)
+
+    @cached_property
+    def unbalanced(self) -> Array:
+        """∂L over q (n_links + 3B,)."""
+        return self.gradient + self.held + self.pressed
 
     @cached_property
     def pressed(self) -> Array:
@@ -167,7 +174,8 @@ def _point(
     model = problem.model
     work = load_work(model, problem.loads, values, state, at)
     gradient = -work.gradient
-    gradient[: model.n_links] += strain_gradient(model, state)
+    moments = spring_moments(model, state)
+    gradient[: model.n_links] += strain_gradient(moments)
     if problem.drag is not None:
         gradient[: model.n_links] += problem.stiffened() * (state.theta - problem.drag.theta)
     return Point(
@@ -179,6 +187,7 @@ def _point(
         lam=lam,
         Z=closure_values(model, problem.closure, state, at, values),
         rows=rows,
+        moments=moments,
         gradient=gradient,
         A_E=closure_rows(model, problem.closure, state, at),
         work=work,

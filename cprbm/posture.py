@@ -48,6 +48,12 @@ def posture(bodies: Array) -> Posture:
     return Posture(np.array([*bodies.ravel().tolist(), *less, *sin]), derivatives)
 
 
+def stood(bodies: Array) -> Array:
+    """w of some postures at once (k, 5B), of ``bodies`` (k, B, 3)."""
+    turns = bodies[:, :, 2]
+    return np.concatenate((bodies.reshape(len(bodies), -1), -2.0 * np.sin(0.5 * turns) ** 2, np.sin(turns)), axis=1)
+
+
 @cache
 def _even(count: int) -> tuple[Array, Ints]:
     """W where it is the same in all postures of ``count`` bodies, and the places in it of −sin, cos, −cos and −sin."""

@@ -69,14 +69,11 @@ def carried_by_others(model: Model, before: Point, after: Point) -> float:
     A contact in a place of its own becomes two joints, or these three: the discretisation is another, and the angles
     with it, by a part of what one element bends by there.
     """
-    if before.rows.pressing(before.lam) != after.rows.pressing(after.lam) or _keys(before) == _keys(after):
+    keys = before.rows.pressed(before.lam), after.rows.pressed(after.lam)
+    if before.rows.pressing(before.lam) != after.rows.pressing(after.lam) or keys[0] == keys[1]:
         return SHIFTED
     bent = max(float(np.max(np.abs(np.diff(after.state.theta[chain.links])))) for chain in model.chains)
     return max(SHIFTED, OTHERS * bent)
-
-
-def _keys(point: Point) -> set[tuple[str, int]]:
-    return {key for key, force in zip(point.rows.keys, point.lam, strict=True) if force > 0.0}
 
 
 def strayed(lengths: Array, change: Array, start: Array, end: Array, shifted: float = SHIFTED) -> bool:

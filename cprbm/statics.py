@@ -86,7 +86,7 @@ def _at_ends(scene: Scene, mechanism: Mechanism, point: Point) -> Iterator[_Acti
     forces = np.array((fx - contact.fx - point.work.fx, fy - contact.fy - point.work.fy))
     starts = np.add.reduceat(forces, model.layout.roots, axis=1).T
     # ∂L/∂θ of the whole, whose entry at a link that does not turn is the moment that holds it
-    turned = point.gradient + point.held + point.pressed
+    turned = point.unbalanced
     welds = {weld: -float(point.mu[2 * len(closure.ends) + row]) for row, weld in enumerate(closure.welds)}
     names = dict(enumerate(model.free_bodies))
     for chain, start in zip(model.chains, starts, strict=False):

@@ -21,6 +21,8 @@ def one_thread() -> AbstractContextManager[object]:
         libraries = _loaded(len(sys.modules))
     except ImportError:
         return nullcontext()
+    if all(library.num_threads == 1 for library in libraries.lib_controllers if library.user_api == "blas"):
+        return nullcontext()
     limits: AbstractContextManager[object] = libraries.limit(limits=1, user_api="blas")
     return limits
 

@@ -21,7 +21,7 @@ def check(problem, values, point, random):
         assert there.rows.keys == point.rows.keys
         return there.gradient + there.A_E.T @ mu + contact_gradient(model, there), there
 
-    found = system(problem, point, np.zeros(point.rows.size), 0.0)
+    found = system(problem, point, 0.0, 0.0)
     for _ in range(3):
         d = random.standard_normal(len(q))
         d[closure.fixed] = 0.0

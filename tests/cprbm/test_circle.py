@@ -284,7 +284,7 @@ def test_derivatives_of_gaps_and_of_the_lagrangian(bent):
         return there.gradient + there.A_E.T @ point.mu + contact_gradient(problem.model, there), there
 
     random = np.random.default_rng(5)
-    found = system(problem, point, np.zeros(point.rows.size), 0.0)
+    found = system(problem, point, 0.0, 0.0)
     model = problem.model
     for _ in range(3):
         d = random.standard_normal(len(q))
