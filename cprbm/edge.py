@@ -406,11 +406,7 @@ class Edge:
         lowest = lowest[self.own_places & ~self._ruled(s[lowest])]
         parting = self._convexity(A, seen.normal, seen.bend)[::2]
         found = wells.wells(self.a, D, parting, lowest, LEAST_CURVATURE, self.kinks.places)
-        places, settled = self._refined(face, line, frame, s[found.samples])
-        B = line.at(places)
-        settled &= found.held(self._seen(face, B, frame).distance - self.offset)
-        settled &= self._next_to(face, B, frame) & ~self._ruled(places)
-        places = places[settled & ~self._lying(places, D, parting)]
+        places = self._minima(face, line, frame, found, D, parting)
         for place in places:
             near &= np.abs(s - place) > wells.BESIDE * self.a.size_at(place)
         ends = np.array(self.ends)
@@ -418,6 +414,18 @@ class Edge:
             ends = ends[self._next_to(face, line.at(ends), frame) & ~self._ruled(ends)]
         fixed = np.concatenate((s[near], ends))
         return np.concatenate((fixed, places)), np.arange(len(fixed) + len(places)) >= len(fixed)
+
+    def _minima(
+        self, face: Face, line: smooth.SmoothLine, frame: Frame, found: wells.Wells, D: Array, parting: Array
+    ) -> Array:
+        """Arc lengths of the minima of D against one piece, from what may be a well."""
+        places, settled = self._refined(face, line, frame, self.a.halves[found.samples])
+        if not settled.any():
+            return places[:0]
+        B = line.at(places)
+        settled &= found.held(self._seen(face, B, frame).distance - self.offset)
+        settled &= self._next_to(face, B, frame) & ~self._ruled(places)
+        return places[settled & ~self._lying(places, D, parting)]
 
     def _lying(self, places: Array, D: Array, parting: Array) -> Flags:
         """At which ``places`` (k,) the beam lies on the edge from an own pin on: it is the end of a zone.
@@ -472,6 +480,8 @@ class Edge:
         A = line.sampled
         away = np.hypot(*self._from(corner, A, frame).T)
         s = A.s[wells.lowest(away - self._half(A.s), REACH)]
+        if not s.size:
+            return s
 
         def slope(s: Array) -> tuple[Array, Array]:
             A, beyond = line.at(s), missed(self.a, self.kinks, s)
@@ -483,6 +493,8 @@ class Edge:
         s, settled = wells.bottom(slope, s, self._around(s), LEAST_CURVATURE, CLOSE)
         settled &= (s > 0.0) & (s < self.a.s[-1]) & ~self._ruled(s) & ~self._beside(s, taken)
         s = np.unique(s[settled])
+        if not s.size:
+            return s
         A = line.at(s)
         m, r = self._away(corner, A, frame), self._from(corner, A, frame)
         faced = corner.beyond(frame.turned(m, -frame.phi)) >= -FACING - np.abs(A.bend) * self.a.size_at(s)
