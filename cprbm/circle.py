@@ -177,7 +177,7 @@ class Circle:
             moves = np.tile(-np.eye(2), (len(s), 1, 1))
             C_z, C_sz = np.concatenate((C_z, moves), axis=2), np.concatenate((C_sz, 0.0 * moves), axis=2)
             second = np.pad(second, ((0, 0), (0, 2), (0, 2)))
-        beyond = missed(self.a, self.kinks, s)
+        beyond = missed(self.a, self.kinks, A)
         D_z = np.einsum("mi,mik->mk", n, C_z)
         q_z = np.einsum("mi,mik->mk", across, C_z)
         second += q_z[:, :, None] * q_z[:, None, :] / rho[:, None, None]
@@ -281,7 +281,8 @@ class Circle:
         s = start + np.where(inner == samples, wells.lowest_of_parabola(line.sampled.s, D, inner), 0.0)
 
         def slope(s: Array) -> tuple[Array, Array]:
-            A, beyond = line.at(s), missed(self.a, self.kinks, s)
+            A = line.at(s)
+            beyond = missed(self.a, self.kinks, A)
             slope, convexity, leading = self.course(A)
             return slope + leading * beyond.angle, convexity + leading * beyond.bend
 

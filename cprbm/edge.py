@@ -265,7 +265,7 @@ class Edge:
         seen = self._seen(self.faces[number], A, frame)
         n, k = seen.normal, seen.bend
         D_z, along, D_sz, second = self._slopes(A, n, frame)
-        g, beyond, leading = self._across(A, n), missed(self.a, self.kinks, s), self._leading(A, n)
+        g, beyond, leading = self._across(A, n), missed(self.a, self.kinks, A), self._leading(A, n)
         second += k[:, None, None] * along[:, :, None] * along[:, None, :]
         D_sz += (k * g)[:, None] * along
         D_ss = self._convexity(A, n, k) + leading * beyond.bend
@@ -279,7 +279,7 @@ class Edge:
         A, corner = line.at(s), self.corners[number]
         m = self._away(corner, A, frame)
         D_z, b, a, second = self._slopes(A, m, frame)
-        g, beyond, leading = self._across(A, m), missed(self.a, self.kinks, s), self._leading(A, m)
+        g, beyond, leading = self._across(A, m), missed(self.a, self.kinks, A), self._leading(A, m)
         rho = np.sum(m * self._from(corner, A, frame), axis=1)
         M = self._convexity(A, m, np.zeros(len(s))) + leading * beyond.bend
         mixed = a[:, :, None] * b[:, None, :]
@@ -450,7 +450,8 @@ class Edge:
         """Newton's method on D_s = 0; the flags say where it settled at a minimum nearby."""
 
         def slope(s: Array) -> tuple[Array, Array]:
-            A, beyond = line.at(s), missed(self.a, self.kinks, s)
+            A = line.at(s)
+            beyond = missed(self.a, self.kinks, A)
             seen = self._seen(face, A, frame)
             leading = self._leading(A, seen.normal)
             D_ss = self._convexity(A, seen.normal, seen.bend) + leading * beyond.bend
@@ -484,7 +485,8 @@ class Edge:
             return s
 
         def slope(s: Array) -> tuple[Array, Array]:
-            A, beyond = line.at(s), missed(self.a, self.kinks, s)
+            A = line.at(s)
+            beyond = missed(self.a, self.kinks, A)
             m, r = self._away(corner, A, frame), self._from(corner, A, frame)
             g, leading, rho = self._across(A, m), self._leading(A, m), np.sum(m * r, axis=1)
             F_s = g**2 + rho * (self._convexity(A, m, np.zeros(len(s))) + leading * beyond.bend)

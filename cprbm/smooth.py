@@ -192,30 +192,28 @@ class SmoothLine:
         """Points at arc lengths ``s`` within the beam; where it lies off the arcs by an ``excess`` (3, k), if known."""
         chain = self.chain
         half = chain.breaks.searchsorted(s, side="right")
-        border, x, y, cos, sin, tangent, rate, R = self.arcs[:, half]
-        off = s - border
-        if chain.excess is not None:
-            excess = chain.excess.seen(half, off) if excess is None else excess
-            along, across, lead, speed, bend, gain = _beside(excess, off, rate, R)
-            tangent = tangent + lead
-        else:
-            # stress-free piece and difference of two arcs make one arc, from the border on
-            along, across = _arc(off, rate, R)
-            tangent, speed, bend, gain = tangent + rate * off, R, rate, np.zeros(len(s))
-        return Points(
-            line=self,
-            half=half,
-            s=s,
-            off=off,
-            x=x + along * cos - across * sin,
-            y=y + along * sin + across * cos,
-            tangent=tangent,
-            psi=tangent,
-            speed=speed,
-            bend=bend,
-            gain=gain,
-            pace=speed,
-        )
+        arcs = self.arcs[:, half]
+        off = s - arcs[0]
+        if excess is None and chain.excess is not None:
+            excess = chain.excess.seen(half, off)
+        x, y, tangent, speed, bend, gain = placed(arcs, off, excess)
+        return Points(self, half, s, off, x, y, tangent, tangent, speed, bend, gain, speed)
+
+
+def placed(arcs: Array, off: Array, excess: ComplexArray | None) -> tuple[Array, ...]:
+    """x, y, the tangent's angle, speed, bend and gain (k,) on halves of elements with these ``arcs`` (8, k).
+
+    They are ``off`` (k,) from the borders, and lie off the arcs by an ``excess`` (3, k), if they do.
+    """
+    _, x, y, cos, sin, tangent, rate, R = arcs
+    if excess is not None:
+        along, across, lead, speed, bend, gain = _beside(excess, off, rate, R)
+        tangent = tangent + lead
+    else:
+        # stress-free piece and difference of two arcs make one arc, from the border on
+        along, across = _arc(off, rate, R)
+        tangent, speed, bend, gain = tangent + rate * off, R, rate, np.zeros(len(off))
+    return x + along * cos - across * sin, y + along * sin + across * cos, tangent, speed, bend, gain
 
 
 def _beside(excess: ComplexArray, off: Array, rate: Array, R: Array) -> tuple[Array, ...]:
