@@ -35,6 +35,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -142,7 +143,7 @@ class SmoothLine:
     cotangents: Array
     x: Array
     y: Array
-    known: dict[tuple[str, str], tuple[Array, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
+    known: dict[tuple[str, str], tuple[Any, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
     faced: dict[str, tuple[Array, Points, Points]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
