@@ -170,10 +170,7 @@ class Circle:
         A = line.at(s)
         rho, x, y = self._away(A)
         n, z = np.array((x, y)).T, moving(A)
-        C_z = position_slopes(z)
-        if self.body >= 0:
-            C_z = np.concatenate((C_z, np.tile(-np.eye(2), (len(s), 1, 1))), axis=2)
-        D_z = np.einsum("mi,mik->mk", n, C_z)
+        D_z = self._against(position_slopes(z, n), n)
         _, convexity, leading = self.course(A)
         beyond = missed(self.a, self.kinks, A)
         order = ALONE if self.body < 0 else WITH_CENTRE
@@ -181,14 +178,14 @@ class Circle:
         @cache
         def second() -> Array:
             """∂²D/∂z² (k, p, p)."""
-            C_sz, found = tangent_slopes(z), position_curvature(z, n)
+            D_sz, found = tangent_slopes(z, n), position_curvature(z, n)
             if self.body >= 0:
-                C_sz, found = np.pad(C_sz, ((0, 0), (0, 0), (0, 2))), np.pad(found, ((0, 0), (0, 2), (0, 2)))
+                D_sz, found = np.pad(D_sz, ((0, 0), (0, 2))), np.pad(found, ((0, 0), (0, 2), (0, 2)))
             across = np.stack((-y, x), axis=1)
             q_s = A.speed * (x * np.sin(A.psi) - y * np.cos(A.psi))
-            q_z = np.einsum("mi,mik->mk", across, C_z)
+            q_z = self._against(position_slopes(z, across), across)
             found += q_z[:, :, None] * q_z[:, None, :] / rho[:, None, None]
-            D_sz = np.einsum("mi,mik->mk", n, C_sz) + (q_s / rho)[:, None] * q_z
+            D_sz += (q_s / rho)[:, None] * q_z
             D_ss = convexity + leading * beyond.bend
             going = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
             found -= going[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
@@ -217,6 +214,10 @@ class Circle:
         alone = np.delete(np.arange(len(s)), np.concatenate(together))
         groups = [_summed(every, two) for two in together]
         return (*groups, _some(every, alone)) if alone.size else tuple(groups)
+
+    def _against(self, slopes: Array, along: Array) -> Array:
+        """Slopes (k, 5) of parts along some directions (k, 2), with those over the centre's place where that moves."""
+        return slopes if self.body < 0 else np.concatenate((slopes, -along), axis=1)
 
     def _beside_clamps(self, keys: Ints) -> list[Ints]:
         """For every end that is clamped on the circle, which two rows stand at the springs next to it."""

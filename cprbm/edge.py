@@ -243,11 +243,10 @@ class Edge:
         A = line.at(s)
         seen = self._each(number, A, frame)
         n, z = seen.normal, moving(A)
-        v_z = self._moved(A, z, frame)
-        D_z, beyond = np.einsum("mi,mik->mk", n, v_z), missed(self.a, self.kinks, A)
+        D_z, beyond = self._slopes(A, z, n, frame), missed(self.a, self.kinks, A)
 
         def bent() -> Array:
-            along, D_sz, second = self._second(A, z, n, v_z, frame)
+            along, D_sz, second = self._second(A, z, n, frame)
             g, k = self._across(A, n), seen.bend
             second += k[:, None, None] * along[:, :, None] * along[:, None, :]
             D_sz += (k * g)[:, None] * along
@@ -263,12 +262,11 @@ class Edge:
         """Rows at arc lengths ``s`` (k,) against the corners of some ``number`` (k,)."""
         A = line.at(s)
         m, z = self._away(number, A, frame), moving(A)
-        v_z = self._moved(A, z, frame)
         rho = np.sum(m * self._from(number, A, frame), axis=1)
         beyond, leading = missed(self.a, self.kinks, A), self._leading(A, m)
 
         def bent() -> Array:
-            b, a, second = self._second(A, z, m, v_z, frame)
+            b, a, second = self._second(A, z, m, frame)
             g, M = self._across(A, m), self._convexity(A, m, np.zeros(len(s))) + leading * beyond.bend
             mixed = a[:, :, None] * b[:, None, :]
             turned = (
@@ -280,31 +278,29 @@ class Edge:
 
         values = self._half(s) - rho - leading * beyond.integral
         own = len(self.faces) * self._own_keys + number
-        return self._group(A, values, np.einsum("mi,mik->mk", m, v_z), bent, tuple(own.tolist()))
+        return self._group(A, values, self._slopes(A, z, m, frame), bent, tuple(own.tolist()))
 
-    def _moved(self, A: smooth.Points, z: Moving, frame: Frame) -> Array:
-        """v_z (k, 2, p), over the local numbers."""
-        v_z = position_slopes(z)
+    def _slopes(self, A: smooth.Points, z: Moving, along: Array, frame: Frame) -> Array:
+        """Of v_z its part along some directions (k, 2), over the local numbers (k, p)."""
+        slopes = position_slopes(z, along)
         if self.body < 0:
-            return v_z
-        r = np.stack((A.x, A.y), axis=1) - frame.m
-        swung = np.stack((r[:, 1], -r[:, 0]), axis=1)  # −J r
-        return np.concatenate((v_z, np.tile(-np.eye(2), (len(A.s), 1, 1)), swung[:, :, None]), axis=2)
+            return slopes
+        x, y = A.x - frame.m[0], A.y - frame.m[1]
+        swung = along[:, 0] * y - along[:, 1] * x  # −J r
+        return np.concatenate((slopes, -along, swung[:, None]), axis=1)
 
-    def _second(self, A: smooth.Points, z: Moving, n: Array, v_z: Array, frame: Frame) -> tuple[Array, Array, Array]:
+    def _second(self, A: smooth.Points, z: Moving, n: Array, frame: Frame) -> tuple[Array, Array, Array]:
         """τ·v_z and n·C_sz (k, p), and n·C_zz + E (k, p, p), over the local numbers."""
         tau = np.stack((n[:, 1], -n[:, 0]), axis=1)
-        C_sz, second = tangent_slopes(z), position_curvature(z, n)
+        along, n_sz, second = self._slopes(A, z, tau, frame), tangent_slopes(z, n), position_curvature(z, n)
         if self.body >= 0:
-            C_sz, second = np.pad(C_sz, ((0, 0), (0, 0), (0, 3))), np.pad(second, ((0, 0), (0, 3), (0, 3)))
-            swinging = np.einsum("mi,mik->mk", -tau, v_z[:, :, :7])  # −τ is J n
+            n_sz, second = np.pad(n_sz, ((0, 0), (0, 3))), np.pad(second, ((0, 0), (0, 3), (0, 3)))
+            swinging = -along[:, :7]  # −τ is J n
             second[:, 7, :7] += swinging
             second[:, :7, 7] += swinging
             second[:, 7, 7] -= np.sum(n * (np.stack((A.x, A.y), axis=1) - frame.m), axis=1)
-        n_sz = np.einsum("mi,mik->mk", n, C_sz)
-        if self.body >= 0:
             n_sz[:, 7] -= self._across(A, n)  # J n·C_s
-        return np.einsum("mi,mik->mk", tau, v_z), n_sz, second
+        return along, n_sz, second
 
     def _group(
         self, A: smooth.Points, values: Array, D_z: Array, bent: Callable[[], Array], keys: tuple[int, ...]

@@ -52,7 +52,7 @@ from cprbm.both import Both, made
 from cprbm.brought import as_drawn
 from cprbm.contact import Group
 from cprbm.crossing import cross
-from cprbm.gathering import Touches, gathered
+from cprbm.gathering import Touches, gathered, single
 from cprbm.kinematics import Positions, State
 from cprbm.kinks import kinked, missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
@@ -380,8 +380,7 @@ class Pair:
         return self._single(at, places, self.touches(lines, places.s, places.sigma, places.keys < 0))
 
     def _single(self, at: Positions, places: Places, touches: Touches) -> Group:
-        weights = np.ones((len(places.s), 1))
-        return gathered(self.name, (self.a, self.b), at, touches, weights, places.keys, places.s)
+        return single(self.name, (self.a, self.b), touches, places.keys, places.s)
 
     def _mean_rows(self, at: Positions, joints: Places, touches: Touches, weights: Array) -> list[tuple[Group, Array]]:
         """Rows of the mean gap around joints of A, ``weights`` (m, q); those next to a clamp of both beams in one."""
@@ -449,23 +448,21 @@ class Pair:
         """The constraint at feet (s, σ); where ``free`` (k,) the place moves with the minimum."""
         A, B = self.facing_each_other(*self.on_both(lines, s, sigma))
         m, k = len(s), LOCALS
-        tangent = np.stack((np.cos(B.psi), np.sin(B.psi)), axis=1)
-        normal = np.stack((-tangent[:, 1], tangent[:, 0]), axis=1)
-        r = np.stack((A.x - B.x, A.y - B.y), axis=1)
-        distance = np.sum(normal * r, axis=1)
+        cos, sin = np.cos(B.psi), np.sin(B.psi)
+        normals = np.array((np.tile(-sin, 2), np.tile(cos, 2))).T
+        distance = cos * (A.y - B.y) - sin * (A.x - B.x)
         both = moving(A, B)
-        C_z = position_slopes(both)
-        r_z = np.concatenate((C_z[:m], -C_z[m:]), axis=2)
-        n_r = np.einsum("mi,mik->mk", normal, r_z)
-        t_r = np.einsum("mi,mik->mk", tangent, r_z)
+        n_r = _between(position_slopes(both, normals))
         facing = np.cos(A.psi - B.psi)
         of_foot = -B.pace + distance * B.bend
         # what D gains over s by the tangents' γ, the foot going along
-        more_A, more_B = missed(self.a, self.kinks[0], A), missed(self.b, self.kinks[1], B)
-        back = of_foot / (facing * A.pace)
-        if self.tapered:  # no tangents of B's go along what stays at a corner
-            back[leaning.at_corner(B)] = 0.0
-        gained = np.sign(facing) * (more_A.integral + back * more_B.integral)
+        gained: Array | float = 0.0
+        if any(each.places.size for each in self.kinks):
+            more_A, more_B = missed(self.a, self.kinks[0], A), missed(self.b, self.kinks[1], B)
+            back = of_foot / (facing * A.pace)
+            if self.tapered:  # no tangents of B's go along what stays at a corner
+                back[leaning.at_corner(B)] = 0.0
+            gained = np.sign(facing) * (more_A.integral + back * more_B.integral)
 
         def bent() -> Array:
             # ds/dz and dσ/dz from (i) and (ii)
@@ -475,14 +472,15 @@ class Pair:
                 psi = leaning.angle_slopes(both, np.concatenate((A.lead, B.lead)))
             psi_z[0, :, :k], psi_z[1, :, k:] = psi[:m], psi[m:]
             psi_A, psi_B = psi_z
+            tangents = np.stack((normals[:, 1], -normals[:, 0]), axis=1)
+            t_r = _between(position_slopes(both, tangents))
             one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
             determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.pace, 1.0)
             s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
             sigma_z = (two - (facing * A.pace)[:, None] * s_z) / of_foot[:, None]
             turning = psi_B + B.bend[:, None] * sigma_z
             second = np.zeros((m, 2 * k, 2 * k))
-            normals = np.concatenate((normal, normal))
-            curved, n_s = position_curvature(both, normals), np.einsum("mi,mik->mk", normals, tangent_slopes(both))
+            curved, n_s = position_curvature(both, normals), tangent_slopes(both, normals)
             second[:, :k, :k], second[:, k:, k:] = curved[:m], -curved[m:]
             second += -t_r[:, :, None] * turning[:, None, :]
             second[:, :k] += n_s[:m, :, None] * s_z[:, None, :]
@@ -494,8 +492,14 @@ class Pair:
             values=self.offset + self.wider(s, sigma) - self.side * (distance + gained),
             slopes=-self.side * n_r,
             bent=bent,
-            links=np.stack((A.link, B.link)),
+            links=np.array((A.link, B.link)),
         )
+
+
+def _between(slopes: Array) -> Array:
+    """Those of what is between places of A and places of B (m, 10), from their own (2m, 5)."""
+    m = len(slopes) // 2
+    return np.concatenate((slopes[:m], -slopes[m:]), axis=1)
 
 
 def _beside_any(corners: Array, sigma: Array, size: Array) -> Flags:

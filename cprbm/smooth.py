@@ -171,19 +171,25 @@ class SmoothLine:
         cos, sin = self.cos * lean_cos - self.sin * lean_sin, self.sin * lean_cos + self.cos * lean_sin
         a, w = chain.at_borders
         x, y = self.x[:-1] + a * self.cos - w * self.sin, self.y[:-1] + a * self.sin + w * self.cos
-        links = np.stack((chain.borders, x, y, cos, sin, self.theta + np.arctan2(lean_sin, lean_cos)))
-        springs = np.stack(((chain.turns + self.turns) / chain.sizes, self.radii))
-        return np.concatenate((np.repeat(links, 2, axis=1)[:, 1:-1], np.repeat(springs, 2, axis=1)))
+        arcs = np.empty((8, 2 * chain.n))
+        tangent = self.theta + np.arctan2(lean_sin, lean_cos)
+        for row, of in enumerate((chain.borders, x, y, cos, sin, tangent)):
+            arcs[row, ::2], arcs[row, 1::2] = of[:-1], of[1:]
+        arcs[6:, ::2] = arcs[6:, 1::2] = (chain.turns + self.turns) / chain.sizes, self.radii
+        return arcs
 
     @cached_property
     def carried(self) -> Array:
         """Of every half of an element x and y of its link's joint, cos and sin of the tangent at its border, h, Θ, R,
         ∂R and ∂²R over δ, (9, 2N).
         """
-        turns = self.chain.turns + self.turns
-        springs = np.array((self.chain.sizes, turns, self.radii, self.radii_1, self.radii_2))
-        joints = np.repeat(np.array((self.x[:-1], self.y[:-1])), 2, axis=1)[:, 1:-1]
-        return np.concatenate((joints, self.arcs[3:5], np.repeat(springs, 2, axis=1)))
+        carried = np.empty((9, 2 * self.chain.n))
+        for row, of in enumerate((self.x, self.y)):
+            carried[row, ::2], carried[row, 1::2] = of[:-2], of[1:-1]
+        carried[2:4] = self.arcs[3:5]
+        springs = self.chain.sizes, self.chain.turns + self.turns, self.radii, self.radii_1, self.radii_2
+        carried[4:, ::2] = carried[4:, 1::2] = springs
+        return carried
 
     def at(self, s: Array) -> Points:
         """Points at arc lengths ``s`` (k,), units of length; beyond the ends the end itself."""
