@@ -262,18 +262,20 @@ class Circle:
         first, last = (4 if clamped else -1 for clamped in self.clamped)
         lowest = lowest[self.own_places & (lowest > first) & (lowest < 2 * (self.a.n + 1) - last)]
         found = wells.wells(self.a, D, convexity[::2], lowest, LEAST_CURVATURE, self.kinks.places)
-        places, distance, settled = self._refined(line, D, found.samples)
-        places = places[settled & found.held(distance - self.offset)]
+        places, settled = self._refined(line, D, found.samples)
+        if not found.parted.all():
+            settled &= found.held(self.distance(line.at(places)) - self.offset)
+        places = places[settled]
         for place in places:
             near &= np.abs(s - place) > wells.BESIDE * self.a.size_at(place)
         fixed = np.concatenate((s[near], self.ends))
         return np.concatenate((fixed, places)), np.arange(len(fixed) + len(places)) >= len(fixed)
 
-    def _refined(self, line: smooth.SmoothLine, D: Array, samples: Ints) -> tuple[Array, Array, Flags]:
-        """Newton's method on D_s = 0 from the lowest ``samples`` (k,) of D: s, D, and where it settled nearby."""
+    def _refined(self, line: smooth.SmoothLine, D: Array, samples: Ints) -> tuple[Array, Flags]:
+        """Newton's method on D_s = 0 from the lowest ``samples`` (k,) of D: s, and where it settled nearby."""
         start = line.sampled.s[samples]
         if not samples.size:
-            return start, start, np.zeros(0, dtype=bool)
+            return start, np.zeros(0, dtype=bool)
         # an end has no parabola through it
         inner = np.clip(samples, 1, len(D) - 2)
         s = start + np.where(inner == samples, wells.lowest_of_parabola(line.sampled.s, D, inner), 0.0)
@@ -285,8 +287,7 @@ class Circle:
             return slope + leading * beyond.angle, convexity + leading * beyond.bend
 
         within = np.clip(np.stack((start - self.a.h, start + self.a.h)), 0.0, self.a.s[-1])
-        s, settled = wells.bottom(slope, s, within, LEAST_CURVATURE, CLOSE)
-        return s, self.distance(line.at(s)), settled
+        return wells.bottom(slope, s, within, LEAST_CURVATURE, CLOSE)
 
     def passed(self, before: Positions, after: Positions) -> bool:
         """Whether the beam has swept over the circle's centre between two states.

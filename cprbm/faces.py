@@ -31,6 +31,7 @@ from scene import EdgeContact, HalfPlaneContact, LineContact
 from scene.answer import Array, Flags
 
 NEWTON_STEPS = 30
+CLOSE = 1e-8  # of ℓ: a step whose square is nothing
 SAMPLES = 65  # of a graph, from which the nearest place is sought
 SAME = 1e-9  # of ℓ: ends of pieces that are closer are one
 GRAPHS = 1024  # of which it is known how high and how sharp they are
@@ -173,17 +174,20 @@ class Graph:
         """The piece from places ``q`` (k, 2)."""
         v, w = (q[:, ::-1] if self.swapped else q).T + np.array(self.origin)[:, None]
         table, (samples, heights) = _table(self.coefficients), _sampled(self)
-        at = samples[np.argmin((samples - v[:, None]) ** 2 + (heights - w[:, None]) ** 2, axis=1)]
+        apart, across = np.subtract.outer(v, samples), np.subtract.outer(w, heights)
+        at = samples[np.argmin(apart * apart + across * across, axis=1)]
         for _ in range(NEWTON_STEPS):
             f, slope, second = series(table, at)
             rest = f - w
-            bent = 1.0 + slope**2 + rest * second
+            bent = 1.0 + slope * slope + rest * second
             # beyond the centre of curvature the place is farthest; it stays at its sample
-            step = np.where(bent > 0.0, (at - v + rest * slope) / np.where(bent > 0.0, bent, 1.0), 0.0)
+            step = (at - v + rest * slope) / np.where(bent > 0.0, bent, np.inf)
             moved = np.minimum(np.maximum(at - step, self.low), self.high)
-            if np.abs(moved - at).max(initial=0.0) < 1e-15:
+            step, at = moved - at, moved
+            if np.abs(step).max(initial=0.0) < CLOSE:
+                # what it has there, but for the step's square
+                rest, slope = rest + slope * step, slope + second * step
                 break
-            at = moved
         else:
             f, slope, second = series(table, at)
             rest = f - w
