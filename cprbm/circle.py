@@ -222,12 +222,13 @@ class Circle:
     def _beside_clamps(self, keys: Ints) -> list[Ints]:
         """For every end that is clamped on the circle, which two rows stand at the springs next to it."""
         found: list[Ints] = []
-        if not any(self.clamped):
+        if self.a.n <= 3:
             return found
         for clamped, outer, inner in zip(self.clamped, (1, self.a.n), (2, self.a.n - 1), strict=True):
-            rows = np.flatnonzero((keys == outer) | (keys == inner))
-            if clamped and rows.size == 2 and self.a.n > 3:
-                found.append(rows if outer < inner else rows[::-1])
+            if clamped:
+                rows = np.flatnonzero((keys == outer) | (keys == inner))
+                if rows.size == 2:
+                    found.append(rows if outer < inner else rows[::-1])
         return found
 
     def course(self, A: smooth.Points) -> tuple[Array, Array, Array]:
@@ -353,8 +354,8 @@ def _some(group: Group, these: Ints) -> Group:
 
 def _summed(group: Group, these: Ints) -> Group:
     """One row, the sum of some rows (m,) of a group, with the key of the last."""
-    p = group.joints.shape[1]
-    parts = np.split(group.slopes[these], (p, 2 * p), axis=1)
+    p, slopes = group.joints.shape[1], group.slopes[these]
+    parts = slopes[:, :p], slopes[:, p : 2 * p], slopes[:, 2 * p :]
 
     def curvature(multipliers: Array) -> Blocks:
         every = np.zeros(len(group.values))
@@ -366,10 +367,10 @@ def _summed(group: Group, these: Ints) -> Group:
         values=np.sum(group.values[these], keepdims=True),
         joints=group.joints[these].reshape(1, -1),
         angles=group.angles[these].reshape(1, -1),
-        slopes=np.concatenate([part.reshape(1, -1) for part in parts], axis=1),
+        slopes=np.concatenate([part.ravel() for part in parts])[None],
         curvature=curvature,
         keys=(group.keys[these[-1]],),
-        arc=np.mean(group.arc[these], keepdims=True),
+        arc=group.arc[these].sum(keepdims=True) / len(these),
     )
 
 

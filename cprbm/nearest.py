@@ -584,8 +584,9 @@ def places_along(pair: Pair, lines: Lines, D: Array, sigma: Array, ends: Array) 
         bends = np.abs(A.bend) + np.abs(B.bend)
         near[facing] = D[2 * facing] - pair.offset < JOINT_REACH * a.h**2 * (1.0 + bends)
     for places, apart in ((s, wells.BESIDE), (ends, BESIDE_END)):
-        for place in places:
-            near[1:-1] &= np.abs(a.s[1:-1] - place) > apart * a.size_at(place)
+        if places.size:
+            away = np.abs(a.s[1:-1, None] - places)
+            near[1:-1] &= np.all(away > apart * a.size_at(places), axis=1)
     for end in (0, -1):
         near[end] = reach > D[end] and not held_together(a, b, end, float(sigma[end]))
     joints = np.flatnonzero(near)
@@ -623,12 +624,19 @@ def _facing_ends(pair: Pair, lines: Lines) -> Places:
     """The ends of B that face A within reach, and their feet on A; the keys follow A's joints."""
     a, b, reach = pair.a, pair.b, pair.offset + REACH
     A, B, ends = lines[0].sampled, lines[1].sampled, b.s[[0, -1]]
-    away = np.hypot(A.x - B.x[[0, -1], None], A.y - B.y[[0, -1], None]).min(axis=1)
-    near = np.flatnonzero(away < reach + a.h)
+    away = np.hypot(A.x - B.x[[0, -1], None], A.y - B.y[[0, -1], None])
+    nearest = away.argmin(axis=1)
+    near = np.flatnonzero(away[[0, 1], nearest] < reach + a.h)
+    if near.size and not pair.tapered:
+        # what is beyond an end of A has its foot there
+        beyond = _seen_from(pair.samples_on_a(lines, nearest[near]), B.only(near * (2 * b.n + 2)))[0]
+        first, last = nearest[near] == 0, nearest[near] == len(A.s) - 1
+        near = near[~((first & (beyond <= 0.0)) | (last & (beyond >= 0.0)))]
     if not near.size:
         return Places(np.zeros(0), np.zeros(0), near)
     turned = pair.exchanged()
-    E, foot, facing = _distance_of(turned, lines[::-1], turned.samples_on_a(lines[::-1], near * (2 * b.n + 2)))
+    at_B = turned.samples_on_a(lines[::-1], near * (2 * b.n + 2))
+    E, foot, facing, _ = _feet_from(turned, lines[::-1], at_B, turned.samples_on_b(lines[::-1], nearest[near]), CLOSE)
     E = not_gone_round(turned, lines[::-1], E, pair.wider(foot, ends[near]))
     facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
     for i, end in enumerate(near):
