@@ -64,7 +64,7 @@ from scene.answer import Array, Flags, Ints
 FOOT_ITERATIONS = 8
 CORNER_ITERATIONS = 40  # where edges have corners that stand out, at each of which a step ends
 NO_RIDGES = np.zeros(0)
-CLOSE = 1e-8  # units of length: a step whose square is nothing
+CLOSE = 1e-10  # units of length: a step after which a place is known to round-off
 CLOSEST_ITERATIONS = 50
 PATIENCE = 4  # iterations of Newton's method, after which a minimum may be sought where B has ended
 LIPSCHITZ = 1.2  # a way along B's tangent over the arc length of A that makes it, with something to spare
