@@ -167,7 +167,7 @@ def beam_work(model: Model, load: BeamLoad, state: State, at: Positions) -> Beam
     np.add.at(on_joints, joints, load.forces)
     # by the angles of the link before, of the link itself and of the one behind; what is beyond an end has no share
     z = moving(points)
-    slopes = np.einsum("ki,kij->kj", load.forces, position_slopes(z))[:, 2:]
+    slopes = position_slopes(z, load.forces)[:, 2:]
     second = position_curvature(z, load.forces)[:, 2:, 2:]
     links = chain.first_link + points.link[:, None] + np.arange(-1, 2)
     gradient, diagonal = np.zeros(model.n_links + 2), np.zeros(model.n_links + 2)

@@ -31,6 +31,7 @@ where drives have brought both together, as long as they are (:mod:`cprbm.brough
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -48,7 +49,7 @@ from scene.answer import Array, Flags, Ints
 
 # local numbers (x, y, θθθ, centre) to (x of joints, y of joints, θθθ)
 ALONE, WITH_CENTRE = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4])
-CLOSE = 1e-10  # units of length: a step whose square is nothing, as what it changes the distance by at a minimum
+CLOSE = 1e-9  # units of length: a step whose square is nothing, as what it changes the distance by at a minimum
 LEAST_CURVATURE = 1e-6  # of D, 1/ℓ, below which its minimum has no place of its own
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 ON_IT = 1e-9  # gap of a clamped end, and how far its normal passes from the centre, where it is clamped on the circle
@@ -151,11 +152,11 @@ class Circle:
         """T_s at arc lengths ``s``."""
         return 0.5 * self.a.section.thinning_at(s) if self.offset > 0.0 else np.zeros_like(s)
 
-    def _away(self, points: smooth.Points) -> tuple[Array, Array]:
-        """ρ (k,) and n (k, 2) at some points of the beam."""
-        r = np.stack((points.x - self.x, points.y - self.y), axis=1)
-        rho = np.hypot(r[:, 0], r[:, 1])
-        return rho, r / rho[:, None]
+    def _away(self, points: smooth.Points) -> tuple[Array, Array, Array]:
+        """ρ and both components of n at some points of the beam, (k,) each."""
+        x, y = points.x - self.x, points.y - self.y
+        rho = np.hypot(x, y)
+        return rho, x / rho, y / rho
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
@@ -167,79 +168,74 @@ class Circle:
         if not s.size:
             return ()
         A = line.at(s)
-        rho, n = self._away(A)
-        across = np.stack((-n[:, 1], n[:, 0]), axis=1)
-        q_s = A.speed * (n[:, 0] * np.sin(A.psi) - n[:, 1] * np.cos(A.psi))
-        z = moving(A)
-        C_z, C_sz = position_slopes(z), tangent_slopes(z)
-        second = position_curvature(z, n)
-        if self.body >= 0:
-            moves = np.tile(-np.eye(2), (len(s), 1, 1))
-            C_z, C_sz = np.concatenate((C_z, moves), axis=2), np.concatenate((C_sz, 0.0 * moves), axis=2)
-            second = np.pad(second, ((0, 0), (0, 2), (0, 2)))
-        beyond = missed(self.a, self.kinks, s)
-        D_z = np.einsum("mi,mik->mk", n, C_z)
-        q_z = np.einsum("mi,mik->mk", across, C_z)
-        second += q_z[:, :, None] * q_z[:, None, :] / rho[:, None, None]
-        D_sz = np.einsum("mi,mik->mk", n, C_sz) + (q_s / rho)[:, None] * q_z
+        rho, x, y = self._away(A)
+        n, z = np.array((x, y)).T, moving(A)
+        D_z = self._against(position_slopes(z, n), n)
         _, convexity, leading = self.course(A)
-        D_ss = convexity + leading * beyond.bend
-        going = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
-        second -= going[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
+        beyond = missed(self.a, self.kinks, A)
+        order = ALONE if self.body < 0 else WITH_CENTRE
+
+        @cache
+        def second() -> Array:
+            """∂²D/∂z² (k, p, p)."""
+            D_sz, found = tangent_slopes(z, n), position_curvature(z, n)
+            if self.body >= 0:
+                D_sz, found = np.pad(D_sz, ((0, 0), (0, 2))), np.pad(found, ((0, 0), (0, 2), (0, 2)))
+            across = np.stack((-y, x), axis=1)
+            q_s = A.speed * (x * np.sin(A.psi) - y * np.cos(A.psi))
+            q_z = self._against(position_slopes(z, across), across)
+            found += q_z[:, :, None] * q_z[:, None, :] / rho[:, None, None]
+            D_sz += (q_s / rho)[:, None] * q_z
+            D_ss = convexity + leading * beyond.bend
+            going = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
+            found -= going[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
+            return found[:, order[:, None], order]
 
         link = A.link
         joints = (self.a.first_joint + link)[:, None]
-        order = ALONE
         if self.body >= 0:
-            joints, order = np.stack((joints[:, 0], np.full(len(s), self.mark)), axis=1), WITH_CENTRE
+            joints = np.stack((joints[:, 0], np.full(len(s), self.mark)), axis=1)
         values = self.offset - self.distance(A) - np.where(free, leading * beyond.integral, 0.0)
-        slopes, second = -D_z[:, order], second[:, order[:, None], order]
-        angles = self.a.first_link + np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n)), axis=1)
+        slopes = -D_z[:, order]
+        angles = self.a.first_link + np.array((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n))).T
         keys = np.where(free, -1, np.searchsorted(self.a.s, s))
-        at_ends = np.isin(s, self.ends)
-        keys[at_ends] = self.a.n + 2 + np.arange(np.sum(at_ends))
+        if self.ends:
+            at_ends = np.isin(s, self.ends)
+            keys[at_ends] = self.a.n + 2 + np.arange(np.sum(at_ends))
 
-        def rows(these: Ints) -> Group:
-            """Rows (m,) each of which is the sum of those at q places, ``these`` (m, q)."""
-            (m, q), p = these.shape, joints.shape[1]
-            x, y, turns = np.split(slopes[these], (p, 2 * p), axis=2)
+        def curvature(multipliers: Array) -> Blocks:
+            pressing = np.flatnonzero(multipliers)
+            return Blocks(joints[pressing], angles[pressing], -multipliers[pressing, None, None] * second()[pressing])
 
-            def curvature(multipliers: Array) -> Blocks:
-                pressing = np.flatnonzero(multipliers)
-                places = these[pressing].ravel()
-                weights = np.repeat(multipliers[pressing], q)
-                return Blocks(joints[places], angles[places], -weights[:, None, None] * second[places])
-
-            return Group(
-                contact=self.name,
-                values=np.sum(values[these], axis=1),
-                joints=joints[these].reshape(m, -1),
-                angles=angles[these].reshape(m, -1),
-                slopes=np.concatenate([part.reshape(m, -1) for part in (x, y, turns)], axis=1),
-                curvature=curvature,
-                keys=tuple(keys[these[:, -1]].tolist()),
-                arc=np.mean(s[these], axis=1),
-            )
-
+        every = Group(self.name, values, joints, angles, slopes, curvature, tuple(keys.tolist()), s)
         together = self._beside_clamps(keys)
-        alone = np.delete(np.arange(len(s)), np.concatenate(together)) if together else np.arange(len(s))
-        groups = [rows(two[None]) for two in together]
-        return (*groups, rows(alone[:, None])) if alone.size else tuple(groups)
+        if not together:
+            return (every,)
+        alone = np.delete(np.arange(len(s)), np.concatenate(together))
+        groups = [_summed(every, two) for two in together]
+        return (*groups, _some(every, alone)) if alone.size else tuple(groups)
+
+    def _against(self, slopes: Array, along: Array) -> Array:
+        """Slopes (k, 5) of parts along some directions (k, 2), with those over the centre's place where that moves."""
+        return slopes if self.body < 0 else np.concatenate((slopes, -along), axis=1)
 
     def _beside_clamps(self, keys: Ints) -> list[Ints]:
         """For every end that is clamped on the circle, which two rows stand at the springs next to it."""
-        found = []
+        found: list[Ints] = []
+        if self.a.n <= 3:
+            return found
         for clamped, outer, inner in zip(self.clamped, (1, self.a.n), (2, self.a.n - 1), strict=True):
-            rows = np.flatnonzero((keys == outer) | (keys == inner))
-            if clamped and rows.size == 2 and self.a.n > 3:
-                found.append(rows if outer < inner else rows[::-1])
+            if clamped:
+                rows = np.flatnonzero((keys == outer) | (keys == inner))
+                if rows.size == 2:
+                    found.append(rows if outer < inner else rows[::-1])
         return found
 
     def course(self, A: smooth.Points) -> tuple[Array, Array, Array]:
         """D_s, D_ss, and by how much D_s grows as the tangent leads, ±1: whether the circle is on the beam's right."""
-        rho, n = self._away(A)
+        rho, x, y = self._away(A)
         cos, sin = np.cos(A.psi), np.sin(A.psi)
-        facing, leaning = n[:, 1] * cos - n[:, 0] * sin, n[:, 0] * cos + n[:, 1] * sin
+        facing, leaning = y * cos - x * sin, x * cos + y * sin
         across = A.speed * facing
         convexity = across * A.bend + leaning * A.gain + across * across / rho
         return A.speed * leaning - self.widening(A.s), convexity, np.where(facing > 0.0, 1.0, -1.0)
@@ -253,6 +249,9 @@ class Circle:
         near[::2] = D[::2] < _beside(self.a, self.radius)
         # of an end that cannot move against the circle the gap is no unknown
         near[[0, -1]] &= ~np.array(self.held)
+        if not np.any(D < REACH):
+            fixed = np.concatenate((s[near], self.ends))
+            return fixed, np.zeros(len(fixed), dtype=bool)
         # at an end that is lowest the minimum lies within if the way to it rises
         slope, convexity, _ = self.course(A)
         fence = [
@@ -264,30 +263,32 @@ class Circle:
         first, last = (4 if clamped else -1 for clamped in self.clamped)
         lowest = lowest[self.own_places & (lowest > first) & (lowest < 2 * (self.a.n + 1) - last)]
         found = wells.wells(self.a, D, convexity[::2], lowest, LEAST_CURVATURE, self.kinks.places)
-        places, distance, settled = self._refined(line, D, found.samples)
-        places = places[settled & found.held(distance - self.offset)]
+        places, settled = self._refined(line, D, found.samples)
+        if not found.parted.all():
+            settled &= found.held(self.distance(line.at(places)) - self.offset)
+        places = places[settled]
         for place in places:
             near &= np.abs(s - place) > wells.BESIDE * self.a.size_at(place)
         fixed = np.concatenate((s[near], self.ends))
         return np.concatenate((fixed, places)), np.arange(len(fixed) + len(places)) >= len(fixed)
 
-    def _refined(self, line: smooth.SmoothLine, D: Array, samples: Ints) -> tuple[Array, Array, Flags]:
-        """Newton's method on D_s = 0 from the lowest ``samples`` (k,) of D: s, D, and where it settled nearby."""
+    def _refined(self, line: smooth.SmoothLine, D: Array, samples: Ints) -> tuple[Array, Flags]:
+        """Newton's method on D_s = 0 from the lowest ``samples`` (k,) of D: s, and where it settled nearby."""
         start = line.sampled.s[samples]
         if not samples.size:
-            return start, start, np.zeros(0, dtype=bool)
+            return start, np.zeros(0, dtype=bool)
         # an end has no parabola through it
         inner = np.clip(samples, 1, len(D) - 2)
         s = start + np.where(inner == samples, wells.lowest_of_parabola(line.sampled.s, D, inner), 0.0)
 
         def slope(s: Array) -> tuple[Array, Array]:
-            A, beyond = line.at(s), missed(self.a, self.kinks, s)
+            A = line.at(s)
+            beyond = missed(self.a, self.kinks, A)
             slope, convexity, leading = self.course(A)
             return slope + leading * beyond.angle, convexity + leading * beyond.bend
 
         within = np.clip(np.stack((start - self.a.h, start + self.a.h)), 0.0, self.a.s[-1])
-        s, settled = wells.bottom(slope, s, within, LEAST_CURVATURE, CLOSE)
-        return s, self.distance(line.at(s)), settled
+        return wells.bottom(slope, s, within, LEAST_CURVATURE, CLOSE)
 
     def passed(self, before: Positions, after: Positions) -> bool:
         """Whether the beam has swept over the circle's centre between two states.
@@ -336,6 +337,41 @@ class Circle:
         s, _ = here._places(line)
         D = np.concatenate((here.distance(line.sampled), here.distance(line.at(s))))
         return float(np.min(D)) - self.offset
+
+
+def _some(group: Group, these: Ints) -> Group:
+    """Some of the rows (m,) of a group."""
+
+    def curvature(multipliers: Array) -> Blocks:
+        every = np.zeros(len(group.values))
+        every[these] = multipliers
+        return group.curvature(every)
+
+    keys = tuple(group.keys[i] for i in these.tolist())
+    of = group.joints[these], group.angles[these], group.slopes[these]
+    return Group(group.contact, group.values[these], *of, curvature, keys, group.arc[these])
+
+
+def _summed(group: Group, these: Ints) -> Group:
+    """One row, the sum of some rows (m,) of a group, with the key of the last."""
+    p, slopes = group.joints.shape[1], group.slopes[these]
+    parts = slopes[:, :p], slopes[:, p : 2 * p], slopes[:, 2 * p :]
+
+    def curvature(multipliers: Array) -> Blocks:
+        every = np.zeros(len(group.values))
+        every[these] = multipliers[0]
+        return group.curvature(every)
+
+    return Group(
+        contact=group.contact,
+        values=np.sum(group.values[these], keepdims=True),
+        joints=group.joints[these].reshape(1, -1),
+        angles=group.angles[these].reshape(1, -1),
+        slopes=np.concatenate([part.ravel() for part in parts])[None],
+        curvature=curvature,
+        keys=(group.keys[these[-1]],),
+        arc=group.arc[these].sum(keepdims=True) / len(these),
+    )
 
 
 def reach(chain: Chain, radius: float) -> float:

@@ -39,7 +39,9 @@ at once.  If the corner had a row only without that dip, and joints only without
 from __future__ import annotations
 
 import cmath
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -47,23 +49,24 @@ from cprbm import smooth, wells
 from cprbm.brought import Brought, brought
 from cprbm.contact import Blocks, Group
 from cprbm.corner import Corner, corners_of
-from cprbm.faces import SAME, Face, Seen, Straight, faces_of, sides_of
+from cprbm.faces import SAME, Face, Seen, faces_of, sides_of
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
-from cprbm.moving import moving, position_curvature, position_slopes, tangent_slopes
+from cprbm.moving import Moving, moving, position_curvature, position_slopes, tangent_slopes
 from cprbm.outset import anchor
 from cprbm.own_pins import ON_IT as PIN_ON_IT
 from cprbm.own_pins import own_pins
 from cprbm.pairs import THINNEST, Pressed
 from cprbm.standing import Attachment
 from cprbm.stops import AngleStop
+from cprbm.whole_edge import NEAREST, WholeEdge
 from scene import EdgeContact, Scene
-from scene.answer import Array, Flags
+from scene.answer import Array, Flags, Ints
 
 # local numbers (x, y, θθθ, m, φ) to (x of joints, y of joints, θθθ φ)
 ALONE, WITH_BODY = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4, 7])
-CLOSE = 1e-13  # units of length: a step that is nothing
+CLOSE = 1e-10  # units of length: a step whose square is nothing
 LEAST_CURVATURE = 1e-6  # of D, 1/ℓ, below which its minimum has no place of its own
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 ON_IT = 1e-9  # gap and slope of a clamped end that is in touch with the edge
@@ -71,7 +74,6 @@ ARCHING = 0.2  # of what the largest force bends one element by: where a zone en
 JOINT_REACH = 2.0  # joints farther than this many h²·(κ + 1/ℓ) are none
 FLAT = 0.01  # of D″ times the length squared, as for zones
 FACING = 1e-9  # by which a normal may miss those of the corner that it is of
-NEAREST = 1e-9  # of ℓ: pieces whose distances differ by less are equally near
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +94,8 @@ class Frame:
     @staticmethod
     def turned(vectors: Array, angle: float) -> Array:
         """Vectors (k, 2) turned counter-clockwise."""
+        if angle == 0.0:
+            return vectors
         cos, sin = np.cos(angle), np.sin(angle)
         return np.asarray(vectors @ np.array([[cos, sin], [-sin, cos]]))
 
@@ -106,8 +110,8 @@ class Edge:
         body: that the edge is fixed to, −1 for the ground; ``mark`` the number of m among the joints, and ``turning``
             that of φ among the unknowns, if that is a body that moves.
         pieces: its own; ``faces`` are these, and where it has ends the sides of what is rigid behind it.
-        tips: where faces begin and end (k, 2): nothing is deeper behind the edge than it is far from the nearest.
-        corners: between the faces, but for those at which the beam is pinned.
+        whole: these; where they begin and end, nothing being deeper behind the edge than it is far from the nearest
+            such tip; and the corners between them, but for those at which the beam is pinned.
         offset: T₀, zero for a line; units of length.
         unit_length: ℓ, m.
         drawn: m at rest.
@@ -129,8 +133,7 @@ class Edge:
     turning: int
     pieces: tuple[Face, ...]
     faces: tuple[Face, ...]
-    tips: Array
-    corners: tuple[Corner, ...]
+    whole: WholeEdge
     offset: float
     unit_length: float
     drawn: tuple[float, float]
@@ -165,6 +168,11 @@ class Edge:
         return replace(self, held=(held[0], held[1]), ruled=(ruled[0], ruled[1]), clamped=(clamped[0], clamped[1]))
 
     @property
+    def corners(self) -> tuple[Corner, ...]:
+        """The corners at which the beam is not pinned."""
+        return self.whole.corners
+
+    @property
     def arching(self) -> float:
         """By how much a zone arches at most, of what the largest force can bend one element by."""
         return ARCHING
@@ -194,42 +202,16 @@ class Edge:
         """T_s at arc lengths ``s``."""
         return 0.5 * self.a.section.thinning_at(s) if self.offset > 0.0 else np.zeros_like(s)
 
-    def _seen(self, face: Face | Corner, A: smooth.Points, frame: Frame) -> Seen:
-        """A piece from points of the beam, with D in the place of the distance and n as it is turned."""
-        return self._of(face.seen(frame.inwards(np.stack((A.x, A.y), axis=1))), A, frame)
-
-    def _of(self, seen: Seen, A: smooth.Points, frame: Frame) -> Seen:
-        """The same of a piece that is ``seen`` as the body sees points of the beam."""
-        return replace(
-            seen,
-            distance=seen.distance - (self._half(A.s) - self.offset),
-            normal=frame.turned(seen.normal, frame.phi),
-        )
-
-    def next_to(self, face: Face, q: Array) -> Flags:
-        """Which places ``q`` (k, 2), as the body sees them, face a piece: before it, or behind it and none nearer."""
-        if isinstance(face, Straight) and not np.any(beside := face.within(q)):
-            return beside
-        return self._facing(face, q, face.seen(q))
-
-    def _facing(self, face: Face, q: Array, mine: Seen) -> Flags:
-        """The same of a piece that has been seen from ``q``."""
-        facing = mine.within & (mine.distance >= 0.0)
-        if np.all(facing == mine.within):  # there is none behind it
-            return np.asarray(facing)
-        nearest = mine.within.copy()
-        for other in self.faces:
-            if other is not face:
-                seen = other.seen(q)
-                nearest &= ~seen.within | (np.abs(mine.distance) <= np.abs(seen.distance) + NEAREST)
-        # beside a tip, above all one where the beam is pinned, a place is by round-off alone beside a piece, or none
-        for tip in self.tips:
-            nearest &= np.abs(mine.distance) <= np.hypot(*(q - tip).T) + NEAREST
-        return np.asarray(facing | nearest)
-
-    def _next_to(self, face: Face, A: smooth.Points, frame: Frame) -> Flags:
-        """Which points of the beam face a piece."""
-        return self.next_to(face, frame.inwards(np.stack((A.x, A.y), axis=1)))
+    def _look(self, line: smooth.SmoothLine, frame: Frame) -> tuple[Array, Seen]:
+        """The beam's samples as the body sees them (k, 2), and every face from there, worked out once in a state."""
+        known, what = line.known, (self.name, "faces")
+        if what not in known:
+            A = line.sampled
+            q = frame.inwards(np.array((A.x, A.y)).T)
+            seen = self.whole.seen(q)
+            known[what] = q, seen.distance, seen.normal, seen.bend, seen.within
+        q, distance, normal, bend, within = known[what]
+        return q, Seen(distance, normal, bend, within)
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
@@ -238,15 +220,12 @@ class Edge:
     def _groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         line, frame = self.line(state, at), self.frame(state, at)
         found = [group for pin in self.pins if pin is not None for group in self._stopped(pin, state, at)]
-        placed = [self._places(face, line, frame) for face in self.faces]
-        own = np.concatenate([s[free] for s, free in placed])
-        standing = [self._closest(corner, line, frame, own) for corner in self.corners]
-        for number, (s, free) in enumerate(placed):
-            if s.size:
-                found.append(self._pressing(number, line, frame, s, free))
-        for number, s in enumerate(standing):
-            if s.size:
-                found.append(self._cornering(number, line, frame, s))
+        number, s, free = self._places(line, frame)
+        corner, at_corners = self._closest(line, frame, s[free])
+        if s.size:
+            found.append(self._pressing(number, line, frame, s, free))
+        if at_corners.size:
+            found.append(self._cornering(corner, line, frame, at_corners))
         return tuple(found)
 
     def _beside(self, s: Array, places: Array) -> Flags:
@@ -259,66 +238,74 @@ class Edge:
         first = -2 if pin.arc == 0.0 else -4
         return tuple(replace(group, keys=tuple(first - key for key in group.keys)) for group in pin.groups(state, at))
 
-    def _pressing(self, number: int, line: smooth.SmoothLine, frame: Frame, s: Array, free: Flags) -> Group:
-        """Rows at arc lengths ``s`` (k,) against one piece."""
+    def _pressing(self, number: Ints, line: smooth.SmoothLine, frame: Frame, s: Array, free: Flags) -> Group:
+        """Rows at arc lengths ``s`` (k,) against the pieces of some ``number`` (k,)."""
         A = line.at(s)
-        seen = self._seen(self.faces[number], A, frame)
-        n, k = seen.normal, seen.bend
-        D_z, along, D_sz, second = self._slopes(A, n, frame)
-        g, beyond, leading = self._across(A, n), missed(self.a, self.kinks, s), self._leading(A, n)
-        second += k[:, None, None] * along[:, :, None] * along[:, None, :]
-        D_sz += (k * g)[:, None] * along
-        D_ss = self._convexity(A, n, k) + leading * beyond.bend
-        going = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
-        second -= going[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
-        values = self.offset - seen.distance - np.where(free, leading * beyond.integral, 0.0)
-        return self._group(A, values, D_z, second, self._keys(number, s, free))
+        seen = self._each(number, A, frame)
+        n, z = seen.normal, moving(A)
+        D_z, beyond = self._slopes(A, z, n, frame), missed(self.a, self.kinks, A)
 
-    def _cornering(self, number: int, line: smooth.SmoothLine, frame: Frame, s: Array) -> Group:
-        """Rows at arc lengths ``s`` (k,) against one corner."""
-        A, corner = line.at(s), self.corners[number]
-        m = self._away(corner, A, frame)
-        D_z, b, a, second = self._slopes(A, m, frame)
-        g, beyond, leading = self._across(A, m), missed(self.a, self.kinks, s), self._leading(A, m)
-        rho = np.sum(m * self._from(corner, A, frame), axis=1)
-        M = self._convexity(A, m, np.zeros(len(s))) + leading * beyond.bend
-        mixed = a[:, :, None] * b[:, None, :]
-        turned = (
-            M[:, None, None] * b[:, :, None] * b[:, None, :]
-            - rho[:, None, None] * a[:, :, None] * a[:, None, :]
-            - g[:, None, None] * (mixed + mixed.transpose(0, 2, 1))
-        )
-        second += turned / (rho * M + g**2)[:, None, None]
+        def bent() -> Array:
+            along, D_sz, second = self._second(A, z, n, frame)
+            g, k = self._across(A, n), seen.bend
+            second += k[:, None, None] * along[:, :, None] * along[:, None, :]
+            D_sz += (k * g)[:, None] * along
+            D_ss = self._convexity(A, n, k) + self._leading(A, n) * beyond.bend
+            going = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
+            second -= going[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
+            return second
+
+        values = self._half(s) - seen.distance - np.where(free, self._leading(A, n) * beyond.integral, 0.0)
+        return self._group(A, values, D_z, bent, self._keys(number, s, free))
+
+    def _cornering(self, number: Ints, line: smooth.SmoothLine, frame: Frame, s: Array) -> Group:
+        """Rows at arc lengths ``s`` (k,) against the corners of some ``number`` (k,)."""
+        A = line.at(s)
+        m, z = self._away(number, A, frame), moving(A)
+        rho = np.sum(m * self._from(number, A, frame), axis=1)
+        beyond, leading = missed(self.a, self.kinks, A), self._leading(A, m)
+
+        def bent() -> Array:
+            b, a, second = self._second(A, z, m, frame)
+            g, M = self._across(A, m), self._convexity(A, m, np.zeros(len(s))) + leading * beyond.bend
+            mixed = a[:, :, None] * b[:, None, :]
+            turned = (
+                M[:, None, None] * b[:, :, None] * b[:, None, :]
+                - rho[:, None, None] * a[:, :, None] * a[:, None, :]
+                - g[:, None, None] * (mixed + mixed.transpose(0, 2, 1))
+            )
+            return np.asarray(second + turned / (rho * M + g**2)[:, None, None])
+
         values = self._half(s) - rho - leading * beyond.integral
         own = len(self.faces) * self._own_keys + number
-        return self._group(A, values, D_z, second, (own,) * len(s))
+        return self._group(A, values, self._slopes(A, z, m, frame), bent, tuple(own.tolist()))
 
-    def _slopes(self, A: smooth.Points, n: Array, frame: Frame) -> tuple[Array, Array, Array, Array]:
-        """n·v_z, τ·v_z and n·C_sz (k, p), and n·C_zz + E (k, p, p), over the local numbers."""
+    def _slopes(self, A: smooth.Points, z: Moving, along: Array, frame: Frame) -> Array:
+        """Of v_z its part along some directions (k, 2), over the local numbers (k, p)."""
+        slopes = position_slopes(z, along)
+        if self.body < 0:
+            return slopes
+        x, y = A.x - frame.m[0], A.y - frame.m[1]
+        swung = along[:, 0] * y - along[:, 1] * x  # −J r
+        return np.concatenate((slopes, -along, swung[:, None]), axis=1)
+
+    def _second(self, A: smooth.Points, z: Moving, n: Array, frame: Frame) -> tuple[Array, Array, Array]:
+        """τ·v_z and n·C_sz (k, p), and n·C_zz + E (k, p, p), over the local numbers."""
         tau = np.stack((n[:, 1], -n[:, 0]), axis=1)
-        z = moving(A)
-        C_z, C_sz = position_slopes(z), tangent_slopes(z)
-        second = position_curvature(z, n)
-        v_z = C_z
+        along, n_sz, second = self._slopes(A, z, tau, frame), tangent_slopes(z, n), position_curvature(z, n)
         if self.body >= 0:
-            r, turned = np.stack((A.x, A.y), axis=1) - frame.m, -tau  # J n
-            swung = np.stack((r[:, 1], -r[:, 0]), axis=1)  # −J r
-            moves = np.tile(-np.eye(2), (len(A.s), 1, 1))
-            v_z = np.concatenate((C_z, moves, swung[:, :, None]), axis=2)
-            C_sz = np.pad(C_sz, ((0, 0), (0, 0), (0, 3)))
-            second = np.pad(second, ((0, 0), (0, 3), (0, 3)))
-            swinging = np.einsum("mi,mik->mk", turned, np.concatenate((C_z, moves), axis=2))
+            n_sz, second = np.pad(n_sz, ((0, 0), (0, 3))), np.pad(second, ((0, 0), (0, 3), (0, 3)))
+            swinging = -along[:, :7]  # −τ is J n
             second[:, 7, :7] += swinging
             second[:, :7, 7] += swinging
-            second[:, 7, 7] -= np.sum(n * r, axis=1)
-        n_z, along = np.einsum("mi,mik->mk", n, v_z), np.einsum("mi,mik->mk", tau, v_z)
-        n_sz = np.einsum("mi,mik->mk", n, C_sz)
-        if self.body >= 0:
+            second[:, 7, 7] -= np.sum(n * (np.stack((A.x, A.y), axis=1) - frame.m), axis=1)
             n_sz[:, 7] -= self._across(A, n)  # J n·C_s
-        return n_z, along, n_sz, second
+        return along, n_sz, second
 
-    def _group(self, A: smooth.Points, values: Array, D_z: Array, second: Array, keys: tuple[int, ...]) -> Group:
-        """Rows with these values, slopes −D_z (k, p) and second derivatives −``second`` (k, p, p)."""
+    def _group(
+        self, A: smooth.Points, values: Array, D_z: Array, bent: Callable[[], Array], keys: tuple[int, ...]
+    ) -> Group:
+        """Rows with these values, slopes −D_z (k, p) and second derivatives −``bent`` (k, p, p)."""
         link = A.link
         joints = (self.a.first_joint + link)[:, None]
         angles = self.a.first_link + np.stack((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n)), axis=1)
@@ -327,12 +314,15 @@ class Edge:
             joints = np.stack((joints[:, 0], np.full(len(link), self.mark)), axis=1)
             angles = np.concatenate((angles, np.full((len(link), 1), self.turning)), axis=1)
             order = WITH_BODY
-        second = second[:, order[:, None], order]
+
+        @cache
+        def second() -> Array:
+            return bent()[:, order[:, None], order]
 
         def curvature(multipliers: Array) -> Blocks:
             pressing = np.flatnonzero(multipliers)
             weights = -multipliers[pressing, None, None]
-            return Blocks(joints[pressing], angles[pressing], weights * second[pressing])
+            return Blocks(joints[pressing], angles[pressing], weights * second()[pressing])
 
         return Group(
             contact=self.name,
@@ -350,11 +340,17 @@ class Edge:
         """Keys of one piece."""
         return self.a.n + 2 + len(self.ends)
 
-    def _keys(self, number: int, s: Array, free: Flags) -> tuple[int, ...]:
+    def _keys(self, number: Ints, s: Array, free: Flags) -> tuple[int, ...]:
         keys = np.searchsorted(self.a.s, s)
-        at_ends = np.isin(s, self.ends)
-        keys[at_ends] = self.a.n + 2 + np.searchsorted(np.sort(self.ends), s[at_ends])
+        if self.ends:
+            at_ends = np.isin(s, self.ends)
+            keys[at_ends] = self.a.n + 2 + np.searchsorted(np.sort(self.ends), s[at_ends])
         return tuple(np.where(free, -1, keys + number * self._own_keys).tolist())
+
+    def _each(self, number: Ints, A: smooth.Points, frame: Frame) -> Seen:
+        """Of points of the beam each one piece, by its ``number`` (k,), n as it is turned."""
+        seen = self.whole.each(number, frame.inwards(np.array((A.x, A.y)).T))
+        return replace(seen, normal=frame.turned(seen.normal, frame.phi))
 
     @staticmethod
     def _leading(A: smooth.Points, n: Array) -> Array:
@@ -381,43 +377,95 @@ class Edge:
         start, end = self.ruled
         return np.asarray((start & (s <= self.a.s[1])) | (end & (s >= self.a.s[-2])))
 
-    def _places(self, face: Face, line: smooth.SmoothLine, frame: Frame) -> tuple[Array, Flags]:
-        """Arc lengths of the rows against one piece, and which of them move with a minimum."""
+    def _places(self, line: smooth.SmoothLine, frame: Frame) -> tuple[Ints, Array, Flags]:
+        """Which pieces rows stand against, the rows' arc lengths, and which of them move with a minimum, (k,) each."""
         A = line.sampled
-        s, q = A.s, frame.inwards(np.stack((A.x, A.y), axis=1))
-        seen = face.seen(q)
-        mine = self._facing(face, q, seen)
-        if not mine.any() and face not in self.pieces:  # a side has no end that is between two samples alone
-            return np.zeros(0), np.zeros(0, dtype=bool)
-        seen = self._of(seen, A, frame)
-        D = seen.distance - self.offset
-        near = np.zeros(len(s), dtype=bool)
-        near[::2] = D[::2] < _beside(self.a, face)
-        near &= mine & ~self._ruled(s)
+        q, seen = self._look(line, frame)
+        mine, D = self.whole.facing(q, seen), seen.distance - self._half(A.s)
+        near = np.zeros(D.shape, dtype=bool)
+        near[:, ::2] = D[:, ::2] < np.array([_beside(self.a, face) for face in self.faces])[:, None]
+        near &= mine
+        if any(self.ruled):
+            near &= ~self._ruled(A.s)
         # an end that the edge's own body holds cannot move against it: its gap is no unknown
-        near[[0, -1]] &= ~np.array(self.held)
+        near[:, [0, -1]] &= ~np.array(self.held)
+        numbers, places = self._minima(line, frame, seen, D, mine)
+        for number, place in zip(numbers, places, strict=True):
+            near[number] &= np.abs(A.s - place) > wells.BESIDE * self.a.size_at(place)
+        on, at = near.nonzero()
+        fixed, on_ends = A.s[at], np.zeros(0, dtype=np.intp)
+        if self.ends:
+            ends = np.array(self.ends)
+            faced = self._facing(line.at(ends), frame)
+            if any(self.ruled):
+                faced &= ~self._ruled(ends)
+            on_ends, at = faced.nonzero()
+            fixed = np.concatenate((fixed, ends[at]))
+        return (
+            np.concatenate((on, on_ends, numbers)),
+            np.concatenate((fixed, places)),
+            np.arange(len(fixed) + len(places)) >= len(fixed),
+        )
+
+    def _facing(self, A: smooth.Points, frame: Frame) -> Flags:
+        """Which points of the beam (k,) face which pieces (F, k)."""
+        q = frame.inwards(np.array((A.x, A.y)).T)
+        return self.whole.facing(q, self.whole.seen(q))
+
+    def _minima(self, line: smooth.SmoothLine, frame: Frame, seen: Seen, D: Array, mine: Flags) -> tuple[Ints, Array]:
+        """Where D has minima of their own: against which pieces, and arc lengths (k,).
+
+        Args:
+            line, frame: the beam and the edge.
+            seen, D: the pieces from the beam's samples, and D there (F, 2N+3).
+            mine: which samples face which pieces (F, 2N+3).
+        """
+        A, none = line.sampled, np.zeros(0, dtype=np.intp)
+        low = self._lowest(A, D, mine, frame.turned(seen.normal[:, [0, -1]].reshape(-1, 2), frame.phi))
+        numbers, found, partings = [none], list[wells.Wells](), dict[int, Array]()
+        for number in np.flatnonzero(low.any(axis=1)).tolist():
+            n = frame.turned(seen.normal[number], frame.phi)
+            partings[number] = self._convexity(A, n, seen.bend[number])[::2]
+            samples = np.flatnonzero(low[number])
+            found.append(wells.wells(self.a, D[number], partings[number], samples, LEAST_CURVATURE, self.kinks.places))
+            numbers.append(np.full(len(found[-1].samples), number))
+        of = np.concatenate(numbers)
+        if not of.size:
+            return of, np.zeros(0)
+        places, settled = self._refined(of, line, frame, A.s[np.concatenate([each.samples for each in found])])
+        if not settled.any():
+            return none, np.zeros(0)
+        B, k = line.at(places), np.arange(len(places))
+        q = frame.inwards(np.array((B.x, B.y)).T)
+        there = self.whole.seen(q)
+        gap, first = there.distance[of, k] - self._half(places), 0
+        for each in found:
+            its = slice(first, first + len(each.samples))
+            settled[its] &= each.held(gap[its])
+            first = its.stop
+        settled &= self.whole.facing(q, there)[of, k] & ~self._ruled(places)
+        if self.pins != (None, None):
+            for number, parting in partings.items():
+                own = of == number
+                settled[own] &= ~self._lying(places[own], D[number], parting)
+        return of[settled], places[settled]
+
+    def _lowest(self, A: smooth.Points, D: Array, mine: Flags, normals: Array) -> Flags:
+        """Which samples are lowest against which pieces (F, 2N+3); ``normals`` of the samples at both ends (2F, 2)."""
         # at an end that is lowest the minimum lies within if the way to it rises
-        slope = self._slope(A, seen.normal)
-        fence = [
-            np.inf if inwards and not fixed else -np.inf
-            for inwards, fixed in zip((slope[0] < 0.0, slope[-1] > 0.0), self.held, strict=True)
-        ]
-        lowest = wells.lowest(np.concatenate((fence[:1], D, fence[1:])), REACH) - 1
-        lowest = lowest[self.own_places & ~self._ruled(s[lowest])]
-        parting = self._convexity(A, seen.normal, seen.bend)[::2]
-        found = wells.wells(self.a, D, parting, lowest, LEAST_CURVATURE, self.kinks.places)
-        places, settled = self._refined(face, line, frame, s[found.samples])
-        B = line.at(places)
-        settled &= found.held(self._seen(face, B, frame).distance - self.offset)
-        settled &= self._next_to(face, B, frame) & ~self._ruled(places)
-        places = places[settled & ~self._lying(places, D, parting)]
-        for place in places:
-            near &= np.abs(s - place) > wells.BESIDE * self.a.size_at(place)
-        ends = np.array(self.ends)
-        if ends.size:
-            ends = ends[self._next_to(face, line.at(ends), frame) & ~self._ruled(ends)]
-        fixed = np.concatenate((s[near], ends))
-        return np.concatenate((fixed, places)), np.arange(len(fixed) + len(places)) >= len(fixed)
+        ends = A.only(np.tile([0, len(A.s) - 1], len(D)))
+        slope = self._slope(ends, normals).reshape(-1, 2)
+        held = np.array(self.held)
+        rises = np.array((slope[:, 0] < 0.0, slope[:, 1] > 0.0)).T & ~held
+        fence = np.where(rises, np.inf, -np.inf)
+        fenced = np.concatenate((fence[:, :1], D, fence[:, 1:]), axis=1)
+        low: Flags = np.asarray((fenced[:, :-2] >= D) & (fenced[:, 2:] > D) & (REACH > D))
+        if any(self.ruled):
+            low &= ~self._ruled(A.s)
+        # a side has no end that is between two samples alone
+        sides = slice(len(self.pieces), None)
+        low[sides] &= np.any(mine[sides], axis=1, keepdims=True)
+        return low & self.own_places
 
     def _lying(self, places: Array, D: Array, parting: Array) -> Flags:
         """At which ``places`` (k,) the beam lies on the edge from an own pin on: it is the end of a zone.
@@ -438,12 +486,13 @@ class Edge:
                 lying[i] |= arched < bent * max(h**2, FLAT * (high - low) ** 2)
         return lying
 
-    def _refined(self, face: Face, line: smooth.SmoothLine, frame: Frame, s: Array) -> tuple[Array, Flags]:
+    def _refined(self, number: Ints, line: smooth.SmoothLine, frame: Frame, s: Array) -> tuple[Array, Flags]:
         """Newton's method on D_s = 0; the flags say where it settled at a minimum nearby."""
+        twice = np.concatenate((number, number))
 
         def slope(s: Array) -> tuple[Array, Array]:
-            A, beyond = line.at(s), missed(self.a, self.kinks, s)
-            seen = self._seen(face, A, frame)
+            A = line.at(s)
+            beyond, seen = missed(self.a, self.kinks, A), self._each(twice[: len(s)], A, frame)
             leading = self._leading(A, seen.normal)
             D_ss = self._convexity(A, seen.normal, seen.bend) + leading * beyond.bend
             return self._slope(A, seen.normal) + leading * beyond.angle, D_ss
@@ -454,27 +503,35 @@ class Edge:
         """Between which places (2, k) of the beam a minimum is sought from ``s`` (k,)."""
         return np.clip(np.stack((s - self.a.h, s + self.a.h)), 0.0, self.a.s[-1])
 
-    def _from(self, corner: Corner, A: smooth.Points, frame: Frame) -> Array:
-        """C − P (k, 2)."""
-        return np.asarray(np.stack((A.x, A.y), axis=1) - frame.outwards(np.array([corner.place])))
+    def _from(self, corner: Ints, A: smooth.Points, frame: Frame) -> Array:
+        """C − P (k, 2), each point of the beam from one corner, by its number (k,)."""
+        return np.asarray(np.array((A.x, A.y)).T - frame.outwards(self.whole.places)[corner])
 
-    def _away(self, corner: Corner, A: smooth.Points, frame: Frame) -> Array:
-        """m (k, 2)."""
+    def _away(self, corner: Ints, A: smooth.Points, frame: Frame) -> Array:
+        """m (k, 2) of the same."""
         cos, sin = np.cos(A.psi), np.sin(A.psi)
-        ahead = frame.turned(corner.ahead[None], frame.phi)[0]
-        sign = np.where(ahead[1] * cos > ahead[0] * sin, 1.0, -1.0)
+        ahead = frame.turned(self.whole.ahead, frame.phi)[corner]
+        sign = np.where(ahead[:, 1] * cos > ahead[:, 0] * sin, 1.0, -1.0)
         lean = np.clip(self._widening(A.s) / A.speed, -1.0, 1.0)
         level = sign * np.sqrt(1.0 - lean**2)
         return np.stack((lean * cos - level * sin, lean * sin + level * cos), axis=1)
 
-    def _closest(self, corner: Corner, line: smooth.SmoothLine, frame: Frame, taken: Array) -> Array:
-        """Arc lengths where the beam is closest to a corner that it faces; none beside places that are ``taken``."""
-        A = line.sampled
-        away = np.hypot(*self._from(corner, A, frame).T)
-        s = A.s[wells.lowest(away - self._half(A.s), REACH)]
+    def _closest(self, line: smooth.SmoothLine, frame: Frame, taken: Array) -> tuple[Ints, Array]:
+        """Corners that the beam faces and arc lengths where it is closest to them; none beside those ``taken``."""
+        none = np.zeros(0, dtype=np.intp), np.zeros(0)
+        if not self.corners:
+            return none
+        A, places = line.sampled, frame.outwards(self.whole.places)
+        D = np.hypot(A.x - places[:, :1], A.y - places[:, 1:]) - self._half(A.s)
+        before, inner, behind = D[:, :-2], D[:, 1:-1], D[:, 2:]
+        number, sample = ((before >= inner) & (behind > inner) & (inner < REACH)).nonzero()
+        if not number.size:
+            return none
+        twice, s = np.concatenate((number, number)), A.s[sample + 1]
 
         def slope(s: Array) -> tuple[Array, Array]:
-            A, beyond = line.at(s), missed(self.a, self.kinks, s)
+            A, corner = line.at(s), twice[: len(s)]
+            beyond = missed(self.a, self.kinks, A)
             m, r = self._away(corner, A, frame), self._from(corner, A, frame)
             g, leading, rho = self._across(A, m), self._leading(A, m), np.sum(m * r, axis=1)
             F_s = g**2 + rho * (self._convexity(A, m, np.zeros(len(s))) + leading * beyond.bend)
@@ -482,12 +539,23 @@ class Edge:
 
         s, settled = wells.bottom(slope, s, self._around(s), LEAST_CURVATURE, CLOSE)
         settled &= (s > 0.0) & (s < self.a.s[-1]) & ~self._ruled(s) & ~self._beside(s, taken)
-        s = np.unique(s[settled])
+        # samples on both sides may lead to one place
+        s, corner = s[settled], number[settled]
+        if not s.size:
+            return none
+        order = np.lexsort((s, corner))
+        s, corner = s[order], corner[order]
+        other = np.append(True, (np.diff(s) != 0.0) | (np.diff(corner) != 0))
+        s, corner = s[other], corner[other]
         A = line.at(s)
         m, r = self._away(corner, A, frame), self._from(corner, A, frame)
-        faced = corner.beyond(frame.turned(m, -frame.phi)) >= -FACING - np.abs(A.bend) * self.a.size_at(s)
-        faced &= (np.sum(m * r, axis=1) >= 0.0) | self._inside(corner, frame.turned(r, -frame.phi))
-        return np.asarray(s[faced])
+        normals, r_here = frame.turned(m, -frame.phi), frame.turned(r, -frame.phi)
+        faced: Flags = np.asarray(np.sum(m * r, axis=1) >= 0.0)
+        for i, number in enumerate(corner.tolist()):
+            its, least = self.corners[number], -FACING - np.abs(A.bend[i]) * self.a.size_at(s[i])
+            faced[i] |= self._inside(its, r_here[i : i + 1])[0]
+            faced[i] &= its.beyond(normals[i : i + 1])[0] >= least
+        return corner[faced], s[faced]
 
     def _inside(self, corner: Corner, r: Array) -> Flags:
         """Which places, ``r`` (k, 2) from a corner as the body sees it, are in what is rigid there.
@@ -504,29 +572,29 @@ class Edge:
             if not any(end is not None and np.hypot(*(end - place)) <= SAME for end in face.ends):
                 seen = face.seen(q)
                 inside &= ~seen.within | (np.abs(seen.distance) >= depth)
-        for tip in self.tips:
+        for tip in self.whole.tips:
             inside &= np.hypot(*(q - tip).T) >= depth
         return inside
 
     def _nearest(self, A: smooth.Points, frame: Frame) -> tuple[Array, Array, Array]:
         """Of the pieces that some points face, the nearest: D (k,), infinite where there is none, n (k, 2), k (k,)."""
-        least, normal, bend = np.full(len(A.s), np.inf), np.zeros((len(A.s), 2)), np.zeros(len(A.s))
-        q = frame.inwards(np.stack((A.x, A.y), axis=1))
-        for face in self.faces:
-            seen = face.seen(q)
-            facing = self._facing(face, q, seen)
-            if not facing.any():
-                continue
-            seen = self._of(seen, A, frame)
-            nearer = facing & (seen.distance < least)
-            least = np.where(nearer, seen.distance, least)
-            normal, bend = np.where(nearer[:, None], seen.normal, normal), np.where(nearer, seen.bend, bend)
+        q = frame.inwards(np.array((A.x, A.y)).T)
+        seen = self.whole.seen(q)
+        return self._nearest_of(A, q, seen, frame)
+
+    def _nearest_of(self, A: smooth.Points, q: Array, seen: Seen, frame: Frame) -> tuple[Array, Array, Array]:
+        """The same, ``q`` (k, 2) being the points as the body sees them, and ``seen`` what that sees of the pieces."""
+        views = [Seen(seen.distance, seen.normal, seen.bend, self.whole.facing(q, seen))]
         for corner in self.corners:
-            seen = self._seen(corner, A, frame)
-            nearer = seen.within & (seen.distance < least)
-            least = np.where(nearer, seen.distance, least)
-            normal, bend = np.where(nearer[:, None], seen.normal, normal), np.where(nearer, seen.bend, bend)
-        return least, normal, bend
+            its = corner.seen(q)
+            views.append(Seen(its.distance[None], its.normal[None], its.bend[None], its.within[None]))
+        away = np.concatenate([np.where(each.within, each.distance, np.inf) for each in views])
+        k = np.arange(len(q))
+        which = away.argmin(axis=0)
+        least, there = away[which, k], np.isfinite(away[which, k])
+        normal = np.where(there[:, None], np.concatenate([each.normal for each in views])[which, k], 0.0)
+        bend = np.where(there, np.concatenate([each.bend for each in views])[which, k], 0.0)
+        return least - (self._half(A.s) - self.offset), frame.turned(normal, frame.phi), bend
 
     def _in_touch(self, frame: Frame) -> tuple[tuple[bool, bool], tuple[bool, bool]]:
         """Of the beam's start and of its end, as drawn, whether it touches the edge there, and lies along it too."""
@@ -557,26 +625,32 @@ class Edge:
         """What the least gap is at least, units of length, by the samples alone.
 
         Along the beam a distance changes by no more than the way, and half of the thickness by less.  A corner that
-        stands out may be all between two samples, and of an edge that has one nothing is known by them.
+        stands out may be all between two samples: both are no farther from what is rigid than they are apart then.
         """
+        line, frame = self.line(state, at), self.frame(state, at)
+        q, seen = self._look(line, frame)
+        least = self._nearest_of(line.sampled, q, seen, frame)[0]
         if self.corners:
-            return -np.inf
-        A = self.line(state, at).sampled
-        apart = float(np.max(np.diff(A.s)))
-        return float(self._nearest(A, self.frame(state, at))[0].min()) - self.offset - 2.0 * apart
+            around = np.where(seen.within, np.abs(seen.distance), np.inf).min(axis=0)
+            for tip in self.whole.tips:
+                around = np.minimum(around, np.hypot(*(q - tip).T))
+            least = np.minimum(least, around - (self._half(line.sampled.s) - self.offset))
+        apart = float(np.max(np.diff(line.sampled.s)))
+        # between two samples it is no less than half of what both have together less than the way from one to the other
+        return 0.5 * float(np.min(least[1:] + least[:-1])) - self.offset - apart
 
     def least_gap(self, state: State, at: Positions) -> float:
         """Least gap anywhere along the beam, units of length; negative where it overlaps."""
         line, frame = self.line(state, at), self.frame(state, at)
-        least = [self._nearest(line.sampled, frame)[0].min()]
-        for face in self.faces:
-            s, _ = self._places(face, line, frame)
-            if s.size:
-                least.append(self._nearest(line.at(s), frame)[0].min())
-        for corner in self.corners:
-            A = line.at(self._closest(corner, line, frame, np.zeros(0)))
+        s = self._places(line, frame)[1]
+        least = [self._nearest_of(line.sampled, *self._look(line, frame), frame)[0].min()]
+        if s.size:
+            least.append(self._nearest(line.at(s), frame)[0].min())
+        corner, s = self._closest(line, frame, np.zeros(0))
+        if s.size:
+            A = line.at(s)
             rho = np.sum(self._away(corner, A, frame) * self._from(corner, A, frame), axis=1)
-            least.append((rho - (self._half(A.s) - self.offset)).min(initial=np.inf))
+            least.append((rho - (self._half(s) - self.offset)).min())
         return float(min(least)) - self.offset
 
 
@@ -615,8 +689,7 @@ def edge_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Edge:
         turning=model.n_links + 3 * body + 2,
         pieces=pieces,
         faces=(*pieces, *sides),
-        tips=_tips((*pieces, *sides)),
-        corners=_corners(pieces, sides, pinned, offset),
+        whole=WholeEdge((*pieces, *sides), _tips((*pieces, *sides)), _corners(pieces, sides, pinned, offset)),
         offset=offset,
         unit_length=model.unit_length,
         drawn=(float(x), float(y)),

@@ -26,10 +26,12 @@ from typing import Protocol
 import numpy as np
 from numpy.polynomial import polynomial
 
+from cprbm.smooth import series
 from scene import EdgeContact, HalfPlaneContact, LineContact
 from scene.answer import Array, Flags
 
 NEWTON_STEPS = 30
+CLOSE = 1e-8  # of ℓ: a step whose square is nothing
 SAMPLES = 65  # of a graph, from which the nearest place is sought
 SAME = 1e-9  # of ℓ: ends of pieces that are closer are one
 GRAPHS = 1024  # of which it is known how high and how sharp they are
@@ -171,20 +173,24 @@ class Graph:
     def seen(self, q: Array) -> Seen:
         """The piece from places ``q`` (k, 2)."""
         v, w = (q[:, ::-1] if self.swapped else q).T + np.array(self.origin)[:, None]
-        f, f1, f2 = _derivatives(self.coefficients)
-        samples, heights = _sampled(self)
-        at = samples[np.argmin((samples - v[:, None]) ** 2 + (heights - w[:, None]) ** 2, axis=1)]
+        table, (samples, heights) = _table(self.coefficients), _sampled(self)
+        apart, across = np.subtract.outer(v, samples), np.subtract.outer(w, heights)
+        at = samples[np.argmin(apart * apart + across * across, axis=1)]
         for _ in range(NEWTON_STEPS):
-            slope, rest, second = _value(f1, at), _value(f, at) - w, _value(f2, at)
-            bent = 1.0 + slope**2 + rest * second
+            f, slope, second = series(table, at)
+            rest = f - w
+            bent = 1.0 + slope * slope + rest * second
             # beyond the centre of curvature the place is farthest; it stays at its sample
-            step = np.where(bent > 0.0, (at - v + rest * slope) / np.where(bent > 0.0, bent, 1.0), 0.0)
+            step = (at - v + rest * slope) / np.where(bent > 0.0, bent, np.inf)
             moved = np.minimum(np.maximum(at - step, self.low), self.high)
-            if np.abs(moved - at).max(initial=0.0) < 1e-15:
+            step, at = moved - at, moved
+            if np.abs(step).max(initial=0.0) < CLOSE:
+                # what it has there, but for the step's square
+                rest, slope = rest + slope * step, slope + second * step
                 break
-            at = moved
         else:
-            slope, rest, second = _value(f1, at), _value(f, at) - w, _value(f2, at)
+            f, slope, second = series(table, at)
+            rest = f - w
         size = np.hypot(1.0, slope)
         tau = np.stack((1.0 / size, slope / size), axis=1)
         n = self.side * np.stack((-slope / size, 1.0 / size), axis=1)
@@ -210,6 +216,15 @@ def _sampled(graph: Graph) -> tuple[Array, Array]:
     """Places of a graph from which the nearest is sought, v and f(v), (SAMPLES,) each."""
     samples = np.linspace(graph.low, graph.high, SAMPLES)
     return samples, _value(_derivatives(graph.coefficients)[0], samples)
+
+
+@lru_cache(maxsize=GRAPHS)
+def _table(coefficients: tuple[float, ...]) -> Array:
+    """The same row by row (3, at least 2)."""
+    found = np.zeros((3, max(len(coefficients), 2)))
+    for row, each in zip(found, _derivatives(coefficients), strict=True):
+        row[: len(each)] = each
+    return found
 
 
 @lru_cache(maxsize=GRAPHS)

@@ -62,6 +62,37 @@ class Touches:
         )
 
 
+# local numbers of a place to those of a row that has no other
+ALONE = np.array((0, 5, 1, 6, 2, 3, 4, 7, 8, 9))
+
+
+def single(name: str, chains: tuple[Chain, Chain], touches: Touches, keys: Ints, arc: Array) -> Group:
+    """Rows (m,) of one contact, each of one place; arguments as of :func:`gathered`."""
+    firsts = ((chain.first_joint, chain.first_link, chain.n) for chain in chains)
+    joints, angles = np.empty((len(arc), 2), dtype=np.intp), np.empty((len(arc), 6), dtype=np.intp)
+    for beam, ((joint, link, n), on) in enumerate(zip(firsts, touches.links, strict=True)):
+        joints[:, beam] = joint + on
+        for k in range(3):
+            # beyond a beam's ends the end itself: what is there has no share
+            angles[:, 3 * beam + k] = link + np.minimum(np.maximum(on + (k - 1), 0), n)
+
+    def curvature(multipliers: Array) -> Blocks:
+        pressing = np.flatnonzero(multipliers)
+        matrices = touches.second[pressing][:, ALONE[:, None], ALONE]
+        return Blocks(joints[pressing], angles[pressing], multipliers[pressing, None, None] * matrices)
+
+    return Group(
+        contact=name,
+        values=touches.values,
+        joints=joints,
+        angles=angles,
+        slopes=touches.slopes[:, ALONE],
+        curvature=curvature,
+        keys=tuple(keys.tolist()),
+        arc=arc,
+    )
+
+
 def gathered(
     name: str,
     chains: tuple[Chain, Chain],

@@ -38,92 +38,75 @@ from scene.answer import Array, Flags, Ints
 SPRINGS = 2  # on either side of the pressed element
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Missed:
     """What is missed at some places (k,) of a chain.
 
     Attributes:
-        active: whether a place lies in the element of a kink or in one beside it; nothing is missed elsewhere.
-        before, behind: p and q of the nearest kink.
-        u, h: of the element of the place.
+        coefficients: of γ as a polynomial of ``off``, lowest power first (4, k).
+        off: way from the border of the half of an element, negative before it (k,).
     """
 
-    active: Flags
-    before: Array
-    behind: Array
-    u: Array
-    h: Array
+    coefficients: Array
+    off: Array
 
     @property
     def angle(self) -> Array:
         """γ (k,)."""
-        if not self.active.any():
-            return np.zeros(len(self.u))
-        u, h, p, q = self.u, self.h, self.before, self.behind
-        v = h - u
-        return np.where(self.active, (p + q) * h * h / 24.0 - u * v / (2.0 * h) * (p * u + q * v), 0.0)
+        c, off = self.coefficients, self.off
+        return np.asarray(((c[3] * off + c[2]) * off + c[1]) * off + c[0])
 
     @property
     def bend(self) -> Array:
         """dγ/ds (k,)."""
-        if not self.active.any():
-            return np.zeros(len(self.u))
-        u, h, p, q = self.u, self.h, self.before, self.behind
-        v = h - u
-        return np.where(self.active, -(p * u * (2.0 * v - u) + q * v * (v - 2.0 * u)) / (2.0 * h), 0.0)
+        c, off = self.coefficients, self.off
+        return np.asarray((3.0 * c[3] * off + 2.0 * c[2]) * off + c[1])
 
     @property
     def integral(self) -> Array:
         """Γ (k,), units of length, nought at both borders of the element."""
-        if not self.active.any():
-            return np.zeros(len(self.u))
-        u, h, p, q = self.u, self.h, self.before, self.behind
-        bent = p * u**3 * (h / 3.0 - u / 4.0) + q * u**2 * (h * h / 2.0 - 2.0 * h * u / 3.0 + u * u / 4.0)
-        return np.where(self.active, (p + q) * h * h / 24.0 * u - bent / (2.0 * h), 0.0)
+        c, off = self.coefficients, self.off
+        return np.asarray((((c[3] / 4.0 * off + c[2] / 3.0) * off + c[1] / 2.0) * off + c[0]) * off)
 
 
-def missed(chain: Chain, kinks: Kinks, s: Array) -> Missed:
-    """What is missed at arc lengths ``s`` (k,) of a ``chain``."""
+def missed(chain: Chain, kinks: Kinks, points: Points) -> Missed:
+    """What is missed at some ``points`` (k,) of a ``chain``."""
     if not kinks.places.size:
-        nothing = np.zeros(len(s))
-        return Missed(np.zeros(len(s), dtype=bool), nothing, nothing, nothing, np.ones(len(s)))
-    here = _element(chain, s)
-    nearest = np.abs(s[:, None] - kinks.places).argmin(axis=1)
-    return Missed(
-        active=np.abs(here - _reached(chain, kinks)[1][nearest]) <= 1,
-        before=kinks.before[nearest],
-        behind=kinks.behind[nearest],
-        u=s - chain.borders[here],
-        h=chain.sizes[here],
-    )
+        return Missed(np.zeros((4, len(points.s))), points.off)
+    return Missed(polynomials(chain, kinks)[:, points.half], points.off)
 
 
 def kinked(chain: Chain, kinks: Kinks, points: Points) -> Points:
     """Points of the smooth line with the true tangents; where they lie is not changed."""
     if not kinks.places.size:
         return points
-    near = np.zeros(len(points.s), dtype=bool)
-    for low, high in _reached(chain, kinks)[0]:
-        near |= (points.s > low) & (points.s < high)
-    if not near.any():
-        return points
-    more = missed(chain, kinks, points.s[near])
-    psi, bend = points.psi.copy(), points.bend.copy()
-    psi[near] += more.angle
-    bend[near] += more.bend
-    return replace(points, psi=psi, bend=bend)
+    more = missed(chain, kinks, points)
+    return replace(points, psi=points.psi + more.angle, bend=points.bend + more.bend)
+
+
+@lru_cache(maxsize=64)
+def polynomials(chain: Chain, kinks: Kinks) -> Array:
+    """Coefficients of γ in all halves of elements, over the way from the half's border, lowest power first, (4, 2N).
+
+    An element has the kink that is nearest to its middle, and nought where that is not within it or beside it.
+    """
+    found = np.zeros((4, 2 * chain.n))
+    if not kinks.places.size:
+        return found
+    home, middle = _element(chain, kinks.places), 0.5 * (chain.borders[1:] + chain.borders[:-1])
+    nearest = np.abs(middle[:, None] - kinks.places).argmin(axis=1)
+    felt = np.abs(np.arange(chain.n) - home[nearest]) <= 1
+    p, q = np.where(felt, (kinks.before[nearest], kinks.behind[nearest]), 0.0)
+    h = chain.sizes
+    mean, steepest = (p + q) * h * h / 24.0, (p - q) / (2.0 * h)
+    found[:, ::2] = mean, -0.5 * q * h, q - 0.5 * p, steepest
+    found[:, 1::2] = mean, 0.5 * p * h, p - 0.5 * q, steepest
+    found.flags.writeable = False
+    return found
 
 
 def _element(chain: Chain, s: Array) -> Ints:
     return np.minimum(np.maximum(chain.borders.searchsorted(s, side="right") - 1, 0), chain.n - 1)
-
-
-@lru_cache(maxsize=64)
-def _reached(chain: Chain, kinks: Kinks) -> tuple[list[tuple[float, float]], Ints]:
-    """Between which arc lengths each kink is felt, and in which element it is."""
-    homes = _element(chain, kinks.places)
-    borders = chain.borders
-    return [(borders[max(home - 1, 0)], borders[min(home + 2, chain.n)]) for home in homes], homes
 
 
 def within(chain: Chain, places: Array) -> Flags:

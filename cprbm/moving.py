@@ -119,35 +119,37 @@ def _rows(points: Points) -> Array:
     return rows
 
 
-def _over(z: Moving, over_turn: ComplexArray, turned: ComplexArray) -> Array:
-    """Derivatives over x, y and θ of vectors, from those over δ and of what turns with the link, (k, 2, 5)."""
-    slopes = np.zeros((len(z.off), 2, LOCALS))
-    slopes[:, :, 2:] = _pairs(over_turn)[:, :, None] * z.over_angles[:, None, :]
-    slopes[:, :, 3] += _pairs(1j * turned)
+def _over(z: Moving, on: ComplexArray, over_turn: ComplexArray, turned: ComplexArray) -> Array:
+    """Derivatives over x, y and θ of vectors' parts along directions, ``on`` conjugated, from those over δ and of what
+    turns with the link, (k, 5).
+    """
+    slopes = np.zeros((len(z.off), LOCALS))
+    np.multiply((on * over_turn).real[:, None], z.over_angles, out=slopes[:, 2:])
+    slopes[:, 3] -= (on * turned).imag
     return slopes
 
 
-def _pairs(vectors: ComplexArray) -> Array:
-    """Numbers (k,) as vectors (k, 2)."""
-    return np.ascontiguousarray(vectors).view(float).reshape(-1, 2)
+def _against(along: Array) -> ComplexArray:
+    """Directions (k, 2) as conjugate numbers (k,)."""
+    return np.asarray(along[:, 0] - 1j * along[:, 1])
 
 
-def position_slopes(z: Moving) -> Array:
-    """∂C over the local numbers, (k, 2, 5)."""
-    slopes = _over(z, z.over_turn, z.arm)
-    slopes[:, 0, 0] = slopes[:, 1, 1] = 1.0
+def position_slopes(z: Moving, along: Array) -> Array:
+    """∂(along·C) over the local numbers for directions ``along`` (k, 2): (k, 5)."""
+    slopes = _over(z, _against(along), z.over_turn, z.arm)
+    slopes[:, :2] = along
     return slopes
 
 
-def tangent_slopes(z: Moving) -> Array:
-    """∂C′ over the local numbers, (k, 2, 5)."""
-    return _over(z, z.along_over_turn, z.along)
+def tangent_slopes(z: Moving, along: Array) -> Array:
+    """∂(along·C′) over the local numbers for directions ``along`` (k, 2): (k, 5)."""
+    return _over(z, _against(along), z.along_over_turn, z.along)
 
 
 def position_curvature(z: Moving, along: Array) -> Array:
     """Second derivatives of along·C over the local numbers for directions ``along`` (k, 2): (k, 5, 5)."""
     second, turns = np.zeros((len(z.off), LOCALS, LOCALS)), z.over_angles
-    on = along[:, 0] - 1j * along[:, 1]
+    on = _against(along)
     second[:, 2:, 2:] = (on * z.over_turn_twice).real[:, None, None] * turns[:, :, None] * turns[:, None, :]
     over = -(on * z.over_turn).imag[:, None] * turns
     second[:, 3, 2:] += over

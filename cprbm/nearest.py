@@ -48,10 +48,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cprbm import leaning, smooth, wells
+from cprbm.both import Both, made
 from cprbm.brought import as_drawn
 from cprbm.contact import Group
 from cprbm.crossing import cross
-from cprbm.gathering import Touches, gathered
+from cprbm.gathering import Touches, gathered, single
 from cprbm.kinematics import Positions, State
 from cprbm.kinks import kinked, missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
@@ -63,7 +64,7 @@ from scene.answer import Array, Flags, Ints
 FOOT_ITERATIONS = 8
 CORNER_ITERATIONS = 40  # where edges have corners that stand out, at each of which a step ends
 NO_RIDGES = np.zeros(0)
-CLOSE = 1e-9  # units of length: a step whose square is nothing
+CLOSE = 1e-10  # units of length: a step after which a place is known to round-off
 CLOSEST_ITERATIONS = 50
 PATIENCE = 4  # iterations of Newton's method, after which a minimum may be sought where B has ended
 LIPSCHITZ = 1.2  # a way along B's tangent over the arc length of A that makes it, with something to spare
@@ -80,7 +81,7 @@ BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces 
 DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even
 
 STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
-FEW = 8  # places whose nearest samples are found by looking at all
+MANY = 27_000  # distances of samples, up to which all are looked at sooner than a tree is made
 STRAIGHT = 0.1  # of an element: by less a line is off the chords between its samples
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)  # of the mean on either side of a border of B
 
@@ -162,6 +163,16 @@ class Pair:
         """Points of B at arc lengths ``sigma`` (k,), bent as its kinks say."""
         return kinked(self.b, self.kinks[1], lines[1].at(sigma))
 
+    def on_both(self, lines: Lines, s: Array, sigma: Array) -> tuple[smooth.Points, smooth.Points]:
+        """Points of A at arc lengths ``s`` (k,) and of B at ``sigma`` (j,), bent as their kinks say."""
+        what = made(self.a, self.b, self.kinks)
+        if what is None:
+            return self.on_a(lines, s), self.on_b(lines, sigma)
+        known, key = lines[0].known, (self.name, "arcs")
+        if key not in known:
+            known[key] = (np.concatenate((lines[0].arcs, lines[1].arcs), axis=1),)
+        return Both(*lines, what, known[key][0]).at(s, sigma)
+
     def samples_on_a(self, lines: Lines, these: Ints) -> smooth.Points:
         """The same at some of the samples of A, by their numbers (k,), which are worked out once in a state."""
         return kinked(self.a, self.kinks[0], lines[0].sampled.only(these))
@@ -183,6 +194,13 @@ class Pair:
         if not self.tapered:
             return A
         return leaning.leant(self.a, A, -self.side * np.sign(np.cos(A.psi - B.psi)))
+
+    def facing_each_other(self, A: smooth.Points, B: smooth.Points) -> tuple[smooth.Points, smooth.Points]:
+        """Points of A and their feet on B with the tangents of the edges that face each other."""
+        if not self.tapered:
+            return A, B
+        B = self.facing(A, B)
+        return self.beside(A, B), B
 
     def wider(self, s: Array, sigma: Array) -> Array | float:
         """By how much ½(t₁+t₂) is more than where both are thinnest, at arc lengths of A and of B."""
@@ -362,8 +380,7 @@ class Pair:
         return self._single(at, places, self.touches(lines, places.s, places.sigma, places.keys < 0))
 
     def _single(self, at: Positions, places: Places, touches: Touches) -> Group:
-        weights = np.ones((len(places.s), 1))
-        return gathered(self.name, (self.a, self.b), at, touches, weights, places.keys, places.s)
+        return single(self.name, (self.a, self.b), touches, places.keys, places.s)
 
     def _mean_rows(self, at: Positions, joints: Places, touches: Touches, weights: Array) -> list[tuple[Group, Array]]:
         """Rows of the mean gap around joints of A, ``weights`` (m, q); those next to a clamp of both beams in one."""
@@ -390,8 +407,9 @@ class Pair:
         Gauss's points on either side of the border of B's elements that lies within, where the curvature steps.
         """
         s, sigma = joints.s, joints.sigma
-        A = self.samples_on_a(lines, 2 * joints.keys)
-        B = self.foot(lines, A, sigma)
+        A, B = self.on_both(lines, s, sigma)
+        if self.tapered:
+            B = self.facing(A, B)
         ratio = (B.pace - B.bend * _seen_from(B, A)[1]) / (np.cos(A.psi - B.psi) * A.speed)  # ds/dσ
         borders = self.b.borders
         after = np.minimum(np.maximum(np.searchsorted(borders, sigma), 1), self.b.n)
@@ -409,7 +427,7 @@ class Pair:
         weights = 0.5 * np.concatenate(((1.0 + cut / half) * w, (1.0 - cut / half) * w), axis=1)
         at_A = s[:, None] + off
         guess = (sigma[:, None] + off / ratio[:, None]).ravel()
-        at_B = feet_near(self, lines, self.on_a(lines, at_A.ravel()), guess)[1].reshape(at_A.shape)
+        at_B = _feet_from(self, lines, *self.on_both(lines, at_A.ravel(), guess), CLOSE)[1].reshape(at_A.shape)
         # beside an end of B, where it faces no element of B, the joint alone
         alone = ~np.all((at_B > 0.0) & (at_B < self.b.s[-1]), axis=1)[:, None]
         return np.where(alone, s[:, None], at_A), np.where(alone, sigma[:, None], at_B), weights
@@ -428,27 +446,23 @@ class Pair:
 
     def touches(self, lines: Lines, s: Array, sigma: Array, free: Flags) -> Touches:
         """The constraint at feet (s, σ); where ``free`` (k,) the place moves with the minimum."""
-        A = self.on_a(lines, s)
-        B = self.foot(lines, A, sigma)
-        A = self.beside(A, B)
+        A, B = self.facing_each_other(*self.on_both(lines, s, sigma))
         m, k = len(s), LOCALS
-        tangent = np.stack((np.cos(B.psi), np.sin(B.psi)), axis=1)
-        normal = np.stack((-tangent[:, 1], tangent[:, 0]), axis=1)
-        r = np.stack((A.x - B.x, A.y - B.y), axis=1)
-        distance = np.sum(normal * r, axis=1)
+        cos, sin = np.cos(B.psi), np.sin(B.psi)
+        normals = np.array((np.tile(-sin, 2), np.tile(cos, 2))).T
+        distance = cos * (A.y - B.y) - sin * (A.x - B.x)
         both = moving(A, B)
-        C_z = position_slopes(both)
-        r_z = np.concatenate((C_z[:m], -C_z[m:]), axis=2)
-        n_r = np.einsum("mi,mik->mk", normal, r_z)
-        t_r = np.einsum("mi,mik->mk", tangent, r_z)
+        n_r = _between(position_slopes(both, normals))
         facing = np.cos(A.psi - B.psi)
         of_foot = -B.pace + distance * B.bend
         # what D gains over s by the tangents' γ, the foot going along
-        more_A, more_B = missed(self.a, self.kinks[0], s), missed(self.b, self.kinks[1], sigma)
-        back = of_foot / (facing * A.pace)
-        if self.tapered:  # no tangents of B's go along what stays at a corner
-            back[leaning.at_corner(B)] = 0.0
-        gained = np.sign(facing) * (more_A.integral + back * more_B.integral)
+        gained: Array | float = 0.0
+        if any(each.places.size for each in self.kinks):
+            more_A, more_B = missed(self.a, self.kinks[0], A), missed(self.b, self.kinks[1], B)
+            back = of_foot / (facing * A.pace)
+            if self.tapered:  # no tangents of B's go along what stays at a corner
+                back[leaning.at_corner(B)] = 0.0
+            gained = np.sign(facing) * (more_A.integral + back * more_B.integral)
 
         def bent() -> Array:
             # ds/dz and dσ/dz from (i) and (ii)
@@ -458,14 +472,15 @@ class Pair:
                 psi = leaning.angle_slopes(both, np.concatenate((A.lead, B.lead)))
             psi_z[0, :, :k], psi_z[1, :, k:] = psi[:m], psi[m:]
             psi_A, psi_B = psi_z
+            tangents = np.stack((normals[:, 1], -normals[:, 0]), axis=1)
+            t_r = _between(position_slopes(both, tangents))
             one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
             determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.pace, 1.0)
             s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
             sigma_z = (two - (facing * A.pace)[:, None] * s_z) / of_foot[:, None]
             turning = psi_B + B.bend[:, None] * sigma_z
             second = np.zeros((m, 2 * k, 2 * k))
-            normals = np.concatenate((normal, normal))
-            curved, n_s = position_curvature(both, normals), np.einsum("mi,mik->mk", normals, tangent_slopes(both))
+            curved, n_s = position_curvature(both, normals), tangent_slopes(both, normals)
             second[:, :k, :k], second[:, k:, k:] = curved[:m], -curved[m:]
             second += -t_r[:, :, None] * turning[:, None, :]
             second[:, :k] += n_s[:m, :, None] * s_z[:, None, :]
@@ -477,8 +492,14 @@ class Pair:
             values=self.offset + self.wider(s, sigma) - self.side * (distance + gained),
             slopes=-self.side * n_r,
             bent=bent,
-            links=np.stack((A.link, B.link)),
+            links=np.array((A.link, B.link)),
         )
+
+
+def _between(slopes: Array) -> Array:
+    """Those of what is between places of A and places of B (m, 10), from their own (2m, 5)."""
+    m = len(slopes) // 2
+    return np.concatenate((slopes[:m], -slopes[m:]), axis=1)
 
 
 def _beside_any(corners: Array, sigma: Array, size: Array) -> Flags:
@@ -493,25 +514,21 @@ def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Fl
 
 def _distance_of(pair: Pair, lines: Lines, A: smooth.Points) -> tuple[Array, Array, Flags]:
     """The same of points of A (k,)."""
-    G = lines[1].sampled
-    if len(A.s) <= FEW:
-        nearest = ((A.x[:, None] - G.x) ** 2 + (A.y[:, None] - G.y) ** 2).argmin(axis=1)
-    else:
-        _, nearest = nearest_samples(_places(G), _places(A), np.inf)
-    return _feet_from(pair, lines, A, pair.samples_on_b(lines, nearest), CLOSE)
+    nearest = nearest_samples(_places(lines[1].sampled), _places(A), np.inf)[1]
+    return _feet_from(pair, lines, A, pair.samples_on_b(lines, nearest), CLOSE)[:3]
 
 
 def feet_near(
     pair: Pair, lines: Lines, A: smooth.Points, sigma: Array, close: float = CLOSE
 ) -> tuple[Array, Array, Flags]:
     """D, σ and whether there is a foot, by Newton's method on (i) from the guess ``sigma`` to steps as ``close``."""
-    return _feet_from(pair, lines, A, pair.on_b(lines, sigma), close)
+    return _feet_from(pair, lines, A, pair.on_b(lines, sigma), close)[:3]
 
 
 def _feet_from(
     pair: Pair, lines: Lines, A: smooth.Points, B: smooth.Points, close: float
-) -> tuple[Array, Array, Flags]:
-    """The same from points of B (k,)."""
+) -> tuple[Array, Array, Flags, smooth.Points]:
+    """The same from points of B (k,), and the points of B to which D belongs."""
     sigma = B.s
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
     for iteration in range(FOOT_ITERATIONS if not ridges.size else CORNER_ITERATIONS):
@@ -527,7 +544,7 @@ def _feet_from(
         if np.abs(sigma - before).max() < close:
             break
     foot = np.abs(along) <= PARALLEL * np.maximum(np.abs(across), pair.b.h)
-    return pair.side * across - pair.wider(A.s, sigma), sigma, foot
+    return pair.side * across - pair.wider(A.s, sigma), sigma, foot, B
 
 
 def _up_to(ridges: Array, before: Array, after: Array) -> Array:
@@ -567,8 +584,9 @@ def places_along(pair: Pair, lines: Lines, D: Array, sigma: Array, ends: Array) 
         bends = np.abs(A.bend) + np.abs(B.bend)
         near[facing] = D[2 * facing] - pair.offset < JOINT_REACH * a.h**2 * (1.0 + bends)
     for places, apart in ((s, wells.BESIDE), (ends, BESIDE_END)):
-        for place in places:
-            near[1:-1] &= np.abs(a.s[1:-1] - place) > apart * a.size_at(place)
+        if places.size:
+            away = np.abs(a.s[1:-1, None] - places)
+            near[1:-1] &= np.all(away > apart * a.size_at(places), axis=1)
     for end in (0, -1):
         near[end] = reach > D[end] and not held_together(a, b, end, float(sigma[end]))
     joints = np.flatnonzero(near)
@@ -606,12 +624,19 @@ def _facing_ends(pair: Pair, lines: Lines) -> Places:
     """The ends of B that face A within reach, and their feet on A; the keys follow A's joints."""
     a, b, reach = pair.a, pair.b, pair.offset + REACH
     A, B, ends = lines[0].sampled, lines[1].sampled, b.s[[0, -1]]
-    away = np.hypot(A.x - B.x[[0, -1], None], A.y - B.y[[0, -1], None]).min(axis=1)
-    near = np.flatnonzero(away < reach + a.h)
+    away = np.hypot(A.x - B.x[[0, -1], None], A.y - B.y[[0, -1], None])
+    nearest = away.argmin(axis=1)
+    near = np.flatnonzero(away[[0, 1], nearest] < reach + a.h)
+    if near.size and not pair.tapered:
+        # what is beyond an end of A has its foot there
+        beyond = _seen_from(pair.samples_on_a(lines, nearest[near]), B.only(near * (2 * b.n + 2)))[0]
+        first, last = nearest[near] == 0, nearest[near] == len(A.s) - 1
+        near = near[~((first & (beyond <= 0.0)) | (last & (beyond >= 0.0)))]
     if not near.size:
         return Places(np.zeros(0), np.zeros(0), near)
     turned = pair.exchanged()
-    E, foot, facing = _distance_of(turned, lines[::-1], turned.samples_on_a(lines[::-1], near * (2 * b.n + 2)))
+    at_B = turned.samples_on_a(lines[::-1], near * (2 * b.n + 2))
+    E, foot, facing, _ = _feet_from(turned, lines[::-1], at_B, turned.samples_on_b(lines[::-1], nearest[near]), CLOSE)
     E = not_gone_round(turned, lines[::-1], E, pair.wider(foot, ends[near]))
     facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
     for i, end in enumerate(near):
@@ -653,14 +678,22 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
 
 def nearest_samples(G: Array, A: Array, within: float) -> tuple[Array, Ints]:
     """Distance from places of ``A`` (k, 2) to the nearest of ``G`` (m, 2), infinite beyond ``within``; its number."""
-    from scipy.spatial import cKDTree  # loaded where beams may touch each other
+    if len(G) * len(A) <= MANY:
+        apart, across = (np.subtract.outer(mine, its) for mine, its in zip(A.T, G.T, strict=True))
+        apart *= apart
+        across *= across
+        apart += across
+        number = apart.argmin(axis=1)
+        distance = np.sqrt(apart[np.arange(len(A)), number])
+        return np.where(distance < within, distance, np.inf), number
+    from scipy.spatial import cKDTree  # loaded where beams with many links may touch each other
 
     distance, number = cKDTree(G).query(A, distance_upper_bound=within)
     return np.asarray(distance), np.asarray(number)
 
 
 def _places(points: smooth.Points) -> Array:
-    return np.stack((points.x, points.y), axis=1)
+    return np.array((points.x, points.y)).T
 
 
 def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
@@ -669,11 +702,16 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     rough, nearest = nearest_samples(_places(G), _places(A), pair.offset + reach(pair.a, pair.b))
     close = np.flatnonzero(np.isfinite(rough))
     D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
-    if close.size:
-        at_A, at_B = pair.samples_on_a(lines, close), pair.samples_on_b(lines, nearest[close])
-        distance, sigma[close], foot = _feet_from(pair, lines, at_A, at_B, CLOSE)
-        D[close] = np.where(foot, distance, np.inf)
-    return not_gone_round(pair, lines, D, pair.wider(A.s, sigma)), sigma
+    if not close.size:
+        return D, sigma
+    at_A, at_B = pair.samples_on_a(lines, close), pair.samples_on_b(lines, nearest[close])
+    distance, sigma[close], foot, at_B = _feet_from(pair, lines, at_A, at_B, CLOSE)
+    D[close] = np.where(foot, distance, np.inf)
+    D = not_gone_round(pair, lines, D, pair.wider(A.s, sigma))
+    if not pair.tapered:  # else these are points of edges
+        joints = np.flatnonzero((close % 2 == 0) & np.isfinite(D[close]))
+        lines[0].faced[pair.name] = D, at_A.only(joints), at_B.only(joints)
+    return D, sigma
 
 
 def not_gone_round(pair: Pair, lines: Lines, D: Array, wider: Array | float, gone: float = np.inf) -> Array:
@@ -722,9 +760,7 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     s = s[here] + ahead
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
     for iteration in range(CLOSEST_ITERATIONS):
-        A = pair.on_a(lines, s)
-        B = pair.foot(lines, A, sigma)
-        A = pair.beside(A, B)
+        A, B = pair.facing_each_other(*pair.on_both(lines, s, sigma))
         along, across = _seen_from(B, A)
         facing, shortened = np.cos(A.psi - B.psi), B.pace - B.bend * across
         # what is left to the foot, and the slope there

@@ -158,7 +158,7 @@ def _laid_out(
     # a zone's end is a border; a place need not be one, and as it goes on its way the mesh changes evenly
     at_end = np.array([False, *(name in zoned or name == MOMENT for name in of), False])
     numbers = np.where(at_end, np.round(numbers), numbers)
-    as_they_are = not zoned and np.allclose(numbers[1:-1], n * marks, rtol=0.0, atol=MOVED)
+    as_they_are = not zoned and np.all(np.abs(numbers[1:-1] - n * marks) <= MOVED)
     if as_they_are or not np.all(np.diff(numbers) >= 1.0):
         return None
     places = np.concatenate(([0.0], marks, [1.0]))

@@ -63,9 +63,10 @@ class RigidEdge:
         frame, every = self.edge.frame(state, at), self.edge.a.first_joint + self.joints
         p = np.stack((at.x[every], at.y[every]), axis=1)
         q = frame.inwards(p)
+        every_face = self.edge.whole.facing(q, self.edge.whole.seen(q))
         found = []
         for number, face in enumerate(self.edge.pieces):
-            facing, seen = self.edge.next_to(face, q), face.seen(q)
+            facing, seen = every_face[number], face.seen(q)
             if np.any(facing):
                 seen = Seen(seen.distance, frame.turned(seen.normal, frame.phi), seen.bend, seen.within)
                 found.append(self._held(number, p - frame.m, seen, facing))

@@ -35,6 +35,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -142,7 +143,7 @@ class SmoothLine:
     cotangents: Array
     x: Array
     y: Array
-    known: dict[tuple[str, str], tuple[Array, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
+    known: dict[tuple[str, str], tuple[Any, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
     faced: dict[str, tuple[Array, Points, Points]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @cached_property
@@ -170,19 +171,25 @@ class SmoothLine:
         cos, sin = self.cos * lean_cos - self.sin * lean_sin, self.sin * lean_cos + self.cos * lean_sin
         a, w = chain.at_borders
         x, y = self.x[:-1] + a * self.cos - w * self.sin, self.y[:-1] + a * self.sin + w * self.cos
-        links = np.stack((chain.borders, x, y, cos, sin, self.theta + np.arctan2(lean_sin, lean_cos)))
-        springs = np.stack(((chain.turns + self.turns) / chain.sizes, self.radii))
-        return np.concatenate((np.repeat(links, 2, axis=1)[:, 1:-1], np.repeat(springs, 2, axis=1)))
+        arcs = np.empty((8, 2 * chain.n))
+        tangent = self.theta + np.arctan2(lean_sin, lean_cos)
+        for row, of in enumerate((chain.borders, x, y, cos, sin, tangent)):
+            arcs[row, ::2], arcs[row, 1::2] = of[:-1], of[1:]
+        arcs[6:, ::2] = arcs[6:, 1::2] = (chain.turns + self.turns) / chain.sizes, self.radii
+        return arcs
 
     @cached_property
     def carried(self) -> Array:
         """Of every half of an element x and y of its link's joint, cos and sin of the tangent at its border, h, Θ, R,
         ∂R and ∂²R over δ, (9, 2N).
         """
-        turns = self.chain.turns + self.turns
-        springs = np.array((self.chain.sizes, turns, self.radii, self.radii_1, self.radii_2))
-        joints = np.repeat(np.array((self.x[:-1], self.y[:-1])), 2, axis=1)[:, 1:-1]
-        return np.concatenate((joints, self.arcs[3:5], np.repeat(springs, 2, axis=1)))
+        carried = np.empty((9, 2 * self.chain.n))
+        for row, of in enumerate((self.x, self.y)):
+            carried[row, ::2], carried[row, 1::2] = of[:-2], of[1:-1]
+        carried[2:4] = self.arcs[3:5]
+        springs = self.chain.sizes, self.chain.turns + self.turns, self.radii, self.radii_1, self.radii_2
+        carried[4:, ::2] = carried[4:, 1::2] = springs
+        return carried
 
     def at(self, s: Array) -> Points:
         """Points at arc lengths ``s`` (k,), units of length; beyond the ends the end itself."""
@@ -192,30 +199,28 @@ class SmoothLine:
         """Points at arc lengths ``s`` within the beam; where it lies off the arcs by an ``excess`` (3, k), if known."""
         chain = self.chain
         half = chain.breaks.searchsorted(s, side="right")
-        border, x, y, cos, sin, tangent, rate, R = self.arcs[:, half]
-        off = s - border
-        if chain.excess is not None:
-            excess = chain.excess.seen(half, off) if excess is None else excess
-            along, across, lead, speed, bend, gain = _beside(excess, off, rate, R)
-            tangent = tangent + lead
-        else:
-            # stress-free piece and difference of two arcs make one arc, from the border on
-            along, across = _arc(off, rate, R)
-            tangent, speed, bend, gain = tangent + rate * off, R, rate, np.zeros(len(s))
-        return Points(
-            line=self,
-            half=half,
-            s=s,
-            off=off,
-            x=x + along * cos - across * sin,
-            y=y + along * sin + across * cos,
-            tangent=tangent,
-            psi=tangent,
-            speed=speed,
-            bend=bend,
-            gain=gain,
-            pace=speed,
-        )
+        arcs = self.arcs[:, half]
+        off = s - arcs[0]
+        if excess is None and chain.excess is not None:
+            excess = chain.excess.seen(half, off)
+        x, y, tangent, speed, bend, gain = placed(arcs, off, excess)
+        return Points(self, half, s, off, x, y, tangent, tangent, speed, bend, gain, speed)
+
+
+def placed(arcs: Array, off: Array, excess: ComplexArray | None) -> tuple[Array, ...]:
+    """x, y, the tangent's angle, speed, bend and gain (k,) on halves of elements with these ``arcs`` (8, k).
+
+    They are ``off`` (k,) from the borders, and lie off the arcs by an ``excess`` (3, k), if they do.
+    """
+    _, x, y, cos, sin, tangent, rate, R = arcs
+    if excess is not None:
+        along, across, lead, speed, bend, gain = _beside(excess, off, rate, R)
+        tangent = tangent + lead
+    else:
+        # stress-free piece and difference of two arcs make one arc, from the border on
+        along, across = _arc(off, rate, R)
+        tangent, speed, bend, gain = tangent + rate * off, R, rate, np.zeros(len(off))
+    return x + along * cos - across * sin, y + along * sin + across * cos, tangent, speed, bend, gain
 
 
 def _beside(excess: ComplexArray, off: Array, rate: Array, R: Array) -> tuple[Array, ...]:

@@ -65,11 +65,13 @@ def bottom(
         least: d²D/ds² that is no more than unevenness; where it is less, there is no going on.
         close: a step whose square is nothing.
     """
+    if not start.size:
+        return start, np.zeros(0, dtype=bool)
     s, (low, high) = start, within
     beside = np.minimum(np.maximum(start + BORDER, low), high).ravel()
     D_s, D_ss = (each.reshape(2, -1).mean(axis=0) for each in slope(beside))
     step = np.zeros(len(s))
-    for iteration in range(ITERATIONS if s.size else 0):
+    for iteration in range(ITERATIONS):
         if iteration:
             D_s, D_ss = slope(s)
         step = -D_s / np.where(D_ss > least, D_ss, np.inf)

@@ -177,8 +177,7 @@ def test_no_place_is_deeper_behind_an_edge_than_it_is_far_from_it(bent):
         q += far * rng.standard_normal(q.shape)
         share = np.clip(np.sum((q[:, None] - begin) * along, axis=2) / np.sum(along**2, axis=1), 0.0, 1.0)
         away = np.min(np.linalg.norm(q[:, None] - begin - share[:, :, None] * along, axis=2), axis=1)
-        for face in edge.faces:
-            facing = edge.next_to(face, q)
+        for face, facing in zip(edge.faces, edge.whole.facing(q, edge.whole.seen(q)), strict=True):
             assert np.all(-face.seen(q).distance[facing] <= away[facing] + 2e-9)
 
 

@@ -1,0 +1,94 @@
+"""Places on the smooth lines of two beams, found in the same calls.
+
+A foot or a minimum is sought by places on both beams at once, and a call costs what it costs however few they are.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from cprbm.excess import Tabulated
+from cprbm.kinks import Missed, polynomials
+from cprbm.model import Chain, Kinks
+from cprbm.smooth import Points, SmoothLine, placed
+from scene.answer import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Made:
+    """What two beams have in every state, the halves of the one's elements before those of the other's.
+
+    Attributes:
+        bent: coefficients of what is missed of the tangents, (4, 2N_A + 2N_B); None where there are no kinks.
+        excess: by what they lie off their arcs; None where neither does.
+        ends: their lengths.
+    """
+
+    bent: Array | None
+    excess: Tabulated | None
+    ends: tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Both:
+    """Two beams' lines in a state: what they ``made`` for every one, and their arcs (8, 2N_A + 2N_B)."""
+
+    one: SmoothLine
+    other: SmoothLine
+    made: Made
+    arcs: Array
+
+    def at(self, s: Array, sigma: Array) -> tuple[Points, Points]:
+        """Points at arc lengths ``s`` (k,) of the one and ``sigma`` (j,) of the other, bent as their kinks say."""
+        made, k = self.made, len(s)
+        every, half = np.empty(k + len(sigma)), np.empty(k + len(sigma), dtype=np.intp)
+        np.minimum(s, made.ends[0], out=every[:k])
+        np.minimum(sigma, made.ends[1], out=every[k:])
+        np.maximum(every, 0.0, out=every)
+        half[:k] = self.one.chain.breaks.searchsorted(every[:k], side="right")
+        on_other = self.other.chain.breaks.searchsorted(every[k:], side="right")
+        np.add(on_other, 2 * self.one.chain.n, out=half[k:])
+        arcs = self.arcs[:, half]
+        off = every - arcs[0]
+        at = placed(arcs, off, None if made.excess is None else made.excess.seen(half, off))
+        psi, bend = at[2], at[4]
+        if made.bent is not None:
+            more = Missed(made.bent[:, half], off)
+            psi, bend = psi + more.angle, bend + more.bend
+        x, y, tangent, speed, _, gain = at
+        lines = (self.one, half[:k], slice(k)), (self.other, on_other, slice(k, None))
+        found = [
+            Points(line, its, every[i], off[i], x[i], y[i], tangent[i], psi[i], speed[i], bend[i], gain[i], speed[i])
+            for line, its, i in lines
+        ]
+        return found[0], found[1]
+
+
+@lru_cache(maxsize=64)
+def made(one: Chain, other: Chain, kinks: tuple[Kinks, ...]) -> Made | None:
+    """Of two beams; None where a stress-free line has to be asked each time."""
+    tables = []
+    for chain in (one, other):
+        if chain.excess is None:
+            tables.append(Tabulated(np.zeros((2 * chain.n, 1, 3), dtype=complex), np.ones(2 * chain.n)))
+        elif isinstance(chain.excess, Tabulated):
+            tables.append(chain.excess)
+        else:
+            return None
+    bent = None
+    if any(each.places.size for each in kinks):
+        bent = np.concatenate([polynomials(*each) for each in zip((one, other), kinks, strict=True)], axis=1)
+    alike = one.excess is None and other.excess is None
+    return Made(bent, None if alike else _joined(*tables), (float(one.s[-1]), float(other.s[-1])))
+
+
+def _joined(one: Tabulated, other: Tabulated) -> Tabulated:
+    """Halves of the one and then of the other, by polynomials with as many coefficients."""
+    first, points = len(one.size), max(one.coefficients.shape[1], other.coefficients.shape[1])
+    coefficients = np.zeros((first + len(other.size), points, 3), dtype=complex)
+    coefficients[:first, : one.coefficients.shape[1]] = one.coefficients
+    coefficients[first:, : other.coefficients.shape[1]] = other.coefficients
+    return Tabulated(coefficients, np.concatenate((one.size, other.size)))

@@ -1,0 +1,92 @@
+"""All pieces of a rigid edge and its corners, from many places at once.
+
+A beam is looked at from all of its samples, by every piece and every corner of an edge: in the same few calls, however
+many these are.  What the pieces say is in :mod:`cprbm.faces`, the corners in :mod:`cprbm.corner`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from cprbm.corner import Corner
+from cprbm.faces import Face, Seen, Straight
+from scene.answer import Array, Flags, Ints
+
+NEAREST = 1e-9  # of ℓ: pieces whose distances differ by less are equally near
+
+
+@dataclass(frozen=True, eq=False)
+class WholeEdge:
+    """The faces of an edge, where these begin and end (t, 2), and its corners."""
+
+    faces: tuple[Face, ...]
+    tips: Array
+    corners: tuple[Corner, ...]
+
+    @cached_property
+    def _bent(self) -> list[int]:
+        """Which faces are no straight ones."""
+        return [f for f, face in enumerate(self.faces) if not isinstance(face, Straight)]
+
+    @cached_property
+    def _straight(self) -> tuple[Array, Array, Array, Array, Array]:
+        """Origin, τ and n (F, 2), low and high (F,) of the straight faces; noughts for the others."""
+        found = np.zeros((len(self.faces), 8))
+        for row, face in zip(found, self.faces, strict=True):
+            if isinstance(face, Straight):
+                row[:] = *face.origin, *face.tau, *face.normal, face.low, face.high
+        return found[:, :2], found[:, 2:4], found[:, 4:6], found[:, 6], found[:, 7]
+
+    def seen(self, q: Array) -> Seen:
+        """All faces from places ``q`` (k, 2): D (F, k), n (F, k, 2), k (F, k), and whether it is the face (F, k)."""
+        origin, tau, normal, low, high = self._straight
+        r = q - origin[:, None]
+        along = r[..., 0] * tau[:, :1] + r[..., 1] * tau[:, 1:]
+        distance = r[..., 0] * normal[:, :1] + r[..., 1] * normal[:, 1:]
+        within = (along >= low[:, None]) & (along <= high[:, None])
+        n, bend = np.empty(r.shape), np.zeros(distance.shape)
+        n[:] = normal[:, None]
+        for f in self._bent:
+            its = self.faces[f].seen(q)
+            distance[f], n[f], bend[f], within[f] = its.distance, its.normal, its.bend, its.within
+        return Seen(distance, n, bend, within)
+
+    def each(self, number: Ints, q: Array) -> Seen:
+        """Of places ``q`` (k, 2) each one face, by its ``number`` (k,)."""
+        origin, tau, normal, low, high = (each[number] for each in self._straight)
+        r = q - origin
+        along, distance = r[:, 0] * tau[:, 0] + r[:, 1] * tau[:, 1], r[:, 0] * normal[:, 0] + r[:, 1] * normal[:, 1]
+        within, bend = (along >= low) & (along <= high), np.zeros(len(number))
+        for f in self._bent:
+            mine = np.flatnonzero(number == f)
+            if mine.size:
+                its = self.faces[f].seen(q[mine])
+                distance[mine], normal[mine], bend[mine], within[mine] = its.distance, its.normal, its.bend, its.within
+        return Seen(distance, normal, bend, within)
+
+    def facing(self, q: Array, seen: Seen) -> Flags:
+        """Which places ``q`` (k, 2) face which pieces (F, k): before it, or behind it and none nearer."""
+        facing = seen.within & (seen.distance >= 0.0)
+        behind = np.flatnonzero((seen.within & ~facing).any(axis=0))
+        if not behind.size:
+            return np.asarray(facing)
+        within, depth = seen.within[:, behind], np.abs(seen.distance[:, behind])
+        least = np.where(within, depth, np.inf).min(axis=0)
+        # beside a tip, above all one where the beam is pinned, a place is by round-off alone beside a piece, or none
+        for tip in self.tips:
+            least = np.minimum(least, np.hypot(*(q[behind] - tip).T))
+        facing[:, behind] |= within & (depth <= least + NEAREST)
+        return np.asarray(facing)
+
+    @cached_property
+    def ahead(self) -> Array:
+        """The corners' normals in the middle (C, 2)."""
+        return np.array([corner.ahead for corner in self.corners]).reshape(-1, 2)
+
+    @cached_property
+    def places(self) -> Array:
+        """The corners' places (C, 2)."""
+        return np.array([corner.place for corner in self.corners]).reshape(-1, 2)
