@@ -16,6 +16,7 @@ from fea_reference.contacts import (
     clear,
     least_gap,
     looked_at,
+    open_in,
     passed_through,
     resting_pressure,
     room,
@@ -259,7 +260,7 @@ class March:
         return Behind(load, by, second, third, before.acting, frozenset(before.penalties))
 
     def _stiffer(self, system: System) -> dict[Contact, Penalty]:
-        """Stiffer penalties for what is too deep under those of now; none where nothing is, or is as stiff as it may be.
+        """Stiffer penalties for what is too deep under those of now; none where all is as stiff as it may be.
 
         A circle's penalty is never stiffer than at a station.
         """
@@ -343,9 +344,9 @@ class March:
         )
 
     def look(self) -> None:
-        """See anew on which of their own sides beams lie."""
+        """See anew on which of their own sides beams lie, and on which of each other's while they are apart."""
         model, z = self.model, self.system.z
-        self.open = [looked_at(model, pair, z) for pair in self.open]
+        self.open = [open_in(model, pair, z) for pair in self.open]
         self.penalties = {looked_at(model, pair, z): penalty for pair, penalty in self.penalties.items()}
 
     def value(self, load: int) -> float:
