@@ -299,6 +299,7 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
         Loss.BIFURCATION: "another one branches off",
         Loss.CONTACT: f"the contact {lost.what} lets go",
         Loss.STOP: f"the stop {lost.what} lets go",
+        Loss.SLIP: f"an end slips off the other in {lost.what}",
     }[lost.loss]
     sentence = (
         f"at {march.shown(load, lost.value)} the branch of minima ends, {why}: the smallest curvature comes to "
