@@ -93,7 +93,7 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         mean = 0.5 * (first.thickness + second.thickness)
         least = 0.5 * (first.record.thinnest + second.record.thinnest) / model.units.length
         lines = [model.line(beam, model.start) for beam in (first, second)]
-        side, side_m = side_of(*lines), side_of(*lines[::-1])
+        side, side_m = side_of(lines[0], lines[1]), side_of(lines[1], lines[0])
         distance, scale, measure = (mean, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
         ends, ends_m = _loose(model, scene, first, second), _loose(model, scene, second, first)
         penalties = [_penalties(model, beam, mean) for beam in (first, second)]

@@ -100,10 +100,10 @@ def looked_at(model: Model, what: Contact, z: State) -> Contact:
 
 def open_in(model: Model, what: Contact, z: State) -> Contact:
     """The same of a contact that is open in state ``z``; of two beams that are near each other, as they lie there."""
-    near = isinstance(what, Pair) and what.roles is None and least_apart(model, what, z) <= FAR
-    if near and least_gap(model, what, z) > _APART * what.scale:
-        return contact.looked_at(model, what, z)
-    return looked_at(model, what, z)
+    if not isinstance(what, Pair) or what.roles is not None:
+        return looked_at(model, what, z)
+    apart = least_apart(model, what, z) <= FAR and least_gap(model, what, z) > _APART * what.scale
+    return contact.looked_at(model, what, z) if apart else what
 
 
 def room(model: Model, what: Contact, z: State) -> float:

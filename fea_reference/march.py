@@ -225,13 +225,24 @@ class March:
         touched = self.least_gap(system) < 0.0
         changing = [stop for stop in self.model.stops if self.room(stop, system) < 0.0]
         if touched:
-            found = self._first_touch(load, {start: self.system, value: system})
+            known = {start: self.system, value: system}
+            found = self._first_touch(load, known)
             if found is None:
                 return (
                     Ending.STEP_TOO_SMALL,
                     f"no closing of a contact or stop found beyond {self.shown(load, start)}",
                 )
             value, system = found
+            if self._far_side(system):
+                # nothing touches there: what comes to be seen asks to be looked at anew, from just before
+                clear = [one for one in known if self.least_gap(known[one]) >= 0.0]
+                value = min(clear, key=lambda one: abs(one - value))
+                system, touched = known[value], False
+                if value == start:
+                    return (
+                        Ending.STEP_TOO_SMALL,
+                        f"beyond {self.shown(load, start)} no side is seen on which beams lie",
+                    )
             again = [stop.known_as for stop in changing if self.switched.get(stop.name) == value]
             if again:
                 return (
@@ -248,6 +259,14 @@ class March:
             self.watch_what_touches(load)
             self.switch(load, changing)
         return None
+
+    def _far_side(self, system: System) -> bool:
+        """Whether a place of a beam comes to face another beam from its far side, round the end of that.
+
+        What touches begins with no overlap; this is as deep as it is away.
+        """
+        pairs = (pair for pair in self.open if isinstance(pair, Pair) and pair.roles is None)
+        return any(least_gap(self.model, pair, system.z) < -pair.scale for pair in pairs)
 
     def gone(self, load: int, before: March, rate: Array, ahead: Array) -> Behind:
         """The step from ``before``, where the branch went by ``rate`` (size,), to here, where it goes by ``ahead``.

@@ -9,8 +9,8 @@ l_m     length of the second beam
 ======  =======================================================================
 
 Nothing beyond a beam's end faces it: an end that goes past the other's presses on nothing any more, whatever it pressed
-with just before.  What is left is no equilibrium, and there is none near by.  Of beams that are nearly parallel the
-other's end has come to lie on the first by then, and goes on pressing.
+with just before.  What is left is no equilibrium, and there is none near by.  Of thick beams the first of which leads
+from its end towards the second, the other's end has come to lie on the first by then, and goes on pressing.
 """
 
 from __future__ import annotations
@@ -25,7 +25,6 @@ from fea_reference.touch import Pair, Touch
 from scene.answer import Array
 
 _NEAR = 1.0  # elements: a zone that is no farther from an end is that end's
-_INSIDE = 1e-6  # elements
 
 
 def left_to_go(model: Model, one: Touch, z: State) -> float | None:
@@ -37,12 +36,12 @@ def left_to_go(model: Model, one: Touch, z: State) -> float | None:
     near = [end for end in (0, first.n) if np.abs(one.zeta - end).max() <= _NEAR]
     if len(near) != 1:
         return None
+    inwards = first.tangents[:, near[0]] * (1.0 if near[0] == 0 else -1.0)
+    if pair.distance > 0.0 and float(inwards @ one.normal.mean(axis=1)) < 0.0:
+        return None
     x = first.points[:, near]
     zeta_m = project(second, x, np.array([float(np.median(one.zeta_m))]))[0]
-    s_m = _arc(second, x, zeta_m)
-    total = float(second.lengths.sum())
-    if _lies_on(second, 0 if s_m < 0.5 * total else second.n, first, near[0]):
-        return None
+    s_m, total = _arc(second, x, zeta_m), float(second.lengths.sum())
     return min(s_m, total - s_m)
 
 
@@ -52,9 +51,3 @@ def _arc(line: NeutralLine, x: Array, zeta: Array) -> float:
     there, ahead, _ = line.at(zeta)
     along = float(((x - there) * ahead).sum() / np.hypot(*ahead[:, 0]))
     return float(np.interp(zeta[0], np.arange(line.n + 1), arcs)) + along
-
-
-def _lies_on(line: NeutralLine, end: int, other: NeutralLine, guess: int) -> bool:
-    """Whether an ``end`` of a line faces the inside of another; the place is sought from the node ``guess``."""
-    zeta, found = project(other, line.points[:, [end]], np.array([float(guess)]))
-    return bool(found[0] and _INSIDE < zeta[0] < other.n - _INSIDE)

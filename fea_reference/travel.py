@@ -305,7 +305,9 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
         f"at {march.shown(load, lost.value)} the branch of minima ends, {why}: the smallest curvature comes to "
         f"{lost.curvature:.3g} there, and what is left has {lost.left:.3g}"
     )
-    after = descended(march, load, target, course.span, lost) if course.beyond == "jump" else None
+    # what has slipped off lies between where it was and where its gap is seen: no way down leads from there yet
+    falls = course.beyond == "jump" and lost.loss is not Loss.SLIP
+    after = descended(march, load, target, course.span, lost) if falls else None
     if course.stage:
         march.critical.append(
             Critical(
