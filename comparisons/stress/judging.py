@@ -7,7 +7,7 @@ what is stated promises to become little enough by that, and once where it is so
 runs of one size are then the coarser ones of the next, and nothing is solved twice.  Of a scene whose answers end
 early at every size the stations that both reached are judged as a scene of their own.
 
-Where every run says that the branch ends, and agrees on where and how and on all stations before, the scene agrees: its
+Where every run says that the branch ends, and agrees on where and how, the stations before tell what the scene is: its
 answer is that there is no more.
 
 Where the theories of ``bending`` and ``shear`` alone are further apart than may be stated, that is a property of the
@@ -179,33 +179,33 @@ def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
     verdict, runs = comparison.verdict, comparison.runs
     early = [(name, answer) for name, answer in runs.everything() if not answer.completed]
     sentence, ending = verdict.sentence, ""
+    doubts = any(audit.complaints for audit in comparison.audits.values())
     if verdict.word is Word.DIFFER:
         way = Way.WRONG
+    elif early and _ends_alike(comparison):
+        agreed = all(word in (None, Word.AGREE) for word in verdict.words) and not doubts
+        way, ending, early = (Way.AGREE if agreed else Way.UNDECIDED), early[0][1].ending.name, []
     elif early:
-        agreed = _ends_alike(comparison)
-        way = Way.AGREE if agreed else Way.ENDED
+        way = Way.ENDED
         ending = early[0][1].ending.name
-        sentence = verdict.sentence if agreed else _why(early)
+        sentence = _why(early)
     elif not verdict.completed:
         way = Way.WRONG
     else:
         way = Way.AGREE if verdict.word is Word.AGREE else Way.UNDECIDED
-    doubts = any(audit.complaints for audit in comparison.audits.values())
     return _Finding(way, sentence, choices, runs, comparison.rows, ending, early=_whose(early), doubts=doubts)
 
 
 def _ends_alike(comparison: Comparison) -> bool:
-    """Whether every answer says that the branch ends, and all that has an answer agrees: each row up to there, by
-    answers that no audit doubts, and where and how it ends.
+    """Whether every answer says that the branch ends, after some station, and all agree on where and how.
 
     More is not to be known: beyond its end there is nothing of the branch, and a stage that says no more asks for none.
+    The rows up to there tell the scene's way.
     """
     return (
         all(ends_at_critical(answer) for _, answer in comparison.runs.everything())
         and bool(comparison.rows)
-        and all(word in (None, Word.AGREE) for word in comparison.verdict.words)
         and all(critical_word(row) is Word.AGREE for row in comparison.criticals)
-        and not any(audit.complaints for audit in comparison.audits.values())
     )
 
 

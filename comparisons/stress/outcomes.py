@@ -35,8 +35,8 @@ class Outcome:
         name: of the scene.
         way: in which it ended.
         sentence: which row decided, or what went wrong.
-        ending: name of the :class:`scene.Ending` of the run that ended early, also of scenes that agree up to where all
-            runs say that the branch ends; empty of all others.
+        ending: name of the :class:`scene.Ending` of the run that ended early, also of scenes that agree, or are
+            undecided, up to where all runs say that the branch ends; empty of all others.
         difference: largest difference over what the solvers state together, of all rows; None where no rows stand.
         uncertainty: largest sum of what is stated, a fraction of the probe's scale; None likewise.
         beyond: the largest distance from an exact answer over what is stated; None where none is known.
