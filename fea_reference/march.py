@@ -59,7 +59,7 @@ _POLISHINGS = 8  # tries after which a penetration below the one asked will do
 _IN_A_POINT = 1.5  # the power of one over the penetration with which the penalty of a contact in a point goes
 _FALLS = (1.0, 2.0)  # in an area, and at a tip
 _POINT = 1.0  # elements: a zone no wider is a point
-_SUNK = 0.3  # of how deep it may be and not have gone through: a beam deeper in another is about to
+_SUNK = 0.3  # of how deep something may be and not have gone through: what is deeper is about to
 _STIFFER = 10.0  # times: the penalty with which the step is tried again then
 _STIFFENINGS = 3
 
@@ -233,16 +233,9 @@ class March:
                     f"no closing of a contact or stop found beyond {self.shown(load, start)}",
                 )
             value, system = found
-            if self._far_side(system):
-                # nothing touches there: what comes to be seen asks to be looked at anew, from just before
-                clear = [one for one in known if self.least_gap(known[one]) >= 0.0]
-                value = min(clear, key=lambda one: abs(one - value))
-                system, touched = known[value], False
-                if value == start:
-                    return (
-                        Ending.STEP_TOO_SMALL,
-                        f"beyond {self.shown(load, start)} no side is seen on which beams lie",
-                    )
+            before_it = self._seen_otherwise(known, value)
+            if before_it is not None:
+                value, system, touched = before_it, known[before_it], False
             again = [stop.known_as for stop in changing if self.switched.get(stop.name) == value]
             if again:
                 return (
@@ -260,13 +253,19 @@ class March:
             self.switch(load, changing)
         return None
 
-    def _far_side(self, system: System) -> bool:
-        """Whether a place of a beam comes to face another beam from its far side, round the end of that.
+    def _seen_otherwise(self, known: Mapping[float, System], value: float) -> float | None:
+        """The last value before that of a touch, if beams lie otherwise there than they were looked at; else None.
 
-        What touches begins with no overlap; this is as deep as it is away.
+        What touches begins with no overlap.  A place that comes to face another beam from the far side, round the end
+        of that, is as deep as it is away, and is no touch.
         """
         pairs = (pair for pair in self.open if isinstance(pair, Pair) and pair.roles is None)
-        return any(least_gap(self.model, pair, system.z) < -pair.scale for pair in pairs)
+        if not any(least_gap(self.model, pair, known[value].z) < -pair.scale for pair in pairs):
+            return None
+        clear = [one for one in known if self.least_gap(known[one]) >= 0.0]
+        last = min(clear, key=lambda one: abs(one - value), default=value)
+        otherwise = [open_in(self.model, pair, known[last].z) for pair in self.open] != self.open
+        return last if otherwise and last != value else None
 
     def gone(self, load: int, before: March, rate: Array, ahead: Array) -> Behind:
         """The step from ``before``, where the branch went by ``rate`` (size,), to here, where it goes by ``ahead``.
