@@ -8,6 +8,7 @@ F           resultant of a contact, moment of a stop: sum of its multipliers
 ==========  =====================================================================================
 
 * A contact or stop lets go: F goes to zero, linearly, with κ still positive; without it κ is negative.
+* An end slips off another: what it has left to go there goes to zero, linearly, with F and κ still positive.
 * A fold: the branch turns back.  κ² is linear in v_c − v, and τ turns into φ.
 * A bifurcation: another branch crosses.  κ is linear in v_c − v; τ has no part in φ.
 """
@@ -21,7 +22,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.mechanism import Mechanism
+from cprbm.nearest import Pair
 from cprbm.point import Point
+from cprbm.slipping import left_to_go
 from cprbm.stability import Softest, released, softest
 from scene import Certificate, Loss
 from scene.answer import Array
@@ -91,6 +94,7 @@ def branch_end(mechanism: Mechanism, trail: list[Minimum], beyond: float) -> Bra
         return None
     rows = _rows(last.point)
     let_go = _let_go(mechanism, last, before, width, _whole([*rows, *_rows(before.point)]))
+    let_go = let_go or _slipped(mechanism, trail, before, width)
     if let_go is not None:
         return let_go
     soft = softest(mechanism.problem, last.point)
@@ -125,6 +129,33 @@ def _let_go(
             (name,) = {contact for contact, _, _ in rows}
             loss = Loss.STOP if name in mechanism.stops else Loss.CONTACT
             return BranchEnd(zero, abs(width), loss, name, last.curvature, soft.curvature, soft.direction)
+    return None
+
+
+def _slipped(mechanism: Mechanism, trail: list[Minimum], before: Minimum, width: float) -> BranchEnd | None:
+    """The end at which an end of a beam has come past the one of another on which it presses.
+
+    A foot is one by a little more than that, so that the last minima may lie beyond.
+    """
+    last = trail[-1]
+    for name in sorted(last.point.rows.pressing(last.point.lam)):
+        pair = mechanism.pairs.get(name)
+        if not isinstance(pair, Pair) or (left := left_to_go(pair, last.point)) is None:
+            continue
+        here, there, behind, uncertain = last, left, before, abs(width)
+        for one in reversed(trail[:-1]) if left <= 0.0 else ():
+            behind, uncertain = one, uncertain + abs(here.value - one.value)
+            earlier = left_to_go(pair, one.point)
+            if earlier is None or earlier > 0.0:
+                break
+            here, there = one, earlier
+        earlier = left_to_go(pair, behind.point)
+        zero = None if earlier is None else _continued(here.value, there, behind.value, earlier)
+        if zero is None or not (left <= 0.0 or 0.0 <= (zero - last.value) / width <= NEAR):
+            continue
+        others = np.array([row[0] != name for row in _rows(last.point)], dtype=bool)
+        soft = softest(mechanism.problem, released(last.point, others))
+        return BranchEnd(zero, uncertain, Loss.SLIP, name, last.curvature, soft.curvature, soft.direction)
     return None
 
 

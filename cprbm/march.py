@@ -193,7 +193,7 @@ class March:
         before, after = potential_energy(problem, on.point) * problem.model.unit_moment, None
         landed, reached = None, Reached(Ending.BRANCH_ENDS, of, certificate=None)
         # where another branch goes off, either of its sides is as good as the other
-        beside = stage.beyond is None and end.loss is not Loss.BIFURCATION
+        beside = stage.beyond is None and end.loss not in (Loss.BIFURCATION, Loss.SLIP)
         if beside or stage.beyond == "jump":
             ends = (end.value, on.refused)
             furthest = max(ends) if target > on.reached else min(ends)

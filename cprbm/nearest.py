@@ -518,6 +518,12 @@ def _distance_of(pair: Pair, lines: Lines, A: smooth.Points) -> tuple[Array, Arr
     return _feet_from(pair, lines, A, pair.samples_on_b(lines, nearest), CLOSE)[:3]
 
 
+def past_foot(pair: Pair, lines: Lines, s: Array, sigma: Array) -> Array:
+    """How far beyond their feet σ (k,) points of A at arc lengths ``s`` (k,) lie along B: nothing but at its ends."""
+    A = pair.on_a(lines, s)
+    return _seen_from(pair.foot(lines, A, sigma), A)[0]
+
+
 def feet_near(
     pair: Pair, lines: Lines, A: smooth.Points, sigma: Array, close: float = CLOSE
 ) -> tuple[Array, Array, Flags]:

@@ -9,8 +9,9 @@ r         A(s) − B(σ); σ is the foot of s where t·r = 0
 T         half a thickness; T′ its slope, which is the sine of the angle by which an edge leans
 ========  ====================================================================================
 
-A lies on the side of B on which it is where the two are closest.  The foot is found from the nearest of some places of
-B, going on along the circle of curvature: by atan(κ x)/κ ≈ x/(1 + (κ x)²/3) with x = t·r/(1 − κ n·r).
+A lies on the side of B on which it is where the two are closest; of lines that touch there, on that where most of A is.
+The foot is found from the nearest of some places of B, going on along the circle of curvature: by
+atan(κ x)/κ ≈ x/(1 + (κ x)²/3) with x = t·r/(1 − κ n·r).
 """
 
 from __future__ import annotations
@@ -128,7 +129,10 @@ def _side(x: Array, y: Array, line: NeutralLine, sampled: Places, nearest: Ints,
     foot = np.abs(along) <= PARALLEL * np.maximum(size, step)
     if foot.any():
         size[~foot] = np.inf
-    return 1.0 if across[size.argmin()] >= 0.0 else -1.0
+    if size.min() > ON_IT * unit_length:
+        return 1.0 if across[size.argmin()] >= 0.0 else -1.0
+    # lines that touch show their side elsewhere: where they do it is a matter of round-off
+    return 1.0 if across[np.isfinite(size)].sum() >= 0.0 else -1.0
 
 
 def _seen(x: Array, y: Array, B: Places) -> tuple[Array, Array]:

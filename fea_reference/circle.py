@@ -43,7 +43,6 @@ from scene.answer import Array, Ints
 from scene.statement import CircleContact, Scene
 
 _BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states
-_SHALLOW = 0.05  # of the radius: an overlap that a penalty may leave
 _SAGITTA = 0.15  # of the square of a way along an arc, by which its chord may leave it
 _AT_END = 1e-6  # elements
 _LAYERS = 32.0  # of the first penalty, in a beam's length
@@ -120,7 +119,7 @@ def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
     if abs(winding) > np.pi:
         return True
     way = np.hypot(*(new - old)).max()
-    allowed = (1.0 - _SHALLOW) * circle.radius + 0.5 * circle.edge.nearest - _SAGITTA * way**2
+    allowed = circle.radius + circle.edge.nearest - circle.deepest - _SAGITTA * way**2
     return any(np.hypot(*(old + part * (new - old))).min() < allowed for part in _BETWEEN)
 
 

@@ -58,6 +58,7 @@ from fea_reference.touch import Pair, Penalty, Touch, gauss, together
 from fea_reference.zones import (
     Survey,
     Zones,
+    end_apart,
     ends_over,
     gap,
     nodes_apart,
@@ -92,7 +93,7 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
         mean = 0.5 * (first.thickness + second.thickness)
         least = 0.5 * (first.record.thinnest + second.record.thinnest) / model.units.length
         lines = [model.line(beam, model.start) for beam in (first, second)]
-        side, side_m = side_of(*lines), side_of(*lines[::-1])
+        side, side_m = side_of(lines[0], lines[1]), side_of(lines[1], lines[0])
         distance, scale, measure = (mean, least, least) if contact.thick else (0.0, _SLENDER, 1.0)
         ends, ends_m = _loose(model, scene, first, second), _loose(model, scene, second, first)
         penalties = [_penalties(model, beam, mean) for beam in (first, second)]
@@ -103,6 +104,20 @@ def pairs(scene: Scene, model: Model) -> tuple[Pair, ...]:
             Pair(name, i, j, turned, side, side_m, distance, scale, measure, *strengths, ends, ends_m, tapers=tapers)
         )
     return tuple(found)
+
+
+def looked_at(model: Model, pair: Pair, z: State) -> Pair:
+    """Two beams that are apart in state ``z``, in the order and on the sides in which they lie there.
+
+    What is beyond the other's end at rest has no side, and an end of the second may come to be what is nearest to the
+    first: on which side the beams touch is told by where they were last.
+    """
+    first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
+    away = end_apart(second, first)
+    if away < end_apart(first, second) and away <= nodes_apart(first, second):
+        pair, first, second = pair.about(), second, first
+    side, side_m = side_of(first, second, pair.side), side_of(second, first, pair.side_m)
+    return pair if (side, side_m) == (pair.side, pair.side_m) else replace(pair, side=side, side_m=side_m)
 
 
 def _loose(model: Model, scene: Scene, beam: BeamPart, other: BeamPart) -> tuple[int, ...]:

@@ -20,6 +20,9 @@ CLOSED = 1e-9
 """Of the thickness, a gap that is none."""
 
 
+_APART = 1e-3  # of the thickness: a gap at which one sees on which side of each other beams lie
+
+
 def contacts(scene: Scene, model: Model, penetration: float) -> tuple[Contact, ...]:
     """What may touch, in the scene's order."""
     every: tuple[Contact, ...] = (
@@ -93,6 +96,14 @@ def looked_at(model: Model, what: Contact, z: State) -> Contact:
     if isinstance(what, Pair) and what.roles is not None:
         return replace(what, roles=what.roles.renewed(model.line(model.beams[what.first], z)))
     return what
+
+
+def open_in(model: Model, what: Contact, z: State) -> Contact:
+    """The same of a contact that is open in state ``z``; of two beams that are near each other, as they lie there."""
+    if not isinstance(what, Pair) or what.roles is not None:
+        return looked_at(model, what, z)
+    apart = least_apart(model, what, z) <= FAR and least_gap(model, what, z) > _APART * what.scale
+    return contact.looked_at(model, what, z) if apart else what
 
 
 def room(model: Model, what: Contact, z: State) -> float:

@@ -29,11 +29,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fea_reference.advance import advance
 from fea_reference.branch import Branch, Place, onwards, place
 from fea_reference.curvature import softest
 from fea_reference.energy import potential_energy
 from fea_reference.march import March
 from fea_reference.mass import lumped_mass
+from fea_reference.slipping import left_to_go
 from fea_reference.system import System, assemble, stiffened
 from fea_reference.touch import Touch
 from scene.answer import Array, Loss
@@ -54,6 +56,10 @@ _ALONG = 0.5  # cosine between branch and φ at a fold
 _TURNING = 0.1  # of dλ/ds at the beginning: what is left of it at a fold
 _APPROACHED = 1e-8  # of the span: from where a contact's force is zero
 _SHARE = 0.9  # of the way there, at a time
+_SLIPPING = 0.1  # of the span: from how far an end is followed to where it slips off another
+_AS_GOOD = 1e-6  # of the span: from where it is as good as there
+_FORESEEN = 1e-3  # of the span: from where it is foreseen, if no step leads nearer
+_DIFFERENCE = 1e-7  # of the span: what rates are seen by
 _RIGID = 1e4  # times as stiff
 _HELD = 1e-2  # of the curvature at the beginning: that of what is held
 _NOTHING = 1e-2  # of a contact's force at the beginning
@@ -87,7 +93,7 @@ def followed(march: March, load: int, target: float, span: float) -> Lost | None
     march.look()
     if march.loose:
         march.tighten()
-    lost = _letting_go(march, load, target, span)
+    lost = _letting_go(march, load, target, span) or _slipping_off(march, load, target, span)
     if lost is not None:
         return lost
     onward = float(np.sign(target - march.values[load]))
@@ -231,6 +237,63 @@ def _letting_go(march: March, load: int, target: float, span: float) -> Lost | N
             break
     march.restore(saved)
     return None
+
+
+def _slipping_off(march: March, load: int, target: float, span: float) -> Lost | None:
+    """An end that comes past the end of the beam on which it presses, if one is about to.
+
+    Its zone has a width, the less the tighter its penalty, and some of that is past before: from there on the way that
+    is left is foreseen, and is what is uncertain.
+    """
+    onward, saved = float(np.sign(target - march.values[load])), march.saved()
+    while (going := _next_to_slip(march, load, onward * span)) is not None:
+        one, way = going
+        if not 0.0 <= way * onward <= min(_SLIPPING * span, (target - march.values[load]) * onward):
+            break
+        if abs(way) > _AS_GOOD * span and _nearer(march, load, way):
+            continue
+        if abs(way) > _FORESEEN * span:
+            break
+        left = softest(march.model, _without(march, one))
+        return Lost(
+            float(march.values[load] + way),
+            abs(way),
+            Loss.SLIP,
+            one.pair.name,
+            march.curvature,
+            left.curvature,
+            potential_energy(march.model, march.system, march.values),
+            march.system,
+            left.direction,
+        )
+    march.restore(saved)
+    return None
+
+
+def _nearer(march: March, load: int, way: float) -> bool:
+    """Whether a step leads on for most of a ``way``, or for as much of it as one may; if not, the march stays."""
+    before, rate = march.saved(), march.rate(load)
+    size = min(_SHARE * abs(way), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
+    if march.step(load, float(march.values[load]) + np.copysign(size, way), rate) is None:
+        return True
+    march.restore(before)
+    return False
+
+
+def _next_to_slip(march: March, load: int, ahead: float) -> tuple[Touch, float] | None:
+    """The contact in which an end is first to come past another, and how far it is there at the rate of now."""
+    step = _DIFFERENCE * ahead
+    moved = advance(march.model, march.system.z, step * march.rate(load))
+    found: tuple[Touch, float] | None = None
+    for one in march.system.touches:
+        here = left_to_go(march.model, one, march.system.z)
+        there = None if here is None else left_to_go(march.model, one, moved)
+        if here is None or there is None or not there < here:
+            continue
+        way = step * here / (here - there)
+        if found is None or abs(way) < abs(found[1]):
+            found = one, way
+    return found
 
 
 def _holding(first: System, now: System) -> Iterator[tuple[Touch, Touch]]:

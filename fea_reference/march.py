@@ -16,6 +16,7 @@ from fea_reference.contacts import (
     clear,
     least_gap,
     looked_at,
+    open_in,
     passed_through,
     resting_pressure,
     room,
@@ -28,7 +29,7 @@ from fea_reference.settings import Settings
 from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
-from fea_reference.touch import LACKING, Contact, Face, Pair, Penalty, Rigid, Touch
+from fea_reference.touch import LACKING, Circle, Contact, Face, Pair, Penalty, Rigid, Touch
 from scene.answer import Array, Critical, Ending
 
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
@@ -58,7 +59,7 @@ _POLISHINGS = 8  # tries after which a penetration below the one asked will do
 _IN_A_POINT = 1.5  # the power of one over the penetration with which the penalty of a contact in a point goes
 _FALLS = (1.0, 2.0)  # in an area, and at a tip
 _POINT = 1.0  # elements: a zone no wider is a point
-_SUNK = 0.3  # of the thickness: a beam deeper in another is about to have its line on the other side of that one's
+_SUNK = 0.3  # of how deep something may be and not have gone through: what is deeper is about to
 _STIFFER = 10.0  # times: the penalty with which the step is tried again then
 _STIFFENINGS = 3
 
@@ -226,13 +227,17 @@ class March:
         touched = self.least_gap(system) < 0.0
         changing = [stop for stop in self.model.stops if self.room(stop, system) < 0.0]
         if touched:
-            found = self._first_touch(load, {start: self.system, value: system})
+            known = {start: self.system, value: system}
+            found = self._first_touch(load, known)
             if found is None:
                 return (
                     Ending.STEP_TOO_SMALL,
                     f"no closing of a contact or stop found beyond {self.shown(load, start)}",
                 )
             value, system = found
+            before_it = self._seen_otherwise(known, value)
+            if before_it is not None:
+                value, system, touched = before_it, known[before_it], False
             again = [stop.known_as for stop in changing if self.switched.get(stop.name) == value]
             if again:
                 return (
@@ -250,6 +255,20 @@ class March:
             self.switch(load, changing)
         return None
 
+    def _seen_otherwise(self, known: Mapping[float, System], value: float) -> float | None:
+        """The last value before that of a touch, if beams lie otherwise there than they were looked at; else None.
+
+        What touches begins with no overlap.  A place that comes to face another beam from the far side, round the end
+        of that, is as deep as it is away, and is no touch.
+        """
+        pairs = (pair for pair in self.open if isinstance(pair, Pair) and pair.roles is None)
+        if not any(least_gap(self.model, pair, known[value].z) < -pair.scale for pair in pairs):
+            return None
+        clear = [one for one in known if self.least_gap(known[one]) >= 0.0]
+        last = min(clear, key=lambda one: abs(one - value), default=value)
+        otherwise = [open_in(self.model, pair, known[last].z) for pair in self.open] != self.open
+        return last if otherwise and last != value else None
+
     def gone(self, load: int, before: March, rate: Array, ahead: Array) -> Behind:
         """The step from ``before``, where the branch went by ``rate`` (size,), to here, where it goes by ``ahead``.
 
@@ -261,15 +280,13 @@ class March:
         return Behind(load, by, second, third, before.acting, frozenset(before.penalties))
 
     def _stiffer(self, system: System) -> dict[Contact, Penalty]:
-        """Stiffer penalties for beams that sink so far into each other under those of now; none where none does.
+        """Stiffer penalties for what is too deep under those of now; none where all is as stiff as it may be.
 
-        Where neutral lines cross, the one does not lie on a side of the other any more, and no penalty parts them.
+        A circle's penalty is never stiffer than at a station.
         """
-        return {
-            one.pair: Penalty(_STIFFER * self.penalties[one.pair].stiffness)
-            for one in system.touches
-            if isinstance(one.pair, Pair) and one.pair.distance > 0.0 and one.penetration > _SUNK * one.pair.scale
-        }
+        deep = {one: self.penalties[one].stiffness for one in _too_deep(system)}
+        limits = {one: one.stiffest if isinstance(one, Circle) else np.inf for one in deep}
+        return {one: Penalty(min(_STIFFER * now, limits[one])) for one, now in deep.items() if now < limits[one]}
 
     def _closes_more(self, system: System) -> bool:
         """Whether something overlaps in a system that is open now: no step could be made from there."""
@@ -347,9 +364,9 @@ class March:
         )
 
     def look(self) -> None:
-        """See anew on which of their own sides beams lie."""
+        """See anew on which of their own sides beams lie, and on which of each other's while they are apart."""
         model, z = self.model, self.system.z
-        self.open = [looked_at(model, pair, z) for pair in self.open]
+        self.open = [open_in(model, pair, z) for pair in self.open]
         self.penalties = {looked_at(model, pair, z): penalty for pair, penalty in self.penalties.items()}
 
     def value(self, load: int) -> float:
@@ -501,7 +518,7 @@ class March:
             self.model, self.settings, looser, self.values, self.system.z, self.acting, self.depths(), self.pushes()
         )
         self.iterations += solved.iterations
-        if not solved.converged or self._stiffer(solved.system) or self._closes_more(solved.system):
+        if not solved.converged or _too_deep(solved.system) or self._closes_more(solved.system):
             return False
         if self.moved(solved.system, self.system.z) <= _CORRECTED:
             self.system, self.penalties, self.loose = solved.system, looser, True
@@ -687,6 +704,25 @@ class March:
         """What is stepped, and a value of it in SI."""
         part = self.model.stepped[load]
         return f"{part.name} = {value * part.unit:.6g}"
+
+
+def _too_deep(system: System) -> list[Contact]:
+    """What sinks so far into what it touches that it is about to be taken for having gone through.
+
+    Where neutral lines cross, the one does not lie on a side of the other any more, and no penalty parts them.
+    """
+    return [one.pair for one in system.touches if one.penetration > _SUNK * _deepest(one.pair)]
+
+
+def _deepest(what: Contact) -> float:
+    """How deep something may be in what it touches and not have gone through; nothing is known of lines and edges."""
+    match what:
+        case Pair(distance=distance, scale=scale) if distance > 0.0:
+            return scale
+        case Circle():
+            return what.deepest
+        case _:
+            return np.inf
 
 
 def _straight(before: float, beyond: float) -> float:

@@ -22,6 +22,10 @@ elements, not with the thickness, and what touches as a line is measured by far 
 """
 
 
+SHALLOW = 0.05
+"""Of a circle's radius: an overlap that a penalty may leave."""
+
+
 @dataclass(frozen=True, slots=True)
 class Pair:
     """Two beams that may touch, or one and itself.
@@ -134,6 +138,11 @@ class Circle:
     def stiffness(self) -> float:
         """The penalty to begin with."""
         return self.loosest
+
+    @property
+    def deepest(self) -> float:
+        """What the overlap of a penalty may be; deeper is on its way through."""
+        return SHALLOW * self.radius + 0.5 * self.edge.nearest
 
     @property
     def measure(self) -> float:

@@ -303,6 +303,7 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
         Loss.BIFURCATION: "another one branches off",
         Loss.CONTACT: f"the contact {lost.what} lets go",
         Loss.STOP: f"the stop {lost.what} lets go",
+        Loss.SLIP: f"an end slips off the other in {lost.what}",
     }[lost.loss]
     sentence = (
         f"at {march.shown(load, lost.value)} the branch of minima ends, {why}: the smallest curvature comes to "
@@ -310,10 +311,12 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
     )
     before, after = march.saved(), None
     beside = course.beyond in (None, "beside")
+    # what has slipped off lies between where it was and where its gap is seen: no way down leads from there yet; and
     # where another branch goes off, either of its sides is as good as the other
-    if course.beyond == "jump" or (beside and lost.loss is not Loss.BIFURCATION):
+    falls = lost.loss is not Loss.SLIP and (course.beyond == "jump" or (beside and lost.loss is not Loss.BIFURCATION))
+    if falls:
         after = descended(march, load, target, course.span, lost)
-    if beside:
+    if beside and falls:
         if after is not None and march.moved(march.system, before.system.z) <= _BESIDE:
             march.left.append(sentence)
             return

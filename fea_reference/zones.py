@@ -173,8 +173,11 @@ def one_side(side: float) -> Callable[[Array, Array, Array], Array]:
     return lambda zeta, _zeta_m, _d: np.full(zeta.shape, side)
 
 
-def side_of(first: NeutralLine, second: NeutralLine) -> float:
-    """On which side of the second beam the first lies: +1 to the left of its direction, −1 to the right."""
+def side_of(first: NeutralLine, second: NeutralLine, unseen: float = 1.0) -> float:
+    """On which side of the second beam the first lies: +1 to the left of its direction, −1 to the right.
+
+    Where no place of the first has a closest point on the second it is on neither, and what is ``unseen`` stands.
+    """
     rays, reach = borders(second, None, 1.0), _reach(first, second, 0.0)
     zeta = _samples(first, rays, np.arange(first.n), np.arange(first.n + 1), reach)
     x = first.around(zeta)
@@ -182,7 +185,7 @@ def side_of(first: NeutralLine, second: NeutralLine) -> float:
     there = gap(first, second, one_side(1.0), 0.0, None, zeta, near)
     d = there.g[there.found]
     if d.size == 0:
-        return 1.0
+        return unseen
     least = d[np.argmin(np.abs(d))]
     # Lines that touch at the start show their side elsewhere.
     return float(np.sign(least if abs(least) > 1e-9 else d.sum())) or 1.0
@@ -190,9 +193,16 @@ def side_of(first: NeutralLine, second: NeutralLine) -> float:
 
 def ends_over(first: NeutralLine, second: NeutralLine) -> bool:
     """Whether an end of the first beam has its closest point in the inside of the second."""
+    return bool(np.isfinite(end_apart(first, second)))
+
+
+def end_apart(first: NeutralLine, second: NeutralLine) -> float:
+    """How far the nearer one of them is from that; infinite where neither end has one."""
     near = nearest(first.nodes[[0, -1]], second.nodes)[1].astype(float)
     zeta, found = project(second, first.points[:, [0, -1]], near)
-    return bool((found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)).any())
+    over = found & (zeta > _INSIDE) & (zeta < second.n - _INSIDE)
+    away = np.hypot(*(first.points[:, [0, -1]] - second.at(zeta)[0]))
+    return float(away[over].min(initial=np.inf))
 
 
 def seen(first: NeutralLine, second: NeutralLine, side: float, T: float, tapers: Tapers | None = None) -> Survey:

@@ -216,6 +216,7 @@ class Loss(Enum):
     BIFURCATION = "bifurcation"
     CONTACT = "contact lets go"
     STOP = "stop lets go"
+    SLIP = "contact slips off an end"
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,10 +228,12 @@ class Critical:
         value: of the stepped load or drive, SI.
         uncertainty: of the value on this discretisation, in the same unit.
         loss: how stability is lost.
-        what: the contact or stop that lets go; empty for a fold or a bifurcation.
+        what: the contact or stop that lets go, or the contact in which one end slips off another; empty for a fold or
+            a bifurcation.
         curvature: smallest curvature of the potential energy on the feasible directions as the branch comes to its
             end, over the bending stiffness scale of the certificate: about zero unless something lets go.
-        left: the same once what lets go holds no more; of a fold or a bifurcation the curvature itself.
+        left: the same once what lets go holds no more, positive where that is out of balance then, as after a slip; of
+            a fold or a bifurcation the curvature itself.
         energy: potential energy there, J.
         after: that of the state to which its decrease leads, J; None where the solver stopped.
     """

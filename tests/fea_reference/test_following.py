@@ -95,6 +95,7 @@ def test_a_turn_sharper_than_a_step_is_not_stepped_over(monkeypatch):
     sharp, ends = Sharp(), []
     unit = SimpleNamespace(weights=np.ones(1), weight=1.0, at=lambda value: np.array([value]))
     monkeypatch.setattr(following, "_letting_go", lambda march, load, target, span: None)
+    monkeypatch.setattr(following, "_slipping_off", lambda march, load, target, span: None)
     monkeypatch.setattr(following, "_branch", lambda march, load, span: unit)
     monkeypatch.setattr(following, "place", lambda branch, value, system, before: sharp.at(0.0))
     monkeypatch.setattr(following, "onwards", sharp.onwards)

@@ -1,0 +1,53 @@
+"""How far an end of a beam that presses on another has to go there until it slips off.
+
+======  =======================================================================
+symbol  meaning
+======  =======================================================================
+x, x_m  the first beam's end, and the place of the second's neutral line it faces
+s_m     arc length of x_m; beyond an end, from there along the tangent
+l_m     length of the second beam
+======  =======================================================================
+
+Nothing beyond a beam's end faces it: an end that goes past the other's presses on nothing any more, whatever it pressed
+with just before.  What is left is no equilibrium, and there is none near by.  Of thick beams the first of which leads
+from its end towards the second, the other's end has come to lie on the first by then, and goes on pressing.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fea_reference.hermite import NeutralLine
+from fea_reference.model import Model
+from fea_reference.projection import project
+from fea_reference.state import State
+from fea_reference.touch import Pair, Touch
+from scene.answer import Array
+
+_NEAR = 1.0  # elements: a zone that is no farther from an end is that end's
+
+
+def left_to_go(model: Model, one: Touch, z: State) -> float | None:
+    """l_m − s_m or s_m, whichever is less, in state ``z``; None where a contact is not that of one end on a side."""
+    pair = one.pair
+    if not isinstance(pair, Pair) or pair.roles is not None or not one.closed:
+        return None
+    first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
+    near = [end for end in (0, first.n) if np.abs(one.zeta - end).max() <= _NEAR]
+    if len(near) != 1:
+        return None
+    inwards = first.tangents[:, near[0]] * (1.0 if near[0] == 0 else -1.0)
+    if pair.distance > 0.0 and float(inwards @ one.normal.mean(axis=1)) < 0.0:
+        return None
+    x = first.points[:, near]
+    zeta_m = project(second, x, np.array([float(np.median(one.zeta_m))]))[0]
+    s_m, total = _arc(second, x, zeta_m), float(second.lengths.sum())
+    return min(s_m, total - s_m)
+
+
+def _arc(line: NeutralLine, x: Array, zeta: Array) -> float:
+    """s_m of a point ``x`` (2, 1) whose closest place is ``zeta`` (1,)."""
+    arcs = np.append(0.0, np.cumsum(line.lengths))
+    there, ahead, _ = line.at(zeta)
+    along = float(((x - there) * ahead).sum() / np.hypot(*ahead[:, 0]))
+    return float(np.interp(zeta[0], np.arange(line.n + 1), arcs)) + along

@@ -1,0 +1,89 @@
+"""An end that presses on another beam's side and is drawn past the end of that: no equilibrium is near then.
+
+A stout arm leans on a slender cantilever from above, at 50°, both as lines.  It is pressed down by δ and then drawn
+towards the cantilever's end.  Without friction the force is normal to the cantilever, which is a cantilever loaded at
+its end when the arm's tip comes there: by small deflections w = δ (3 u² − u³)/2 over u = x/L, so that its end is
+∫ ½ w'² dx = 3 δ²/(5 L) short of L, and it holds 3 EI δ²/(2 L³).  Before, with the tip at x = a, the force is 3 EI δ/a³.
+"""
+
+import numpy as np
+import pytest
+
+import cprbm
+import fea_reference
+from scene import Ending, Loss
+from scene.reading import scene_from
+
+L, T, B, E = 0.0913, 0.00071, 0.0123, 2.1e9
+ARM = 0.0307
+AT = 0.0871  # where the arm's tip stands at rest
+PRESSED = 0.0037
+SHORTER = 3.0 * PRESSED**2 / (5.0 * L)
+SLIPS = L - SHORTER - AT
+EI = E * B * T**3 / 12.0
+
+
+def drawn_past_the_end(order):
+    up = np.array([np.cos(np.radians(50.0)), np.sin(np.radians(50.0))])
+    root = [float(AT + ARM * up[0]), float(ARM * up[1])]
+    line = {"kind": "line"}
+    return scene_from(
+        {
+            "name": "slipping",
+            "materials": {"m": {"youngs_modulus": E, "poisson_ratio": 0.37}},
+            "bodies": {
+                "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
+                "hand": {"motion": "free", "points": {"H": root}},
+            },
+            "beams": {
+                "slender": {
+                    "curve": {**line, "start": [0.0, 0.0], "end": [L, 0.0]},
+                    "thickness": T,
+                    "width": B,
+                    "material": "m",
+                    "start": {"joint": "weld", "point": "R"},
+                    "end": {"joint": "free"},
+                },
+                "arm": {
+                    "curve": {**line, "start": root, "end": [AT, 0.0]},
+                    "thickness": 8.0 * T,
+                    "width": B,
+                    "material": "m",
+                    "start": {"joint": "weld", "point": "H"},
+                    "end": {"joint": "free"},
+                },
+            },
+            "drives": {
+                "down": {"kind": "displacement", "point": "H", "direction": [0.0, -1.0]},
+                "along": {"kind": "displacement", "point": "H", "direction": [1.0, 0.0]},
+                "turn": {"kind": "rotation", "body": "hand"},
+            },
+            "contacts": {"touch": {"kind": "beam-beam", "between": order, "thick": False}},
+            "stages": [
+                {"name": "press", "steps": "down", "stations": [PRESSED]},
+                {"name": "draw", "steps": "along", "stations": [0.0011, 0.0053]},
+            ],
+            "probes": [{"of": "scene", "quantity": "potential_energy"}, {"of": "touch", "quantity": "force"}],
+        }
+    )
+
+
+SOLVED = {
+    "cprbm": lambda scene: cprbm.answer(scene, cprbm.Settings(links=40)),
+    "fea": lambda scene: fea_reference.answer(scene, fea_reference.Settings(elements=20, kinematics="bending")),
+}
+
+
+@pytest.mark.parametrize(
+    ("solver", "order"),
+    [("cprbm", ["slender", "arm"]), ("cprbm", ["arm", "slender"]), ("fea", ["slender", "arm"])],
+)
+def test_the_branch_ends_where_an_end_slips_off_another(solver, order):
+    got = SOLVED[solver](drawn_past_the_end(order))
+    assert got.ending is Ending.BRANCH_ENDS, got.sentence
+    assert [station.value for station in got.stations] == [PRESSED, 0.0011]
+    assert got.stations[0].values["touch.force"][0] == pytest.approx(3.0 * EI * PRESSED / AT**3, rel=5e-3)
+    (critical,) = got.critical
+    assert (critical.loss, critical.what) == (Loss.SLIP, "touch")
+    assert critical.value == pytest.approx(SLIPS, abs=0.02 * SHORTER)
+    assert critical.energy == pytest.approx(1.5 * EI * PRESSED**2 / L**3, rel=3e-3)
