@@ -407,9 +407,11 @@ class March:
             return self.gaps(known[value])
 
         def sought(value: float, which: int) -> float:
-            gap = gaps(value)[which]
-            # what is as near counts as closed; beyond it an end without thickness would be on the other side
-            return 0.0 if 0.0 <= gap <= 0.5 * arrived[which] else gap
+            # what is as near counts as closed, on either side of what is aimed at; beyond zero an end without thickness
+            # would be on the other side
+            aim = 0.25 * arrived[which]
+            off = gaps(value)[which] - aim
+            return 0.0 if abs(off) <= aim else off
 
         arrived = [*(CLOSED * pair.scale for pair in self.open), *(_SWITCHED for _ in self.model.stops)]
         clear, beyond = sorted(known, key=lambda value: min(gaps(value)), reverse=True)
