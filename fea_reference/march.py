@@ -25,6 +25,7 @@ from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.settings import Settings
+from fea_reference.sinking import known_depths, sunk
 from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
@@ -36,6 +37,7 @@ _AHEAD = 2.0  # of the last step: the longest for which its change of rate tells
 _BENT = 0.3  # of what a step moves by its rate: the most that its change may add
 _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
+_NARROW = 2.0  # the power of that for a contact in a point, whose depth can be foreseen
 _GENTLEST = 1.2  # the factor that is tried at last
 _TIGHTENINGS = 25
 _SETTLINGS = 8
@@ -539,7 +541,8 @@ class March:
     def tighten(self) -> None:
         """Change penalties, each time from the last equilibrium, until each leaves the penetration that it aims at.
 
-        Contacts in a point are held meanwhile, at the depth foreseen: another one that moves by more than they are
+        Contacts in a point begin at the depth at which they push as before, so that it takes a few iterations however
+        much is changed at once.  Those of beams are held there meanwhile: another one that moves by more than they are
         deep would open them, or make of the overlap a force thousands of times their own.
         """
         self.loose = False
@@ -553,15 +556,20 @@ class March:
                 return
             tighter = dict(self.penalties)
             depths: dict[Contact, float] = {}
+            held: dict[Contact, float] = {}
             for one in self.system.touches:
-                factor = min(max(factors[one.pair], 1.0 / most), most)
+                narrow = one.closed and np.ptp(one.zones.intervals) < _POINT
+                limit = most**_NARROW if narrow else most
+                factor = min(max(factors[one.pair], 1.0 / limit), limit)
                 stiffness = factor * self.penalties[one.pair].stiffness
                 tighter[one.pair] = Penalty(stiffness, pressures[one.pair] / stiffness)
-                if isinstance(one.pair, Pair) and one.closed and np.ptp(one.zones.intervals) < _POINT:
-                    depths[one.pair] = one.penetration * factor ** (-1.0 / falls.get(one.pair, _IN_A_POINT))
-            solved = equilibrium(
-                self.model, self.settings, tighter, self.values, self.system.z, self.acting, depths, self.pushes()
-            )
+                depths[one.pair] = one.penetration * factor ** (-1.0 / falls.get(one.pair, _IN_A_POINT))
+                if narrow and isinstance(one.pair, Pair):
+                    held[one.pair] = depths[one.pair]
+            pushes = self.pushes()
+            known = known_depths(self.system, depths, pushes)
+            z = sunk(self.model, tighter, self.settings.quadrature, self.system, self.system.z, pushes, known)
+            solved = equilibrium(self.model, self.settings, tighter, self.values, z, self.acting, held, pushes)
             self.iterations += solved.iterations
             if solved.converged and self.moved(solved.system, self.system.z) <= _CORRECTED:
                 falls = self._falls(solved.system, tighter)
