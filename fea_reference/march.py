@@ -19,18 +19,21 @@ from fea_reference.contacts import (
     passed_through,
     resting_pressure,
     room,
+    touch,
     zones_of,
 )
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
+from fea_reference.onward import Onward, onward
 from fea_reference.settings import Settings
-from fea_reference.sinking import known_depths, sunk
+from fea_reference.sinking import Depth, known_depths, sunk
 from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import LACKING, Contact, Face, Pair, Penalty, Rigid, Touch
 from scene.answer import Array, Critical, Ending
+from scene.frozendict import frozendict
 
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
 _AHEAD = 2.0  # of the last step: the longest for which its change of rate tells anything
@@ -63,7 +66,7 @@ _POINT = 1.0  # elements: a zone no wider is a point
 _SUNK = 0.3  # of the thickness: a beam deeper in another is about to have its line on the other side of that one's
 _STIFFER = 10.0  # times: the penalty with which the step is tried again then
 _STIFFENINGS = 3
-
+_NONE: Mapping[Contact, Touch] = frozendict()
 
 Trouble = tuple[Ending, str]
 
@@ -174,13 +177,18 @@ class March:
         rate = system.solve(load_direction(self.model, load, system.z, self.acting))
         return np.zeros(self.model.size) if rate is None else rate
 
-    def solve(self, load: int, value: float, z: State) -> System | None:
-        """Equilibrium at ``value`` near ``z``; None if there is none to be found."""
+    def onward(self, load: int, rate: Array, target: float) -> Onward:
+        """How the branch, whose ``rate`` (size,) that is but for what only touches yet, goes on to a ``target``."""
+        sense = float(np.sign(target - self.values[load]))
+        return onward(self.model, self.system, self.penalties, self.settings.quadrature, rate, sense)
+
+    def solve(self, load: int, value: float, z: State, begun: Mapping[Contact, Touch] = _NONE) -> System | None:
+        """Equilibrium at ``value`` near ``z``, with contacts that have ``begun`` there; None if there is none."""
         values = self.values.copy()
         values[load] = value
-        solved = equilibrium(
-            self.model, self.settings, self.penalties, values, z, self.acting, self.depths(), self.pushes()
-        )
+        depths = self.depths() | {pair: one.penetration for pair, one in begun.items() if isinstance(pair, Pair)}
+        pushes = self.pushes() | {pair: one.pushes for pair, one in begun.items()}
+        solved = equilibrium(self.model, self.settings, self.penalties, values, z, self.acting, depths, pushes)
         self.iterations += solved.iterations
         return solved.system if solved.converged else self._let_go(values, way_to(self.model, self.system.z, z))
 
@@ -201,12 +209,14 @@ class March:
                 return assemble(self.model, self.penalties, self.settings.quadrature, values, z, self.acting)
         return None
 
-    def step(self, load: int, value: float, rate: Array) -> Trouble | None:
+    def step(self, load: int, value: float, onward: Onward) -> Trouble | None:
         """Try to step to ``value``, or to where a contact or stop changes before; the trouble if neither can be."""
+        penalties = dict(self.penalties)
         self.look()
         before, start = self.system.z, float(self.values[load])
-        predicted = advance(self.model, before, self._foreseen(load, value - start, rate))
-        system = self.solve(load, value, predicted)
+        predicted = advance(self.model, before, self._foreseen(load, value - start, onward.rate))
+        predicted, begun = self._begun(onward, penalties, predicted, value - start)
+        system = self.solve(load, value, predicted, begun)
         for _ in range(_STIFFENINGS):
             stiffer = self._stiffer(system) if system is not None else {}
             if not stiffer:
@@ -249,6 +259,24 @@ class March:
             self.watch_what_touches(load)
             self.switch(load, changing)
         return None
+
+    def _begun(
+        self, onward: Onward, penalties: Mapping[Contact, Penalty], z: State, step: float
+    ) -> tuple[State, dict[Contact, Touch]]:
+        """The state near ``z`` in which contacts in a point push as foreseen after a ``step`` of the value.
+
+        And, in that, those that only touch before it.
+        """
+        model, quadrature, way = self.model, self.settings.quadrature, step * onward.rate
+        pressing = [one for one in self.system.touches if one.push > 0.0]
+        known = known_depths(self.system, {one.pair: one.penetration for one in pressing}, self.pushes())
+        foreseen = {one.pair: one.foreseen(way) for one in pressing}
+        for pair, push in onward.pushes.items():
+            known[pair] = Depth(self.settings.penetration * pair.scale, push * step)
+            foreseen[pair] = np.array([push * step])
+        z = sunk(model, penalties, quadrature, onward.system, z, foreseen, known)
+        begun = (touch(model, pair, penalties[pair], quadrature, z) for pair in onward.pushes)
+        return z, {one.pair: one for one in begun if one.closed}
 
     def gone(self, load: int, before: March, rate: Array, ahead: Array) -> Behind:
         """The step from ``before``, where the branch went by ``rate`` (size,), to here, where it goes by ``ahead``.
