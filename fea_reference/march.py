@@ -53,6 +53,7 @@ _AT_LIMIT = 1e-10  # rad: by which an angle may be beyond its limit before its s
 _SHARP = 1e-3  # of the unbalanced force accepted: what is left at a station, where that is more than round-off
 _SHARPENINGS = 3
 _PULLS = 1e-9  # of the largest force or of EI/length: with which a stop may pull before it lets go
+_INSIDE = 0.01  # of these: how far within what counts as closed its place is sought
 _SWITCHED = 1e-8  # rad, or of these: how near to its change a stop is found
 _AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
 _STIFFEST = 1e9  # times what the elements can follow: the most that a penalty is raised to, for a penetration of
@@ -437,11 +438,10 @@ class March:
             return self.gaps(known[value])
 
         def sought(value: float, which: int) -> float:
-            # what is as near counts as closed, on either side of what is aimed at; beyond zero an end without thickness
-            # would be on the other side
-            aim = 0.25 * arrived[which]
-            off = gaps(value)[which] - aim
-            return 0.0 if abs(off) <= aim else off
+            # what is as near counts as closed; beyond it an end without thickness would be on the other side, and so
+            # what is aimed at is not its very edge
+            gap = gaps(value)[which]
+            return 0.0 if 0.0 <= gap <= 0.5 * arrived[which] else gap - _INSIDE * arrived[which]
 
         arrived = [*(CLOSED * pair.scale for pair in self.open), *(_SWITCHED for _ in self.model.stops)]
         clear, beyond = sorted(known, key=lambda value: min(gaps(value)), reverse=True)

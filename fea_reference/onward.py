@@ -49,7 +49,7 @@ def onward(
         near = Penalty(penalties[one.pair].stiffness, _LEAD * one.pair.scale)
         there = touch(model, one.pair, near, quadrature, system.z)
         gradient = np.zeros(model.size)
-        if there.closed:
+        if there.stiffness.any():
             np.add.at(gradient, there.dofs, there.mean)
             opened = system.solve(gradient)
             if opened is not None and sense * float(gradient @ rate) < 0.0:
