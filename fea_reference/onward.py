@@ -22,7 +22,7 @@ import numpy as np
 from fea_reference.contacts import CLOSED, touch, zones_of
 from fea_reference.model import Model
 from fea_reference.system import System
-from fea_reference.touch import Contact, Penalty
+from fea_reference.touch import Contact, Face, Penalty
 from scene.answer import Array
 
 _LEAD = 1e-6  # of the thickness: how near a place is to what it touches that is taken to touch, too
@@ -46,6 +46,8 @@ def onward(
     for one in system.touches:
         if one.push > 0.0 or zones_of(model, one.pair, system.z).least > CLOSED * one.pair.scale:
             continue
+        if isinstance(one.pair, Face) and one.pair.own:
+            continue  # beside an end that a joint holds on it all is near
         near = Penalty(penalties[one.pair].stiffness, _LEAD * one.pair.scale)
         there = touch(model, one.pair, near, quadrature, system.z)
         gradient = np.zeros(model.size)
