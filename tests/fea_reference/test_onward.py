@@ -5,10 +5,12 @@ import pytest
 
 from comparisons import cases
 from fea_reference import Settings
-from fea_reference.contacts import contacts, zones_of
+from fea_reference.contacts import contacts, touch, zones_of
 from fea_reference.march import begin
 from fea_reference.model import build
+from fea_reference.state import State
 from fea_reference.touch import Penalty
+from tests.fea_reference.on_an_edge import cantilever_over
 
 SHARE = 1.3e-3  # of the last moment: how far on the difference quotient looks
 STIFF = 3e5  # times the first penalty
@@ -62,3 +64,26 @@ def test_a_step_begins_where_the_contact_pushes_as_foreseen(touching):
     assert march.values[0] == value
     assert zones_of(march.model, pair, march.system.z).least < 0.0
     assert march.iterations - spent <= 5  # from the rate without the contact it is nine
+
+
+def test_a_pressure_that_begins_before_an_edge_is_that_on_an_edge_so_far_ahead():
+    lead, bow = 0.0031, 0.07
+    normal = np.array([0.13, 1.0]) / np.hypot(0.13, 1.0)
+    found = []
+    for ahead in (0.0, lead):
+        point = tuple((np.array([0.0, 0.06]) + ahead * normal).tolist())
+        edge = {"kind": "beam-half-plane", "point": point, "normal": tuple(normal.tolist())}
+        settings = Settings(elements=11)
+        scene = cantilever_over(edge)
+        model = build(scene, settings)
+        (face,) = contacts(scene, model, settings.penetration)
+        bent = model.start.values.copy()
+        x = bent[model.node_dofs[0]]
+        bent[model.node_dofs[1]], bent[model.node_dofs[2]] = -bow * x**2, -2.0 * bow * x
+        found.append(touch(model, face, Penalty(17.3, lead - ahead), 5, State.of(bent)))
+    led, shifted = found
+    assert led.closed
+    assert led.zeta == pytest.approx(shifted.zeta, abs=1e-9)
+    assert led.gap == pytest.approx(shifted.gap, abs=1e-12)
+    assert led.gradient == pytest.approx(shifted.gradient, abs=1e-9 * np.abs(shifted.gradient).max())
+    assert led.zones.least == pytest.approx(shifted.zones.least + lead, abs=1e-12)
