@@ -9,15 +9,16 @@ d, n    distance of y from the edge and its gradient, turned with the body;  τ 
 b       second derivative of d along τ
 T, g    half of the beam's thickness at ζ, zero for a line; gap d − T
 ε       penalty stiffness per unit length of the beam
+δ       lead: the gap at which the pressure begins
 k ×     a vector turned counter-clockwise
 ======  =====================================================================================
 
-Energy Π_c = ∫ ½ ε ⟨−g⟩² ds over the beam's undeformed arc length.  With δu = δx − δX − δφ k × r, what the point moves
-against the body,
+Energy Π_c = ∫ ½ ε ⟨δ − g⟩² ds over the beam's undeformed arc length.  With δu = δx − δX − δφ k × r, what the point
+moves against the body,
 
     δg = n·δu,     δ²g = n·δ²x − 2 δφ n·k × (δx − δX) − n·r δφ² + b (τ·δu)²,
 
-and by ζ alone g' = n·x' − T', g'' = n·x'' + b (τ·x')².  The integral runs over the exact intervals on which g < 0.
+and by ζ alone g' = n·x' − T', g'' = n·x'' + b (τ·x')².  The integral runs over the exact intervals on which g < δ.
 Where n jumps, at a corner, intervals end, too: g is the same on both sides of such a place, so that the gradient
 has no part of it; as the place moves with the beam, the second derivative has −ε g (Δδg)²/Δg', Δ being what is before
 less what is behind.
@@ -37,6 +38,8 @@ what presses it on acts at the ends of the zone, by a force where it lifts off, 
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 
@@ -142,7 +145,8 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[face.first], model.bodies[face.body]
     seen = _Seen(model, face, z)
-    zones, kinks = seen.zones()
+    ahead, kinks = seen.zones(penalty.lead)
+    zones = replace(ahead, least=ahead.least + penalty.lead)
     line = seen.line
 
     points, weights = gauss(quadrature)
@@ -157,7 +161,7 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     tau = np.array([n[1], -n[0]])
     r = x - seen.centre[:, None]
     # what a stiff penalty makes a force of; to find where it begins the rounded places will do
-    g = face.outline.kept(*seen.place_and_rest(zeta)) - face.edge.at(zeta)
+    g = face.outline.kept(*seen.place_and_rest(zeta)) - face.edge.at(zeta) - penalty.lead
 
     H = shapes(xi)
     moves = body.dofs is not None
@@ -173,7 +177,7 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
         g_qq[9, 9] -= (n * r).sum(axis=0)
 
     ends = np.isin(zones.intervals, [end for end in (0.0, float(line.n)) if end not in face.own])
-    bent = _bent(seen, zones, kinks, penalty.stiffness, quadrature, moves=moves)
+    bent = _bent(seen, zones, kinks, penalty, quadrature, moves=moves)
     alike = together(quadrature, e)
     weight = penalty.stiffness * ds
     return Touch(
@@ -197,7 +201,7 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
 
 
 def _bent(
-    seen: _Seen, zones: Zones, kinks: dict[float, np.int64], stiffness: float, quadrature: int, *, moves: bool
+    seen: _Seen, zones: Zones, kinks: dict[float, np.int64], penalty: Penalty, quadrature: int, *, moves: bool
 ) -> Array | None:
     """What the moving places at corners add to the second derivatives, (m, m, k); None where there are none."""
     bends = [(i, float(end)) for i, end in enumerate(zones.intervals[:, 1]) if float(end) in kinks]
@@ -219,10 +223,10 @@ def _bent(
         before, behind = normals[first], normals[1 - first]
         difference = seen.turned((before - behind)[:, None])
         slope = steeper[first] - steeper[1 - first]
-        gap = float(seen.gap(np.array([end]))[0])
+        gap = float(seen.gap(np.array([end]))[0]) - penalty.lead
         by = seen.by(difference, shapes(xi), e, x - seen.centre[:, None], moves=moves)[:, 0]
         more[:, :, (i + 1) * quadrature - 1] = (
-            -stiffness * gap / slope * float(seen.line.lengths[e[0]]) * np.outer(by, by)
+            -penalty.stiffness * gap / slope * float(seen.line.lengths[e[0]]) * np.outer(by, by)
         )
     return more
 
@@ -271,19 +275,26 @@ class _Seen:
             return own
         return np.concatenate([own, -v, -(v[1] * r[0] - v[0] * r[1])[None]])
 
-    def zones(self) -> tuple[Zones, dict[float, np.int64]]:
-        """All intervals on which the gap is negative, and the corners of the places between them where n jumps."""
+    def zones(self, lead: float = 0.0) -> tuple[Zones, dict[float, np.int64]]:
+        """All intervals on which the gap is less than a ``lead``, which their least gap leaves out, and the corners of
+        the places between them where n jumps.
+        """
         face, line = self.face, self.line
+
+        def at(zeta: Array, none_m: Array) -> Gap:
+            there = self._at(zeta, none_m)
+            return replace(there, g=there.g - lead) if lead else there
+
         even = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
         borders, kinks = self._borders(even)
         zeta = np.unique(np.concatenate([even, face.edge.knots, borders, face.within]))
         zeta = zeta[(zeta >= face.within[0]) & (zeta <= face.within[1])]
-        there = self._at(zeta, np.zeros_like(zeta))
+        there = at(zeta, np.zeros_like(zeta))
         own = tuple(end for end in face.own if end in face.within)
         for end in own:
             # where it is zero by a joint, what is nearest is a matter of round-off: it goes on as beside it
-            at, beside = (0, 1) if end == 0.0 else (-1, -2)
-            there.g[at], there.slope[at], there.curvature[at] = 0.0, there.slope[beside], there.curvature[beside]
+            here, beside = (0, 1) if end == 0.0 else (-1, -2)
+            there.g[here], there.slope[here], there.curvature[here] = 0.0, there.slope[beside], there.curvature[beside]
         if not there.found.any():
             return none(float(np.abs(there.g).min())), {}
         neighbours = there.found[:-1] & there.found[1:]
@@ -294,7 +305,7 @@ class _Seen:
             there = Gap(there.g[keep], there.slope[keep], there.curvature[keep], there.zeta_m[keep], keep[keep])
         splits = (*face.edge.knots, *borders.tolist())
         floor = float(np.finfo(float).eps) * line.longest
-        return negative(self._at, zeta, there, neighbours, splits, own, floor), kinks
+        return negative(at, zeta, there, neighbours, splits, own, floor), kinks
 
     def _at(self, zeta: Array, none_m: Array) -> Gap:
         face = self.face

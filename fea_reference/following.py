@@ -232,7 +232,7 @@ def _letting_go(march: March, load: int, target: float, span: float) -> Lost | N
             )
         rate = march.rate(load)
         size = min(_SHARE * abs(way), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
-        trouble = march.step(load, float(march.values[load]) + np.copysign(size, way), rate)
+        trouble = march.step(load, float(march.values[load]) + np.copysign(size, way), march.onward(load, rate, target))
         if trouble is not None or not softest(march.model, march.system).curvature > 0.0:
             break
     march.restore(saved)

@@ -20,23 +20,28 @@ from fea_reference.contacts import (
     passed_through,
     resting_pressure,
     room,
+    touch,
     zones_of,
 )
 from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
+from fea_reference.onward import Onward, onward
 from fea_reference.settings import Settings
+from fea_reference.sinking import Depth, known_depths, sunk
 from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import LACKING, Circle, Contact, Face, Pair, Penalty, Rigid, Touch
 from scene.answer import Array, Critical, Ending
+from scene.frozendict import frozendict
 
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
 _AHEAD = 2.0  # of the last step: the longest for which its change of rate tells anything
 _BENT = 0.3  # of what a step moves by its rate: the most that its change may add
 _TURNED = 1.0  # rad: of an element's end against its chord; beyond, a shallow arch is no longer shallow
 _TIGHTEN = 100.0  # the most by which a penalty is raised at once
+_NARROW = 2.0  # the power of that for a contact in a point, whose depth can be foreseen
 _GENTLEST = 1.2  # the factor that is tried at last
 _TIGHTENINGS = 25
 _SETTLINGS = 8
@@ -49,6 +54,7 @@ _AT_LIMIT = 1e-10  # rad: by which an angle may be beyond its limit before its s
 _SHARP = 1e-3  # of the unbalanced force accepted: what is left at a station, where that is more than round-off
 _SHARPENINGS = 3
 _PULLS = 1e-9  # of the largest force or of EI/length: with which a stop may pull before it lets go
+_INSIDE = 0.01  # of these: how far within what counts as closed its place is sought
 _SWITCHED = 1e-8  # rad, or of these: how near to its change a stop is found
 _AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
 _STIFFEST = 1e9  # times what the elements can follow: the most that a penalty is raised to, for a penetration of
@@ -62,7 +68,7 @@ _POINT = 1.0  # elements: a zone no wider is a point
 _SUNK = 0.3  # of how deep something may be and not have gone through: what is deeper is about to
 _STIFFER = 10.0  # times: the penalty with which the step is tried again then
 _STIFFENINGS = 3
-
+_NONE: Mapping[Contact, Touch] = frozendict()
 
 Trouble = tuple[Ending, str]
 
@@ -175,13 +181,18 @@ class March:
         rate = system.solve(load_direction(self.model, load, system.z, self.acting))
         return np.zeros(self.model.size) if rate is None else rate
 
-    def solve(self, load: int, value: float, z: State) -> System | None:
-        """Equilibrium at ``value`` near ``z``; None if there is none to be found."""
+    def onward(self, load: int, rate: Array, target: float) -> Onward:
+        """How the branch, whose ``rate`` (size,) that is but for what only touches yet, goes on to a ``target``."""
+        sense = float(np.sign(target - self.values[load]))
+        return onward(self.model, self.system, self.penalties, self.settings.quadrature, rate, sense)
+
+    def solve(self, load: int, value: float, z: State, begun: Mapping[Contact, Touch] = _NONE) -> System | None:
+        """Equilibrium at ``value`` near ``z``, with contacts that have ``begun`` there; None if there is none."""
         values = self.values.copy()
         values[load] = value
-        solved = equilibrium(
-            self.model, self.settings, self.penalties, values, z, self.acting, self.depths(), self.pushes()
-        )
+        depths = self.depths() | {pair: one.penetration for pair, one in begun.items() if isinstance(pair, Pair)}
+        pushes = self.pushes() | {pair: one.pushes for pair, one in begun.items()}
+        solved = equilibrium(self.model, self.settings, self.penalties, values, z, self.acting, depths, pushes)
         self.iterations += solved.iterations
         return solved.system if solved.converged else self._let_go(values, way_to(self.model, self.system.z, z))
 
@@ -202,12 +213,14 @@ class March:
                 return assemble(self.model, self.penalties, self.settings.quadrature, values, z, self.acting)
         return None
 
-    def step(self, load: int, value: float, rate: Array) -> Trouble | None:
+    def step(self, load: int, value: float, onward: Onward) -> Trouble | None:
         """Try to step to ``value``, or to where a contact or stop changes before; the trouble if neither can be."""
+        penalties = dict(self.penalties)
         self.look()
         before, start = self.system.z, float(self.values[load])
-        predicted = advance(self.model, before, self._foreseen(load, value - start, rate))
-        system = self.solve(load, value, predicted)
+        predicted = advance(self.model, before, self._foreseen(load, value - start, onward.rate))
+        predicted, begun = self._begun(onward, penalties, predicted, value - start)
+        system = self.solve(load, value, predicted, begun)
         for _ in range(_STIFFENINGS):
             stiffer = self._stiffer(system) if system is not None else {}
             if not stiffer:
@@ -268,6 +281,24 @@ class March:
         last = min(clear, key=lambda one: abs(one - value), default=value)
         otherwise = [open_in(self.model, pair, known[last].z) for pair in self.open] != self.open
         return last if otherwise and last != value else None
+
+    def _begun(
+        self, onward: Onward, penalties: Mapping[Contact, Penalty], z: State, step: float
+    ) -> tuple[State, dict[Contact, Touch]]:
+        """The state near ``z`` in which contacts in a point push as foreseen after a ``step`` of the value.
+
+        And, in that, those that only touch before it.
+        """
+        model, quadrature, way = self.model, self.settings.quadrature, step * onward.rate
+        pressing = [one for one in self.system.touches if one.push > 0.0]
+        known = known_depths(self.system, {one.pair: one.penetration for one in pressing}, self.pushes())
+        foreseen = {one.pair: one.foreseen(way) for one in pressing}
+        for pair, push in onward.pushes.items():
+            known[pair] = Depth(self.settings.penetration * pair.scale, push * step)
+            foreseen[pair] = np.array([push * step])
+        z = sunk(model, penalties, quadrature, onward.system, z, foreseen, known)
+        begun = (touch(model, pair, penalties[pair], quadrature, z) for pair in onward.pushes)
+        return z, {one.pair: one for one in begun if one.closed}
 
     def gone(self, load: int, before: March, rate: Array, ahead: Array) -> Behind:
         """The step from ``before``, where the branch went by ``rate`` (size,), to here, where it goes by ``ahead``.
@@ -426,9 +457,10 @@ class March:
             return self.gaps(known[value])
 
         def sought(value: float, which: int) -> float:
+            # what is as near counts as closed; beyond it an end without thickness would be on the other side, and so
+            # what is aimed at is not its very edge
             gap = gaps(value)[which]
-            # what is as near counts as closed; beyond it an end without thickness would be on the other side
-            return 0.0 if 0.0 <= gap <= 0.5 * arrived[which] else gap
+            return 0.0 if 0.0 <= gap <= 0.5 * arrived[which] else gap - _INSIDE * arrived[which]
 
         arrived = [*(CLOSED * pair.scale for pair in self.open), *(_SWITCHED for _ in self.model.stops)]
         clear, beyond = sorted(known, key=lambda value: min(gaps(value)), reverse=True)
@@ -556,7 +588,8 @@ class March:
     def tighten(self) -> None:
         """Change penalties, each time from the last equilibrium, until each leaves the penetration that it aims at.
 
-        Contacts in a point are held meanwhile, at the depth foreseen: another one that moves by more than they are
+        Contacts in a point begin at the depth at which they push as before, so that it takes a few iterations however
+        much is changed at once.  Those of beams are held there meanwhile: another one that moves by more than they are
         deep would open them, or make of the overlap a force thousands of times their own.
         """
         self.loose = False
@@ -570,15 +603,20 @@ class March:
                 return
             tighter = dict(self.penalties)
             depths: dict[Contact, float] = {}
+            held: dict[Contact, float] = {}
             for one in self.system.touches:
-                factor = min(max(factors[one.pair], 1.0 / most), most)
+                narrow = one.closed and np.ptp(one.zones.intervals) < _POINT
+                limit = most**_NARROW if narrow else most
+                factor = min(max(factors[one.pair], 1.0 / limit), limit)
                 stiffness = factor * self.penalties[one.pair].stiffness
                 tighter[one.pair] = Penalty(stiffness, pressures[one.pair] / stiffness)
-                if isinstance(one.pair, Pair) and one.closed and np.ptp(one.zones.intervals) < _POINT:
-                    depths[one.pair] = one.penetration * factor ** (-1.0 / falls.get(one.pair, _IN_A_POINT))
-            solved = equilibrium(
-                self.model, self.settings, tighter, self.values, self.system.z, self.acting, depths, self.pushes()
-            )
+                depths[one.pair] = one.penetration * factor ** (-1.0 / falls.get(one.pair, _IN_A_POINT))
+                if narrow and isinstance(one.pair, Pair):
+                    held[one.pair] = depths[one.pair]
+            pushes = self.pushes()
+            known = known_depths(self.system, depths, pushes)
+            z = sunk(self.model, tighter, self.settings.quadrature, self.system, self.system.z, pushes, known)
+            solved = equilibrium(self.model, self.settings, tighter, self.values, z, self.acting, held, pushes)
             self.iterations += solved.iterations
             if solved.converged and self.moved(solved.system, self.system.z) <= _CORRECTED:
                 falls = self._falls(solved.system, tighter)

@@ -6,6 +6,7 @@ Where they stand changes with the elements in which contacts press, and seldom e
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,11 +62,16 @@ class Single:
 
 @dataclass(frozen=True, slots=True)
 class _Pattern:
-    """``place`` (k,) of each entry among the ``indices`` (nnz,) of a matrix, and its ``indptr``."""
+    """``place`` (k,) of each entry among those of the matrix ``found``."""
 
     place: Index
-    indices: Index
-    indptr: Index
+    found: csc_matrix
+
+    def filled(self, values: Array) -> csc_matrix:
+        """The matrix with other values (k,)."""
+        matrix = copy(self.found)  # what it shares is where its entries stand, and that they are in order
+        matrix.data = np.bincount(self.place, values, self.found.nnz)
+        return matrix
 
 
 class Patterns:
@@ -77,15 +83,13 @@ class Patterns:
 
     def matrix(self, blocks: Sequence[Block | Single]) -> csc_matrix:
         """The sum of all blocks, (size, size)."""
-        shape = (self._size, self._size)
         key = tuple(part for block in blocks for part in block.key)
         values = np.concatenate([block.values for block in blocks])
         known = self._known.get(key)
         if known is not None:
-            data = np.bincount(known.place, values, known.indices.size)
-            return csc_matrix((data, known.indices, known.indptr), shape)
+            return known.filled(values)
         rows, columns = (np.concatenate([getattr(block, of) for block in blocks]) for of in ("rows", "columns"))
-        found = csc_matrix((values, (rows, columns)), shape)
+        found = csc_matrix((values, (rows, columns)), (self._size, self._size))
         if len(self._known) >= _KNOWN:
             self._known.clear()
         # what is seen once may never be again
@@ -97,4 +101,4 @@ def _pattern(found: csc_matrix, rows: Index, columns: Index) -> _Pattern:
     """Where entries at ``rows`` and ``columns`` (k,) stand in the matrix that they make."""
     size = found.shape[0]
     standing = np.repeat(np.arange(size), np.diff(found.indptr)) * size + found.indices
-    return _Pattern(np.searchsorted(standing, columns * size + rows), found.indices, found.indptr)
+    return _Pattern(np.searchsorted(standing, columns * size + rows), found)

@@ -28,7 +28,7 @@ from fea_reference.contacts import touch
 from fea_reference.model import Model
 from fea_reference.state import State
 from fea_reference.system import System
-from fea_reference.touch import Contact, Pair, Penalty, Touch
+from fea_reference.touch import Contact, Penalty, Touch
 from scene.answer import Array
 
 _FALL = 1.5  # the power of the depth with which the push goes
@@ -55,11 +55,11 @@ class Depth:
 def known_depths(
     system: System, depths: Mapping[Contact, float], before: Mapping[Contact, Array]
 ) -> dict[Contact, Depth]:
-    """Of the contacts of beams those whose ``depths`` and pushes ``before``, (k,) each, are known."""
+    """Of the contacts those whose ``depths`` and pushes ``before``, (k,) each, are known."""
     found = {}
     for one in system.touches:
         push = float(before[one.pair].sum()) if one.pair in before else 0.0
-        deep = isinstance(one.pair, Pair) and depths.get(one.pair, 0.0) > _TOUCHING * one.pair.scale
+        deep = depths.get(one.pair, 0.0) > _TOUCHING * one.pair.scale
         if deep and push > 0.0:
             found[one.pair] = Depth(depths[one.pair], push)
     return found

@@ -162,7 +162,8 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
             )
         if watched and not known:
             known = [*march.foregone(load), (float(march.values[load]), march.curvature)]
-        rate = march.rate(load) if rate is None else rate
+        onward = march.onward(load, march.rate(load) if rate is None else rate, target)
+        rate = onward.rate
         speed = float(np.abs(rate[march.model.moving]).max())
         way = target - march.values[load]
         foreseen = _HALF * _vanishing(known)
@@ -178,7 +179,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
         trouble: Trouble | None = None
         unstable = False
         if not (follow and close):
-            trouble = march.step(load, value, rate)
+            trouble = march.step(load, value, onward)
             if trouble is None:
                 ahead = march.rate(load)
                 jumped = _jumped(saved, march, load, rate, ahead)

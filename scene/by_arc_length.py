@@ -15,7 +15,7 @@ by Newton's method from the panel's ends.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.polynomial.legendre import leggauss
@@ -28,15 +28,20 @@ _MOST_PANELS = 1 << 16
 _SETTLED = 1e-14  # of the length
 _NEWTON_STEPS = 30
 _CLOSE = 1e-10  # a Newton step of this part of the range leaves nothing for a further one
+_KNOWN = 24  # answers: who looks at one line at many stations asks for the same fractions again and again
 
 
 @dataclass(frozen=True, slots=True)
 class ByArcLength:
-    """The ``speed`` S', and the ends ``w`` of the panels (p+1,) with ``S`` there (p+1,), from zero."""
+    """The ``speed`` S', and the ends ``w`` of the panels (p+1,) with ``S`` there (p+1,), from zero.
+
+    ``known`` are the last answers by the fractions asked for, the latest last.
+    """
 
     speed: Speed
     w: Array
     S: Array
+    known: dict[bytes, Array] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def whole(self) -> float:
@@ -44,7 +49,18 @@ class ByArcLength:
         return float(self.S[-1])
 
     def places(self, u: Array) -> Array:
-        """w (n,) at fractions ``u`` (n,) of the arc length; beyond the ends the end itself."""
+        """w (n,) at fractions ``u`` (n,) of the arc length, read-only; beyond the ends the end itself."""
+        asked = np.asarray(u, dtype=np.float64).tobytes()
+        found = self.known.pop(asked, None)
+        if found is None:
+            found = self._inverted(u)
+            found.flags.writeable = False
+            if len(self.known) >= _KNOWN:
+                self.known.pop(next(iter(self.known)), None)
+        self.known[asked] = found
+        return found
+
+    def _inverted(self, u: Array) -> Array:
         S = np.clip(u, 0.0, 1.0) * self.S[-1]
         panel = np.clip(np.searchsorted(self.S, S, side="right") - 1, 0, len(self.w) - 2)
         from_w, to_w, missing = self.w[panel], self.w[panel + 1], S - self.S[panel]

@@ -144,11 +144,11 @@ def _derivative(w: Array, q: Array, at: Array, order: int) -> Array:
     """A derivative of q, (..., 2), at places of any shape."""
     piece = np.clip(np.searchsorted(w, at, side="right") - 1, 0, len(w) - 2)
     v = (at - w[piece])[..., None]
-    a, b, c, d = (part[piece] for part in q)
+    a, b = q[0, piece], q[1, piece]
     if order == 0:
-        return np.asarray(d + v * (c + v * (b + v * a)))
+        return np.asarray(q[3, piece] + v * (q[2, piece] + v * (b + v * a)))
     if order == 1:
-        return np.asarray(c + v * (2.0 * b + v * (3.0 * a)))
+        return np.asarray(q[2, piece] + v * (2.0 * b + v * (3.0 * a)))
     return np.asarray(2.0 * b + 6.0 * v * a)
 
 

@@ -79,6 +79,9 @@ class Ways:
     def gone(self, load, saved, rate, ahead):
         return None
 
+    def onward(self, load, rate, target):
+        return SimpleNamespace(rate=rate)
+
     def shown(self, load, value):
         return f"{value:g}"
 
