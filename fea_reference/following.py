@@ -274,7 +274,8 @@ def _nearer(march: March, load: int, way: float) -> bool:
     """Whether a step leads on for most of a ``way``, or for as much of it as one may; if not, the march stays."""
     before, rate = march.saved(), march.rate(load)
     size = min(_SHARE * abs(way), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
-    if march.step(load, float(march.values[load]) + np.copysign(size, way), rate) is None:
+    value = float(march.values[load] + np.copysign(size, way))
+    if march.step(load, value, march.onward(load, rate, value)) is None:
         return True
     march.restore(before)
     return False

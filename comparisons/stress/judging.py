@@ -7,9 +7,6 @@ what is stated promises to become little enough by that, and once where it is so
 runs of one size are then the coarser ones of the next, and nothing is solved twice.  Of a scene whose answers end
 early at every size the stations that both reached are judged as a scene of their own.
 
-Where every run says that the branch ends, and agrees on where and how, the stations before tell what the scene is: its
-answer is that there is no more.
-
 Where the theories of ``bending`` and ``shear`` alone are further apart than may be stated, that is a property of the
 mechanism and no doubt about either solver, both of which can be asked in ``bending``: there the scene is judged once
 more, by the same rules, with the chosen theory left out.  It has then agreed in ``bending`` alone, which the outcome
@@ -39,7 +36,6 @@ from comparisons.formats import number
 from comparisons.measures import Bounds, Row
 from comparisons.memory import Remembering
 from comparisons.pairing import Runs, Solvers, paired
-from comparisons.per_branch import critical_word
 from comparisons.reach import ends_at_critical, first_stations, up_to
 from comparisons.scales import norm
 from comparisons.stations import station_of
@@ -179,12 +175,8 @@ def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
     verdict, runs = comparison.verdict, comparison.runs
     early = [(name, answer) for name, answer in runs.everything() if not answer.completed]
     sentence, ending = verdict.sentence, ""
-    doubts = any(audit.complaints for audit in comparison.audits.values())
     if verdict.word is Word.DIFFER:
         way = Way.WRONG
-    elif early and _ends_alike(comparison):
-        agreed = all(word in (None, Word.AGREE) for word in verdict.words) and not doubts
-        way, ending, early = (Way.AGREE if agreed else Way.UNDECIDED), early[0][1].ending.name, []
     elif early:
         way = Way.ENDED
         ending = early[0][1].ending.name
@@ -193,20 +185,8 @@ def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
         way = Way.WRONG
     else:
         way = Way.AGREE if verdict.word is Word.AGREE else Way.UNDECIDED
+    doubts = any(audit.complaints for audit in comparison.audits.values())
     return _Finding(way, sentence, choices, runs, comparison.rows, ending, early=_whose(early), doubts=doubts)
-
-
-def _ends_alike(comparison: Comparison) -> bool:
-    """Whether every answer says that the branch ends, after some station, and all agree on where and how.
-
-    More is not to be known: beyond its end there is nothing of the branch, and a stage that says no more asks for none.
-    The rows up to there tell the scene's way.
-    """
-    return (
-        all(ends_at_critical(answer) for _, answer in comparison.runs.everything())
-        and bool(comparison.rows)
-        and all(critical_word(row) is Word.AGREE for row in comparison.criticals)
-    )
 
 
 def _finer(scene: Scene, finding: _Finding, left: int) -> Choices:

@@ -35,8 +35,7 @@ class Outcome:
         name: of the scene.
         way: in which it ended.
         sentence: which row decided, or what went wrong.
-        ending: name of the :class:`scene.Ending` of the run that ended early, also of scenes that agree, or are
-            undecided, up to where all runs say that the branch ends; empty of all others.
+        ending: name of the :class:`scene.Ending` of the run that ended early; empty of the other ways.
         difference: largest difference over what the solvers state together, of all rows; None where no rows stand.
         uncertainty: largest sum of what is stated, a fraction of the probe's scale; None likewise.
         beyond: the largest distance from an exact answer over what is stated; None where none is known.
@@ -103,11 +102,6 @@ def totals(outcomes: Iterable[Outcome]) -> dict[Way, int]:
 def in_bending(outcomes: Iterable[Outcome]) -> int:
     """How many agree that were judged in the theory ``bending`` alone."""
     return sum(outcome.way is Way.AGREE and outcome.apart is not None for outcome in outcomes)
-
-
-def to_an_end(outcomes: Iterable[Outcome]) -> int:
-    """How many agree up to where their branch ends, and on that."""
-    return sum(outcome.way is Way.AGREE and bool(outcome.ending) for outcome in outcomes)
 
 
 def shares(outcomes: Iterable[Outcome]) -> dict[str, float]:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from comparisons.documents import Plain, plain
 from comparisons.formats import number, percent
 from comparisons.sheet import Sheet
-from comparisons.stress.outcomes import Outcome, Way, in_bending, packed, shares, to_an_end, totals
+from comparisons.stress.outcomes import Outcome, Way, in_bending, packed, shares, totals
 from comparisons.stress.running import Stress
 
 _WORST: dict[str, Callable[[Outcome], float | None]] = {
@@ -27,7 +27,6 @@ _WHAT = {
     "iterations": "iterations of all runs",
 }
 _ALONE = "of these in the theory of bending alone"
-_TO_AN_END = "of these up to where the branch ends"
 _OF_AGREEMENT = frozenset({"difference", "uncertainty", "beyond", "apart"})
 
 
@@ -38,7 +37,6 @@ def document(there: Stress) -> Plain:
     return {
         **found,
         "agree_in_bending": in_bending(outcomes),
-        "agree_to_an_end": to_an_end(outcomes),
         "strata": shares(outcomes),
         "worst": {
             name: None if worst is None else {"scene": worst.name, "value": plain(_WORST[name](worst))}
@@ -57,12 +55,7 @@ def sheets_of(there: Stress) -> tuple[Sheet, ...]:
     outcomes = list(there.outcomes.values())
     every = max(len(outcomes), 1)
     counts = {way.words: count for way, count in totals(outcomes).items()}
-    counts = {
-        "agree": counts.pop("agree"),
-        _ALONE: in_bending(outcomes),
-        _TO_AN_END: to_an_end(outcomes),
-        **counts,
-    }
+    counts = {"agree": counts.pop("agree"), _ALONE: in_bending(outcomes), **counts}
     ways = tuple((said, str(count), percent(count / every)) for said, count in counts.items() if outcomes)
     worst = tuple(
         (_WHAT[name], number(value), outcome.name)
@@ -106,11 +99,9 @@ def _too_far(apart: float) -> str:
 
 
 def _alone(there: Stress, way: Way) -> str:
-    """Of those that agree how many in bending alone, and how many up to where their branch ends."""
-    every = there.outcomes.values() if way is Way.AGREE else ()
-    counts = {"in the theory of bending alone": in_bending(every), "up to where the branch ends": to_an_end(every)}
-    said = ", ".join(f"{count} of them {what}" for what, count in counts.items() if count)
-    return f" ({said})" if said else ""
+    """Of those that agree how many in bending alone."""
+    count = in_bending(there.outcomes.values()) if way is Way.AGREE else 0
+    return f" ({count} of them in the theory of bending alone)" if count else ""
 
 
 def _way(outcome: Outcome) -> str:

@@ -25,7 +25,7 @@ from comparisons.stress.running import FAILURES, Crew, Plan, Stress, run
 from comparisons.stress.shrinking import Patience, shrunk, steps
 from comparisons.stress.told import document, sentence, sheets_of, told_of
 from comparisons.stress.toml import toml_of
-from scene import Critical, Ending, Loss, SceneError, read
+from scene import Ending, SceneError, read
 from scene.reading import scene_from
 from tests.comparisons.made_up import MadeUp
 from tests.comparisons.stressed import FATES, WAYS, fated, fated_solvers, nothing
@@ -395,31 +395,6 @@ def test_the_part_that_was_reached_can_be_wrong():
         return replace(found, stations=found.stations[:1], ending=Ending.STEP_TOO_SMALL)
 
     assert judged(scene, Solvers(early, fated_solvers().fea), Effort()).way is Way.WRONG
-
-
-@pytest.mark.parametrize(
-    ("values", "way"), [((0.17, 0.1702), Way.AGREE), ((0.17, 0.19), Way.WRONG), ((0.17, None), Way.ENDED)]
-)
-def test_scenes_agree_up_to_where_both_say_that_the_branch_ends(values, way):
-    """The span is 0.23, one per cent of which critical values may be apart; who says nothing of an end ends early."""
-    scene = scene_from(fated(1, 0).data)
-
-    def ended(right, value):
-        def answer(scene, choices):
-            found = right(scene, choices)
-            if value is None:
-                return replace(found, stations=found.stations[:1], ending=Ending.STEP_TOO_SMALL)
-            critical = Critical("load", value, 1e-9, Loss.SLIP, "touch", 2.0, 1.0, -0.3, None)
-            return replace(found, stations=found.stations[:1], ending=Ending.BRANCH_ENDS, critical=(critical,))
-
-        return answer
-
-    right = fated_solvers()
-    outcome = judged(scene, Solvers(ended(right.cprbm, values[0]), ended(right.fea, values[1])), Effort())
-    assert outcome.way is way, outcome.sentence
-    there = Stress(PLAN, {0: outcome}, {})
-    assert document(there)["agree_to_an_end"] == (way is Way.AGREE)
-    assert ("1 of them up to where the branch ends" in sentence(there)) == (way is Way.AGREE)
 
 
 def is_scene(data):
