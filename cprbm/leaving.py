@@ -8,17 +8,42 @@ far away.  If there were an equilibrium near the last one, that is where it woul
 
 from __future__ import annotations
 
+import numpy as np
+
 from cprbm.critical import BranchEnd, Minimum
 from cprbm.following import Way
-from cprbm.leap import leap
+from cprbm.kinematics import State, most_turned
+from cprbm.leap import Landed, leap
 from cprbm.mechanism import Mechanism
+from cprbm.point import Point, point_at
 from cprbm.rate import carried_by_others, rate, strayed
 from cprbm.settings import Settings
 from cprbm.stability import softest
 from scene import Loss
+from scene.answer import Array
 
 STEPS = 30  # of a motion that leads to a state beside: one that goes on for longer leads far away, or in circles
+BESIDE = 0.3  # rad: a state in which links are turned by no more is beside another
+SAME = 0.1  # of what links turn by: states that are apart by less are one
 NEAR = 1e-3  # of the value beyond: an end that is not known better than that is none
+
+
+def aside(
+    mechanism: Mechanism, settings: Settings, values: dict[str, float], start: Point, direction: Array
+) -> Landed | None:
+    """What :func:`cprbm.leap.leap` lands in, with its arguments, if that is beside ``start``; else None.
+
+    None as well where as far to the other side there is another: which of them it comes to nothing says.
+    """
+    landed = leap(mechanism, settings, values, start, direction, STEPS)
+    if landed is None or most_turned(start.state, landed.point.state) > BESIDE:
+        return None
+    there, here = landed.point.state, start.state
+    opposite = State(2.0 * here.theta - there.theta, 2.0 * here.bodies - there.bodies)
+    point = point_at(mechanism.problem, values, opposite, start.mu, start.lam, start.rows)
+    other = leap(mechanism, settings, values, point, np.zeros_like(direction), STEPS)
+    apart = 0.0 if other is None else most_turned(there, other.point.state)
+    return landed if apart <= SAME * most_turned(here, there) else None
 
 
 def left(mechanism: Mechanism, settings: Settings, last: Minimum, way: Way) -> BranchEnd | None:

@@ -22,9 +22,8 @@ from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import FITTED, KEPT, alike, continued, led
 from cprbm.following import Follower, Reached, Way, pressing, to
 from cprbm.kinematics import State, most_turned, rest_state
-from cprbm.leap import STEPS, Landed, leap
-from cprbm.leaving import STEPS as NEARBY
-from cprbm.leaving import left
+from cprbm.leap import Landed, leap
+from cprbm.leaving import aside, left
 from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of
 from cprbm.model import Fit
@@ -47,7 +46,6 @@ FITS = 5  # PASSES where contacts are long
 PASSES = 8  # of fitting the mesh to where contact is, at most
 STRAIGHT = 6  # of them before meshes that take turns are led to the one between
 BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is no doubt that it has ended
-BESIDE = 0.3  # rad: a state in which links are turned by no more is beside another
 ENDS = 10  # of branches between two stations
 ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all branches are near
 FURTHER = 30.0  # times as far before it, the fitted mesh is on the branch still
@@ -79,6 +77,8 @@ class March:
         # where contacts stood open in this stage, of those that have not closed yet
         self.opened: dict[str, list[Stood]] = {}
         self.critical: list[Critical] = []
+        # ends that nothing was asked of on the way to the next station: how they are told, and where they were met
+        self.left: list[tuple[str, Critical, Follower]] = []
         self.remarks = Remarks()
         # what was solved at the last stations, by how often the mesh had been fitted, and to what
         self.before: dict[int, tuple[Fit, list[Stood]]] = {}
@@ -117,6 +117,17 @@ class March:
         station_reached(_SAYS, self.scene, len(self.reached), station)
 
     def _reach(self, stage: Stage, target: float) -> Reached:
+        """Go to a station, also over ends that nothing was asked of; where that leads nowhere the first is told."""
+        known, self.left = len(self.critical), []
+        reached = self._led(stage, target)
+        if reached.certificate is None and self.left:
+            of, critical, self.on = self.left[0]
+            self.critical[known:] = [critical]
+            return Reached(Ending.BRANCH_ENDS, of, certificate=None)
+        self.remarks.passed += [of for of, _, _ in self.left]
+        return reached
+
+    def _led(self, stage: Stage, target: float) -> Reached:
         """Go to a station, from branch to branch where one ends."""
 
         def accept(point: Point, values: dict[str, float]) -> None:
@@ -200,32 +211,29 @@ class March:
             step = max(BEYOND * abs(on.refused - on.reached), ONWARD * abs(target - furthest))
             value = furthest + np.copysign(min(step, abs(target - furthest)), target - furthest)
             values = {**on.values, stage.steps: value}
-            steps = NEARBY if beside else STEPS
-            landed = leap(on.mechanism, on.settings, values, on.point, end.direction, steps)
-            if beside and landed is not None and most_turned(on.point.state, landed.point.state) > BESIDE:
-                landed = None
+            leads = leap if stage.beyond == "jump" else aside
+            landed = leads(on.mechanism, on.settings, values, on.point, end.direction)
         if stage.beyond == "jump":
             reached = Reached(Ending.STEP_TOO_SMALL, f"no minimum found to which {of} leads", certificate=None)
         if landed is not None:
             after = potential_energy(problem, landed.point) * problem.model.unit_moment
             reached = Reached(Ending.COMPLETED, "", landed.certificate)
             self.on = self._evened(Minimum(value, landed.point, landed.certificate), values)
-        if landed is not None and beside:
-            self.remarks.passed.append(of)
-            return landed, reached
-        self.critical.append(
-            Critical(
-                stage=stage.name,
-                value=end.value,
-                uncertainty=end.uncertainty,
-                loss=end.loss,
-                what=end.what,
-                curvature=end.curvature,
-                left=end.left,
-                energy=before,
-                after=after,
-            )
+        critical = Critical(
+            stage=stage.name,
+            value=end.value,
+            uncertainty=end.uncertainty,
+            loss=end.loss,
+            what=end.what,
+            curvature=end.curvature,
+            left=end.left,
+            energy=before,
+            after=None if beside else after,
         )
+        if landed is not None and beside:
+            self.left.append((of, critical, on))
+        else:
+            self.critical.append(critical)
         return landed, reached
 
     def _evened(self, landed: Minimum, values: dict[str, float]) -> Follower:

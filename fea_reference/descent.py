@@ -47,8 +47,13 @@ _ROUNDED = 1e-9  # of the energy
 _STRONGEST = 1e12
 
 
-def descended(march: March, load: int, target: float, span: float, lost: Lost) -> float | None:
-    """Let the march fall from the end of a branch; the energy where it comes to rest, without units, or None."""
+def descended(
+    march: March, load: int, target: float, span: float, lost: Lost, farthest: float = np.inf
+) -> float | None:
+    """Let the march fall from the end of a branch; the energy where it comes to rest, without units, or None.
+
+    What moves anything by more than the ``farthest`` is followed no further.
+    """
     onward = float(np.sign(target - lost.value))
     beyond = _ASIDE if lost.loss is Loss.BIFURCATION else _BEYOND
     march.values[load] = lost.value + onward * min(beyond * span, abs(target - lost.value))
@@ -70,7 +75,7 @@ def descended(march: March, load: int, target: float, span: float, lost: Lost) -
             if drag < _STRONGEST:
                 ways.append((penalised_energy(trial.model, trial.system, trial.values), -len(ways), trial, drag))
         for _, _, trial, drag in sorted(ways, key=lambda way: way[:2]):
-            if _fallen(trial, load, drag):
+            if _fallen(trial, load, drag, lost.system.z, farthest):
                 march.iterations += trial.iterations - iterations
                 march.restore(trial)
                 march.tighten()
@@ -78,11 +83,11 @@ def descended(march: March, load: int, target: float, span: float, lost: Lost) -
     return None
 
 
-def _fallen(march: March, load: int, drag: float) -> bool:
-    """Fall to a minimum, if there is one to be found."""
+def _fallen(march: March, load: int, drag: float, first: State, farthest: float) -> bool:
+    """Fall to a minimum, if there is one to be found that is not farther from the ``first`` state."""
     march.renew()  # without the drag
     for _ in range(_STEPS):
-        if drag > _STRONGEST:
+        if drag > _STRONGEST or march.moved(march.system, first) > farthest:
             return False
         before, saved = march.system, march.saved()
         energy = penalised_energy(march.model, before, march.values)
@@ -100,7 +105,7 @@ def _fallen(march: March, load: int, drag: float) -> bool:
         saved, energy = march.saved(), penalised_energy(march.model, march.system, march.values)
         at_rest = _step(march, load, march.system.z, 0.0, march.system.z)
         if at_rest and not _risen(march, energy) and march.curvature > 0.0:
-            return True
+            return march.moved(march.system, first) <= farthest
         march.restore(saved)
     return False
 

@@ -68,7 +68,8 @@ def reach(march: March, course: Course, target: float) -> None:
     """March to the value ``target`` and land on it exactly.
 
     Where steps look for no end of the branch and one leads nowhere or releases energy, they may have passed it: they
-    are gone again from where they began, looking.
+    are gone again from where they began, looking, and on over what ends beside another branch.  Where that does not
+    lead to the target, what is told is what was met first.
 
     Raises:
         StoppedError: it cannot be reached.
@@ -77,24 +78,26 @@ def reach(march: March, course: Course, target: float) -> None:
     try:
         passed = _reach(march, course, target)
     except StoppedError as stopped:
-        if course.beyond is not None or stopped.ending is Ending.BRANCH_ENDS:
+        if course.beyond is not None:
             raise
         passed, failed = True, stopped
     if course.beyond is not None or not passed:
         return
     there = march.saved()
     march.restore(origin)
-    march.critical, march.behind = list(origin.critical), None
-    march.left = list(origin.left)
+    march.critical, march.left, march.behind = list(origin.critical), list(origin.left), None
     try:
         _reach(march, replace(course, beyond="beside"), target)
+        if not march.minimum:
+            raise StoppedError(Ending.NOT_A_MINIMUM, "what the march went on to beside a branch's end is no minimum")
     except StoppedError as looking:
-        if looking.ending is Ending.BRANCH_ENDS:
+        known = failed is not None and failed.ending is Ending.BRANCH_ENDS
+        if looking.ending is Ending.BRANCH_ENDS and not known:
             raise
+        march.critical, march.left = list(there.critical), list(there.left)
         if failed is not None:
             raise failed from None
         march.restore(there)
-        march.left = list(there.left)
 
 
 def _reach(march: March, course: Course, target: float) -> bool:
@@ -311,14 +314,14 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
         f"{lost.curvature:.3g} there, and what is left has {lost.left:.3g}"
     )
     before, after = march.saved(), None
-    beside = course.beyond in (None, "beside")
+    beside = course.beyond == "beside"
     # what has slipped off lies between where it was and where its gap is seen: no way down leads from there yet; and
     # where another branch goes off, either of its sides is as good as the other
     falls = lost.loss is not Loss.SLIP and (course.beyond == "jump" or (beside and lost.loss is not Loss.BIFURCATION))
     if falls:
-        after = descended(march, load, target, course.span, lost)
+        after = descended(march, load, target, course.span, lost, _BESIDE if beside else np.inf)
     if beside and falls:
-        if after is not None and march.moved(march.system, before.system.z) <= _BESIDE:
+        if after is not None:
             march.left.append(sentence)
             return
         march.restore(before)
