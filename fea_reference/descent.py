@@ -42,6 +42,7 @@ _FARTHEST = 0.05  # rad (and lengths): the most that one step may move anything
 _AIM = 0.03  # the same that is aimed at; after a step no longer, none but that to the minimum is tried
 _CONVEX = 2.0  # times a negative curvature: the least drag
 _STEPS = 400
+_BESIDE = 60  # of them, where it is not to lead far
 _CHANGES = 8  # of contacts and stops in one step
 _ROUNDED = 1e-9  # of the energy
 _STRONGEST = 1e12
@@ -64,7 +65,8 @@ def descended(
     if not size > 0.0:
         return None
     iterations = march.iterations
-    for kick in _KICKS:
+    near = bool(np.isfinite(farthest))
+    for kick in _KICKS[:1] if near else _KICKS:
         ways: list[tuple[float, int, March, float]] = []
         for sense in (1.0, -1.0):
             trial = march.saved()
@@ -86,7 +88,7 @@ def descended(
 def _fallen(march: March, load: int, drag: float, first: State, farthest: float) -> bool:
     """Fall to a minimum, if there is one to be found that is not farther from the ``first`` state."""
     march.renew()  # without the drag
-    for _ in range(_STEPS):
+    for _ in range(_BESIDE if np.isfinite(farthest) else _STEPS):
         if drag > _STRONGEST or march.moved(march.system, first) > farthest:
             return False
         before, saved = march.system, march.saved()

@@ -98,6 +98,14 @@ class Behind:
     contacts: frozenset[Contact]
 
 
+@dataclass(frozen=True, slots=True)
+class Left:
+    """An end of a branch that nothing asked for and the march went on over: how it is told, and the record of it."""
+
+    sentence: str
+    critical: Critical
+
+
 @dataclass
 class March:
     """Where the march stands: the state of the one loop that is allowed one.
@@ -105,7 +113,7 @@ class March:
     ``values`` are those of all that is stepped, without units; ``acting`` which pins and stops do; ``penalties`` the
     contacts that have closed so far, with their stiffness; ``closing`` the value of the stepped load or drive at which
     each did, and each stop first; ``switched`` that at which each stop last closed or let go; ``critical`` are the
-    ends of branches that have been passed, and ``left`` what is said of those that nothing asked for; ``iterations``
+    ends of branches that have been passed, and ``left`` those that nothing asked for; ``iterations``
     are counted since the last station; ``far`` is whether zones have been too far from one station to the last for
     tight penalties and have not come nearer since, so that the way to the next one begins with loose ones on what is
     rigid; ``loose`` whether penalties were loosened since they were tightened; ``course`` are the load, value and
@@ -123,7 +131,7 @@ class March:
     closing: dict[str, float] = field(default_factory=dict)
     switched: dict[str, float] = field(default_factory=dict)
     critical: list[Critical] = field(default_factory=list)
-    left: list[str] = field(default_factory=list)
+    left: list[Left] = field(default_factory=list)
     iterations: int = 0
     far: bool = False
     loose: bool = False

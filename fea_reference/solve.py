@@ -82,7 +82,10 @@ class Prepared:
             seconds=self.seconds + time.perf_counter() - began,
             notes=(
                 *tested,
-                *(f"{end}; it was left for the state beside it to which the energy leads" for end in march.left),
+                *(
+                    f"{end.sentence}; it was left for the state beside it to which the energy leads"
+                    for end in march.left
+                ),
             ),
         )
 

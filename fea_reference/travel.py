@@ -27,7 +27,7 @@ import numpy as np
 
 from fea_reference.descent import descended
 from fea_reference.following import Lost, about_to_go, followed
-from fea_reference.march import March, StoppedError, Trouble
+from fea_reference.march import Left, March, StoppedError, Trouble
 from fea_reference.model import SharePart
 from fea_reference.released import released
 from fea_reference.touch import Circle, Face, Pair
@@ -45,6 +45,7 @@ _UNEVEN = 0.6  # of the way by which its rates differ
 _NOWHERE = 1e-6  # rad (and lengths): a way that is none
 _RISES = 10.0  # times what had sunk in: the way of something else
 _BESIDE = 0.3  # rad (and lengths): a state in which nothing has moved by more is beside another
+_AGAIN = 1e-5  # of the span: an end that is met again, not another
 _HALF = 0.5  # of the way to where the curvature is foreseen to vanish
 _NEAR = 1e-2  # of the span: a step shorter than this is left to following the branch
 _TIRED = 3  # cuts in a row after which that is tried
@@ -68,36 +69,50 @@ def reach(march: March, course: Course, target: float) -> None:
     """March to the value ``target`` and land on it exactly.
 
     Where steps look for no end of the branch and one leads nowhere or releases energy, they may have passed it: they
-    are gone again from where they began, looking, and on over what ends beside another branch.  Where that does not
-    lead to the target, what is told is what was met first.
+    are gone again from where they began, looking.  An end beside which another branch is is gone on over; where that
+    does not lead to the target, what is told is the first that was met.
 
     Raises:
         StoppedError: it cannot be reached.
     """
-    origin, failed = march.saved(), None
+    if course.beyond is not None:
+        _reach(march, course, target)
+        return
+    origin, failed, passed = march.saved(), None, True
     try:
         passed = _reach(march, course, target)
     except StoppedError as stopped:
-        if course.beyond is not None:
-            raise
-        passed, failed = True, stopped
-    if course.beyond is not None or not passed:
+        failed = stopped
+    met = march.left[len(origin.left) :]
+    if met and (failed is not None or not march.minimum):
+        raise _first_met(march, origin, met)
+    if failed is not None and failed.ending is Ending.BRANCH_ENDS:
+        raise failed
+    if not passed:
         return
     there = march.saved()
     march.restore(origin)
     march.critical, march.left, march.behind = list(origin.critical), list(origin.left), None
     try:
         _reach(march, replace(course, beyond="beside"), target)
-        if not march.minimum:
-            raise StoppedError(Ending.NOT_A_MINIMUM, "what the march went on to beside a branch's end is no minimum")
+        if len(march.left) > len(origin.left) and not march.minimum:
+            raise StoppedError(Ending.NOT_A_MINIMUM, "")
     except StoppedError as looking:
-        known = failed is not None and failed.ending is Ending.BRANCH_ENDS
-        if looking.ending is Ending.BRANCH_ENDS and not known:
+        met = met or march.left[len(origin.left) :]
+        if met:
+            raise _first_met(march, origin, met) from None
+        if looking.ending is Ending.BRANCH_ENDS:
             raise
-        march.critical, march.left = list(there.critical), list(there.left)
         if failed is not None:
             raise failed from None
         march.restore(there)
+        march.critical, march.left = list(there.critical), list(there.left)
+
+
+def _first_met(march: March, origin: March, met: list[Left]) -> StoppedError:
+    """The first of the ends that were gone on over in vain, as what the march ends with."""
+    march.critical, march.left = [*origin.critical, met[0].critical], list(origin.left)
+    return StoppedError(Ending.BRANCH_ENDS, met[0].sentence)
 
 
 def _reach(march: March, course: Course, target: float) -> bool:
@@ -294,6 +309,35 @@ def _aside(saved: March, march: March, load: int, rate: Array, ahead: Array) -> 
     return bool(aside > _UNEVEN * uneven + _ASIDE * way + _NOWHERE)
 
 
+def _record(march: March, course: Course, lost: Lost, after: float | None) -> Critical:
+    """An end in SI, and the energy ``after`` it, without units."""
+    unit, moment = march.model.stepped[course.load].unit, march.model.units.moment
+    return Critical(
+        stage=course.stage,
+        value=lost.value * unit,
+        uncertainty=lost.uncertainty * unit,
+        loss=lost.loss,
+        what=lost.what,
+        curvature=lost.curvature,
+        left=lost.left,
+        energy=lost.energy * moment,
+        after=None if after is None else after * moment,
+    )
+
+
+def _goes_on(march: March, course: Course, lost: Lost) -> bool:
+    """Whether the march may go on over an end: not where another branch goes off, either of whose sides is as good as
+    the other, nor where it has been before.
+    """
+    last = march.left[-1].critical if march.left else None
+    again = (
+        last is not None
+        and last.stage == course.stage
+        and abs(lost.value - last.value / march.model.stepped[course.load].unit) <= _AGAIN * course.span
+    )
+    return lost.loss not in (Loss.SLIP, Loss.BIFURCATION) and not again
+
+
 def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
     """Record where a branch ends, and go on from there or not.
 
@@ -301,7 +345,6 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
         StoppedError: not.
     """
     model, load = march.model, course.load
-    unit = model.stepped[load].unit
     why = {
         Loss.FOLD: "it folds back",
         Loss.BIFURCATION: "another one branches off",
@@ -313,33 +356,18 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
         f"at {march.shown(load, lost.value)} the branch of minima ends, {why}: the smallest curvature comes to "
         f"{lost.curvature:.3g} there, and what is left has {lost.left:.3g}"
     )
-    before, after = march.saved(), None
-    beside = course.beyond == "beside"
-    # what has slipped off lies between where it was and where its gap is seen: no way down leads from there yet; and
-    # where another branch goes off, either of its sides is as good as the other
-    falls = lost.loss is not Loss.SLIP and (course.beyond == "jump" or (beside and lost.loss is not Loss.BIFURCATION))
-    if falls:
-        after = descended(march, load, target, course.span, lost, _BESIDE if beside else np.inf)
-    if beside and falls:
-        if after is not None:
-            march.left.append(sentence)
+    after = None
+    # what has slipped off lies between where it was and where its gap is seen: no way down leads from there yet
+    if course.beyond == "jump" and lost.loss is not Loss.SLIP:
+        after = descended(march, load, target, course.span, lost)
+    elif course.beyond != "stop" and _goes_on(march, course, lost):
+        before = march.saved()
+        if descended(march, load, target, course.span, lost, _BESIDE) is not None:
+            march.left.append(Left(sentence, _record(march, course, lost, None)))
             return
         march.restore(before)
-        after = None
     if course.stage:
-        march.critical.append(
-            Critical(
-                stage=course.stage,
-                value=lost.value * unit,
-                uncertainty=lost.uncertainty * unit,
-                loss=lost.loss,
-                what=lost.what,
-                curvature=lost.curvature,
-                left=lost.left,
-                energy=lost.energy * model.units.moment,
-                after=None if after is None else after * model.units.moment,
-            )
-        )
+        march.critical.append(_record(march, course, lost, after))
     if after is None:
         if course.beyond == "jump":
             sentence += "; the decrease of the energy from there leads to no minimum that was found"
