@@ -344,7 +344,7 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
     Raises:
         StoppedError: not.
     """
-    model, load = march.model, course.load
+    load = course.load
     why = {
         Loss.FOLD: "it folds back",
         Loss.BIFURCATION: "another one branches off",

@@ -68,7 +68,8 @@ class Effort:
 @dataclass(frozen=True, slots=True)
 class _Finding:
     """What one size says: a way, why, and the rows on which it rests; whether an audit ``doubts`` an answer; of answers
-    that ended, whose they are (``early``) and how many stations they reached; ``apart`` as an outcome has it.
+    that ended, whose they are (``early``), how many stations they reached, and whether in all of them the branch is
+    ``over``; ``apart`` as an outcome has it.
     """
 
     way: Way
@@ -80,6 +81,7 @@ class _Finding:
     reached: int = 0
     early: frozenset[str] = frozenset()
     doubts: bool = False
+    over: bool = False
     apart: float | None = None
 
 
@@ -186,7 +188,10 @@ def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
     else:
         way = Way.AGREE if verdict.word is Word.AGREE else Way.UNDECIDED
     doubts = any(audit.complaints for audit in comparison.audits.values())
-    return _Finding(way, sentence, choices, runs, comparison.rows, ending, early=_whose(early), doubts=doubts)
+    over = all(ends_at_critical(answer) for _, answer in runs.everything())
+    return _Finding(
+        way, sentence, choices, runs, comparison.rows, ending, early=_whose(early), doubts=doubts, over=over
+    )
 
 
 def _finer(scene: Scene, finding: _Finding, left: int) -> Choices:
@@ -211,7 +216,12 @@ def _finer(scene: Scene, finding: _Finding, left: int) -> Choices:
 
 
 def _worth_while(scene: Scene, finding: _Finding, left: int, *, first: bool) -> bool:
-    """Whether so many further sizes may tell what cannot be told; of answers that ended, or are doubted, the next."""
+    """Whether so many further sizes may tell what cannot be told; of answers that ended, or are doubted, the next.
+
+    Not where every run says that the branch ends: a finer one would say it again.
+    """
+    if finding.over:
+        return False
     found = [(row.bounds, scene.limit(row.probe) * row.scale) for row in finding.rows if row.bounds is not None]
     vague = [(bounds, allowed) for bounds, allowed in found if bounds.total > allowed]
     if finding.way is Way.ENDED or finding.doubts or not vague:
