@@ -119,10 +119,12 @@ class March:
     def _reach(self, stage: Stage, target: float) -> Reached:
         """Go to a station, also over ends that nothing was asked of; where that leads nowhere the first is told."""
         known, self.left = len(self.critical), []
+        closed_at, events = dict(self.closed_at), list(self.events)
         reached = self._led(stage, target)
         if reached.certificate is None and self.left:
             of, critical, self.on = self.left[0]
             self.critical[known:] = [critical]
+            self.closed_at, self.events = closed_at, events
             return Reached(Ending.BRANCH_ENDS, of, certificate=None)
         self.remarks.passed += [of for of, _, _ in self.left]
         return reached
