@@ -128,7 +128,9 @@ class Mechanism:
             if isinstance(pair, Circle):
                 across = pair.passed(before.at, after.at) or self._overlapped_between(pair, before, after, way)
             elif isinstance(pair, Edge):
-                across = self._crossed_between(pair, before, after, way, EDGE_WAY)
+                # in a long step what the way is known by hides that an edge was gone through: a shorter one shows it
+                long = most_turned(before.state, after.state) > PASSING
+                across = self._crossed_between(pair, before, after, way, WAY if long else EDGE_WAY)
             elif isinstance(pair, Itself):
                 allowed = WAY * most_turned(before.state, after.state) ** 2
                 across = pair.passed(start, way(), end, allowed)
