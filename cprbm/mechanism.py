@@ -161,9 +161,7 @@ class Mechanism:
 
     def _crossed_between(self, pair: Pair | Edge, before: Point, after: Point, way: Way, uneven: float) -> bool:
         """Whether a beam lay across what it may touch between two states, by more than the way between is known."""
-        slack = max(pair.offset, DIP) if isinstance(pair, Edge) else pair.offset
-        slack += self._sag(pair, after.state)
-        allowed = slack + uneven * _turned(before.state, after.state) ** 2
+        allowed = self._allowed(pair, before, after, uneven)
 
         def across(state: State, at: Positions) -> bool:
             if isinstance(pair, Edge) and pair.no_closer(state, at) + pair.offset >= -allowed:

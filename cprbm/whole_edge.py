@@ -42,13 +42,8 @@ class WholeEdge:
 
     def seen(self, q: Array) -> Seen:
         """All faces from places ``q`` (k, 2): D (F, k), n (F, k, 2), k (F, k), and whether it is the face (F, k)."""
-        origin, tau, normal, low, high = self._straight
-        r = q - origin[:, None]
-        along = r[..., 0] * tau[:, :1] + r[..., 1] * tau[:, 1:]
-        distance = r[..., 0] * normal[:, :1] + r[..., 1] * normal[:, 1:]
-        within = (along >= low[:, None]) & (along <= high[:, None])
-        n, bend = np.empty(r.shape), np.zeros(distance.shape)
-        n[:] = normal[:, None]
+        distance, n, within = _of_straight(q, tuple(each[:, None] for each in self._straight))
+        bend = np.zeros(distance.shape)
         for f in self._bent:
             its = self.faces[f].seen(q)
             distance[f], n[f], bend[f], within[f] = its.distance, its.normal, its.bend, its.within
@@ -56,10 +51,8 @@ class WholeEdge:
 
     def each(self, number: Ints, q: Array) -> Seen:
         """Of places ``q`` (k, 2) each one face, by its ``number`` (k,)."""
-        origin, tau, normal, low, high = (each[number] for each in self._straight)
-        r = q - origin
-        along, distance = r[:, 0] * tau[:, 0] + r[:, 1] * tau[:, 1], r[:, 0] * normal[:, 0] + r[:, 1] * normal[:, 1]
-        within, bend = (along >= low) & (along <= high), np.zeros(len(number))
+        distance, normal, within = _of_straight(q, tuple(each[number] for each in self._straight))
+        bend = np.zeros(len(number))
         for f in self._bent:
             mine = np.flatnonzero(number == f)
             if mine.size:
@@ -90,3 +83,17 @@ class WholeEdge:
     def places(self) -> Array:
         """The corners' places (C, 2)."""
         return np.array([corner.place for corner in self.corners]).reshape(-1, 2)
+
+
+def _of_straight(q: Array, faces: tuple[Array, ...]) -> tuple[Array, Array, Flags]:
+    """D and n of straight faces from places ``q`` (k, 2), and whether it is the face.
+
+    Of the ``faces`` origin, τ and n (..., 2), low and high (...), as broadcast with the places.
+    """
+    origin, tau, normal, low, high = faces
+    r = q - origin
+    along = r[..., 0] * tau[..., 0] + r[..., 1] * tau[..., 1]
+    distance = r[..., 0] * normal[..., 0] + r[..., 1] * normal[..., 1]
+    n = np.empty(r.shape)
+    n[:] = normal
+    return distance, n, (along >= low) & (along <= high)

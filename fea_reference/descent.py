@@ -42,7 +42,7 @@ _FARTHEST = 0.05  # rad (and lengths): the most that one step may move anything
 _AIM = 0.03  # the same that is aimed at; after a step no longer, none but that to the minimum is tried
 _CONVEX = 2.0  # times a negative curvature: the least drag
 _STEPS = 400
-_BESIDE = 60  # of them, where it is not to lead far
+_FEW = 60  # of them, where it is not to lead far
 _CHANGES = 8  # of contacts and stops in one step
 _ROUNDED = 1e-9  # of the energy
 _STRONGEST = 1e12
@@ -65,8 +65,8 @@ def descended(
     if not size > 0.0:
         return None
     iterations = march.iterations
-    near = bool(np.isfinite(farthest))
-    for kick in _KICKS[:1] if near else _KICKS:
+    kicks, steps = (_KICKS[:1], _FEW) if np.isfinite(farthest) else (_KICKS, _STEPS)
+    for kick in kicks:
         ways: list[tuple[float, int, March, float]] = []
         for sense in (1.0, -1.0):
             trial = march.saved()
@@ -77,7 +77,7 @@ def descended(
             if drag < _STRONGEST:
                 ways.append((penalised_energy(trial.model, trial.system, trial.values), -len(ways), trial, drag))
         for _, _, trial, drag in sorted(ways, key=lambda way: way[:2]):
-            if _fallen(trial, load, drag, lost.system.z, farthest):
+            if _fallen(trial, load, drag, lost.system.z, farthest, steps):
                 march.iterations += trial.iterations - iterations
                 march.restore(trial)
                 march.tighten()
@@ -85,10 +85,10 @@ def descended(
     return None
 
 
-def _fallen(march: March, load: int, drag: float, first: State, farthest: float) -> bool:
-    """Fall to a minimum, if there is one to be found that is not farther from the ``first`` state."""
+def _fallen(march: March, load: int, drag: float, first: State, farthest: float, steps: int) -> bool:
+    """Fall to a minimum, if there is one to be found in so many ``steps`` and not farther from the ``first`` state."""
     march.renew()  # without the drag
-    for _ in range(_BESIDE if np.isfinite(farthest) else _STEPS):
+    for _ in range(steps):
         if drag > _STRONGEST or march.moved(march.system, first) > farthest:
             return False
         before, saved = march.system, march.saved()

@@ -70,6 +70,7 @@ class Prepared:
                 ending, sentence = stopped.ending, stopped.sentence
         closed = {name: f"closed at {value:.6g}" for name, value in march.closing.items()}
         tested = [f"{name}: {closed.get(name, 'stayed open')}" for name in scene.contacts]
+        left = [f"{end.sentence}; it was left for the state beside it to which the energy leads" for end in march.left]
         return Answer(
             solver="fea",
             scene=scene.name,
@@ -80,13 +81,7 @@ class Prepared:
             events=tuple(events),
             critical=tuple(march.critical),
             seconds=self.seconds + time.perf_counter() - began,
-            notes=(
-                *tested,
-                *(
-                    f"{end.sentence}; it was left for the state beside it to which the energy leads"
-                    for end in march.left
-                ),
-            ),
+            notes=(*tested, *left),
         )
 
 

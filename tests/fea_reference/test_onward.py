@@ -6,8 +6,8 @@ import pytest
 from comparisons import cases
 from fea_reference import Settings
 from fea_reference.contacts import contacts, touch, zones_of
-from fea_reference.march import begin
 from fea_reference.model import build
+from fea_reference.solve import prepared
 from fea_reference.state import State
 from fea_reference.touch import Penalty
 from tests.fea_reference.on_an_edge import cantilever_over
@@ -21,9 +21,8 @@ def touching():
     """The hinge, stepped until its beams have come to touch, and the value of its last moment."""
     scene = cases.opened("hinge")
     settings = Settings(elements=24, kinematics="bending")
-    model = build(scene, settings)
-    march = begin(model, settings, contacts(scene, model, settings.penetration))
-    last = scene.stages[0].stations[-1] / model.stepped[0].unit
+    march = prepared(scene, settings).march
+    last = scene.stages[0].stations[-1] / march.model.stepped[0].unit
     for _ in range(20):
         if march.penalties:
             return march, last

@@ -6,10 +6,9 @@ import pytest
 from comparisons import cases
 from fea_reference import Settings, answer
 from fea_reference.advance import advance
-from fea_reference.contacts import contacts, touch
-from fea_reference.march import begin
-from fea_reference.model import build
+from fea_reference.contacts import touch
 from fea_reference.sinking import known_depths, sunk
+from fea_reference.solve import prepared
 from fea_reference.travel import Course, reach
 from scene import Ending
 
@@ -21,9 +20,8 @@ def pressed():
     """The hinge, its contact closed in a point, stepped and penalties tightened."""
     scene = cases.opened("hinge")
     settings = Settings(elements=80, kinematics="bending")
-    model = build(scene, settings)
-    march = begin(model, settings, contacts(scene, model, settings.penetration))
-    last = scene.stages[0].stations[-1] / model.stepped[0].unit
+    march = prepared(scene, settings).march
+    last = scene.stages[0].stations[-1] / march.model.stepped[0].unit
     for share in (0.4, PRESSED, 0.6):
         reach(march, Course(0, last, "load", None), share * last)
     assert march.system.touches[0].closed
