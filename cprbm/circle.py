@@ -56,6 +56,7 @@ ON_IT = 1e-9  # gap of a clamped end, and how far its normal passes from the cen
 BESIDE_ROW = 1e-3  # a corner of the edge closer than this many h to a row has none of its own
 ARCHING = 0.2  # of what the largest force bends one element by: where a zone ends within one it arches by less
 JOINT_REACH = 2.0  # joints farther than this many h²·(1/R + 1/ℓ) are none
+NEAREST_STEPS = 4  # of Newton's method to a circle's nearest place, from a sample beside it
 
 
 @dataclass(frozen=True, slots=True)
@@ -282,13 +283,38 @@ class Circle:
         s = start + np.where(inner == samples, wells.lowest_of_parabola(line.sampled.s, D, inner), 0.0)
 
         def slope(s: Array) -> tuple[Array, Array]:
-            A = line.at(s)
-            beyond = missed(self.a, self.kinks, A)
-            slope, convexity, leading = self.course(A)
-            return slope + leading * beyond.angle, convexity + leading * beyond.bend
+            return self._steep(line.at(s))
 
         within = np.clip(np.stack((start - self.a.h, start + self.a.h)), 0.0, self.a.s[-1])
-        return wells.bottom(slope, s, within, LEAST_CURVATURE, CLOSE)
+        rho = self._away(line.at(s))[0]
+        return wells.bottom(slope, s, within, LEAST_CURVATURE * rho, CLOSE)
+
+    def _steep(self, A: smooth.Points) -> tuple[Array, Array]:
+        """ρ D_s and its derivative over s, the beam's kinks taken in.
+
+        D has a bend as sharp as the circle, and is straight all round: beside a circle far smaller than an element
+        Newton's method on D_s would go astray.  ρ D_s is straight along a straight beam, however small the circle.
+        """
+        beyond, (slope, convexity, leading) = missed(self.a, self.kinks, A), self.course(A)
+        return self._times_distance(A, slope, slope + leading * beyond.angle, convexity + leading * beyond.bend)
+
+    def _times_distance(self, A: smooth.Points, course: Array, slope: Array, convexity: Array) -> tuple[Array, Array]:
+        """ρ times a ``slope`` (k,) and its derivative, ``course`` being D_s."""
+        rho = self._away(A)[0]
+        return rho * slope, (course + self.widening(A.s)) * slope + rho * convexity
+
+    def lowest_near(self, line: smooth.SmoothLine, samples: Ints) -> Array:
+        """D where it is least beside each of the beam's ``samples`` (k,)."""
+        A = line.sampled
+        low, high = A.s[np.maximum(samples - 1, 0)], A.s[np.minimum(samples + 1, len(A.s) - 1)]
+        s, least = A.s[samples], np.full(len(samples), np.inf)
+        for _ in range(NEAREST_STEPS):
+            B = line.at(s)
+            least = np.minimum(least, self.distance(B))
+            slope, convexity, _ = self.course(B)
+            steep, bent = self._times_distance(B, slope, slope, convexity)
+            s = np.clip(s - steep / np.where(bent > 0.0, bent, np.inf), low, high)
+        return np.asarray(np.minimum(least, self.distance(line.at(s))))
 
     def passed(self, before: Positions, after: Positions) -> bool:
         """Whether the beam has swept over the circle's centre between two states.
@@ -335,8 +361,9 @@ class Circle:
         """Least gap anywhere along the beam, units of length; negative where it overlaps."""
         line, here = self.line(state, at), self.placed(at)
         s, _ = here._places(line)
-        D = np.concatenate((here.distance(line.sampled), here.distance(line.at(s))))
-        return float(np.min(D)) - self.offset
+        D = here.distance(line.sampled)
+        lowest = wells.lowest(D, np.inf)
+        return float(min(D.min(), *here.distance(line.at(s)), *here.lowest_near(line, lowest))) - self.offset
 
 
 def _some(group: Group, these: Ints) -> Group:

@@ -68,11 +68,7 @@ def _of_circle(circle: Circle, state: State, at: Positions) -> float:
     least = float(D.min())
     lowest = wells.lowest(D, circle.offset + LOWER * circle.a.h)
     if lowest.size:
-        A = line.at(A.s[lowest] + wells.lowest_of_parabola(A.s, D, lowest))
-        slope, bend, _ = here.course(A)
-        # on to where the slope is nought
-        ahead = np.where(bend > 0.0, 0.5 * slope * slope / np.where(bend > 0.0, bend, 1.0), 0.0)
-        least = min(least, float((here.distance(A) - ahead).min()))
+        least = min(least, float(here.lowest_near(line, lowest).min()))
     return least - circle.offset
 
 

@@ -50,7 +50,7 @@ def lowest_of_parabola(s: Array, D: Array, samples: Ints) -> Array:
 
 
 def bottom(
-    slope: Callable[[Array], tuple[Array, Array]], start: Array, within: Array, least: float, close: float
+    slope: Callable[[Array], tuple[Array, Array]], start: Array, within: Array, least: float | Array, close: float
 ) -> tuple[Array, Flags]:
     """Newton's method on a slope that goes through zero: the places, and at which of them it settled.
 
@@ -62,7 +62,7 @@ def bottom(
         slope: of places (k,), dD/ds and d²D/ds².
         start: places (k,) to begin at.
         within: (2, k) the places between which it is sought.
-        least: d²D/ds² that is no more than unevenness; where it is less, there is no going on.
+        least: d²D/ds² that is no more than unevenness, one or (k,); where it is less, there is no going on.
         close: a step whose square is nothing.
     """
     if not start.size:
