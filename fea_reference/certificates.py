@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from fea_reference.contacts import CLOSED, least_gap
 from fea_reference.march import March
 from fea_reference.model import Model, OnBeam
 from fea_reference.stops import acting_stops
 from fea_reference.supports import grounded, held, support
 from fea_reference.system import NOTHING, System
 from fea_reference.touch import LACKING, Pair, Touch
+from fea_reference.yielding import felt
 from scene.answer import Array, Certificate
 
 _VIOLATION = 1e-9
@@ -19,6 +21,7 @@ _FROM_AFAR = 0.05  # of the thickness: a gap across which something may press
 _SLENDER = 0.01  # of the longest beam: the most that stands for the thickness there
 _SOFT = 0.05  # by which a penalty may fall short of the stiffness that its elements ask for
 _NONE_MET = 1e3  # units of round-off of the stiffest element: measured up to twelve from 10 to 640 elements
+_FELT = 0.01  # of pushes and motions: by how much what sinks in may change them
 _PULLS = 1e-8  # of the largest force or of EI/length: what a stop may pull with
 
 
@@ -64,6 +67,10 @@ def certify(march: March) -> Certificate:
             failures.append(
                 f"what is driven is too little to be told from round-off, which leaves forces of {left:.1e} N"
             )
+    for pair in march.open:
+        if (gap := least_gap(model, pair, system.z)) < -CLOSED * pair.scale:
+            failures.append(f"what is open in {pair.name} overlaps by {-gap * model.units.length:.1e} m")
+    shares = felt(model, system, march.penalties, march.open, settings.quadrature)
     for one in system.touches:
         allowed = settings.penetration if isinstance(one.pair, Pair) else max(settings.penetration, _RESOLVED)
         overlap = one.penetration / (one.pair.scale if isinstance(one.pair, Pair) else one.pair.measure)
@@ -71,6 +78,11 @@ def certify(march: March) -> Certificate:
             failures.append(f"what touches in {one.pair.name} overlaps by {overlap:.1e}; {allowed:.1e} was asked")
         elif one.closed and march.penalties[one.pair].stiffness < (1.0 - _SOFT) * one.pair.stiffest:
             failures.append(f"the penalty of {one.pair.name} could not be raised to what the elements can follow")
+        elif (share := shares.get(one.pair, 0.0)) > _FELT:
+            failures.append(
+                f"what touches in {one.pair.name} overlaps by {one.penetration * model.units.length:.1e} m, which "
+                f"changes what presses or moves by {share:.0%}"
+            )
         far = _across(march, one)
         if not far <= _FROM_AFAR * min(one.pair.measure, _SLENDER):
             failures.append(f"what touches in {one.pair.name} presses across a gap of {far * model.units.length:.1e} m")

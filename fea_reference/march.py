@@ -33,6 +33,7 @@ from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import LACKING, Circle, Contact, Face, Pair, Penalty, Rigid, Touch
+from fea_reference.yielding import felt
 from scene.answer import Array, Critical, Ending
 from scene.frozendict import frozendict
 
@@ -44,6 +45,7 @@ _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _NARROW = 2.0  # the power of that for a contact in a point, whose depth can be foreseen
 _GENTLEST = 1.2  # the factor that is tried at last
 _TIGHTENINGS = 25
+_FELT = 10.0  # times the penetration asked: what may be felt of it elsewhere, as a share of pushes and motions
 _SETTLINGS = 8
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
 _NEARBY = (1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0)  # of a step: where to look for a closing under tighter penalties
@@ -604,9 +606,15 @@ class March:
         most = _TIGHTEN
         falls: dict[Contact, float] = {}
         for tries in range(_TIGHTENINGS):
-            factors = {one.pair: self._wanted(one, falls.get(one.pair, _IN_A_POINT)) for one in self.system.touches}
+            allowed = self.allowed()
+            factors = {
+                one.pair: self._wanted(one, falls.get(one.pair, _IN_A_POINT), allowed.get(one.pair))
+                for one in self.system.touches
+            }
             pressures = {one.pair: resting_pressure(self.model, one, self.system.z) for one in self.system.touches}
-            done = all(self._will_do(one, factors[one.pair], tries) for one in self.system.touches)
+            done = all(
+                self._will_do(one, factors[one.pair], tries, allowed.get(one.pair)) for one in self.system.touches
+            )
             if done and not self._misled(pressures):
                 return
             tighter = dict(self.penalties)
@@ -649,6 +657,8 @@ class March:
         """
         for _ in range(_SETTLINGS):
             self.tighten()
+            if self._close_what_overlaps(load):
+                continue
             changing = [stop for stop in self.model.stops if self.room(stop, self.system) < 0.0]
             if not changing:
                 return
@@ -660,6 +670,24 @@ class March:
                 self.acting, self.closing = before, closing
                 return
             self.system = system
+
+    def _close_what_overlaps(self, load: int) -> bool:
+        """Close open contacts that overlap with tight penalties and did not with loose ones; whether any did."""
+        z = self.system.z
+        closing = [pair for pair in self.open if least_gap(self.model, pair, z) < 0.0]
+        if not closing:
+            return False
+        there = self.saved()
+        for pair in closing:
+            self.open.remove(pair)
+            self.penalties[pair] = Penalty(pair.stiffness)
+            self.closing.setdefault(pair.name, self.value(load))
+        system = self.solve(load, float(self.values[load]), z)
+        if system is None or self.moved(system, z) > _CORRECTED:
+            self.restore(there)
+            return False
+        self.system = system
+        return True
 
     def sharpen(self) -> None:
         """Take what is left of the unbalanced force down to round-off, where few iterations more do.
@@ -677,8 +705,27 @@ class March:
         if solved.converged and self.moved(solved.system, system.z) <= _SHARP:
             self.system = solved.system
 
-    def _wanted(self, one: Touch, fall: float) -> float:
-        """The factor from a penalty to the one that leaves the penetration aimed at, or to the least for a station.
+    def allowed(self) -> dict[Contact, float]:
+        """How deep contacts in points may be: by the penetration asked, or less where that is felt.
+
+        Of those on what is rigid that are not sharp only the latter counts; what is not named is not held to any.
+        """
+        system, settings = self.system, self.settings
+        known = felt(self.model, system, self.penalties, self.open, settings.quadrature)
+        found = {}
+        for one in system.touches:
+            if not one.closed:
+                continue
+            by_depth = isinstance(one.pair, Pair) or one.sharp
+            depth = settings.penetration * one.pair.scale if by_depth else np.inf
+            if (share := known.get(one.pair, 0.0)) > 0.0:
+                depth = min(depth, one.penetration * max(_FELT * settings.penetration / share, 1.0 / _TIGHTEN))
+            if np.isfinite(depth):
+                found[one.pair] = depth
+        return found
+
+    def _wanted(self, one: Touch, fall: float, allowed: float | None) -> float:
+        """The factor from a penalty to the one that leaves the penetration ``allowed``, or to the least for a station.
 
         The penetration falls with the penalty to the power −1/``fall``: −2/3 in a point between sides, −1/2 at a tip,
         −1 in an area.  On what is rigid and not sharp a penalty stiffer than the elements can follow spoils more than
@@ -687,21 +734,21 @@ class March:
         least = one.pair.stiffest / self.penalties[one.pair].stiffness
         if not one.closed:
             return 1.0
-        if isinstance(one.pair, Rigid) and not one.sharp:
+        if allowed is None:
             return max(1.0, least)
-        aim = _AIM * self.settings.penetration * one.pair.scale
+        aim = _AIM * allowed
         # what overlaps in spite of that has gone through, and is not pushed out again
         slender = max(1.0, self._finest / one.pair.scale)
         most = _STIFFEST * (slender * _STANDARD / self.settings.penetration) ** _FALLS[1] * least
         return float(min(max((one.penetration / aim) ** fall, least), most))
 
-    def _will_do(self, one: Touch, factor: float, tries: int) -> bool:
+    def _will_do(self, one: Touch, factor: float, tries: int, allowed: float | None) -> bool:
         """Whether a penalty is as wanted; after some tries that of beams may be stiffer."""
-        if isinstance(one.pair, Rigid) and not one.sharp:
+        if allowed is None:
             return factor <= 1.0 + _SAME
         if abs(factor - 1.0) <= _EVEN:
             return True
-        enough = one.penetration <= self.settings.penetration * one.pair.scale
+        enough = one.penetration <= allowed
         stiff = one.pair.stiffest <= (1.0 + _EVEN) * self.penalties[one.pair].stiffness
         return tries >= _POLISHINGS and enough and stiff
 

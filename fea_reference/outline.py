@@ -259,7 +259,11 @@ class Broken:
 
 @dataclass(frozen=True, eq=False)
 class Graph:
-    """An edge y₂ = f(y₁), or y₁ = f(y₂) if ``across``, with y₁ in the ``span``; free where ``sign`` (y₂ − f) > 0."""
+    """An edge y₂ = f(y₁), or y₁ = f(y₂) if ``across``, with y₁ in the ``span``; free where ``sign`` (y₂ − f) > 0.
+
+    ``f`` is a polynomial of the way from the span's middle: from afar, what is narrow has terms that are thousands of
+    times their sum, and the place of its edge would be rounded to as much.
+    """
 
     f: Polynomial
     span: tuple[float, float]
@@ -345,17 +349,22 @@ class Graph:
     def _samples(self) -> tuple[Array, Array, Array, Array]:
         """Places along the axis (n,), and what makes of (y, 1) the part of −|s − y|² that tells the points s apart."""
         v = np.linspace(*self.span, _SAMPLES)
-        f = self.f(v)
+        f, _, _ = self._f(v)
         return v, 2.0 * v, 2.0 * f, -(v**2 + f**2)
 
     def _f(self, v: Array) -> tuple[Array, Array, Array]:
         """f and its first two derivatives at ``v`` (k,), (k,) each, by Horner's scheme."""
         f = slope = half = np.zeros_like(v)
+        u = v - self._middle
         for coefficient in self._falling:
-            half = half * v + slope
-            slope = slope * v + f
-            f = f * v + coefficient
+            half = half * u + slope
+            slope = slope * u + f
+            f = f * u + coefficient
         return f, slope, 2.0 * half
+
+    @property
+    def _middle(self) -> float:
+        return 0.5 * (self.span[0] + self.span[1])
 
     @cached_property
     def _falling(self) -> list[float]:
@@ -395,8 +404,9 @@ def outline_of(contact: EdgeContact, origin: Array, unit: float, places: Sequenc
         case FunctionContact():
             across = contact.axis == "y"
             first, other = origin[::-1] if across else origin
-            f = (Polynomial(contact.coefficients)(Polynomial([first, unit])) - other) / unit
             low, high = sorted((end - first) / unit for end in contact.range)
+            middle = Polynomial([first + unit * 0.5 * (low + high), unit])
+            f = (Polynomial(contact.coefficients)(middle) - other) / unit
             return Graph(f, (float(low), float(high)), across, 1.0 if contact.side == "above" else -1.0)
 
 

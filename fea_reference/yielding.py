@@ -1,0 +1,108 @@
+"""What it changes elsewhere that contacts in a point sink in.
+
+======  =====================================================================================
+symbol  meaning
+======  =====================================================================================
+K, z    tangent and unknowns of an equilibrium
+ε, F    penalty and push of a contact;  c = ∂g, the mean of its points by their stiffness
+d       its depth, which goes with ε to the power −1/m while its push stays
+======  =====================================================================================
+
+With ε the equilibrium goes by K dz/d ln ε = F c, as the push is F if nothing moves.  All that is left until the penalty
+is without end, where the contact is not deep at all, is m times that: the depth goes by −d/m, and what follows from it
+goes evenly with the depth.  Where what may move is little, depths that are nothing beside the thickness are much
+beside that motion, and pushes of contacts near each other say so first.  What is open and is pushed into by that has a
+push to be foreseen, too: its overlap over the compliance cᵀ K⁻¹ c.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from fea_reference.contacts import least_gap, touch
+from fea_reference.model import Model
+from fea_reference.system import System
+from fea_reference.touch import Contact, Penalty, Touch
+from scene.answer import Array
+
+_FALLS = (1.5, 2.0)  # m between sides, and at a tip
+_FAINT = 0.1  # of the largest push: a smaller one is measured by that
+_BESIDE = 1e-6  # of the measure: how near a place is to the least gap that stands for it
+_POINT = 1.0  # elements: a zone no wider is a point
+_NEAR = 0.1  # lengths of the longest beam: what is farther nothing sinks into by loose penalties
+
+
+def in_points(one: Touch) -> bool:
+    """Whether a contact presses in points only: in zones that are no wider than an element each."""
+    if not one.closed:
+        return False
+    first, last = one.zones.intervals.T
+    begins = np.append(True, first[1:] > last[:-1])
+    ends = np.append(begins[1:], True)
+    return bool((last[ends] - first[begins]).max() < _POINT)
+
+
+def felt(
+    model: Model, system: System, penalties: Mapping[Contact, Penalty], waiting: Iterable[Contact], quadrature: int
+) -> dict[Contact, float]:
+    """By how much what each contact in points sinks in is felt, as a share of pushes and of the motion.
+
+    Of an equilibrium; ``waiting`` are the contacts that are open in it, whose pushes are foreseen.
+    """
+    sinking = [one for one in system.touches if one.push > 0.0 and in_points(one)]
+    if not sinking:
+        return {}
+    pressing = [one for one in system.touches if one.closed]
+    largest = max(one.push for one in pressing)
+    moving = model.moving
+    motion = float(np.abs((system.z.values - model.start.values)[moving]).max())
+    beside = [
+        *_beside(model, system, (one.pair for one in system.touches if not one.closed), penalties, quadrature),
+        *_beside(model, system, waiting, penalties, quadrature),
+    ]
+    found = {}
+    for one in sinking:
+        right = np.zeros(model.size)
+        np.add.at(right, one.dofs, -one.gradient)
+        way = system.solve(right)
+        if way is None:
+            continue
+        way *= _FALLS[one.sharp]
+        share = float(np.abs(way[moving]).max()) / motion if motion > 0.0 else 0.0
+        for other in pressing:
+            more = float(other.foreseen(way).sum()) - other.push
+            more += _FALLS[one.sharp] * one.push if other is one else 0.0
+            share = max(share, abs(more) / max(other.push, _FAINT * largest))
+        for gap, opening, compliance in beside:
+            overlap = -(gap + float(opening @ way))
+            if overlap > 0.0:
+                share = max(share, overlap / compliance / (_FAINT * largest))
+        found[one.pair] = share
+    return found
+
+
+def _beside(
+    model: Model,
+    system: System,
+    open_ones: Iterable[Contact],
+    penalties: Mapping[Contact, Penalty],
+    quadrature: int,
+) -> list[tuple[float, Array, float]]:
+    """Of each contact that is open: its least gap, what that goes by (size,), and its compliance."""
+    found = []
+    for pair in open_ones:
+        gap = least_gap(model, pair, system.z)
+        if not 0.0 <= gap < _NEAR:
+            continue
+        lead = gap + _BESIDE * pair.measure
+        there = touch(model, pair, Penalty(pair.stiffness, lead), quadrature, system.z)
+        if not there.closed:
+            continue
+        opening = np.zeros(model.size)
+        np.add.at(opening, there.dofs, there.mean)
+        opened = system.solve(opening)
+        if opened is not None and (compliance := float(opening @ opened)) > 0.0:
+            found.append((gap, opening, compliance))
+    return found
