@@ -65,6 +65,7 @@ FOOT_ITERATIONS = 8
 CORNER_ITERATIONS = 40  # where edges have corners that stand out, at each of which a step ends
 NO_RIDGES = np.zeros(0)
 CLOSE = 1e-10  # units of length: a step after which a place is known to round-off
+LAST = 0.1  # of that: what the next step would be, shorter by as much again as the last was, where none is taken
 CLOSEST_ITERATIONS = 50
 PATIENCE = 4  # iterations of Newton's method, after which a minimum may be sought where B has ended
 LIPSCHITZ = 1.2  # a way along B's tangent over the arc length of A that makes it, with something to spare
@@ -535,20 +536,23 @@ def _feet_from(
     pair: Pair, lines: Lines, A: smooth.Points, B: smooth.Points, close: float
 ) -> tuple[Array, Array, Flags, smooth.Points]:
     """The same from points of B (k,), and the points of B to which D belongs."""
-    sigma = B.s
+    sigma, h, end, last = B.s, pair.b.h, pair.b.s[-1], 0.0
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
     for iteration in range(FOOT_ITERATIONS if not ridges.size else CORNER_ITERATIONS):
         B = pair.facing(A, pair.on_b(lines, sigma) if iteration else B)
         along, across = _seen_from(B, A)
         # along the circle of curvature, where that is round the foot
-        left = along / np.maximum(1.0 - B.bend * across, 0.2)
-        step = left / (B.pace * (1.0 + (B.bend * left) ** 2 / 3.0))
+        left = along / np.maximum(B.pace - B.bend * across, 0.2)
+        turn = B.bend * left
+        step = left / (1.0 + turn * turn / 3.0)
         before = sigma
-        sigma = np.minimum(np.maximum(before + np.minimum(np.maximum(step, -pair.b.h), pair.b.h), 0.0), pair.b.s[-1])
+        sigma = np.minimum(np.maximum(before + np.minimum(np.maximum(step, -h), h), 0.0), end)
         if ridges.size:
             sigma = _up_to(ridges, before, sigma)
-        if np.abs(sigma - before).max() < close:
+        moved = float(np.abs(sigma - before).max())
+        if moved < close or (not ridges.size and moved * moved < LAST * close * last):
             break
+        last = moved
     foot = np.abs(along) <= PARALLEL * np.maximum(np.abs(across), pair.b.h)
     return pair.side * across - pair.wider(A.s, sigma), sigma, foot, B
 
@@ -765,34 +769,41 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     sigma = np.where(ahead == 0.0, sigma[here], sigma[here] + share * (sigma[beside] - sigma[here]))
     s = s[here] + ahead
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
+    end, latest = pair.b.s[-1], np.zeros(len(s))
     for iteration in range(CLOSEST_ITERATIONS):
         A, B = pair.facing_each_other(*pair.on_both(lines, s, sigma))
         along, across = _seen_from(B, A)
-        facing, shortened = np.cos(A.psi - B.psi), B.pace - B.bend * across
+        turned = A.psi - B.psi
+        facing, shortened = np.cos(turned), B.pace - B.bend * across
         # what is left to the foot, and the slope there
         left = along / shortened
-        slope = pair.side * (np.sin(A.psi - B.psi) - facing * B.bend * left)
+        slope = pair.side * (np.sin(turned) - facing * B.bend * left)
         towards = facing * A.pace / shortened  # dσ/ds
-        convex = pair.side * facing * (A.bend - B.bend * towards)
-        low, high = np.where(slope < 0.0, s, low), np.where(slope < 0.0, high, s)
-        ahead = s - slope / np.where(convex > LEAST_CURVATURE, convex, np.inf)
-        newton = (convex > LEAST_CURVATURE) & (ahead >= low) & (ahead <= high)
+        bends = pair.side * facing * (A.bend - B.bend * towards)
+        convex, falls = bends > LEAST_CURVATURE, slope < 0.0
+        low, high = np.where(falls, s, low), np.where(falls, high, s)
+        ahead = s - slope / np.where(convex, bends, np.inf)
+        newton = convex & (ahead >= low) & (ahead <= high)
         step = np.where(newton, ahead, 0.5 * (low + high)) - s
-        ahead = np.minimum(np.maximum(sigma + left + towards * step, 0.0), pair.b.s[-1])
+        ahead = np.minimum(np.maximum(sigma + left + towards * step, 0.0), end)
         if ridges.size:
             ahead = np.where(leaning.at_corner(B), sigma, _up_to(ridges, sigma, ahead))
+        moved = np.maximum(np.abs(step), np.abs(ahead - sigma))
         s, sigma = s + step, ahead
-        there = (np.abs(step) < CLOSE) & (np.abs(along) < CLOSE) & (np.abs(slope) < SETTLED)
+        inner = (sigma > 0.0) & (sigma < end)
+        # what Newton's method would leave after one more step is nothing
+        known = newton & inner & (moved * moved < LAST * CLOSE * latest)
+        there = known | ((np.abs(step) < CLOSE) & (np.abs(along) < CLOSE) & (np.abs(slope) < SETTLED))
         if not ridges.size:  # no slope as steep as that goes through zero in so little
             there |= (high - low < CLOSE) & (np.abs(slope) > STEEP)
             if iteration > PATIENCE:
                 there |= _beyond_ends(pair.b, B.s, along, high - low) & (shortened > 0.0)
-        if np.all(there):
+        if there.all():
             break
+        latest = moved
     held = found.held(pair.side * across - pair.wider(s, sigma) - pair.offset)
-    settled = held & (convex > LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
     # beyond an end of B there is no foot: what lies there faces that end, which has a row of its own
-    settled &= (np.abs(along) < SETTLED) | ((sigma > 0.0) & (sigma < pair.b.s[-1]))
+    settled = held & convex & (known | ((np.abs(slope) < SETTLED) & (inner | (np.abs(along) < SETTLED))))
     return s[settled], sigma[settled]
 
 
