@@ -51,13 +51,13 @@ class Both:
         half[:k] = self.one.chain.breaks.searchsorted(every[:k], side="right")
         on_other = self.other.chain.breaks.searchsorted(every[k:], side="right")
         np.add(on_other, 2 * self.one.chain.n, out=half[k:])
-        arcs = self.arcs[:, half]
+        arcs = self.arcs.take(half, axis=1)
         off = every - arcs[0]
         at = placed(arcs, off, None if made.excess is None else made.excess.seen(half, off))
         psi, bend = at[2], at[4]
         if made.bent is not None:
-            more = Missed(made.bent[:, half], off)
-            psi, bend = psi + more.angle, bend + more.bend
+            angle, bends = Missed(made.bent.take(half, axis=1), off).tangent
+            psi, bend = psi + angle, bend + bends
         x, y, tangent, speed, _, gain = at
         lines = (self.one, half[:k], slice(k)), (self.other, on_other, slice(k, None))
         found = [

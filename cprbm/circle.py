@@ -31,7 +31,6 @@ where drives have brought both together, as long as they are (:mod:`cprbm.brough
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cache
 
 import numpy as np
 
@@ -49,6 +48,7 @@ from scene.answer import Array, Flags, Ints
 
 # local numbers (x, y, θθθ, centre) to (x of joints, y of joints, θθθ)
 ALONE, WITH_CENTRE = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4])
+BESIDE = np.array((-1, 0, 1))  # links whose angles enter, from that of a place
 CLOSE = 1e-9  # units of length: a step whose square is nothing, as what it changes the distance by at a minimum
 LEAST_CURVATURE = 1e-6  # of D, 1/ℓ, below which its minimum has no place of its own
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
@@ -129,7 +129,13 @@ class Circle:
 
     def distance(self, points: smooth.Points) -> Array:
         """D at some points of the beam."""
-        return np.hypot(points.x - self.x, points.y - self.y) - self.radius - (self.half(points.s) - self.offset)
+        away = np.hypot(points.x - self.x, points.y - self.y) - self.radius
+        return away - (self.half(points.s) - self.offset) if self.tapered else away
+
+    @property
+    def tapered(self) -> bool:
+        """Whether the beam touches by edges that are not as far from its neutral line everywhere."""
+        return self.offset > 0.0 and not self.a.section.level
 
     def half(self, s: Array) -> Array:
         """T at arc lengths ``s``."""
@@ -149,9 +155,9 @@ class Circle:
         thicker = float(self.half(self.a.s).max()) - self.offset
         return rho - min(0.5 * longest, longest**2 / (4.0 * max(rho, CLOSE))) - sag - self.radius - thicker
 
-    def widening(self, s: Array) -> Array:
+    def widening(self, s: Array) -> Array | float:
         """T_s at arc lengths ``s``."""
-        return 0.5 * self.a.section.thinning_at(s) if self.offset > 0.0 else np.zeros_like(s)
+        return 0.5 * self.a.section.thinning_at(s) if self.tapered else 0.0
 
     def _away(self, points: smooth.Points) -> tuple[Array, Array, Array]:
         """ρ and both components of n at some points of the beam, (k,) each."""
@@ -176,7 +182,6 @@ class Circle:
         beyond = missed(self.a, self.kinks, A)
         order = ALONE if self.body < 0 else WITH_CENTRE
 
-        @cache
         def second() -> Array:
             """∂²D/∂z² (k, p, p)."""
             D_sz, found = tangent_slopes(z, n), position_curvature(z, n)
@@ -198,15 +203,19 @@ class Circle:
             joints = np.stack((joints[:, 0], np.full(len(s), self.mark)), axis=1)
         values = self.offset - self.distance(A) - np.where(free, leading * beyond.integral, 0.0)
         slopes = -D_z[:, order]
-        angles = self.a.first_link + np.array((np.maximum(link - 1, 0), link, np.minimum(link + 1, self.a.n))).T
-        keys = np.where(free, -1, np.searchsorted(self.a.s, s))
+        angles = self.a.first_link + np.minimum(np.maximum(link[:, None] + BESIDE, 0), self.a.n)
+        keys = np.where(free, -1, self.a.s.searchsorted(s))
         if self.ends:
             at_ends = np.isin(s, self.ends)
             keys[at_ends] = self.a.n + 2 + np.arange(np.sum(at_ends))
 
+        known: list[Array] = []
+
         def curvature(multipliers: Array) -> Blocks:
-            pressing = np.flatnonzero(multipliers)
-            return Blocks(joints[pressing], angles[pressing], -multipliers[pressing, None, None] * second()[pressing])
+            if not known:
+                known.append(second())
+            pressing = multipliers.nonzero()[0]
+            return Blocks(joints[pressing], angles[pressing], -multipliers[pressing, None, None] * known[0][pressing])
 
         every = Group(self.name, values, joints, angles, slopes, curvature, tuple(keys.tolist()), s)
         together = self._beside_clamps(keys)
@@ -239,18 +248,19 @@ class Circle:
         facing, leaning = y * cos - x * sin, x * cos + y * sin
         across = A.speed * facing
         convexity = across * A.bend + leaning * A.gain + across * across / rho
-        return A.speed * leaning - self.widening(A.s), convexity, np.where(facing > 0.0, 1.0, -1.0)
+        return A.speed * leaning - self.widening(A.s), convexity, np.copysign(1.0, facing)
 
     def _places(self, line: smooth.SmoothLine) -> tuple[Array, Flags]:
         """Arc lengths of the rows, and which of them move with a minimum."""
         A = line.sampled
         s = A.s
         D = self.distance(A) - self.offset
-        near = np.zeros(len(s), dtype=bool)
-        near[::2] = D[::2] < _beside(self.a, self.radius)
+        near = _beside(self.a, self.radius) > D
+        near[1::2] = False
         # of an end that cannot move against the circle the gap is no unknown
-        near[[0, -1]] &= ~np.array(self.held)
-        if not np.any(D < REACH):
+        for end, held in zip((0, -1), self.held, strict=True):
+            near[end] &= not held
+        if not D.min() < REACH:
             fixed = np.concatenate((s[near], self.ends))
             return fixed, np.zeros(len(fixed), dtype=bool)
         # at an end that is lowest the minimum lies within if the way to it rises
@@ -259,14 +269,16 @@ class Circle:
             np.inf if inwards and not fixed else -np.inf
             for inwards, fixed in zip((slope[0] < -ON_IT, slope[-1] > ON_IT), self.held, strict=True)
         ]
-        lowest = wells.lowest(np.concatenate((fence[:1], D, fence[1:])), REACH) - 1
+        fenced = np.empty(len(D) + 2)
+        fenced[0], fenced[1:-1], fenced[-1] = fence[0], D, fence[1]
+        lowest = wells.lowest(fenced, REACH) - 1
         # the two joints beside a clamp on the circle press together, a place of its own among them would part them
         first, last = (4 if clamped else -1 for clamped in self.clamped)
         lowest = lowest[self.own_places & (lowest > first) & (lowest < 2 * (self.a.n + 1) - last)]
         found = wells.wells(self.a, D, convexity[::2], lowest, LEAST_CURVATURE, self.kinks.places)
         places, settled = self._refined(line, D, found.samples)
         if not found.parted.all():
-            settled &= found.held(self.distance(line.at(places)) - self.offset)
+            settled = settled & found.held(self.distance(line.at(places)) - self.offset)
         places = places[settled]
         for place in places:
             near &= np.abs(s - place) > wells.BESIDE * self.a.size_at(place)
@@ -279,13 +291,13 @@ class Circle:
         if not samples.size:
             return start, np.zeros(0, dtype=bool)
         # an end has no parabola through it
-        inner = np.clip(samples, 1, len(D) - 2)
+        inner = np.minimum(np.maximum(samples, 1), len(D) - 2)
         s = start + np.where(inner == samples, wells.lowest_of_parabola(line.sampled.s, D, inner), 0.0)
 
         def slope(s: Array) -> tuple[Array, Array]:
             return self._steep(line.at(s))
 
-        within = np.clip(np.stack((start - self.a.h, start + self.a.h)), 0.0, self.a.s[-1])
+        within = np.minimum(np.maximum((start - self.a.h, start + self.a.h), 0.0), self.a.s[-1])
         rho = self._away(line.at(s))[0]
         return wells.bottom(slope, s, within, LEAST_CURVATURE * rho, CLOSE)
 
@@ -295,8 +307,11 @@ class Circle:
         D has a bend as sharp as the circle, and is straight all round: beside a circle far smaller than an element
         Newton's method on D_s would go astray.  ρ D_s is straight along a straight beam, however small the circle.
         """
-        beyond, (slope, convexity, leading) = missed(self.a, self.kinks, A), self.course(A)
-        return self._times_distance(A, slope, slope + leading * beyond.angle, convexity + leading * beyond.bend)
+        course, convexity, leading = self.course(A)
+        if not self.kinks.places.size:
+            return self._times_distance(A, course, course, convexity)
+        angle, bend = missed(self.a, self.kinks, A).tangent
+        return self._times_distance(A, course, course + leading * angle, convexity + leading * bend)
 
     def _times_distance(self, A: smooth.Points, course: Array, slope: Array, convexity: Array) -> tuple[Array, Array]:
         """ρ times a ``slope`` (k,) and its derivative, ``course`` being D_s."""

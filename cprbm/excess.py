@@ -103,10 +103,11 @@ class Tabulated:
 
     def seen(self, half: Ints, off: Array) -> ComplexArray:
         """E″, E′ and E at places ``off`` (k,) in halves of elements (k,): (3, k)."""
-        mine = self.coefficients[half]
-        powers = np.empty((len(half), 1, mine.shape[1]), dtype=complex)
-        powers[..., 0], powers[..., 1:] = 1.0, (off / self.size[half])[:, None, None]
-        found: ComplexArray = (np.multiply.accumulate(powers, axis=2, out=powers) @ mine)[:, 0].T
+        # real and imaginary parts beside each other: powers are real
+        mine = self.coefficients.view(float).take(half, axis=0)
+        powers = np.empty((len(half), 1, mine.shape[1]))
+        powers[:, 0, 0], powers[:, 0, 1:] = 1.0, (off / self.size.take(half))[:, None]
+        found: ComplexArray = (np.multiply.accumulate(powers, axis=2, out=powers) @ mine)[:, 0].view(complex).T
         found[1] *= off
         found[2] *= off * off
         return found
@@ -140,4 +141,4 @@ def _through(halves: Halves, points: int) -> Tabulated:
     once = 1.0 / (powers + 1.0)
     twice = once / (powers + 2.0)
     each = np.stack((np.ones(points), once, twice), axis=1)
-    return Tabulated(coefficients.T[:, :, None] * each, halves.end - halves.border)
+    return Tabulated(np.ascontiguousarray(coefficients.T[:, :, None] * each), halves.end - halves.border)

@@ -25,7 +25,7 @@ to the same), and are constants while the next one is sought; how γ changes as 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -51,16 +51,24 @@ class Missed:
     off: Array
 
     @property
+    def tangent(self) -> tuple[Array, Array]:
+        """γ and dγ/ds (k,)."""
+        (mean, first, second, third), off = self.coefficients, self.off
+        # Horner's rule, and the same once more for the slope
+        one = third * off
+        two = one + second
+        three = two * off + first
+        return three * off + mean, (two + one) * off + three
+
+    @property
     def angle(self) -> Array:
         """γ (k,)."""
-        c, off = self.coefficients, self.off
-        return np.asarray(((c[3] * off + c[2]) * off + c[1]) * off + c[0])
+        return self.tangent[0]
 
     @property
     def bend(self) -> Array:
         """dγ/ds (k,)."""
-        c, off = self.coefficients, self.off
-        return np.asarray((3.0 * c[3] * off + 2.0 * c[2]) * off + c[1])
+        return self.tangent[1]
 
     @property
     def integral(self) -> Array:
@@ -73,15 +81,15 @@ def missed(chain: Chain, kinks: Kinks, points: Points) -> Missed:
     """What is missed at some ``points`` (k,) of a ``chain``."""
     if not kinks.places.size:
         return Missed(np.zeros((4, len(points.s))), points.off)
-    return Missed(polynomials(chain, kinks)[:, points.half], points.off)
+    return Missed(polynomials(chain, kinks).take(points.half, axis=1), points.off)
 
 
 def kinked(chain: Chain, kinks: Kinks, points: Points) -> Points:
     """Points of the smooth line with the true tangents; where they lie is not changed."""
     if not kinks.places.size:
         return points
-    more = missed(chain, kinks, points)
-    return replace(points, psi=points.psi + more.angle, bend=points.bend + more.bend)
+    angle, bend = missed(chain, kinks, points).tangent
+    return points.turned(points.psi + angle, points.bend + bend)
 
 
 @lru_cache(maxsize=64)

@@ -19,8 +19,6 @@ there: the edge turns from one to the other as round an arc of next to no length
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from cprbm import moving, smooth
@@ -58,7 +56,7 @@ def facing(chain: Chain, points: smooth.Points, side: float, along: Array, acros
     found = _leaning(points, lean)
     bend = found.bend.copy()
     bend[within] = -side * CORNER
-    return replace(found, bend=bend)
+    return found._replace(bend=bend)
 
 
 def _lean(points: smooth.Points, thinning: Array) -> Array:
@@ -66,8 +64,7 @@ def _lean(points: smooth.Points, thinning: Array) -> Array:
 
 
 def _leaning(points: smooth.Points, lean: Array) -> smooth.Points:
-    return replace(
-        points,
+    return points._replace(
         psi=points.psi + lean,
         bend=points.bend - np.tan(lean) * points.gain / points.speed,
         pace=points.speed * np.cos(points.psi + lean - points.tangent),

@@ -158,7 +158,7 @@ class Chain:
 
     def size_at(self, arc: Array) -> Array:
         """h of the elements at arc lengths ``arc`` (k,), units of length."""
-        return np.asarray(self.sizes[np.minimum(np.maximum(np.searchsorted(self.borders, arc) - 1, 0), self.n - 1)])
+        return np.asarray(self.sizes[np.minimum(np.maximum(self.borders.searchsorted(arc) - 1, 0), self.n - 1)])
 
     @cached_property
     def joints(self) -> slice:

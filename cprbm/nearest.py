@@ -44,6 +44,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -65,6 +66,7 @@ FOOT_ITERATIONS = 8
 CORNER_ITERATIONS = 40  # where edges have corners that stand out, at each of which a step ends
 NO_RIDGES = np.zeros(0)
 CLOSE = 1e-10  # units of length: a step after which a place is known to round-off
+LAST = 0.1  # of that: what the next step would be, shorter by as much again as the last was, where none is taken
 CLOSEST_ITERATIONS = 50
 PATIENCE = 4  # iterations of Newton's method, after which a minimum may be sought where B has ended
 LIPSCHITZ = 1.2  # a way along B's tangent over the arc length of A that makes it, with something to spare
@@ -83,7 +85,8 @@ DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even
 STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
 MANY = 27_000  # distances of samples, up to which all are looked at sooner than a tree is made
 STRAIGHT = 0.1  # of an element: by less a line is off the chords between its samples
-POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)  # of the mean on either side of a border of B
+GAUSS = np.polynomial.legendre.leggauss(3)
+POINTS, WEIGHTS = 0.5 * (GAUSS[0] + 1.0), 0.25 * GAUSS[1]  # of the mean on either side of a border of B, half of it all
 
 Lines = tuple[smooth.SmoothLine, smooth.SmoothLine]
 
@@ -115,7 +118,7 @@ class Places:
         return Places(self.s[these], self.sigma[these], self.keys[these])
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Pair:
     """Two beams that may touch.
 
@@ -168,10 +171,12 @@ class Pair:
         what = made(self.a, self.b, self.kinks)
         if what is None:
             return self.on_a(lines, s), self.on_b(lines, sigma)
-        known, key = lines[0].known, (self.name, "arcs")
-        if key not in known:
-            known[key] = (np.concatenate((lines[0].arcs, lines[1].arcs), axis=1),)
-        return Both(*lines, what, known[key][0]).at(s, sigma)
+        known, key = lines[0].known, (self.name, "both")
+        both: Both | None = known[key][0] if key in known else None
+        if both is None or both.made is not what:
+            both = Both(*lines, what, np.concatenate((lines[0].arcs, lines[1].arcs), axis=1))
+            known[key] = (both,)
+        return both.at(s, sigma)
 
     def samples_on_a(self, lines: Lines, these: Ints) -> smooth.Points:
         """The same at some of the samples of A, by their numbers (k,), which are worked out once in a state."""
@@ -208,6 +213,10 @@ class Pair:
 
     def exchanged(self) -> Pair:
         """The same contact with the parts of A and B exchanged."""
+        return self._exchanged
+
+    @cached_property
+    def _exchanged(self) -> Pair:
         return replace(
             self,
             a=self.b,
@@ -344,10 +353,10 @@ class Pair:
 
     def rows_along(self, lines: Lines, at: Positions, along: Places) -> list[tuple[Group, Array]]:
         """Rows at places of A; with each group the places on B."""
-        inner = (along.keys > 0) & (along.keys <= self.a.n)
         if not along.s.size:
             return []
-        if not np.any(inner):
+        inner = (along.keys > 0) & (along.keys <= self.a.n)
+        if not inner.any():
             return [(self.rows_at(lines, at, along), along.sigma)]
         # what touches is worked out in one go: around the joints, and behind that at single places
         joints, single = along.only(inner), along.only(~inner)
@@ -360,7 +369,7 @@ class Pair:
         )
         around = touches.only(slice(0, s.size)) if single.s.size else touches
         means, eased = self._mean_rows(at, joints, around, weights), self._eased()
-        found = [(replace(rows, values=rows.values - eased), other) for rows, other in means]
+        found = [(replace(rows, values=rows.values - eased), other) for rows, other in means] if eased else means
         if single.s.size:
             found.append((self._single(at, single, touches.only(slice(s.size, None))), single.sigma))
         return found
@@ -412,34 +421,39 @@ class Pair:
             B = self.facing(A, B)
         ratio = (B.pace - B.bend * _seen_from(B, A)[1]) / (np.cos(A.psi - B.psi) * A.speed)  # ds/dσ
         borders = self.b.borders
-        after = np.minimum(np.maximum(np.searchsorted(borders, sigma), 1), self.b.n)
+        after = np.minimum(np.maximum(borders.searchsorted(sigma), 1), self.b.n)
         # the length on A in steps, so that it does not change with the state where it is differentiated
-        stretch = np.round(np.abs(ratio) / STRETCH) * STRETCH
+        stretch = np.rint(np.abs(ratio) / STRETCH) * STRETCH
         ahead, behind = borders[after] - sigma, borders[after - 1] - sigma
         cut = np.where(ahead < -behind, ahead, behind) * ratio
         if self.tapered:  # beside a corner of B's edge D is less even than at a border: a length that stays, cut midway
             cornered = _beside_any(self.b.section.corners, sigma, self.b.sizes[after - 1])
             stretch, cut = np.where(cornered, 1.0, stretch), np.where(cornered, 0.0, cut)
         half = 0.5 * np.minimum(self.b.sizes[after - 1] * stretch, self.a.sizes[joints.keys - 1])[:, None]
-        cut = np.clip(cut[:, None], -half, half)
-        x, w = 0.5 * (POINTS + 1.0), 0.5 * WEIGHTS
-        off = np.concatenate((-half + (cut + half) * x, cut + (half - cut) * x), axis=1)
-        weights = 0.5 * np.concatenate(((1.0 + cut / half) * w, (1.0 - cut / half) * w), axis=1)
+        cut = np.minimum(np.maximum(cut[:, None], -half), half)
+        off = np.concatenate(((cut + half) * POINTS - half, (half - cut) * POINTS + cut), axis=1)
+        share = cut / half
+        weights = np.concatenate(((1.0 + share) * WEIGHTS, (1.0 - share) * WEIGHTS), axis=1)
         at_A = s[:, None] + off
         guess = (sigma[:, None] + off / ratio[:, None]).ravel()
         at_B = _feet_from(self, lines, *self.on_both(lines, at_A.ravel(), guess), CLOSE)[1].reshape(at_A.shape)
         # beside an end of B, where it faces no element of B, the joint alone
-        alone = ~np.all((at_B > 0.0) & (at_B < self.b.s[-1]), axis=1)[:, None]
-        return np.where(alone, s[:, None], at_A), np.where(alone, sigma[:, None], at_B), weights
+        alone = (at_B <= 0.0) | (at_B >= self.b.s[-1])
+        if alone.any():
+            these = alone.any(axis=1)
+            at_A[these], at_B[these] = s[these, None], sigma[these, None]
+        return at_A, at_B, weights
 
     def _beside_clamps(self, keys: Ints) -> list[tuple[int, Ints]]:
         """For every end of A that is clamped with B: the key of the row there, and which joints share it."""
         m = self.shared
-        found = []
+        found: list[tuple[int, Ints]] = []
         for end, clamped in enumerate(self.clamps[0]):
+            if not clamped:
+                continue
             beside = (keys if end == 0 else self.a.n + 1 - keys) <= 2 * m
             # joints on both sides of the row's end lie close, or the beams part before
-            if clamped and np.sum(beside) == 2 * m < self.a.n:
+            if np.sum(beside) == 2 * m < self.a.n:
                 these = np.flatnonzero(beside)
                 found.append((self.a.n + 4 + end, these[:m] if end == 0 else these[m:]))
         return found
@@ -449,7 +463,9 @@ class Pair:
         A, B = self.facing_each_other(*self.on_both(lines, s, sigma))
         m, k = len(s), LOCALS
         cos, sin = np.cos(B.psi), np.sin(B.psi)
-        normals = np.array((np.tile(-sin, 2), np.tile(cos, 2))).T
+        normals = np.empty((2 * m, 2))
+        normals[:m, 0], normals[:m, 1] = -sin, cos
+        normals[m:] = normals[:m]
         distance = cos * (A.y - B.y) - sin * (A.x - B.x)
         both = moving(A, B)
         n_r = _between(position_slopes(both, normals))
@@ -535,20 +551,23 @@ def _feet_from(
     pair: Pair, lines: Lines, A: smooth.Points, B: smooth.Points, close: float
 ) -> tuple[Array, Array, Flags, smooth.Points]:
     """The same from points of B (k,), and the points of B to which D belongs."""
-    sigma = B.s
+    sigma, h, end, last = B.s, pair.b.h, pair.b.s[-1], 0.0
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
     for iteration in range(FOOT_ITERATIONS if not ridges.size else CORNER_ITERATIONS):
         B = pair.facing(A, pair.on_b(lines, sigma) if iteration else B)
         along, across = _seen_from(B, A)
         # along the circle of curvature, where that is round the foot
-        left = along / np.maximum(1.0 - B.bend * across, 0.2)
-        step = left / (B.pace * (1.0 + (B.bend * left) ** 2 / 3.0))
+        left = along / np.maximum(B.pace - B.bend * across, 0.2)
+        turn = B.bend * left
+        step = left / (1.0 + turn * turn / 3.0)
         before = sigma
-        sigma = np.minimum(np.maximum(before + np.minimum(np.maximum(step, -pair.b.h), pair.b.h), 0.0), pair.b.s[-1])
+        sigma = np.minimum(np.maximum(before + np.minimum(np.maximum(step, -h), h), 0.0), end)
         if ridges.size:
             sigma = _up_to(ridges, before, sigma)
-        if np.abs(sigma - before).max() < close:
+        moved = float(np.abs(sigma - before).max())
+        if moved < close or (not ridges.size and moved * moved < LAST * close * last):
             break
+        last = moved
     foot = np.abs(along) <= PARALLEL * np.maximum(np.abs(across), pair.b.h)
     return pair.side * across - pair.wider(A.s, sigma), sigma, foot, B
 
@@ -584,7 +603,7 @@ def places_along(pair: Pair, lines: Lines, D: Array, sigma: Array, ends: Array) 
         s, turned = minima(pair, lines, D, sigma)
 
     near = np.zeros(a.n + 2, dtype=bool)
-    facing = np.flatnonzero(np.isfinite(D[::2]))
+    facing = np.isfinite(D[::2]).nonzero()[0]
     if facing.size:
         A, B = _faced(pair, lines, D, sigma, facing)
         bends = np.abs(A.bend) + np.abs(B.bend)
@@ -592,15 +611,15 @@ def places_along(pair: Pair, lines: Lines, D: Array, sigma: Array, ends: Array) 
     for places, apart in ((s, wells.BESIDE), (ends, BESIDE_END)):
         if places.size:
             away = np.abs(a.s[1:-1, None] - places)
-            near[1:-1] &= np.all(away > apart * a.size_at(places), axis=1)
+            near[1:-1] &= (away > apart * a.size_at(places)).all(axis=1)
     for end in (0, -1):
         near[end] = reach > D[end] and not held_together(a, b, end, float(sigma[end]))
-    joints = np.flatnonzero(near)
-    found = Places(
-        np.concatenate((a.s[joints], s)),
-        np.concatenate((sigma[::2][joints], turned)),
-        np.concatenate((joints, a.n + 6 + np.arange(len(s)) if pair.fixed else np.full(len(s), -1))),
-    )
+    joints = near.nonzero()[0]
+    keys = np.full(len(joints) + len(s), -1)
+    keys[: len(joints)] = joints
+    if pair.fixed:
+        keys[len(joints) :] = a.n + 6 + np.arange(len(s))
+    found = Places(np.concatenate((a.s[joints], s)), np.concatenate((sigma[2 * joints], turned)), keys)
     return found.joined(_corners(pair, lines, D, sigma)) if pair.tapered and a.section.ridges.size else found
 
 
@@ -632,7 +651,7 @@ def _facing_ends(pair: Pair, lines: Lines) -> Places:
     A, B, ends = lines[0].sampled, lines[1].sampled, b.s[[0, -1]]
     away = np.hypot(A.x - B.x[[0, -1], None], A.y - B.y[[0, -1], None])
     nearest = away.argmin(axis=1)
-    near = np.flatnonzero(away[[0, 1], nearest] < reach + a.h)
+    near = (away[[0, 1], nearest] < reach + a.h).nonzero()[0]
     if near.size and not pair.tapered:
         # what is beyond an end of A has its foot there
         beyond = _seen_from(pair.samples_on_a(lines, nearest[near]), B.only(near * (2 * b.n + 2)))[0]
@@ -706,7 +725,7 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     A, G = lines[0].sampled, lines[1].sampled
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
     rough, nearest = nearest_samples(_places(G), _places(A), pair.offset + reach(pair.a, pair.b))
-    close = np.flatnonzero(np.isfinite(rough))
+    close = np.isfinite(rough).nonzero()[0]
     D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
     if not close.size:
         return D, sigma
@@ -715,15 +734,15 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     D[close] = np.where(foot, distance, np.inf)
     D = not_gone_round(pair, lines, D, pair.wider(A.s, sigma))
     if not pair.tapered:  # else these are points of edges
-        joints = np.flatnonzero((close % 2 == 0) & np.isfinite(D[close]))
+        joints = ((close % 2 == 0) & np.isfinite(D[close])).nonzero()[0]
         lines[0].faced[pair.name] = D, at_A.only(joints), at_B.only(joints)
     return D, sigma
 
 
 def not_gone_round(pair: Pair, lines: Lines, D: Array, wider: Array | float, gone: float = np.inf) -> Array:
     """D, but ``gone`` where A lies beyond B and has not come there through it, but round an end."""
-    beyond = D + 2.0 * wider + pair.offset + STRAIGHT * (pair.a.h + pair.b.h) < 0.0
-    if not np.any(beyond):
+    beyond = D + 2.0 * wider + (pair.offset + STRAIGHT * (pair.a.h + pair.b.h)) < 0.0
+    if not beyond.any():
         return D
     A, B = (np.stack((line.sampled.x, line.sampled.y), axis=1) for line in lines)
     return D if cross(A, B) else np.where(beyond, gone, D)
@@ -751,7 +770,7 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     lowest = lowest[pair.own_places & (lowest > first) & (lowest < 2 * (pair.a.n + 1) - last)]
     if not lowest.size:
         return np.zeros(0), np.zeros(0)
-    parting, near = np.full(pair.a.n + 2, np.inf), np.flatnonzero(np.isfinite(D[::2]))
+    parting, near = np.full(pair.a.n + 2, np.inf), np.isfinite(D[::2]).nonzero()[0]
     parting[near] = pair.parting_at(lines, *_faced(pair, lines, D, sigma, near), D[2 * near])
     found = wells.wells(pair.a, D - pair.offset, parting, lowest, LEAST_CURVATURE, pair.kinks[0].places)
     if not found.samples.size:
@@ -765,34 +784,41 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     sigma = np.where(ahead == 0.0, sigma[here], sigma[here] + share * (sigma[beside] - sigma[here]))
     s = s[here] + ahead
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
+    end, latest = pair.b.s[-1], np.zeros(len(s))
     for iteration in range(CLOSEST_ITERATIONS):
         A, B = pair.facing_each_other(*pair.on_both(lines, s, sigma))
         along, across = _seen_from(B, A)
-        facing, shortened = np.cos(A.psi - B.psi), B.pace - B.bend * across
+        turned = A.psi - B.psi
+        facing, shortened = np.cos(turned), B.pace - B.bend * across
         # what is left to the foot, and the slope there
         left = along / shortened
-        slope = pair.side * (np.sin(A.psi - B.psi) - facing * B.bend * left)
+        slope = pair.side * (np.sin(turned) - facing * B.bend * left)
         towards = facing * A.pace / shortened  # dσ/ds
-        convex = pair.side * facing * (A.bend - B.bend * towards)
-        low, high = np.where(slope < 0.0, s, low), np.where(slope < 0.0, high, s)
-        ahead = s - slope / np.where(convex > LEAST_CURVATURE, convex, np.inf)
-        newton = (convex > LEAST_CURVATURE) & (ahead >= low) & (ahead <= high)
+        bends = pair.side * facing * (A.bend - B.bend * towards)
+        convex, falls = bends > LEAST_CURVATURE, slope < 0.0
+        low, high = np.where(falls, s, low), np.where(falls, high, s)
+        ahead = s - slope / np.where(convex, bends, np.inf)
+        newton = convex & (ahead >= low) & (ahead <= high)
         step = np.where(newton, ahead, 0.5 * (low + high)) - s
-        ahead = np.minimum(np.maximum(sigma + left + towards * step, 0.0), pair.b.s[-1])
+        ahead = np.minimum(np.maximum(sigma + left + towards * step, 0.0), end)
         if ridges.size:
             ahead = np.where(leaning.at_corner(B), sigma, _up_to(ridges, sigma, ahead))
+        moved = np.maximum(np.abs(step), np.abs(ahead - sigma))
         s, sigma = s + step, ahead
-        there = (np.abs(step) < CLOSE) & (np.abs(along) < CLOSE) & (np.abs(slope) < SETTLED)
+        inner = (sigma > 0.0) & (sigma < end)
+        # what Newton's method would leave after one more step is nothing
+        known = newton & inner & (moved * moved < LAST * CLOSE * latest)
+        there = known | ((np.abs(step) < CLOSE) & (np.abs(along) < CLOSE) & (np.abs(slope) < SETTLED))
         if not ridges.size:  # no slope as steep as that goes through zero in so little
             there |= (high - low < CLOSE) & (np.abs(slope) > STEEP)
             if iteration > PATIENCE:
                 there |= _beyond_ends(pair.b, B.s, along, high - low) & (shortened > 0.0)
-        if np.all(there):
+        if there.all():
             break
+        latest = moved
     held = found.held(pair.side * across - pair.wider(s, sigma) - pair.offset)
-    settled = held & (convex > LEAST_CURVATURE) & (np.abs(slope) < SETTLED)
     # beyond an end of B there is no foot: what lies there faces that end, which has a row of its own
-    settled &= (np.abs(along) < SETTLED) | ((sigma > 0.0) & (sigma < pair.b.s[-1]))
+    settled = held & convex & (known | ((np.abs(slope) < SETTLED) & (inner | (np.abs(along) < SETTLED))))
     return s[settled], sigma[settled]
 
 

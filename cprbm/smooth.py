@@ -35,7 +35,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -44,7 +44,7 @@ from cprbm.model import Chain
 from cprbm.polynomial import ComplexArray
 from scene.answer import Array, Ints
 
-STRAIGHT = 1e-150  # rad: what turns less is straight, and its sine the angle
+STRAIGHT = 1e-150  # rad, nothing beside any other angle: added to one that is nought, its sine over it is one
 
 # Taylor coefficients, lowest first, of sin z/z and (1 − cos z)/z² in z² and of y cot y in y²
 SINE = (1.0, -1 / 6, 1 / 120, -1 / 5040, 1 / 362880, -1 / 39916800)
@@ -65,8 +65,7 @@ def _with_slopes(*series: tuple[float, ...]) -> Array:
 ARCS, COTANGENTS = _with_slopes(SINE, VERSINE), _with_slopes(COTANGENT)
 
 
-@dataclass(frozen=True)
-class Points:
+class Points(NamedTuple):
     """Some points of one beam's smooth line, arrays (k,) unless said otherwise.
 
     Attributes:
@@ -108,7 +107,12 @@ class Points:
             self.pace[these],
         )
 
-    @cached_property
+    def turned(self, psi: Array, bend: Array) -> Points:
+        """The same with other tangents."""
+        line, half, s, off, x, y, tangent, _, speed, _, gain, pace = self
+        return Points(line, half, s, off, x, y, tangent, psi, speed, bend, gain, pace)
+
+    @property
     def link(self) -> Ints:
         """The link each lies on, in the beam's own numbering."""
         return (self.half + 1) // 2
@@ -199,7 +203,7 @@ class SmoothLine:
         """Points at arc lengths ``s`` within the beam; where it lies off the arcs by an ``excess`` (3, k), if known."""
         chain = self.chain
         half = chain.breaks.searchsorted(s, side="right")
-        arcs = self.arcs[:, half]
+        arcs = self.arcs.take(half, axis=1)
         off = s - arcs[0]
         if excess is None and chain.excess is not None:
             excess = chain.excess.seen(half, off)
@@ -229,12 +233,11 @@ def _beside(excess: ComplexArray, off: Array, rate: Array, R: Array) -> tuple[Ar
 
     All in numbers a + i·w from the border along its tangent.
     """
-    turned = (0.5 * off) * rate
-    turned[turned == 0.0] = STRAIGHT
-    middle = np.empty(len(off), dtype=complex)
-    middle.real, middle.imag = np.cos(turned), np.sin(turned)
+    turned = 0.5 * off * rate + STRAIGHT
+    sin = np.sin(turned)
+    middle = np.cos(turned) + 1j * sin
     arc = R * middle * middle
-    place = (R * off * (middle.imag / turned)) * middle + excess[2]
+    place = (R * off * (sin / turned)) * middle + excess[2]
     first = arc + excess[1]
     turning = first.conj() * ((1j * rate) * arc + excess[0])
     squared = first.real**2 + first.imag**2
@@ -245,8 +248,7 @@ def _beside(excess: ComplexArray, off: Array, rate: Array, R: Array) -> tuple[Ar
 
 def _arc(off: Array, rate: Array, R: Array | float) -> tuple[Array, Array]:
     """±A and W of arcs that turn by ``rate`` per length."""
-    half = 0.5 * rate * off
-    half = np.where(half == 0.0, STRAIGHT, half)
+    half = 0.5 * rate * off + STRAIGHT
     sin = np.sin(half)
     chord = R * off * (sin / half)
     return chord * np.cos(half), chord * sin

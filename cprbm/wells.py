@@ -35,7 +35,9 @@ LEVEL = 0.01  # of the larger gap beside a minimum: less on its other side is th
 
 def lowest(D: Array, reach: float) -> Ints:
     """Numbers of the samples (k,) lower than ``reach`` and not higher than their neighbours; no end is one."""
-    return np.flatnonzero((D[:-2] >= D[1:-1]) & (D[2:] > D[1:-1]) & (reach > D[1:-1])) + 1
+    here = D[1:-1]
+    found: Ints = ((D[:-2] >= here) & (D[2:] > here) & (reach > here)).nonzero()[0] + 1
+    return found
 
 
 def lowest_of_parabola(s: Array, D: Array, samples: Ints) -> Array:
@@ -69,14 +71,14 @@ def bottom(
         return start, np.zeros(0, dtype=bool)
     s, (low, high) = start, within
     beside = np.minimum(np.maximum(start + BORDER, low), high).ravel()
-    D_s, D_ss = (each.reshape(2, -1).mean(axis=0) for each in slope(beside))
+    D_s, D_ss = (0.5 * (each[: len(start)] + each[len(start) :]) for each in slope(beside))
     step = np.zeros(len(s))
     for iteration in range(ITERATIONS):
         if iteration:
             D_s, D_ss = slope(s)
         step = -D_s / np.where(D_ss > least, D_ss, np.inf)
         s = np.minimum(np.maximum(s + step, low), high)
-        if np.max(np.abs(step)) < close:
+        if np.abs(step).max() < close:
             break
     return s, (D_ss > least) & (np.abs(step) < SETTLED)
 
@@ -113,7 +115,7 @@ def wells(chain: Chain, gap: Array, parting: Array, samples: Ints, least: float,
     """
     s = chain.halves[samples]
     h = chain.size_at(s)
-    near = np.any(np.abs(s[:, None] - known) <= NEAR * h[:, None], axis=1)
+    near = (np.abs(s[:, None] - known) <= NEAR * h[:, None]).any(axis=1)
     parted, apart = near | _parted(parting, samples, least), _apart(gap, samples, h)
     likely = parted | (apart > 0.0)
     return Wells(samples[likely], parted[likely], apart[likely])
@@ -124,7 +126,7 @@ def _parted(parting: Array, samples: Ints, least: float) -> Flags:
     first, behind = samples // 2, (samples + 1) // 2
     # the ends have the curvature of the springs next to them
     around = np.minimum(np.maximum(np.array((first - 1, first, behind, behind + 1)), 1), last - 1)
-    return np.asarray(np.all(parting[around] > least, axis=0))
+    return np.asarray((parting[around] > least).all(axis=0))
 
 
 def _apart(gap: Array, samples: Ints, h: Array) -> Array:
