@@ -254,7 +254,7 @@ class Circle:
         A = line.sampled
         s = A.s
         D = self.distance(A) - self.offset
-        near = D < _beside(self.a, self.radius)
+        near = _beside(self.a, self.radius) > D
         near[1::2] = False
         # of an end that cannot move against the circle the gap is no unknown
         for end, held in zip((0, -1), self.held, strict=True):
