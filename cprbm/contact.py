@@ -44,39 +44,43 @@ class Local:
 
 def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Local]) -> Array:
     """Derivatives of rows over all unknowns, part behind part (Σr, n_links + 3B)."""
-    if len(parts) == 1:
-        return _over_unknowns(model, state, at, parts[0])
-    none = np.zeros((0, model.n_unknowns))
-    return np.concatenate([none, *(_over_unknowns(model, state, at, part) for part in parts)])
+    if not parts:
+        return np.zeros((0, model.n_unknowns))
+    sums = [_sums(model, part) for part in parts]
+    every = sums[0] if len(parts) == 1 else np.concatenate(sums)
+    rows = kinematics.over_unknowns_by(model, state, at, every[:, 0], every[:, 1])
+    first = 0
+    for part in parts:
+        r, p, a = len(part.slopes), part.joints.shape[1], part.angles.shape[1]
+        mine = rows[first : first + r]
+        if part.alike and a:
+            link = int(part.angles[0, 0])
+            mine[:, link : link + a] += part.slopes[:, 2 * p :]
+        elif a:
+            places = (np.arange(r)[:, None] * model.n_unknowns + part.angles).ravel()
+            np.add.at(mine.reshape(-1), places, part.slopes[:, 2 * p :].ravel())
+        first += r
+    return rows
 
 
-def _over_unknowns(model: Model, state: State, at: Positions, part: Local) -> Array:
-    (r, _), p, a = part.slopes.shape, part.joints.shape[1], part.angles.shape[1]
+def _sums(model: Model, part: Local) -> Array:
+    """Slopes over x and over y of joints, summed as :func:`cprbm.kinematics.summed` says (r, 2, n_links + k)."""
+    r, p = len(part.slopes), part.joints.shape[1]
     if part.behind is not None:
         # twice as many rows, x and y in turns
-        sums = part.slopes[:, : 2 * p].reshape(2 * r, p) @ part.behind
-        rows = kinematics.over_unknowns_by(model, state, at, sums[::2], sums[1::2])
-    elif p and model.hanging is not None:
-        sums = part.slopes[:, : 2 * p].reshape(r, 2, p) @ model.hanging[part.joints]
-        rows = kinematics.over_unknowns_by(model, state, at, sums[:, 0], sums[:, 1])
-    else:
-        forces = np.zeros((2, r, model.n_joints))
-        if part.alike:
-            forces[0][:, part.joints[0]] = part.slopes[:, :p]
-            forces[1][:, part.joints[0]] = part.slopes[:, p : 2 * p]
-        elif p:
-            along, across = forces.reshape(2, -1)
-            places = (np.arange(r)[:, None] * model.n_joints + part.joints).ravel()
-            np.add.at(along, places, part.slopes[:, :p].ravel())
-            np.add.at(across, places, part.slopes[:, p : 2 * p].ravel())
-        rows = kinematics.over_unknowns(model, state, at, forces[0], forces[1])
-    if part.alike and a:
-        first = int(part.angles[0, 0])
-        rows[:, first : first + a] += part.slopes[:, 2 * p :]
-    elif a:
-        places = (np.arange(r)[:, None] * model.n_unknowns + part.angles).ravel()
-        np.add.at(rows.reshape(-1), places, part.slopes[:, 2 * p :].ravel())
-    return rows
+        return (part.slopes[:, : 2 * p].reshape(2 * r, p) @ part.behind).reshape(r, 2, -1)
+    if model.hanging is not None:
+        return part.slopes[:, : 2 * p].reshape(r, 2, p) @ model.hanging[part.joints]
+    forces = np.zeros((2, r, model.n_joints))
+    if part.alike:
+        forces[0][:, part.joints[0]] = part.slopes[:, :p]
+        forces[1][:, part.joints[0]] = part.slopes[:, p : 2 * p]
+    elif p:
+        along, across = forces.reshape(2, -1)
+        places = (np.arange(r)[:, None] * model.n_joints + part.joints).ravel()
+        np.add.at(along, places, part.slopes[:, :p].ravel())
+        np.add.at(across, places, part.slopes[:, p : 2 * p].ravel())
+    return kinematics.summed(model, forces[0], forces[1]).swapaxes(0, 1)
 
 
 @dataclass(frozen=True, slots=True)

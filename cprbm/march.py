@@ -7,7 +7,7 @@ from there on the mesh that was asked, fitted to where contact is (:mod:`cprbm.r
 from __future__ import annotations
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -35,6 +35,7 @@ from cprbm.remarks import Remarks
 from cprbm.settings import Settings
 from cprbm.statics import statics
 from cprbm.steadied import Turn, steadied
+from cprbm.zones import Zone
 from scene import Certificate, Critical, Ending, Event, Loss, Scene, Stage, StationAnswer
 from scene.told import station_reached
 
@@ -404,7 +405,8 @@ class March:
             if solved is None:
                 # the first mesh, or one for other zones, may settle which places there are; the next ones know them
                 first = mechanism is self.on.mechanism or mechanism.fit.ends.keys() != fit.ends.keys()
-                target, solved = self._refitted(mechanism, point, target, values, settings, now, settle=first)
+                at = mechanism, point, zones
+                target, solved = self._refitted(at, target, values, settings, now, settle=first)
             turned = most_turned(carried, solved.point.state)
             if not (solved.converged or _near(solved)) or turned > FOLLOWED:
                 if now is asked:  # on a mesh that fits a little less it stands already
@@ -458,8 +460,7 @@ class March:
 
     def _refitted(
         self,
-        before: Mechanism,
-        point: Point,
+        at: tuple[Mechanism, Point, Mapping[str, tuple[Zone, ...]]],
         target: Mechanism,
         values: dict[str, float],
         settings: Settings,
@@ -467,12 +468,15 @@ class March:
         *,
         settle: bool,
     ) -> tuple[Mechanism, Equilibrium]:
-        """The equilibrium on a mesh from the one ``before``, of which ``now`` are the settings; and the next mesh.
+        """The equilibrium on a mesh, and the next mesh, from a state ``at`` the one before and its zones.
+
+        Its settings are those of ``now``.
 
         That is another than the ``target`` where places were to be levelled.
         """
         most = settings.iterations if settle else min(settings.iterations, AGAIN)
-        start = carried_over(before, point, target, values)
+        before, point, zones = at
+        start = carried_over(before, point, target, values, zones)
         coarse = now is not self.family[-1]
         for steady in (False, True) if settle and not coarse else (coarse,):
             solved = equilibrium(target.problem, values, start, settings.tolerance, most, settle=steady)

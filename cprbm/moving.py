@@ -29,6 +29,7 @@ from cprbm.smooth import ARCS, Points, series
 from scene.answer import Array
 
 LOCALS = 5
+BEFORE, AFTER = np.array(((-1.0, 1.0, 0.0), (0.0, -1.0, 1.0)))  # ∂δ over angles, before and after a border
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,9 @@ class Moving:
         carried: of their halves of elements, as the lines have it (9, k).
         sign: −1 before the border, +1 after it (k,).
         off: from the border, negative before it (k,).
-        at, along: C and C′ (k,).
+        at, along: C and C′ (k,); arm: C − p; border: D.
+        arc: |off| and φ (k,), and sin φ/φ and (1 − cos φ)/φ² with two derivatives over φ² each, (6, k).
+        over_angles: ∂δ over (θ_{i−1}, θ_i, θ_{i+1}), (k, 3); over_turn: C_δ (k,).
     """
 
     carried: Array
@@ -47,38 +50,11 @@ class Moving:
     off: Array
     at: ComplexArray
     along: ComplexArray
-
-    @cached_property
-    def arm(self) -> ComplexArray:
-        """C − p (k,)."""
-        return np.asarray(self.at - (self.carried[0] + 1j * self.carried[1]))
-
-    @cached_property
-    def border(self) -> ComplexArray:
-        """D (k,)."""
-        return np.asarray(self.carried[2] + 1j * self.carried[3])
-
-    @cached_property
-    def arc(self) -> tuple[Array, Array, Array]:
-        """|off| and φ (k,), and sin φ/φ and (1 − cos φ)/φ² with two derivatives over φ² each, (6, k)."""
-        u = np.abs(self.off)
-        phi = self.carried[5] * u / self.carried[4]
-        return u, phi, series(ARCS, phi * phi)
-
-    @cached_property
-    def over_angles(self) -> Array:
-        """∂δ over (θ_{i−1}, θ_i, θ_{i+1}), (k, 3)."""
-        return np.where(self.sign[:, None] < 0.0, (-1.0, 1.0, 0.0), (0.0, -1.0, 1.0))
-
-    @cached_property
-    def over_turn(self) -> ComplexArray:
-        """C_δ (k,)."""
-        u, phi, (S, S1, _, V, V1, _) = self.arc
-        _, R, R_1, _ = self.carried[5:]
-        R_xi = R * u / self.carried[4]
-        A = u * (R_1 * S + R_xi * (2.0 * phi * S1))
-        W = u * (R_1 * phi * V + R_xi * (V + 2.0 * phi * phi * V1))
-        return np.asarray(self.border * (self.sign * A + 1j * W))
+    arm: ComplexArray
+    border: ComplexArray
+    arc: tuple[Array, Array, Array]
+    over_angles: Array
+    over_turn: ComplexArray
 
     @cached_property
     def along_over_turn(self) -> ComplexArray:
@@ -105,13 +81,33 @@ def moving(*points: Points) -> Moving:
     """The places of one line, or of several one behind the other."""
     rows = [_rows(each) for each in points]
     every = rows[0] if len(rows) == 1 else np.concatenate(rows, axis=1)
-    sign, off, x, y, along_x, along_y = every[9:]
-    return Moving(every[:9], sign, off, x + 1j * y, along_x + 1j * along_y)
+    x, y, cos, sin, h, turning, R, R_1 = every[:8]
+    sign, off, *vectors = every[9:]
+    at, along = vectors[0] + 1j * vectors[1], vectors[2] + 1j * vectors[3]
+    border, u = cos + 1j * sin, np.abs(off)
+    phi = turning * u / h
+    q = phi * phi
+    S, S1, _, V, V1, _ = arc = series(ARCS, q)
+    R_xi = R * u / h
+    A = u * (R_1 * S + R_xi * (2.0 * phi * S1))
+    W = u * (R_1 * phi * V + R_xi * (V + 2.0 * q * V1))
+    return Moving(
+        carried=every[:9],
+        sign=sign,
+        off=off,
+        at=at,
+        along=along,
+        arm=at - (x + 1j * y),
+        border=border,
+        arc=(u, phi, arc),
+        over_angles=np.where(sign[:, None] < 0.0, BEFORE, AFTER),
+        over_turn=border * (sign * A + 1j * W),
+    )
 
 
 def _rows(points: Points) -> Array:
     rows = np.empty((15, len(points.s)))
-    rows[:9] = points.line.carried[:, points.half]
+    rows[:9] = points.line.carried.take(points.half, axis=1)
     rows[9] = 1 - 2 * (points.half % 2)
     rows[10], rows[11], rows[12] = points.off, points.x, points.y
     np.multiply(points.speed, np.cos(points.tangent), out=rows[13])

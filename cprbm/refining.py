@@ -281,14 +281,20 @@ def carried_state(before: Model, state: State, after: Model) -> State:
     return State(theta, state.bodies)
 
 
-def carried_over(before: Mechanism, point: Point, after: Mechanism, values: dict[str, float]) -> Point:
-    """A state of one mesh on another, with its forces: a guess."""
+def carried_over(
+    before: Mechanism,
+    point: Point,
+    after: Mechanism,
+    values: dict[str, float],
+    known: Mapping[str, tuple[Zone, ...]] | None = None,
+) -> Point:
+    """A state of one mesh on another, with its forces: a guess; all its zones may be ``known``."""
     old, new = before.problem.model, after.problem.model
     state = carried_state(old, point.state, new)
     bare = point_at(after.problem, values, state, point.mu, np.zeros(0), Rows((), point.rows.faces))
     rows = bare.rows
     lam = np.zeros(rows.size)
-    zones = long_ones(all_zones(before, point))
+    zones = long_ones(all_zones(before, point) if known is None else known)
     first = 0
     for group in rows.groups:
         name, mine = group.contact, slice(first, first + len(group.values))

@@ -11,7 +11,7 @@ from fea_reference.stops import acting_stops
 from fea_reference.supports import grounded, held, support
 from fea_reference.system import NOTHING, System
 from fea_reference.touch import LACKING, Pair, Touch
-from fea_reference.yielding import felt
+from fea_reference.yielding import FELT, felt
 from scene.answer import Array, Certificate
 
 _VIOLATION = 1e-9
@@ -21,7 +21,6 @@ _FROM_AFAR = 0.05  # of the thickness: a gap across which something may press
 _SLENDER = 0.01  # of the longest beam: the most that stands for the thickness there
 _SOFT = 0.05  # by which a penalty may fall short of the stiffness that its elements ask for
 _NONE_MET = 1e3  # units of round-off of the stiffest element: measured up to twelve from 10 to 640 elements
-_FELT = 0.01  # of pushes and motions: by how much what sinks in may change them
 _PULLS = 1e-8  # of the largest force or of EI/length: what a stop may pull with
 
 
@@ -78,7 +77,7 @@ def certify(march: March) -> Certificate:
             failures.append(f"what touches in {one.pair.name} overlaps by {overlap:.1e}; {allowed:.1e} was asked")
         elif one.closed and march.penalties[one.pair].stiffness < (1.0 - _SOFT) * one.pair.stiffest:
             failures.append(f"the penalty of {one.pair.name} could not be raised to what the elements can follow")
-        elif (share := shares.get(one.pair, 0.0)) > _FELT:
+        elif (share := shares.get(one.pair, 0.0)) > FELT:
             failures.append(
                 f"what touches in {one.pair.name} overlaps by {one.penetration * model.units.length:.1e} m, which "
                 f"changes what presses or moves by {share:.0%}"

@@ -33,7 +33,7 @@ from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import LACKING, Circle, Contact, Face, Pair, Penalty, Rigid, Touch
-from fea_reference.yielding import felt
+from fea_reference.yielding import FELT, ROUNDED, felt
 from scene.answer import Array, Critical, Ending
 from scene.frozendict import frozendict
 
@@ -45,7 +45,7 @@ _TIGHTEN = 100.0  # the most by which a penalty is raised at once
 _NARROW = 2.0  # the power of that for a contact in a point, whose depth can be foreseen
 _GENTLEST = 1.2  # the factor that is tried at last
 _TIGHTENINGS = 25
-_FELT = 10.0  # times the penetration asked: what may be felt of it elsewhere, as a share of pushes and motions
+_FELT = 5.0  # times the penetration asked: what may be felt of it elsewhere, as a share of pushes and motions
 _SETTLINGS = 8
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
 _NEARBY = (1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0)  # of a step: where to look for a closing under tighter penalties
@@ -712,14 +712,16 @@ class March:
         """
         system, settings = self.system, self.settings
         known = felt(self.model, system, self.penalties, self.open, settings.quadrature)
-        found = {}
+        felt_at_most = min(_FELT * settings.penetration, FELT)
+        found: dict[Contact, float] = {}
         for one in system.touches:
             if not one.closed:
                 continue
             by_depth = isinstance(one.pair, Pair) or one.sharp
             depth = settings.penetration * one.pair.scale if by_depth else np.inf
             if (share := known.get(one.pair, 0.0)) > 0.0:
-                depth = min(depth, one.penetration * max(_FELT * settings.penetration / share, 1.0 / _TIGHTEN))
+                little = one.penetration * max(felt_at_most / share, 1.0 / _TIGHTEN)
+                depth = min(depth, max(little, ROUNDED))
             if np.isfinite(depth):
                 found[one.pair] = depth
         return found

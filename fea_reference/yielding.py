@@ -27,8 +27,15 @@ from fea_reference.system import System
 from fea_reference.touch import Contact, Penalty, Touch
 from scene.answer import Array
 
+FELT = 0.01
+"""Of pushes and of the motion: by how much what sinks in may change them."""
+
+ROUNDED = 2e-12
+"""Of the longest beam: less deep, what places are rounded to is felt."""
+
 _FALLS = (1.5, 2.0)  # m between sides, and at a tip
 _FAINT = 0.1  # of the largest push: a smaller one is measured by that
+_STILL = 1e-4  # of what the largest push does to a beam at its length: motions below are measured by that
 _BESIDE = 1e-6  # of the measure: how near a place is to the least gap that stands for it
 _POINT = 1.0  # elements: a zone no wider is a point
 _NEAR = 0.1  # lengths of the longest beam: what is farther nothing sinks into by loose penalties
@@ -51,13 +58,14 @@ def felt(
 
     Of an equilibrium; ``waiting`` are the contacts that are open in it, whose pushes are foreseen.
     """
-    sinking = [one for one in system.touches if one.push > 0.0 and in_points(one)]
+    sinking = [one for one in system.touches if one.push > 0.0 and one.penetration > ROUNDED and in_points(one)]
     if not sinking:
         return {}
     pressing = [one for one in system.touches if one.closed]
     largest = max(one.push for one in pressing)
-    moving = model.moving
-    motion = float(np.abs((system.z.values - model.start.values)[moving]).max())
+    places = model.node_dofs[:2]
+    motion = float(np.abs((system.z.values - model.start.values)[places]).max())
+    motion = max(motion, _STILL * largest / min(beam.softest for beam in model.beams))
     beside = [
         *_beside(model, system, (one.pair for one in system.touches if not one.closed), penalties, quadrature),
         *_beside(model, system, waiting, penalties, quadrature),
@@ -70,7 +78,7 @@ def felt(
         if way is None:
             continue
         way *= _FALLS[one.sharp]
-        share = float(np.abs(way[moving]).max()) / motion if motion > 0.0 else 0.0
+        share = float(np.abs(way[places]).max()) / motion
         for other in pressing:
             more = float(other.foreseen(way).sum()) - other.push
             more += _FALLS[one.sharp] * one.push if other is one else 0.0

@@ -27,8 +27,8 @@ def test_what_overlaps_by_more_than_was_asked_is_not_certified(thick):
     (failure,) = certify(march).failures
     assert failure.startswith("what touches in touch overlaps by ")
     assert failure.endswith("; 1.0e-04 was asked")
-    # as tight as the penalties are made for the penetration that was asked of them
-    assert 3e-3 < float(failure.split(";")[0].rsplit(" ", 1)[1]) <= 1e-2
+    # as tight as the penalties are made for the penetration that was asked of them, or for what may be felt of it
+    assert 2e-3 < float(failure.split(";")[0].rsplit(" ", 1)[1]) <= 1e-2
 
 
 @pytest.mark.parametrize(
