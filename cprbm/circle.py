@@ -37,6 +37,7 @@ import numpy as np
 from cprbm import smooth, wells
 from cprbm.brought import Brought, brought
 from cprbm.contact import Blocks, Group
+from cprbm.frame import Frame
 from cprbm.kinematics import Positions, State
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
@@ -331,20 +332,15 @@ class Circle:
             s = np.clip(s - steep / np.where(bent > 0.0, bent, np.inf), low, high)
         return np.asarray(np.minimum(least, self.distance(line.at(s))))
 
-    def passed(self, before: Positions, after: Positions) -> bool:
-        """Whether the beam has swept over the circle's centre between two states.
+    def frame(self, state: State, at: Positions) -> Frame:
+        """Where the centre is in a state, seen from which nothing turns."""
+        here = self.placed(at)
+        return Frame(np.array((here.x, here.y)), 0.0)
 
-        Seen from the centre, the beam's ends turn by as much more or less as the angle that it spans changes;
-        a beam that went across leaves a whole turn between the two.
-        """
-        angles = []
-        for at in (before, after):
-            here = self.placed(at)
-            angles.append(np.arctan2(at.y[self.a.joints] - here.y, at.x[self.a.joints] - here.x))
-        old, new = angles
-        spanned = np.sum(_turned(np.diff(new))) - np.sum(_turned(np.diff(old)))
-        ends = _turned(new[[0, -1]] - old[[0, -1]])
-        return bool(abs(spanned - (ends[1] - ends[0])) > np.pi)
+    @property
+    def standing_out(self) -> tuple[Array, Array | None]:
+        """Places that no beam goes through, (k, 2): the centre, on which no beam rests."""
+        return np.zeros((1, 2)), None
 
     def parting(self, state: State, at: Positions, s: Array) -> Array:
         """D_ss at arc lengths ``s`` if the beam touched there along the circle: the curvature with which it parts."""
@@ -377,8 +373,8 @@ class Circle:
         line, here = self.line(state, at), self.placed(at)
         s, _ = here._places(line)
         D = here.distance(line.sampled)
-        lowest = wells.lowest(D, np.inf)
-        return float(min(D.min(), *here.distance(line.at(s)), *here.lowest_near(line, lowest))) - self.offset
+        lowest = here.lowest_near(line, wells.lowest(D, np.inf))
+        return float(np.min(np.concatenate((D, here.distance(line.at(s)), lowest)))) - self.offset
 
 
 def _some(group: Group, these: Ints) -> Group:
@@ -424,11 +420,6 @@ def reach(chain: Chain, radius: float) -> float:
 def _beside(chain: Chain, radius: float) -> float:
     """Gap beyond which joints have none."""
     return JOINT_REACH * chain.h**2 * (1.0 / radius + 1.0)
-
-
-def _turned(angle: Array) -> Array:
-    """Angles in [−π, π)."""
-    return np.asarray((angle + np.pi) % (2.0 * np.pi) - np.pi)
 
 
 def circle_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Circle:

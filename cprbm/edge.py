@@ -49,7 +49,9 @@ from cprbm import smooth, wells
 from cprbm.brought import Brought, brought
 from cprbm.contact import Blocks, Group
 from cprbm.corner import Corner, corners_of
+from cprbm.cutting import cut
 from cprbm.faces import SAME, Face, Seen, faces_of, sides_of
+from cprbm.frame import Frame
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
@@ -73,31 +75,8 @@ ON_IT = 1e-9  # gap and slope of a clamped end that is in touch with the edge
 ARCHING = 0.2  # of what the largest force bends one element by: where a zone ends within one it arches by less
 JOINT_REACH = 2.0  # joints farther than this many h²·(κ + 1/ℓ) are none
 FLAT = 0.01  # of D″ times the length squared, as for zones
+ACROSS = 0.5  # cosine of the angle of a piece's normal and the beam's beyond which it pushes along the beam
 FACING = 1e-9  # by which a normal may miss those of the corner that it is of
-
-
-@dataclass(frozen=True, slots=True)
-class Frame:
-    """Where an edge's body is: m (2,), and φ."""
-
-    m: Array
-    phi: float
-
-    def inwards(self, places: Array) -> Array:
-        """Places (k, 2) as the body sees them."""
-        return self.turned(places - self.m, -self.phi)
-
-    def outwards(self, places: Array) -> Array:
-        """Places (k, 2) on the body as they are."""
-        return self.m + self.turned(places, self.phi)
-
-    @staticmethod
-    def turned(vectors: Array, angle: float) -> Array:
-        """Vectors (k, 2) turned counter-clockwise."""
-        if angle == 0.0:
-            return vectors
-        cos, sin = np.cos(angle), np.sin(angle)
-        return np.asarray(vectors @ np.array([[cos, sin], [-sin, cos]]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,6 +173,13 @@ class Edge:
             return Frame(np.zeros(2), 0.0)
         return Frame(np.array([at.x[self.mark], at.y[self.mark]]), float(state.bodies[self.body, 2]))
 
+    @property
+    def standing_out(self) -> tuple[Array, Array | None]:
+        """Places that no beam goes through, corners and where it bulges, and out of what is rigid, (k, 2) each."""
+        bulging = [face.bulging for face in self.pieces]
+        places = np.concatenate([self.whole.places, *(each for each, _ in bulging)])
+        return places, np.concatenate([self.whole.ahead, *(each for _, each in bulging)])
+
     def _half(self, s: Array) -> Array:
         """T at arc lengths ``s``."""
         return 0.5 * self.a.section.thickness_at(s) if self.offset > 0.0 else np.zeros_like(s)
@@ -221,7 +207,12 @@ class Edge:
         line, frame = self.line(state, at), self.frame(state, at)
         found = [group for pin in self.pins if pin is not None for group in self._stopped(pin, state, at)]
         number, s, free = self._places(line, frame)
-        corner, at_corners = self._closest(line, frame, s[free])
+        corner, at_corners, cuts = self._closest(line, frame, s[free])
+        if cuts:
+            # what has gone through a sharp corner is held by that, and not by its sides that it lies behind there
+            across = self._sideways(number, line.at(s), frame)
+            kept = ~(across & np.any([(low <= s) & (s <= high) for low, high in cuts], axis=0))
+            number, s, free = number[kept], s[kept], free[kept]
         if s.size:
             found.append(self._pressing(number, line, frame, s, free))
         if at_corners.size:
@@ -516,9 +507,19 @@ class Edge:
         level = sign * np.sqrt(1.0 - lean**2)
         return np.stack((lean * cos - level * sin, lean * sin + level * cos), axis=1)
 
-    def _closest(self, line: smooth.SmoothLine, frame: Frame, taken: Array) -> tuple[Ints, Array]:
-        """Corners that the beam faces and arc lengths where it is closest to them; none beside those ``taken``."""
-        none = np.zeros(0, dtype=np.intp), np.zeros(0)
+    def _sideways(self, number: Ints, A: smooth.Points, frame: Frame) -> Flags:
+        """Which points of the beam have a piece, by its ``number`` (k,), that pushes along it rather than across."""
+        n = self._each(number, A, frame).normal
+        return np.asarray(np.abs(n[:, 1] * np.cos(A.psi) - n[:, 0] * np.sin(A.psi)) < ACROSS)
+
+    def _closest(
+        self, line: smooth.SmoothLine, frame: Frame, taken: Array
+    ) -> tuple[Ints, Array, list[tuple[float, float]]]:
+        """Corners that the beam faces, arc lengths where it is closest to them, and between which it cuts some off.
+
+        There are none beside those ``taken`` but such.
+        """
+        none = np.zeros(0, dtype=np.intp), np.zeros(0), list[tuple[float, float]]()
         if not self.corners:
             return none
         A, places = line.sampled, frame.outwards(self.whole.places)
@@ -538,7 +539,7 @@ class Edge:
             return g * (m[:, 1] * r[:, 0] - m[:, 0] * r[:, 1]) + leading * rho * beyond.angle, F_s
 
         s, settled = wells.bottom(slope, s, self._around(s), LEAST_CURVATURE, CLOSE)
-        settled &= (s > 0.0) & (s < self.a.s[-1]) & ~self._ruled(s) & ~self._beside(s, taken)
+        settled &= (s > 0.0) & (s < self.a.s[-1]) & ~self._ruled(s)
         # samples on both sides may lead to one place
         s, corner = s[settled], number[settled]
         if not s.size:
@@ -550,12 +551,42 @@ class Edge:
         A = line.at(s)
         m, r = self._away(corner, A, frame), self._from(corner, A, frame)
         normals, r_here = frame.turned(m, -frame.phi), frame.turned(r, -frame.phi)
-        faced: Flags = np.asarray(np.sum(m * r, axis=1) >= 0.0)
-        for i, number in enumerate(corner.tolist()):
-            its, least = self.corners[number], -FACING - np.abs(A.bend[i]) * self.a.size_at(s[i])
-            faced[i] |= self._inside(its, r_here[i : i + 1])[0]
-            faced[i] &= its.beyond(normals[i : i + 1])[0] >= least
-        return corner[faced], s[faced]
+        rho, beside, through = np.sum(m * r, axis=1), self._beside(s, taken), dict[int, tuple[float, float]]()
+        inside = np.zeros(len(s), dtype=bool)
+        facing = np.array(
+            [
+                self.corners[number].beyond(normals[i : i + 1])[0] >= -FACING - np.abs(A.bend[i]) * self.a.size_at(s[i])
+                for i, number in enumerate(corner.tolist())
+            ]
+        )
+        for i in np.flatnonzero(facing & (rho < -NEAREST)).tolist():
+            inside[i] = self._inside(self.corners[corner[i]], r_here[i : i + 1])[0]
+            found = self._cut_off(int(corner[i]), line, A.only(np.array([i])), normals[i], frame)
+            if found is not None:
+                through[i] = found
+        faced = facing & ~beside & ((rho >= -NEAREST) | inside)
+        faced[list(through)] = True
+        return corner[faced], s[faced], list(through.values())
+
+    def _cut_off(
+        self, corner: int, line: smooth.SmoothLine, closest: smooth.Points, normal: Array, frame: Frame
+    ) -> tuple[float, float] | None:
+        """Between which arc lengths the beam cuts a ``corner`` off, to which it is ``closest`` at one point; or None.
+
+        ``normal`` (2,) is m as the body sees it.  What is cut off is the lesser part of what is rigid.
+        """
+        A, chains = line.sampled, self.whole.chains[corner]
+        beyond = -(np.concatenate(chains) - frame.inwards(np.array([[closest.x[0], closest.y[0]]]))) @ normal
+        if -beyond.min() > beyond.max():
+            return None
+        k = int(A.s.searchsorted(closest.s[0]))
+        course = np.array((np.insert(A.x, k, closest.x[0]), np.insert(A.y, k, closest.y[0]))).T
+        found = cut(frame.inwards(course), np.insert(A.s, k, closest.s[0]), *chains)
+        if found is None:
+            return None
+        # what leans is crossed beside the place that is closest to its corner
+        beside = float(self.a.size_at(closest.s)[0])
+        return found if found[0] - beside <= closest.s[0] <= found[1] + beside else None
 
     def _inside(self, corner: Corner, r: Array) -> Flags:
         """Which places, ``r`` (k, 2) from a corner as the body sees it, are in what is rigid there.
@@ -637,7 +668,13 @@ class Edge:
             least = np.minimum(least, around - (self._half(line.sampled.s) - self.offset))
         apart = float(np.max(np.diff(line.sampled.s)))
         # between two samples it is no less than half of what both have together less than the way from one to the other
-        return 0.5 * float(np.min(least[1:] + least[:-1])) - self.offset - apart
+        bound = 0.5 * float(np.min(least[1:] + least[:-1])) - self.offset - apart
+        if bound > 0.0 or not self.corners:
+            return bound
+        # what it may have cut off is no farther beyond than from the nearest sample
+        away = np.hypot(*(q[:, None] - self.whole.places).transpose(2, 0, 1)).min(axis=0)
+        thickest = float(self._half(line.sampled.s).max())
+        return min(bound, -float(np.max(away, where=away < REACH + thickest, initial=0.0)) - thickest - NEAREST)
 
     def least_gap(self, state: State, at: Positions) -> float:
         """Least gap anywhere along the beam, units of length; negative where it overlaps."""
@@ -646,7 +683,7 @@ class Edge:
         least = [self._nearest_of(line.sampled, *self._look(line, frame), frame)[0].min()]
         if s.size:
             least.append(self._nearest(line.at(s), frame)[0].min())
-        corner, s = self._closest(line, frame, np.zeros(0))
+        corner, s, _ = self._closest(line, frame, np.zeros(0))
         if s.size:
             A = line.at(s)
             rho = np.sum(self._away(corner, A, frame) * self._from(corner, A, frame), axis=1)

@@ -34,6 +34,7 @@ NEWTON_STEPS = 30
 CLOSE = 1e-8  # of ℓ: a step whose square is nothing
 SAMPLES = 65  # of a graph, from which the nearest place is sought
 SAME = 1e-9  # of ℓ: ends of pieces that are closer are one
+FAR = 1e3  # of ℓ: farther than any beam reaches
 GRAPHS = 1024  # of which it is known how high and how sharp they are
 
 
@@ -80,8 +81,16 @@ class Face(Protocol):
         """Where it begins and ends, (2,) each, with the free side on the left; None where it goes on for ever."""
 
     @property
+    def course(self) -> Array:
+        """Places along it from where it begins to where it ends (k, 2), far away where it goes on for ever."""
+
+    @property
     def sharpest(self) -> float:
         """The largest |κ|."""
+
+    @property
+    def bulging(self) -> tuple[Array, Array]:
+        """Places all over where it is round, as seen from the free side, and n there, (k, 2) each."""
 
     def seen(self, q: Array) -> Seen:
         """The piece from places ``q`` (k, 2)."""
@@ -100,12 +109,17 @@ class Straight:
     @property
     def ends(self) -> tuple[Array | None, Array | None]:
         """Where it begins and ends."""
-        (tx, ty), (nx, ny) = self.tau, self.normal
         low, high = (
             np.array(self.origin) + far * np.array(self.tau) if np.isfinite(far) else None
             for far in (self.low, self.high)
         )
-        return (low, high) if tx * ny - ty * nx > 0.0 else (high, low)
+        return (low, high) if self._forwards else (high, low)
+
+    @property
+    def _forwards(self) -> bool:
+        """Whether the free side is on the left along ``tau``."""
+        (tx, ty), (nx, ny) = self.tau, self.normal
+        return tx * ny - ty * nx > 0.0
 
     @property
     def roof(self) -> Roof:
@@ -113,9 +127,22 @@ class Straight:
         return Roof(self.origin, self.tau, self.normal, self.low, self.high, 0.0, 0.0, 0.0)
 
     @property
+    def course(self) -> Array:
+        """Both of its ends."""
+        low, high = (
+            np.array(self.origin) + np.clip(far, -FAR, FAR) * np.array(self.tau) for far in (self.low, self.high)
+        )
+        return np.array((low, high) if self._forwards else (high, low))
+
+    @property
     def sharpest(self) -> float:
         """Nothing."""
         return 0.0
+
+    @property
+    def bulging(self) -> tuple[Array, Array]:
+        """None."""
+        return np.zeros((0, 2)), np.zeros((0, 2))
 
     def seen(self, q: Array) -> Seen:
         """The piece from places ``q`` (k, 2)."""
@@ -154,9 +181,20 @@ class Graph:
         return _roof(self)
 
     @property
+    def course(self) -> Array:
+        """At some samples."""
+        places = self._placed(np.linspace(self.low, self.high, SAMPLES))
+        return places if (self.side > 0.0) != self.swapped else places[::-1]
+
+    @property
     def sharpest(self) -> float:
         """The largest |κ| at some samples."""
         return _sharpest(self)
+
+    @property
+    def bulging(self) -> tuple[Array, Array]:
+        """Samples where κ is positive."""
+        return _bulging(self)
 
     def _placed(self, v: Array) -> Array:
         w = polynomial.polyval(v, self.coefficients)
@@ -255,6 +293,15 @@ def _largest(graph: Graph, coefficients: Array) -> float:
 @lru_cache(maxsize=GRAPHS)
 def _sharpest(graph: Graph) -> float:
     return float(np.max(np.abs(graph.curvature(np.linspace(graph.low, graph.high, SAMPLES)))))
+
+
+@lru_cache(maxsize=GRAPHS)
+def _bulging(graph: Graph) -> tuple[Array, Array]:
+    v = np.linspace(graph.low, graph.high, SAMPLES)[1:-1]
+    v = v[graph.curvature(v) > 0.0]
+    slope = _value(_derivatives(graph.coefficients)[1], v)
+    n = graph.side * np.stack((-slope, np.ones(len(v))), axis=1) / np.hypot(1.0, slope)[:, None]
+    return graph._placed(v), n[:, ::-1] if graph.swapped else n
 
 
 def faces_of(contact: EdgeContact, unit_length: float, origin: tuple[float, float]) -> tuple[Face, ...]:

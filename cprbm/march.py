@@ -25,7 +25,7 @@ from cprbm.kinematics import State, most_turned, rest_state
 from cprbm.leap import Landed, leap
 from cprbm.leaving import aside, left
 from cprbm.levelling import levelled
-from cprbm.mechanism import Mechanism, mechanism_of
+from cprbm.mechanism import Mechanism, mechanism_of, swept_between
 from cprbm.model import Fit
 from cprbm.point import Point, point_at, potential_energy
 from cprbm.probing import probed, shapes, touching
@@ -408,7 +408,9 @@ class March:
                 at = mechanism, point, zones
                 target, solved = self._refitted(at, target, values, settings, now, settle=first)
             turned = most_turned(carried, solved.point.state)
-            if not (solved.converged or _near(solved)) or turned > FOLLOWED:
+            # a mesh may lose what is thin from sight, and the beam go through it
+            gone = swept_between(mechanism, point, target, solved.point)
+            if not (solved.converged or _near(solved)) or turned > FOLLOWED or gone:
                 if now is asked:  # on a mesh that fits a little less it stands already
                     break
                 return None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
@@ -32,6 +32,7 @@ from cprbm.rigid_edge import RigidEdge, rigid_edge
 from cprbm.settings import Settings
 from cprbm.stops import AngleStop, stop_of
 from cprbm.strands import NO_FACES
+from cprbm.sweeping import swath, swept
 from scene import (
     BeamContact,
     CircleContact,
@@ -126,11 +127,12 @@ class Mechanism:
         for name in names:
             pair = self.seen(name, before.rows)
             if isinstance(pair, Circle):
-                across = pair.passed(before.at, after.at) or self._overlapped_between(pair, before, after, way)
+                across = _swept(pair, start, way(), pair, end) or self._overlapped_between(pair, before, after, way)
             elif isinstance(pair, Edge):
                 # in a long step what the way is known by hides that an edge was gone through: a shorter one shows it
                 long = most_turned(before.state, after.state) > PASSING
-                across = self._crossed_between(pair, before, after, way, WAY if long else EDGE_WAY)
+                across = _swept(pair, start, way(), pair, end)
+                across = across or self._crossed_between(pair, before, after, way, WAY if long else EDGE_WAY)
             elif isinstance(pair, Itself):
                 allowed = WAY * most_turned(before.state, after.state) ** 2
                 across = pair.passed(start, way(), end, allowed)
@@ -183,6 +185,43 @@ class Mechanism:
         return max(
             SAG * chain.h * float(bends[chain.links.start : chain.links.stop - 1].max()) for chain in pair.chains
         )
+
+
+def _swept(
+    pair: Circle | Edge,
+    start: tuple[State, Positions],
+    way: Sequence[tuple[State, Positions]],
+    other: Circle | Edge,
+    end: tuple[State, Positions],
+) -> bool:
+    """Whether a beam went through a place of what is rigid from one side to the other on a ``way`` from start to end.
+
+    At the end the contact is the ``other``, which may have another mesh.
+    """
+    places, ahead = pair.standing_out
+    if not len(places):
+        return False
+    course = [*((pair, state, at) for state, at in (start, *way)), (other, *end)]
+    frames = [of.frame(state, at) for of, state, at in course]
+    first, last = (
+        swath(of.line(state, at), places, frame.m, frame.phi)
+        for (of, state, at), frame in zip((course[0], course[-1]), (frames[0], frames[-1]), strict=True)
+    )
+    ends = [
+        frame.inwards(np.array([(at.x[joint], at.y[joint]) for joint in (of.a.joints.start, of.a.joints.stop - 1)]))
+        for (of, _, at), frame in zip(course, frames, strict=True)
+    ]
+    return bool(np.any(swept(first, last, np.stack(ends, axis=1), places, ahead)))
+
+
+def swept_between(mechanism: Mechanism, point: Point, other: Mechanism, carried: Point) -> bool:
+    """Whether a beam went through something rigid between a state and one beside it on an ``other`` mesh."""
+    before, after = (point.state, point.at), (carried.state, carried.at)
+    for name in {*mechanism.near(*before), *other.near(*after)}:
+        pair, its = mechanism.pairs[name], other.pairs[name]
+        if isinstance(pair, Circle | Edge) and isinstance(its, Circle | Edge) and _swept(pair, before, (), its, after):
+            return True
+    return False
 
 
 def _turned(before: State, after: State) -> float:

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from cprbm.corner import Corner
-from cprbm.faces import Face, Seen, Straight
+from cprbm.faces import SAME, Face, Seen, Straight
 from scene.answer import Array, Flags, Ints
 
 NEAREST = 1e-9  # of ℓ: pieces whose distances differ by less are equally near
@@ -83,6 +83,31 @@ class WholeEdge:
     def places(self) -> Array:
         """The corners' places (C, 2)."""
         return np.array([corner.place for corner in self.corners]).reshape(-1, 2)
+
+    @cached_property
+    def chains(self) -> tuple[tuple[Array, Array], ...]:
+        """Of each corner the edge from there on, (k, 2) against its course and (j, 2) along it."""
+        return tuple(
+            (self._chain(np.array(corner.place), 1), self._chain(np.array(corner.place), 0)) for corner in self.corners
+        )
+
+    def _chain(self, place: Array, side: int) -> Array:
+        """The edge from a ``place`` on: along it from the faces' ends of ``side`` 0, back along it from those of 1."""
+        found, at = [place[None]], place
+        for _ in self.faces:
+            face = next((each for each in self.faces if _is_at(each.ends[side], at)), None)
+            if face is None:
+                break
+            found.append((face.course if side == 0 else face.course[::-1])[1:])
+            end = face.ends[1 - side]
+            if end is None or _is_at(end, place):
+                break
+            at = end
+        return np.concatenate(found)
+
+
+def _is_at(end: Array | None, place: Array) -> bool:
+    return end is not None and bool(np.hypot(*(end - place)) <= SAME)
 
 
 def _of_straight(q: Array, faces: tuple[Array, ...]) -> tuple[Array, Array, Flags]:

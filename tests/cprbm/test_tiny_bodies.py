@@ -69,3 +69,42 @@ def test_a_circle_smaller_than_an_element_presses_as_a_point_does(radius, links,
     forces, tip = load.onto(places, gaps, np.ones(2))
     assert [values[f"{name}.force"][0] for name in circles] == pytest.approx(forces, rel=0.02, abs=1e-3)
     assert values["tip.displacement"][1] == pytest.approx(tip, rel=0.02)
+
+
+# of the apex's legs how far aside and how far down their feet are: upright, leaning, closed with a base near
+KNIVES = [
+    (-0.001, 0.0005, 0.3, False),
+    (-0.0001, 0.07, 0.07, False),
+    (-0.04, -0.02, 0.2, True),
+    (-1e-4, 1e-4, 0.01, True),
+]
+
+
+@pytest.mark.parametrize("thick", [False, True])
+@pytest.mark.parametrize("links", [20, 40, 80])
+@pytest.mark.parametrize("knife", KNIVES)
+def test_a_knife_narrower_than_an_element_presses_as_a_point_does(knife, links, thick):
+    # a long step leads from rest beyond both; the beam is pressed on them, and passes through neither
+    load, places, gaps = Pressed(force=-0.04), np.array([0.411, 0.75]), np.array([0.0004, 0.0035])
+    half, (left, right, deep, closed) = 0.5 * T if thick else 0.0, knife
+    knives = {}
+    for i, (x, gap) in enumerate(zip(places.tolist(), gaps.tolist(), strict=True)):
+        top = -gap - half
+        points = ((x + left, top - deep), (x, top), (x + right, top - deep))
+        points = (*points, points[0]) if closed else points
+        knives[f"c{i}"] = {"kind": "beam-line", "points": points, "side": "left"}
+    values = solved(beam_onto(knives, load, thick=thick), links)
+    forces, tip = load.onto(places, gaps, np.ones(2))
+    assert [values[f"{name}.force"][0] for name in knives] == pytest.approx(forces, rel=0.02, abs=1e-3)
+    assert values["tip.displacement"][1] == pytest.approx(tip, rel=0.02)
+
+
+@pytest.mark.parametrize("tip", ["pinned", "clamped"])
+@pytest.mark.parametrize("links", [20, 41])
+def test_a_knife_presses_a_beam_that_is_held_at_both_ends(tip, links):
+    load, place, gap = Pressed(tip, force=-1.0, at=0.5), np.array([0.7753]), np.array([0.0013])
+    points = ((0.7327, -0.3076), (0.7753, -0.0013), (0.7776, -0.3076))
+    values = solved(
+        beam_onto({"knife": {"kind": "beam-line", "points": points, "side": "left"}}, load, thick=False), links
+    )
+    assert values["knife.force"][0] == pytest.approx(load.onto(place, gap, np.ones(1))[0][0], rel=0.02)
