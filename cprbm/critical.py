@@ -35,6 +35,7 @@ LEAST = 2  # minima from which the end of a branch can be told
 TURNED = 0.5  # part of τ in φ: a fold has all of it, a bifurcation nothing
 STILL = 1e-6  # rad: a fold, where the branch moves ever faster, turns links by more between two states
 NEAR = 20.0  # times as far as the branch's end is known from the last state: what goes to zero does so within
+CLEARLY = 3.0  # times as near what is found: the law that foretells it
 SPREAD = 2.0  # times as far from the end as the last state is the one that a law is continued from
 
 
@@ -61,6 +62,7 @@ class BranchEnd:
         loss, what: how, and of which contact or stop.
         curvature, left: κ at the end, and once nothing holds there.
         direction: in which the curvature is lost (n_links,).
+        far: whether it is known already that nothing beside it is what it leads to.
     """
 
     value: float
@@ -70,6 +72,7 @@ class BranchEnd:
     curvature: float
     left: float
     direction: Array
+    far: bool = False
 
 
 def told(loss: Loss, what: str) -> str:
@@ -89,7 +92,7 @@ def branch_end(mechanism: Mechanism, trail: list[Minimum], beyond: float) -> Bra
         return None
     last = trail[-1]
     width = beyond - last.value
-    before = next((one for one in reversed(trail) if abs(one.value - beyond) >= SPREAD * abs(width)), trail[0])
+    before = _from_afar(trail, beyond, SPREAD * abs(width)) or trail[0]
     if before is last:
         return None
     rows = _rows(last.point)
@@ -98,7 +101,7 @@ def branch_end(mechanism: Mechanism, trail: list[Minimum], beyond: float) -> Bra
     if let_go is not None:
         return let_go
     soft = softest(mechanism.problem, last.point)
-    fold = _part_in(mechanism, last, before, soft) > TURNED
+    fold = _part_in(mechanism, last, before, soft) > TURNED and not _falls_evenly(trail, before, beyond)
     power = 2.0 if fold else 1.0
     zero = _continued(last.value, last.curvature**power, before.value, before.curvature**power)
     if zero is not None and -1.0 <= (zero - last.value) / width <= NEAR:
@@ -198,6 +201,25 @@ def _continued(value: float, amount: float, before: float, earlier: float) -> fl
     if not amount < earlier < np.inf:
         return None
     return value + amount * (value - before) / (earlier - amount)
+
+
+def _from_afar(trail: list[Minimum], beyond: float, distance: float) -> Minimum | None:
+    """The last minimum that is so far from a value ``beyond``."""
+    return next((one for one in reversed(trail) if abs(one.value - beyond) >= distance), None)
+
+
+def _falls_evenly(trail: list[Minimum], before: Minimum, beyond: float) -> bool:
+    """Whether κ goes evenly with v, as towards a bifurcation, and by far not κ², as towards a fold.
+
+    It is foretold of the last of the ``trail`` from the minimum ``before`` it and one as many times farther off.
+    """
+    first, last = _from_afar(trail, beyond, SPREAD * abs(before.value - beyond)), trail[-1]
+    if first is None or first is before:
+        return False
+    share = (last.value - before.value) / (before.value - first.value)
+    kappas = np.array([one.curvature for one in (first, before, last)])
+    even, squared = (k[1] + share * (k[1] - k[0]) for k in (kappas, kappas**2))
+    return bool(abs(even - kappas[2]) * CLEARLY < abs(np.copysign(np.sqrt(abs(squared)), squared) - kappas[2]))
 
 
 def _part_in(mechanism: Mechanism, last: Minimum, before: Minimum, soft: Softest) -> float:

@@ -32,6 +32,7 @@ from scene import Certificate, Ending
 from scene.answer import Array
 
 GROWTH = 2.0
+AGAIN, NEARER = 0.5, 0.25  # of the way to what was refused before: from so near it is tried again, and once more
 FASTER = 4.0  # where no step was refused
 LEAST = 0.06  # part of a step that is tried after it: what a rate makes too much of goes with the step's root
 SETTLE = 0.1  # of the way: in shorter steps steady rows may settle which places there are
@@ -124,6 +125,7 @@ class Follower:
         done, step, iterations, refused = 0.0, 1.0, 0, False
         doubted: tuple[float, Equilibrium] | None = None
         believed: Certificate | None = None  # of what is doubted, if that is known
+        bad, nearest, again = np.inf, np.inf, AGAIN  # what was refused last, and from how near
         self.values, self.reached, self.locked = dict(way.begin), way.value(0.0), None
         problem = self.mechanism.problem
         here = there = rate(problem, self.point, way.change)
@@ -140,7 +142,8 @@ class Follower:
                     found = before
                 else:
                     most = SOON if start is ahead else self.settings.iterations
-                    farthest = self._farthest((fraction - done) * here)
+                    wary = self.careful or refused
+                    farthest = self._farthest((fraction - done) * here) if wary else np.inf
                     found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
                     iterations += found.iterations
                 if found is before and believed is not None:
@@ -167,7 +170,8 @@ class Follower:
                 self.trail = [*self.trail[-TRAIL:], Minimum(way.value(fraction), self.point.bare, certificate)]
                 if fraction == 1.0:
                     return Reached(ending, "", replace(certificate, iterations=iterations))
-                step = self._cut(way, done, GROWTH * step) if refused else FASTER * step
+                bad = bad if fraction < bad else np.inf
+                step = self._next(way, done, GROWTH * step, bad, again * nearest) if refused else FASTER * step
                 continue
             if doubtful > 1.0 and step > self.settings.smallest_step and iterations <= self.settings.iteration_limit:
                 # nothing ends here: the step was too long to be believed
@@ -179,6 +183,8 @@ class Follower:
                 self.locked = locked_on(problem, self.point, way.change)
                 if self.locked is not None:
                     return Reached(Ending.STEP_TOO_SMALL, self.locked.told, certificate=None)
+            again = AGAIN if np.isinf(bad) else NEARER
+            bad, nearest = fraction, step
             step, refused = self._cut(way, done, 0.5 * step), True
             if abs(self.refused - self.reached) <= NEARLY_TAUT * abs(way.value(1.0) - way.value(0.0)):
                 limit = taut(self._minima, self.refused)
@@ -230,7 +236,7 @@ class Follower:
 
     def _farthest(self, way: Array) -> float:
         """The most that a link turns by before a step is given up on which links go a ``way`` by their rates."""
-        return max(FAR * float(np.max(np.abs(way))), 2.0 * ISOLATED) if self.careful else np.inf
+        return max(FAR * float(np.max(np.abs(way))), 2.0 * ISOLATED)
 
     def _solved(
         self, values: dict[str, float], start: Point, most: int, farthest: float, *, settle: bool
@@ -261,6 +267,11 @@ class Follower:
         model = self.mechanism.problem.model
         change = found.state.theta - self.point.state.theta
         return uneven(model.lengths, change, start, end, carried_by_others(model, self.point, found))
+
+    def _next(self, way: Way, done: float, step: float, bad: float, near: float) -> float:
+        """The step after one that succeeded: no farther than what was refused (``bad``), half-way there if not near."""
+        cut = self._cut(way, done, min(step, bad - done))
+        return cut if done + cut < bad or bad - done <= near else 0.5 * cut
 
     def _cut(self, way: Way, done: float, step: float) -> float:
         """A step that ends before what is about to end the branch does, or just beyond where that is near."""

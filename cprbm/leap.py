@@ -12,7 +12,8 @@ Euler's implicit step is itself a minimum,
     θ_{k+1} = argmin E(θ) + ½ η Σ L (θ − θ_k)²,    so that    E(θ_{k+1}) ≤ E(θ_k),
 
 and with η larger than the curvature that was lost a convex one.  The drag falls as the motion slows, and vanishes in
-the minimum in which it ends.
+the minimum in which it ends.  Beyond a fold, where curvature falls evenly along the way, a step needs twice as much
+drag as the curvature is negative, or it leads out of the reach of Newton's method.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from cprbm.kinematics import State, most_turned
 from cprbm.mechanism import Mechanism
 from cprbm.point import Drag, Point, point_at, point_under, potential_energy
 from cprbm.settings import Settings
+from cprbm.stability import softest
 from scene import Certificate, Ending
 from scene.answer import Array
 
@@ -37,6 +39,8 @@ STEP = 0.3  # rad: the most that a link turns by in a step
 SLOW = 0.1  # rad: a step of less lets the drag fall
 STILL = 0.02  # rad: after such a step it is seen whether there is a minimum near by
 EASED, RAISED = 0.4, 4.0
+CONVEX = 2.5  # times a negative curvature: the least drag that is tried
+FIRMER, SOFTER = 1.6, 0.9  # of that, after a step that failed, and after one that did not
 STEPS = 400  # at most, to where a leap ends
 ROUNDED = 1e-10  # of the energy
 
@@ -56,6 +60,7 @@ def leap(
     start: Point,
     direction: Array,
     steps: int = STEPS,
+    farthest: float = np.inf,
 ) -> Landed | None:
     """Go down from ``start``, which is about in equilibrium, to a certified minimum; None where none is found.
 
@@ -65,6 +70,7 @@ def leap(
         start: the branch's last state.
         direction: of the curvature that was lost, (n_links,); of its two senses the one that leads lower is taken.
         steps: at most so many.
+        farthest: rad; where a link has turned by more, the motion is followed no further.
     """
     nudge = NUDGE * direction / max(float(np.max(np.abs(direction))), 1e-300)
     tried = [
@@ -72,22 +78,35 @@ def leap(
     ]
     begun = [one for one in tried if one is not None]
     point = min(begun, key=lambda one: potential_energy(mechanism.problem, one)) if begun else start
-    strength, iterations = FIRST, 0
+    strength, convex = FIRST, CONVEX
+    soft = _falling(mechanism, point)
     for _ in range(steps):
+        strength = max(strength, convex * soft)
         ahead = _step(mechanism, settings, values, point, strength)
-        iterations += 1
         if ahead is None:
-            strength *= RAISED
+            little = strength < RAISED * CONVEX * soft
+            strength *= FIRMER if little else RAISED
+            convex = max(convex, strength / soft) if little else convex
             if strength > MOST:
                 return None
             continue
         turned = most_turned(point.state, ahead.state)
         point = ahead
-        if turned < STILL and (landed := _landed(mechanism, settings, values, point)) is not None:
+        if most_turned(start.state, point.state) > farthest:
+            return None
+        soft, convex = _falling(mechanism, point), max(SOFTER * convex, CONVEX)
+        still = turned < STILL and soft == 0.0
+        if still and (landed := _landed(mechanism, settings, values, point)) is not None:
             return landed
         if turned < SLOW:
             strength *= EASED
     return None
+
+
+def _falling(mechanism: Mechanism, point: Point) -> float:
+    """By how much the smallest curvature is negative."""
+    curvature = softest(mechanism.problem, point).curvature
+    return max(-curvature, 0.0) if np.isfinite(curvature) else 0.0
 
 
 def _nudged(mechanism: Mechanism, values: dict[str, float], start: Point, way: Array) -> Point:

@@ -35,7 +35,7 @@ def aside(
 
     None as well where as far to the other side there is another: which of them it comes to nothing says.
     """
-    landed = leap(mechanism, settings, values, start, direction, STEPS)
+    landed = leap(mechanism, settings, values, start, direction, STEPS, BESIDE)
     if landed is None or most_turned(start.state, landed.point.state) > BESIDE:
         return None
     there, here = landed.point.state, start.state
@@ -68,4 +68,5 @@ def left(mechanism: Mechanism, settings: Settings, last: Minimum, way: Way) -> B
     if not strayed(problem.model.lengths, change, ways[0], ways[1], shifted):
         return None
     value = 0.5 * (last.value + way.value(1.0))
-    return BranchEnd(value, width, Loss.FOLD, "", last.curvature, last.curvature, soft.direction)
+    far = most_turned(last.point.state, landed.point.state) > BESIDE
+    return BranchEnd(value, width, Loss.FOLD, "", last.curvature, last.curvature, soft.direction, far)

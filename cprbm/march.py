@@ -208,7 +208,7 @@ class March:
         landed, reached = None, Reached(Ending.BRANCH_ENDS, of, certificate=None)
         # where another branch goes off, either of its sides is as good as the other
         beside = stage.beyond is None and end.loss not in (Loss.BIFURCATION, Loss.SLIP)
-        if beside or stage.beyond == "jump":
+        if (beside and not end.far) or stage.beyond == "jump":
             ends = (end.value, on.refused)
             furthest = max(ends) if target > on.reached else min(ends)
             step = max(BEYOND * abs(on.refused - on.reached), ONWARD * abs(target - furthest))

@@ -31,6 +31,7 @@ from fea_reference.advance import advance
 from fea_reference.curvature import Mode, softest
 from fea_reference.model import Model
 from fea_reference.settings import Settings
+from fea_reference.sinking import known_depths, sunk
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import Contact, Penalty
 from scene.answer import Array
@@ -108,6 +109,9 @@ def onwards(branch: Branch, start: Place, length: float) -> Place | None:
     model, settings = branch.model, branch.settings
     z, value = advance(model, start.system.z, length * start.way), start.value + length * start.rate
     foreseen = {one.pair: one.foreseen(length * start.way) for one in start.system.touches}
+    pushes = {one.pair: one.pushes for one in start.system.touches if one.closed}
+    known = known_depths(start.system, {one.pair: one.penetration for one in start.system.touches}, pushes)
+    z = sunk(model, branch.penalties, settings.quadrature, start.system, z, foreseen, known)
     correction = np.inf
     for _ in range(_ITERATIONS):
         system = assemble(
@@ -128,7 +132,8 @@ def onwards(branch: Branch, start: Place, length: float) -> Place | None:
         if correction > 1.0:
             return None
         foreseen = {one.pair: one.foreseen(step) for one in system.touches}
-        z, value = advance(model, z, step), value + change
+        z = sunk(model, branch.penalties, settings.quadrature, system, advance(model, z, step), foreseen, known)
+        value += change
     return None
 
 

@@ -21,6 +21,8 @@ inequalities.  σ falls as long as the steps are short, until none is needed.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from fea_reference.advance import advance
@@ -40,7 +42,11 @@ _ASIDE = 1e-4  # the same where another branch goes off: both are as good as one
 _KICKS = (3e-3, 1e-2)  # rad (and lengths)
 _FARTHEST = 0.05  # rad (and lengths): the most that one step may move anything
 _AIM = 0.03  # the same that is aimed at; after a step no longer, none but that to the minimum is tried
-_CONVEX = 2.0  # times a negative curvature: the least drag
+_CONVEX = 2.5  # times a negative curvature: the least drag that is tried
+_FIRMER = 1.6  # times as much drag where curvature is negative, after a step that failed
+_RAISED = 4.0  # the same elsewhere
+_SOFTER = 0.9  # of that after one that did not
+_SOON = 12  # iterations in which a step is found, if it is one
 _STEPS = 400
 _FEW = 60  # of them, where it is not to lead far
 _CHANGES = 8  # of contacts and stops in one step
@@ -88,18 +94,22 @@ def descended(
 def _fallen(march: March, load: int, drag: float, first: State, farthest: float, steps: int) -> bool:
     """Fall to a minimum, if there is one to be found in so many ``steps`` and not farther from the ``first`` state."""
     march.renew()  # without the drag
+    convex = _CONVEX
     for _ in range(steps):
         if drag > _STRONGEST or march.moved(march.system, first) > farthest:
             return False
         before, saved = march.system, march.saved()
         energy = penalised_energy(march.model, before, march.values)
-        # with less drag than this the next state would be no minimum
-        drag = max(drag, -_CONVEX * march.curvature)
+        drag = max(drag, -convex * march.curvature)
         if not _step(march, load, before.z, drag, before.z) or _risen(march, energy):
             march.restore(saved)
-            drag *= 4.0
+            soft = -march.curvature
+            little = drag < _RAISED * _CONVEX * soft
+            drag *= _FIRMER if little else _RAISED
+            convex = max(convex, drag / soft) if little else convex
             continue
         march.renew()
+        convex = max(_SOFTER * convex, _CONVEX)
         moved = march.moved(march.system, before.z)
         drag *= min(max(moved / _AIM, 0.1), 4.0)
         if moved > _AIM or not march.curvature > 0.0:
@@ -120,10 +130,11 @@ def _risen(march: March, energy: float) -> bool:
 def _step(march: March, load: int, anchor: State, drag: float, start: State) -> bool:
     """One step from ``anchor``, sought from ``start``; whether it could be made."""
     held = Drag(anchor, drag * lumped_mass(march.model))
+    settings = replace(march.settings, newton_limit=min(_SOON, march.settings.newton_limit))
     for _ in range(_CHANGES):
         solved = equilibrium(
             march.model,
-            march.settings,
+            settings,
             march.penalties,
             march.values,
             start,

@@ -17,7 +17,8 @@ with the penalty have a fold at some P of the third power of the penetration, an
 by a sharp turn.  Here P(λ) is followed to its zero.  Where a contact presses in several places, each of them may let
 go.  A fold at which μ would be positive, were the penalty many times as stiff, is none of the mechanism's own either,
 if P has gone to nothing: of what it was where the following began, or, where that began so close that there was little
-left, if at the rate of then it vanishes within next to nothing and what a rigid contact holds has not changed since.
+left, if what a rigid contact holds has not changed since and P has fallen to a tenth or, at the rate of then, vanishes
+within next to nothing.
 
 A stop's moment is an unknown; it is zero to the last digits where it lets go.
 """
@@ -62,7 +63,7 @@ _FORESEEN = 1e-3  # of the span: from where it is foreseen, if no step leads nea
 _DIFFERENCE = 1e-7  # of the span: what rates are seen by
 _RIGID = 1e4  # times as stiff
 _HELD = 1e-2  # of the curvature at the beginning: that of what is held
-_NOTHING = 1e-2  # of a contact's force at the beginning
+_NOTHING, _LITTLE = 1e-2, 0.1  # of a contact's force at the beginning: enough, or enough where it holds as ever
 _SOON = 1e-4  # of the span: from where a contact's force is on its last way to zero
 _AS_HELD = 0.5  # of what a rigid contact held at the beginning: it holds as ever
 
@@ -323,7 +324,8 @@ def _gone(march: March, branch: Branch, first: Place, begun: Touch, one: Touch, 
     if one.push < _NOTHING * begun.push:
         return True
     change = float(begun.foreseen(first.way).sum()) - begun.push
-    if not (change < 0.0 and begun.push * abs(first.rate) < -change * _SOON * branch.span and one.push < begun.push):
+    soon = change < 0.0 and begun.push * abs(first.rate) < -change * _SOON * branch.span and one.push < begun.push
+    if not (soon or one.push < _LITTLE * begun.push):
         return False
     return held > _AS_HELD * softest(march.model, stiffened(march.model, first.system, begun, _RIGID)).curvature
 

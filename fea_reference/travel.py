@@ -49,6 +49,7 @@ _AGAIN = 1e-5  # of the span: an end that is met again, not another
 _HALF = 0.5  # of the way to where the curvature is foreseen to vanish
 _NEAR = 1e-2  # of the span: a step shorter than this is left to following the branch
 _TIRED = 3  # cuts in a row after which that is tried
+_WARY = 3  # cuts in all after which the curvature is looked at where steps look for no end
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,8 +168,9 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
     rate: Array | None = None
     tight: March | None = None
     paced, looked = (march.values[load], march.iterations), False
-    leapt = False
+    leapt, failed = False, 0
     while march.values[load] != target:
+        looking = watched or failed >= _WARY
         if abs(march.values[load] - paced[0]) >= _PACE * course.span:
             paced, looked = (march.values[load], march.iterations), False
         if cuts > _CUTS:
@@ -178,7 +180,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
                 Ending.STEP_TOO_SMALL,
                 f"{march.iterations} iterations only led to {march.shown(load, march.values[load])}",
             )
-        if watched and not known:
+        if looking and not known:
             known = [*march.foregone(load), (float(march.values[load]), march.curvature)]
         onward = march.onward(load, march.rate(load) if rate is None else rate, target)
         rate = onward.rate
@@ -187,17 +189,19 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
         foreseen = _HALF * _vanishing(known)
         size = min(abs(way), stride, _PREDICTED / max(speed, 1e-300))
         minimum = not watched or known[-1][1] > 0.0
-        close = minimum and foreseen < size and foreseen < _NEAR * course.span
+        stable = bool(known) and known[-1][1] > 0.0
+        close = stable and foreseen < size and foreseen < _NEAR * course.span
         size = min(size, foreseen)
         value = target if size >= abs(way) else march.values[load] + np.copysign(size, way)
         if value == march.values[load]:
             raise StoppedError(*reason)
-        close = close or (watched and minimum and follow and about_to_go(march, load, float(value)))
+        close = close or (stable and follow and about_to_go(march, load, float(value)))
         saved, spent = march.saved(), march.iterations
         trouble: Trouble | None = None
         unstable = False
         if not (follow and close):
             trouble = march.step(load, value, onward)
+            failed += trouble is not None
             if trouble is None:
                 ahead = march.rate(load)
                 jumped = _jumped(saved, march, load, rate, ahead)
@@ -231,7 +235,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
                     march.restore(loose)
             if lost is not None:
                 _beyond(march, course, target, lost)
-                stride, cuts, searching = np.inf, 0, False
+                stride, cuts, failed, searching = np.inf, 0, 0, False
                 limit = march.iterations + march.settings.iteration_limit
                 paced, looked = (march.values[load], march.iterations), False
             elif tired:
@@ -244,7 +248,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
             known, rate, march.behind = [], None, None
         elif trouble is None:
             same = len(march.penalties) == len(saved.penalties) and march.acting is saved.acting
-            known = [*known[-1:], (float(march.values[load]), march.curvature)] if same and watched else []
+            known = [*known[-1:], (float(march.values[load]), march.curvature)] if same and looking else []
             march.course = (load, *known[-2]) if len(known) == 2 and not march.loose else None
             march.behind, rate = march.gone(load, saved, rate, ahead), ahead
             easy = march.iterations - spent <= _EASY
