@@ -716,7 +716,9 @@ def nearest_samples(G: Array, A: Array, within: float) -> tuple[Array, Ints]:
         return np.where(distance < within, distance, np.inf), number
     from scipy.spatial import cKDTree  # loaded where beams with many links may touch each other
 
-    distance, number = cKDTree(G).query(A, distance_upper_bound=within)
+    # places follow each other along lines: a tree that is not levelled is soon made and soon gone through
+    tree = cKDTree(G, balanced_tree=False, compact_nodes=False)
+    distance, number = tree.query(A, distance_upper_bound=within)
     return np.asarray(distance), np.asarray(number)
 
 
