@@ -38,6 +38,11 @@ class Measure:
     overlap: float
     complementarity: float
 
+    def within(self, tolerance: float) -> bool:
+        """Whether nothing is left but what is tolerated, or round-off."""
+        allowed = max(tolerance, 100.0 * EPS)
+        return self.residual <= max(tolerance, self.floor) and self.violation <= allowed and self.overlap <= allowed
+
 
 @dataclass(frozen=True, slots=True)
 class Equilibrium:
@@ -122,23 +127,23 @@ def equilibrium(
         scale = min(part, LONGEST_TURN / longest) if longest > 0.0 else part
         state = point.state.moved(scale * change, model.n_links)
         before, point = point, point_at(problem, values, state, mu, lam, point.rows)
-        now = measure(problem, point)
+        earlier, now = now, measure(problem, point)
         most = max(now.residual, now.violation, now.overlap)
         idle, best = 0 if most < BETTER * best else idle + 1, min(best, most)
         if most_turned(start.state, state) > farthest:
             return Equilibrium(point, now, iteration, converged=False)
         if scale == 1.0 and _settled(now, longest, tolerance):
             return Equilibrium(point, now, iteration, converged=True)
-        near = before if near is None and _serves(problem, before, point, now.residual * longest, tolerance) else None
+        # a step leaves what goes with its square; with the system of the state before, about twice the part of the
+        # residual that the last one left
+        enough = 2.0 * now.residual * now.residual <= tolerance * earlier.residual
+        near = before if near is None and enough and _serves(problem, before, point) else None
     return Equilibrium(point, now, iterations, converged=False)
 
 
-def _serves(problem: Problem, before: Point, point: Point, left: float, tolerance: float) -> bool:
-    """Whether the system of the state ``before`` is good enough for the next step, after which about ``left`` is left.
-
-    That is the residual times the length of the last step: by so much the system is another.
-    """
-    if not left <= tolerance or many(point.rows) or not point.rows.same(before.rows):
+def _serves(problem: Problem, before: Point, point: Point) -> bool:
+    """Whether the system of the state ``before`` is known, and has the rows of that of the ``point``."""
+    if many(point.rows) or not point.rows.same(before.rows):
         return False
     known = known_system(problem, before)
     return known is not None and known.convex
@@ -178,9 +183,4 @@ def _returns(seen: list[tuple[float, Held]], here: tuple[float, Held]) -> bool:
 
 
 def _settled(now: Measure, longest: float, tolerance: float) -> bool:
-    return (
-        now.residual <= max(tolerance, now.floor)
-        and now.violation <= max(tolerance, 100.0 * EPS)
-        and now.overlap <= max(tolerance, 100.0 * EPS)
-        and longest <= 1e-5
-    )
+    return now.within(tolerance) and longest <= 1e-5

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
 GIVING = 1e-14  # ℓ³/EI: compliance of the equalities' rows in a Newton step; see :mod:`cprbm.newton`
 CHANGES = 12  # of the set that presses, in one Newton step; the next step goes on from the best set
+BORDER = 30  # rows by which the set may differ from that which was factorised; a solution costs a part of factors
 
 
 class _Entries:
@@ -104,7 +105,8 @@ class LocalSystem:
         rows = np.concatenate((rows[keep], self.fixed))
         columns = np.concatenate((columns[keep], self.fixed))
         values = np.concatenate((values[keep], np.ones(len(self.fixed))))
-        return splu(csc_array(coo_array((values, (rows, columns)), shape=(n, n))))
+        # columns have a few entries each, and no two the same: several of them at once are no sooner done
+        return splu(csc_array(coo_array((values, (rows, columns)), shape=(n, n))), panel_size=1)
 
     def change(self, solution: Array) -> Array:
         """The part of a solution that is a step of q = (θ, bodies)."""
@@ -239,25 +241,65 @@ def local_step(system: LocalSystem, pressed: Flags) -> tuple[Array, Array, Array
     Raises:
         np.linalg.LinAlgError: the system is singular.
     """
-    active = pressed.copy()
-    fewest, best = len(active) + 1, None
+    active, best = pressed.copy(), None
+    fewest, slack = len(active) + 1, 1e-13 * (1.0 + np.max(np.abs(system.values), initial=0.0))
+    found = Solved(system, active)
     for _ in range(CHANGES):
-        right = np.concatenate((system.right, -system.values[active]))
-        try:
-            solution = system.factorised(active).solve(right)
-        except RuntimeError:
-            raise np.linalg.LinAlgError("singular system") from None
-        lam = np.zeros(len(active))
-        lam[active] = solution[system.size :]
-        slack = 1e-13 * (1.0 + np.max(np.abs(system.values), initial=0.0))
+        if np.count_nonzero(active != found.active) > BORDER:
+            found = Solved(system, active)
+        solution, lam = found.changed_to(active)
         wrong = np.where(active, lam < 0.0, system.linearised(solution) > slack)
         count = int(np.sum(wrong))
         if count < fewest:
-            fewest = count
-            best = system.change(solution), solution[system.first_mu : system.size], np.maximum(lam, 0.0)
+            fewest, best = count, active
         if count == 0:
             break
         active = active ^ wrong
     if best is None:
         raise np.linalg.LinAlgError("no solution of the linearised contact problem")
-    return best
+    # what was sought by a border is handed out by factors of its own
+    solution, lam = (found if np.array_equal(best, found.active) else Solved(system, best)).changed_to(best)
+    return system.change(solution), solution[system.first_mu : system.size], np.maximum(lam, 0.0)
+
+
+class Solved:
+    """The solution with the rows of some contacts ``active`` (m,), from which those with a few others follow.
+
+    With K its matrix, x = K⁻¹f and E a border, the a of a row that presses as well, and a one in the place of λ for one
+    that no longer does, the others are x − K⁻¹E y, (EᵀK⁻¹E) y = Eᵀx − g, with −c and nought in g.
+    """
+
+    def __init__(self, system: LocalSystem, active: Flags) -> None:
+        self.system, self.active = system, active
+        try:
+            self.factors = system.factorised(active)
+        except RuntimeError:
+            raise np.linalg.LinAlgError("singular system") from None
+        self.own = self.factors.solve(np.concatenate((system.right, -system.values[active])))
+
+    def changed_to(self, active: Flags) -> tuple[Array, Array]:
+        """The solution, and λ (m,), with these rows.
+
+        Raises:
+            np.linalg.LinAlgError: the system with them is singular.
+        """
+        system, before, solution = self.system, self.active, self.own
+        lam = np.zeros(len(active))
+        more, fewer = np.flatnonzero(active & ~before), np.flatnonzero(before & ~active)
+        y = np.zeros(0)
+        if more.size or fewer.size:
+            place = np.full(len(active), -1)
+            place[more] = np.arange(len(more))
+            r, c, v = system.slopes
+            mine = place[r] >= 0
+            E = np.zeros((len(solution), len(more) + len(fewer)))
+            np.add.at(E, (c[mine], place[r[mine]]), v[mine])
+            E[system.size + np.cumsum(before)[fewer] - 1, len(more) + np.arange(len(fewer))] = 1.0
+            E[system.fixed] = 0.0
+            through, g = self.factors.solve(E), np.zeros(E.shape[1])
+            g[: len(more)] = -system.values[more]
+            y = np.linalg.solve(E.T @ through, E.T @ solution - g)
+            solution = solution - through @ y
+        lam[before] = solution[system.size :]
+        lam[fewer], lam[more] = 0.0, y[: len(more)]
+        return solution, lam

@@ -52,6 +52,7 @@ ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all br
 FURTHER = 30.0  # times as far before it, the fitted mesh is on the branch still
 SOON = 6  # iterations to a state that is nearly known
 NEARLY = 3  # from one that is near already
+ROUGHLY = 1e-7  # residual on a mesh whose places of contact may ask for another; on the last one none is left
 NEAR, NEARER = 1e-3, 1e-2  # residual of a state on a mesh that is not the last one, and of what it overlaps by
 FOLLOWED = 0.2  # rad: the most that a finer mesh may turn a link by against the coarser
 
@@ -480,8 +481,10 @@ class March:
         before, point, zones = at
         start = carried_over(before, point, target, values, zones)
         coarse = now is not self.family[-1]
+        # meshes that end where zones do may take turns, and which is the last must not hang on what was left
+        left = settings.tolerance if target.fit.ends else max(settings.tolerance, ROUGHLY)
         for steady in (False, True) if settle and not coarse else (coarse,):
-            solved = equilibrium(target.problem, values, start, settings.tolerance, most, settle=steady)
+            solved = equilibrium(target.problem, values, start, left, most, settle=steady)
             self.spent += solved.iterations
             if solved.converged:
                 break
@@ -490,7 +493,7 @@ class March:
                 target, solved = level
                 self.spent += solved.iterations
                 break
-        return target, solved
+        return target, replace(solved, converged=solved.converged and solved.measure.within(settings.tolerance))
 
     def notes(self) -> list[str]:
         """What a reader should know besides the numbers."""

@@ -311,25 +311,28 @@ class Pair:
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
         """Where the edges touch that touch at arc lengths ``s`` of A, (k, 2), units of length."""
-        lines = self.lines(state, at)
-        sigma = distance_along(self, lines, s)[1]
-        A, B = self.on_a(lines, s), self.on_b(lines, sigma)
+        A, B = self._faced(state, at, s)
+        sigma = B.s
         mine, other = self.a.section.thickness_at(s), self.b.section.thickness_at(sigma)
         share = mine / (mine + other)
         return np.stack((A.x + share * (B.x - A.x), A.y + share * (B.y - A.y)), axis=1)
 
     def slopes(self, state: State, at: Positions, s: Array) -> Array:
         """dD/ds at arc lengths ``s``."""
-        lines = self.lines(state, at)
-        A = self.on_a(lines, s)
-        B = self.foot(lines, A, distance_along(self, lines, s)[1])
+        A, B = self._faced(state, at, s)
+        B = self.facing(A, B)
         return np.asarray(self.side * np.sin(self.beside(A, B).psi - B.psi))
 
     def pressed(self, state: State, at: Positions, s: Array) -> tuple[Pressed, ...]:
         """On A and on B what lies at ``s`` of A."""
+        A, B = self._faced(state, at, s)
+        return (1.0, s, A.psi), (-1.0, B.s, B.psi)
+
+    def _faced(self, state: State, at: Positions, s: Array) -> tuple[smooth.Points, smooth.Points]:
+        """Points of A at arc lengths ``s`` and their feet on B."""
         lines = self.lines(state, at)
-        sigma = distance_along(self, lines, s)[1]
-        return (1.0, s, self.on_a(lines, s).psi), (-1.0, sigma, self.on_b(lines, sigma).psi)
+        A = self.on_a(lines, s)
+        return A, self.on_b(lines, _distance_of(self, lines, A)[1])
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
@@ -713,7 +716,9 @@ def nearest_samples(G: Array, A: Array, within: float) -> tuple[Array, Ints]:
         return np.where(distance < within, distance, np.inf), number
     from scipy.spatial import cKDTree  # loaded where beams with many links may touch each other
 
-    distance, number = cKDTree(G).query(A, distance_upper_bound=within)
+    # places follow each other along lines: a tree that is not levelled is soon made and soon gone through
+    tree = cKDTree(G, balanced_tree=False, compact_nodes=False)
+    distance, number = tree.query(A, distance_upper_bound=within)
     return np.asarray(distance), np.asarray(number)
 
 

@@ -119,8 +119,9 @@ def fitted(
             continue
         n = settings.links_of(chain.name)
         bent = [(mark, MOMENT) for mark in mechanism.problem.model.outset.bent.get(chain.name, ())]
-        # beside what presses there may be no room for a border where a moment acts
-        laid = _laid_out(mechanism, chain, n, found + bent, names) or _laid_out(mechanism, chain, n, found, names)
+        laid = _laid_out(mechanism, chain, n, found + bent, names)
+        if laid is None and bent:  # beside what presses there may be no room for a border where a moment acts
+            laid = _laid_out(mechanism, chain, n, found, names)
         if laid is None:
             continue
         numbers, places = laid
@@ -148,7 +149,8 @@ def _laid_out(
 
     What was ``found`` are marks and of whom; ends of the contacts that are ``zoned``, and moments, are borders.
     """
-    marks, of = np.array(sorted(mark for mark, _ in found)), [name for _, name in sorted(found)]
+    in_order = sorted(found)
+    marks, of = np.array([mark for mark, _ in in_order]), [name for _, name in in_order]
     # between two places of one contact the beam lies on what it touches, or nearly; a free end has no curvature;
     # and a dead force is known whatever the curvature
     dead = {MOMENT, *mechanism.problem.loads}
@@ -159,7 +161,7 @@ def _laid_out(
     at_end = np.array([False, *(name in zoned or name == MOMENT for name in of), False])
     numbers = np.where(at_end, np.round(numbers), numbers)
     as_they_are = not zoned and np.all(np.abs(numbers[1:-1] - n * marks) <= MOVED)
-    if as_they_are or not np.all(np.diff(numbers) >= 1.0):
+    if as_they_are or not (numbers[1:] - numbers[:-1] >= 1.0).all():
         return None
     places = np.concatenate(([0.0], marks, [1.0]))
     return _surrounded(numbers, places, n / BEYOND, np.flatnonzero(~at_end[1:-1]) + 1)

@@ -48,9 +48,12 @@ def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
         return ()
     moments = rows.holds_angles[mine]
     pinned = arcs[moments & (forces > 0.0)]
-    largest = np.max(forces[~moments], initial=0.0)
     # ends that are clamped in touch: no force is needed there
     clamped = chain.s[[0, -1]][list(pair.brought_to(point.state).clamped)]
+    if np.count_nonzero(forces > 0.0) == 1 and not (pinned.size or clamped.size):
+        place = float(arcs[forces > 0.0][0])
+        return (Zone(place, place, long=False),)
+    largest = np.max(forces[~moments], initial=0.0)
     arcs, forces = np.append(arcs, clamped), np.append(forces, np.full(len(clamped), largest))
     overlaps, reach = np.append(overlaps, np.zeros(len(clamped))), np.append(reach, np.zeros(len(clamped)))
     order = np.argsort(arcs)

@@ -10,13 +10,13 @@ from cprbm import newton
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import State, positions, rest_state
-from cprbm.local import local_step
+from cprbm.local import Solved, local_step
 from cprbm.march import March
 from cprbm.mechanism import mechanism_of
 from cprbm.newton import system
 from cprbm.point import contact_gradient, contact_rows, point_at
 from cprbm.zones import zones_of
-from scene import Profile
+from scene import Ending, Profile
 from scene.reading import scene_from
 from tests.cprbm.scenes import cantilever_data, drives_of, force
 from tests.references.wrapped import Wrapped
@@ -327,6 +327,23 @@ def test_both_forms_of_newtons_system_make_one_step_with_two_circles_that_move()
     one, other = newton.newton_step(problem, point), local_step(newton.local_system_at(problem, point), point.lam > 0.0)
     for mine, theirs in zip(one, other, strict=True):
         assert mine == pytest.approx(theirs, rel=1e-7, abs=1e-7 * np.max(np.abs(mine), initial=0.0))
+
+
+def test_a_set_that_differs_by_some_rows_is_solved_by_a_border_to_the_factors_of_another():
+    # reference: factors of its own; rows come and go, and what is held does not move
+    march = March(scene_of([191.0]), (cprbm.Settings(links=80),))
+    assert march.run()[0] is Ending.COMPLETED
+    problem, point = march.on.mechanism.problem, march.on.point
+    whole = newton.local_system_at(problem, point)
+    m = point.rows.size
+    before = np.arange(m) % 3 == 0
+    found = Solved(whole, before)
+    for active in (before, before | (np.arange(m) % 6 == 1), np.arange(m) % 6 == 0, np.arange(m) % 6 == 1):
+        mine, theirs = found.changed_to(active), Solved(whole, active).changed_to(active)
+        change, pressing = whole.change(theirs[0]), theirs[1]
+        assert whole.change(mine[0]) == pytest.approx(change, rel=1e-7, abs=1e-7 * np.max(np.abs(change)))
+        assert mine[1] == pytest.approx(pressing, rel=1e-6, abs=1e-6 * np.max(np.abs(pressing)))
+        assert not mine[1][~active].any()
 
 
 def hanging(reference, hold):
