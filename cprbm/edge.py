@@ -640,8 +640,8 @@ class Edge:
     ) -> tuple[float, float] | None:
         """Between which arc lengths the beam cuts a place off, to which it is ``closest`` at one point; or None.
 
-        ``chains`` are the edge on both sides of the place, ``normal`` (2,) is m as the body sees it.  What is cut off is
-        the lesser part of what is rigid.
+        ``chains`` are the edge on both sides of the place, ``normal`` (2,) is m as the body sees it.  What is cut off
+        is the lesser part of what is rigid.
         """
         A = line.sampled
         beyond = -(np.concatenate(chains) - frame.inwards(np.array([[closest.x[0], closest.y[0]]]))) @ normal

@@ -7,7 +7,7 @@ m           N or −N, whichever is towards the free side
 D           m·(C − G), where t·(C − G) = 0 and G_v·N = 0: where both are closest to each other
 ==========  ===================================================================================
 
-What is narrower than an element may be seen by none of the beam's samples.  So it is the graph that looks: from each of
+What is narrower than an element may be seen by no sample of the beam.  So it is the graph that looks: from each of
 its own the beam is as far as it is, and where that is least, the place is near.  Newton's method on both of
 these at once is then as sure as G is round, however sharp that is and however deep the beam lies in it.
 
