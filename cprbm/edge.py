@@ -39,7 +39,7 @@ at once.  If the corner had a row only without that dip, and joints only without
 from __future__ import annotations
 
 import cmath
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
@@ -50,7 +50,7 @@ from cprbm.brought import Brought, brought
 from cprbm.contact import Blocks, Group
 from cprbm.corner import Corner, corners_of
 from cprbm.cutting import cut
-from cprbm.faces import SAME, Face, Seen, faces_of, sides_of
+from cprbm.faces import SAME, Face, Graph, Seen, faces_of, sides_of
 from cprbm.frame import Frame
 from cprbm.kinematics import Positions, State, positions, rest_state
 from cprbm.kinks import missed
@@ -62,6 +62,7 @@ from cprbm.own_pins import own_pins
 from cprbm.pairs import THINNEST, Pressed
 from cprbm.standing import Attachment
 from cprbm.stops import AngleStop
+from cprbm.summit import Summits, looked_at, summits
 from cprbm.whole_edge import NEAREST, WholeEdge
 from scene import EdgeContact, Scene
 from scene.answer import Array, Flags, Ints
@@ -73,7 +74,7 @@ LEAST_CURVATURE = 1e-6  # of D, 1/ℓ, below which its minimum has no place of i
 REACH = 0.1  # minima of D farther than this part of the longest beam are no constraints yet
 ON_IT = 1e-9  # gap and slope of a clamped end that is in touch with the edge
 ARCHING = 0.2  # of what the largest force bends one element by: where a zone ends within one it arches by less
-JOINT_REACH = 2.0  # joints farther than this many h²·(κ + 1/ℓ) are none
+JOINT_REACH = 2.0  # joints farther than this many h²·(κ + 1/ℓ), or h if that is less, are none
 FLAT = 0.01  # of D″ times the length squared, as for zones
 ACROSS = 0.5  # cosine of the angle of a piece's normal and the beam's beyond which it pushes along the beam
 FACING = 1e-9  # by which a normal may miss those of the corner that it is of
@@ -206,8 +207,10 @@ class Edge:
     def _groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         line, frame = self.line(state, at), self.frame(state, at)
         found = [group for pin in self.pins if pin is not None for group in self._stopped(pin, state, at)]
-        number, s, free = self._places(line, frame)
+        tops, deep = self._summits(line, frame)
+        number, s, free = self._places(line, frame, tops)
         corner, at_corners, cuts = self._closest(line, frame, s[free])
+        cuts += deep
         if cuts:
             # what has gone through a sharp corner is held by that, and not by its sides that it lies behind there
             across = self._sideways(number, line.at(s), frame)
@@ -216,7 +219,13 @@ class Edge:
         if s.size:
             found.append(self._pressing(number, line, frame, s, free))
         if at_corners.size:
-            found.append(self._cornering(corner, line, frame, at_corners))
+            own = len(self.faces) * self._own_keys + corner
+            places, ahead = self.whole.places[corner], self.whole.ahead[corner]
+            found.append(self._cornering(places, ahead, np.zeros(len(own)), line, frame, at_corners, own))
+        for _, top in tops:
+            centres = top.place - top.radius[:, None] * top.normal
+            keys = np.full(len(top.s), -1)
+            found.append(self._cornering(centres, top.normal, top.radius, line, frame, top.s, keys))
         return tuple(found)
 
     def _beside(self, s: Array, places: Array) -> Flags:
@@ -249,11 +258,16 @@ class Edge:
         values = self._half(s) - seen.distance - np.where(free, self._leading(A, n) * beyond.integral, 0.0)
         return self._group(A, values, D_z, bent, self._keys(number, s, free))
 
-    def _cornering(self, number: Ints, line: smooth.SmoothLine, frame: Frame, s: Array) -> Group:
-        """Rows at arc lengths ``s`` (k,) against the corners of some ``number`` (k,)."""
+    def _cornering(
+        self, places: Array, ahead: Array, radius: Array, line: smooth.SmoothLine, frame: Frame, s: Array, keys: Ints
+    ) -> Group:
+        """Rows with some ``keys`` (k,) at arc lengths ``s`` (k,), each against what is round about a place (k, 2).
+
+        ``ahead`` (k, 2) is out of what is rigid there, of a ``radius`` (k,), nought of a corner.
+        """
         A = line.at(s)
-        m, z = self._away(number, A, frame), moving(A)
-        rho = np.sum(m * self._from(number, A, frame), axis=1)
+        m, z = self._away(ahead, A, frame), moving(A)
+        rho = np.sum(m * self._from(places, A, frame), axis=1)
         beyond, leading = missed(self.a, self.kinks, A), self._leading(A, m)
 
         def bent() -> Array:
@@ -267,9 +281,8 @@ class Edge:
             )
             return np.asarray(second + turned / (rho * M + g**2)[:, None, None])
 
-        values = self._half(s) - rho - leading * beyond.integral
-        own = len(self.faces) * self._own_keys + number
-        return self._group(A, values, self._slopes(A, z, m, frame), bent, tuple(own.tolist()))
+        values = self._half(s) - (rho - radius) - leading * beyond.integral
+        return self._group(A, values, self._slopes(A, z, m, frame), bent, tuple(keys.tolist()))
 
     def _slopes(self, A: smooth.Points, z: Moving, along: Array, frame: Frame) -> Array:
         """Of v_z its part along some directions (k, 2), over the local numbers (k, p)."""
@@ -368,8 +381,13 @@ class Edge:
         start, end = self.ruled
         return np.asarray((start & (s <= self.a.s[1])) | (end & (s >= self.a.s[-2])))
 
-    def _places(self, line: smooth.SmoothLine, frame: Frame) -> tuple[Ints, Array, Flags]:
-        """Which pieces rows stand against, the rows' arc lengths, and which of them move with a minimum, (k,) each."""
+    def _places(
+        self, line: smooth.SmoothLine, frame: Frame, tops: Sequence[tuple[int, Summits]]
+    ) -> tuple[Ints, Array, Flags]:
+        """Which pieces rows stand against, the rows' arc lengths, and which of them move with a minimum, (k,) each.
+
+        Where narrow graphs are closest to the beam, at their ``tops``, those have rows of their own.
+        """
         A = line.sampled
         q, seen = self._look(line, frame)
         mine, D = self.whole.facing(q, seen), seen.distance - self._half(A.s)
@@ -381,6 +399,13 @@ class Edge:
         # an end that the edge's own body holds cannot move against it: its gap is no unknown
         near[:, [0, -1]] &= ~np.array(self.held)
         numbers, places = self._minima(line, frame, seen, D, mine)
+        for number, top in tops:
+            own = (numbers != number) | np.all(
+                np.abs(places[:, None] - top.s) > self.a.size_at(places)[:, None], axis=1
+            )
+            numbers, places = numbers[own], places[own]
+            for place in top.s:
+                near[number] &= np.abs(A.s - place) > wells.BESIDE * self.a.size_at(place)
         for number, place in zip(numbers, places, strict=True):
             near[number] &= np.abs(A.s - place) > wells.BESIDE * self.a.size_at(place)
         on, at = near.nonzero()
@@ -494,18 +519,54 @@ class Edge:
         """Between which places (2, k) of the beam a minimum is sought from ``s`` (k,)."""
         return np.clip(np.stack((s - self.a.h, s + self.a.h)), 0.0, self.a.s[-1])
 
-    def _from(self, corner: Ints, A: smooth.Points, frame: Frame) -> Array:
-        """C − P (k, 2), each point of the beam from one corner, by its number (k,)."""
-        return np.asarray(np.array((A.x, A.y)).T - frame.outwards(self.whole.places)[corner])
+    @staticmethod
+    def _from(places: Array, A: smooth.Points, frame: Frame) -> Array:
+        """C − P (k, 2), each point of the beam from one of some ``places`` (k, 2) as the body sees them."""
+        return np.asarray(np.array((A.x, A.y)).T - frame.outwards(places))
 
-    def _away(self, corner: Ints, A: smooth.Points, frame: Frame) -> Array:
-        """m (k, 2) of the same."""
+    def _away(self, ahead: Array, A: smooth.Points, frame: Frame) -> Array:
+        """m (k, 2) of the same, ``ahead`` (k, 2) being out of what is rigid."""
         cos, sin = np.cos(A.psi), np.sin(A.psi)
-        ahead = frame.turned(self.whole.ahead, frame.phi)[corner]
+        ahead = frame.turned(ahead, frame.phi)
         sign = np.where(ahead[:, 1] * cos > ahead[:, 0] * sin, 1.0, -1.0)
         lean = np.clip(self._widening(A.s) / A.speed, -1.0, 1.0)
         level = sign * np.sqrt(1.0 - lean**2)
         return np.stack((lean * cos - level * sin, lean * sin + level * cos), axis=1)
+
+    def _summits(
+        self, line: smooth.SmoothLine, frame: Frame
+    ) -> tuple[list[tuple[int, Summits]], list[tuple[float, float]]]:
+        """Where narrow graphs are closest to the beam, by the graph, and between which arc lengths it cuts them off."""
+        known, what = line.known, (self.name, "summits")
+        if what not in known:
+            tops, deep = list[tuple[int, Summits]](), list[tuple[float, float]]()
+            for number, face in enumerate(self.pieces):
+                if isinstance(face, Graph) and looked_at(face, self.a.h):
+                    found, cuts = self._summits_of(face, line, frame)
+                    deep += cuts
+                    if found.s.size:
+                        tops.append((number, found))
+            known[what] = tops, deep
+        tops, deep = known[what]
+        return tops, deep
+
+    def _summits_of(
+        self, face: Graph, line: smooth.SmoothLine, frame: Frame
+    ) -> tuple[Summits, list[tuple[float, float]]]:
+        found = summits(face, line, frame, self.kinks, REACH + self.offset)
+        held, cuts = np.zeros(len(found.s), dtype=bool), list[tuple[float, float]]()
+        A = line.at(found.s)
+        rho = np.sum(self._away(found.normal, A, frame) * self._from(found.place, A, frame), axis=1)
+        for i in range(len(found.s)):
+            held[i] = rho[i] >= -NEAREST
+            if not held[i]:
+                chains = self.whole.beside(face, float(found.v[i]))
+                through = self._cut_off(chains, line, A.only(np.array([i])), found.normal[i], frame)
+                if through is not None:
+                    held[i] = True
+                    cuts.append(through)
+        held &= ~self._ruled(found.s)
+        return found.only(held), cuts
 
     def _sideways(self, number: Ints, A: smooth.Points, frame: Frame) -> Flags:
         """Which points of the beam have a piece, by its ``number`` (k,), that pushes along it rather than across."""
@@ -533,7 +594,7 @@ class Edge:
         def slope(s: Array) -> tuple[Array, Array]:
             A, corner = line.at(s), twice[: len(s)]
             beyond = missed(self.a, self.kinks, A)
-            m, r = self._away(corner, A, frame), self._from(corner, A, frame)
+            m, r = self._away(self.whole.ahead[corner], A, frame), self._from(self.whole.places[corner], A, frame)
             g, leading, rho = self._across(A, m), self._leading(A, m), np.sum(m * r, axis=1)
             F_s = g**2 + rho * (self._convexity(A, m, np.zeros(len(s))) + leading * beyond.bend)
             return g * (m[:, 1] * r[:, 0] - m[:, 0] * r[:, 1]) + leading * rho * beyond.angle, F_s
@@ -549,7 +610,7 @@ class Edge:
         other = np.append(True, (np.diff(s) != 0.0) | (np.diff(corner) != 0))
         s, corner = s[other], corner[other]
         A = line.at(s)
-        m, r = self._away(corner, A, frame), self._from(corner, A, frame)
+        m, r = self._away(self.whole.ahead[corner], A, frame), self._from(self.whole.places[corner], A, frame)
         normals, r_here = frame.turned(m, -frame.phi), frame.turned(r, -frame.phi)
         rho, beside, through = np.sum(m * r, axis=1), self._beside(s, taken), dict[int, tuple[float, float]]()
         inside = np.zeros(len(s), dtype=bool)
@@ -561,7 +622,8 @@ class Edge:
         )
         for i in np.flatnonzero(facing & (rho < -NEAREST)).tolist():
             inside[i] = self._inside(self.corners[corner[i]], r_here[i : i + 1])[0]
-            found = self._cut_off(int(corner[i]), line, A.only(np.array([i])), normals[i], frame)
+            chains = self.whole.chains[corner[i]]
+            found = self._cut_off(chains, line, A.only(np.array([i])), normals[i], frame)
             if found is not None:
                 through[i] = found
         faced = facing & ~beside & ((rho >= -NEAREST) | inside)
@@ -569,13 +631,19 @@ class Edge:
         return corner[faced], s[faced], list(through.values())
 
     def _cut_off(
-        self, corner: int, line: smooth.SmoothLine, closest: smooth.Points, normal: Array, frame: Frame
+        self,
+        chains: tuple[Array, Array],
+        line: smooth.SmoothLine,
+        closest: smooth.Points,
+        normal: Array,
+        frame: Frame,
     ) -> tuple[float, float] | None:
-        """Between which arc lengths the beam cuts a ``corner`` off, to which it is ``closest`` at one point; or None.
+        """Between which arc lengths the beam cuts a place off, to which it is ``closest`` at one point; or None.
 
-        ``normal`` (2,) is m as the body sees it.  What is cut off is the lesser part of what is rigid.
+        ``chains`` are the edge on both sides of the place, ``normal`` (2,) is m as the body sees it.  What is cut off
+        is the lesser part of what is rigid.
         """
-        A, chains = line.sampled, self.whole.chains[corner]
+        A = line.sampled
         beyond = -(np.concatenate(chains) - frame.inwards(np.array([[closest.x[0], closest.y[0]]]))) @ normal
         if -beyond.min() > beyond.max():
             return None
@@ -600,7 +668,12 @@ class Edge:
         place, depth = np.array(corner.place), np.hypot(r[:, 0], r[:, 1]) - NEAREST
         q = r + place
         for face in self.faces:
-            if not any(end is not None and np.hypot(*(end - place)) <= SAME for end in face.ends):
+            own = any(end is not None and np.hypot(*(end - place)) <= SAME for end in face.ends)
+            if own and isinstance(face, Graph):
+                # what is behind its tangent at the corner may be in front of it elsewhere
+                seen = face.seen(q)
+                inside &= ~seen.within | (seen.distance < 0.0)
+            elif not own:
                 seen = face.seen(q)
                 inside &= ~seen.within | (np.abs(seen.distance) >= depth)
         for tip in self.whole.tips:
@@ -672,22 +745,27 @@ class Edge:
         if bound > 0.0 or not self.corners:
             return bound
         # what it may have cut off is no farther beyond than from the nearest sample
-        away = np.hypot(*(q[:, None] - self.whole.places).transpose(2, 0, 1)).min(axis=0)
+        away = np.hypot(*(q[:, None] - self.standing_out[0]).transpose(2, 0, 1)).min(axis=0) + apart
         thickest = float(self._half(line.sampled.s).max())
-        return min(bound, -float(np.max(away, where=away < REACH + thickest, initial=0.0)) - thickest - NEAREST)
+        return min(bound, -float(np.max(away, where=away < REACH + thickest + apart, initial=0.0)) - thickest - NEAREST)
 
     def least_gap(self, state: State, at: Positions) -> float:
         """Least gap anywhere along the beam, units of length; negative where it overlaps."""
         line, frame = self.line(state, at), self.frame(state, at)
-        s = self._places(line, frame)[1]
+        tops, _ = self._summits(line, frame)
+        s = self._places(line, frame, tops)[1]
         least = [self._nearest_of(line.sampled, *self._look(line, frame), frame)[0].min()]
         if s.size:
             least.append(self._nearest(line.at(s), frame)[0].min())
         corner, s, _ = self._closest(line, frame, np.zeros(0))
         if s.size:
             A = line.at(s)
-            rho = np.sum(self._away(corner, A, frame) * self._from(corner, A, frame), axis=1)
-            least.append((rho - (self._half(s) - self.offset)).min())
+            m, r = self._away(self.whole.ahead[corner], A, frame), self._from(self.whole.places[corner], A, frame)
+            least.append((np.sum(m * r, axis=1) - (self._half(s) - self.offset)).min())
+        for _, top in tops:
+            A = line.at(top.s)
+            m, r = self._away(top.normal, A, frame), self._from(top.place, A, frame)
+            least.append((np.sum(m * r, axis=1) - (self._half(top.s) - self.offset)).min())
         return float(min(least)) - self.offset
 
 
@@ -698,7 +776,7 @@ def reach(chain: Chain, face: Face) -> float:
 
 def _beside(chain: Chain, face: Face) -> float:
     """Gap beyond which joints have none."""
-    return JOINT_REACH * chain.h**2 * (face.sharpest + 1.0)
+    return JOINT_REACH * min(chain.h**2 * (face.sharpest + 1.0), chain.h)
 
 
 def edge_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Edge:

@@ -196,6 +196,23 @@ class Graph:
         """Samples where κ is positive."""
         return _bulging(self)
 
+    @property
+    def samples(self) -> tuple[Array, Array, Array]:
+        """v, the places and n there, (k,), (k, 2) and (k, 2)."""
+        return _along(self)
+
+    def at(self, v: Array) -> tuple[Array, Array, Array]:
+        """Places at some v (k,) and their first two derivatives over v, (k, 2) each."""
+        f1, f2 = (_value(each, v) for each in _derivatives(self.coefficients)[1:])
+        first, second = np.stack((np.ones(len(v)), f1), axis=1), np.stack((np.zeros(len(v)), f2), axis=1)
+        return self._placed(v), *((first[:, ::-1], second[:, ::-1]) if self.swapped else (first, second))
+
+    def normal(self, v: Array) -> Array:
+        """n at some v (k,), (k, 2)."""
+        slope = _value(_derivatives(self.coefficients)[1], v)
+        n = self.side * np.stack((-slope, np.ones(len(v))), axis=1) / np.hypot(1.0, slope)[:, None]
+        return np.asarray(n[:, ::-1] if self.swapped else n)
+
     def _placed(self, v: Array) -> Array:
         w = polynomial.polyval(v, self.coefficients)
         places = np.stack((v - self.origin[0], w - self.origin[1]), axis=1)
@@ -299,9 +316,13 @@ def _sharpest(graph: Graph) -> float:
 def _bulging(graph: Graph) -> tuple[Array, Array]:
     v = np.linspace(graph.low, graph.high, SAMPLES)[1:-1]
     v = v[graph.curvature(v) > 0.0]
-    slope = _value(_derivatives(graph.coefficients)[1], v)
-    n = graph.side * np.stack((-slope, np.ones(len(v))), axis=1) / np.hypot(1.0, slope)[:, None]
-    return graph._placed(v), n[:, ::-1] if graph.swapped else n
+    return graph._placed(v), graph.normal(v)
+
+
+@lru_cache(maxsize=GRAPHS)
+def _along(graph: Graph) -> tuple[Array, Array, Array]:
+    v = np.linspace(graph.low, graph.high, SAMPLES)
+    return v, graph._placed(v), graph.normal(v)
 
 
 def faces_of(contact: EdgeContact, unit_length: float, origin: tuple[float, float]) -> tuple[Face, ...]:

@@ -37,13 +37,14 @@ class Swath:
         course: the beam's samples (n, 2), in the body's frame.
         beside: numbers of the samples between which the closest places are, the first of them (k,).
         closest: these (k, 2), in the body's frame; normals of the beam there (k, 2).
-        away: ρ (k,); resting: ε (k,).
+        s: s* (k,); away: ρ (k,); resting: ε (k,).
     """
 
     course: Array
     beside: Array
     closest: Array
     normals: Array
+    s: Array
     away: Array
     resting: Array
 
@@ -73,6 +74,7 @@ def swath(line: SmoothLine, places: Array, origin: Array, turn: float) -> Swath:
         beside=np.clip(A.s.searchsorted(s, side="right") - 1, 0, len(A.s) - 2),
         closest=closest,
         normals=normals,
+        s=s,
         away=np.hypot(*(closest - places).T),
         resting=RESTING * size**2 * np.abs(B.bend) + ROUND_OFF,
     )

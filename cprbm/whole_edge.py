@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 
 from cprbm.corner import Corner
-from cprbm.faces import SAME, Face, Seen, Straight
+from cprbm.faces import SAME, Face, Graph, Seen, Straight
 from scene.answer import Array, Flags, Ints
 
 NEAREST = 1e-9  # of ℓ: pieces whose distances differ by less are equally near
@@ -89,6 +89,18 @@ class WholeEdge:
         """Of each corner the edge from there on, (k, 2) against its course and (j, 2) along it."""
         return tuple(
             (self._chain(np.array(corner.place), 1), self._chain(np.array(corner.place), 0)) for corner in self.corners
+        )
+
+    def beside(self, graph: Graph, v: float) -> tuple[Array, Array]:
+        """The edge from a place of one of its graphs, at ``v``: (k, 2) against its course and (j, 2) along it."""
+        samples, places, _ = graph.samples
+        here, k = graph.at(np.array([v]))[0], int(samples.searchsorted(v))
+        lower, upper = np.concatenate((here, places[:k][::-1])), np.concatenate((here, places[k:]))
+        begins = np.hypot(*(graph.course[0] - places[0])) <= SAME
+        before, behind = (lower, upper) if begins else (upper, lower)
+        return (
+            np.concatenate((before, self._chain(graph.course[0], 1)[1:])),
+            np.concatenate((behind, self._chain(graph.course[-1], 0)[1:])),
         )
 
     def _chain(self, place: Array, side: int) -> Array:

@@ -198,6 +198,7 @@ def test_clamped_along_the_edge_the_clamp_has_what_the_pin_had():
     assert values["edge.ends"] == pytest.approx([CURVED.flat, CURVED.flat], abs=2.0 / 40**2 * LENGTH)
 
 
+STEEP = 1500.0  # 1/m
 CORNER = [0.55 * LENGTH, -0.37 * LENGTH]
 BENT = {
     "line": {"kind": "beam-line", "points": [[-0.01, 0.002], [0.03, 0.001], [0.9, -0.2]], "side": "left"},
@@ -218,13 +219,21 @@ BENT = {
         "side": "above",
     },
     "half-plane": {"kind": "beam-half-plane", "point": [0.02, 0.001], "normal": [0.1, 1.0]},
+    # far narrower and sharper than an element, its top where the corner is
+    "bump": {
+        "kind": "beam-function",
+        "axis": "x",
+        "coefficients": [CORNER[1] - STEEP * CORNER[0] ** 2, 2.0 * STEEP * CORNER[0], -STEEP],
+        "range": [CORNER[0] - 0.006, CORNER[0] + 0.006],
+        "side": "above",
+    },
 }
 
 
 # the paper's form refuses corners that stand out
 @pytest.mark.parametrize(
     ("kind", "formulation"),
-    [*((kind, "auto") for kind in BENT), *((k, "paper") for k in BENT if k not in {"line", "corner"})],
+    [*((kind, "auto") for kind in BENT), *((k, "paper") for k in BENT if k not in {"line", "corner", "bump"})],
 )
 @pytest.mark.parametrize("moves", [False, True])
 def test_rows_and_blocks_are_derivatives(kind, moves, formulation):
@@ -250,7 +259,7 @@ def test_rows_and_blocks_are_derivatives(kind, moves, formulation):
     start = at(base, np.zeros(0), NO_ROWS)
     lam = 0.5 + random.random(start.rows.size)
     point = at(base, lam, start.rows)
-    assert point.rows.size >= (1 if kind == "corner" else 4)
+    assert point.rows.size >= (1 if kind in {"corner", "bump"} else 4)
     keys = {key for _, key in point.rows.keys}
     # a place of its own: the second corner's
     assert formulation == "paper" or (4 * (13 + 2) + 1 if kind == "corner" else -1) in keys
