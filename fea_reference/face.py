@@ -48,7 +48,7 @@ from fea_reference.edge import edge_of
 from fea_reference.element import layer
 from fea_reference.hermite import Around, Index, NeutralLine, along, plane, shapes, twice_along
 from fea_reference.model import BodyPart, Model, turned
-from fea_reference.outline import Near
+from fea_reference.outline import Near, Outline
 from fea_reference.own_pins import held_on
 from fea_reference.state import Complex, State, summed
 from fea_reference.swept import Beside, gone_over
@@ -66,6 +66,8 @@ _REACH = 2.0  # elements, from a corner to where what happens there is looked fo
 _CROSSING_STEPS = 15
 _ARRIVED = 1e-10  # elements
 _AT_END = 1e-6  # elements
+_BLUNT = 0.5  # sine of half the angle of a tip on which loose penalties hold a beam
+_SHARPEST = 1e5
 _LOOKED = 4  # Gauss points, to see where a zone presses to
 _PARTS = 4  # of a way on which a beam must not have passed through
 
@@ -101,11 +103,23 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
                 edge,
                 2.0 * edge.nearest if contact.thick else _SLENDER,
                 max(2.0 * edge.nearest, THINNEST) if contact.thick else 1.0,
-                beam.softest / width**4,
+                sharpness(outline) * beam.softest / width**4,
                 beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
             )
         )
     return tuple(found)
+
+
+def sharpness(outline: Outline) -> float:
+    """How much stiffer the sides of the sharpest tip have to be, to hold a beam on that as those of a blunt one do.
+
+    What overlaps of a wedge goes with the cube of the sine of half its angle.
+    """
+    corners = outline.corners
+    before, behind = (one[:, corners.jutting] for one in corners.normals)
+    # half of the angle between both sides, whose normals turn by all the rest
+    sine = np.sqrt(np.maximum(0.5 * (1.0 + (before * behind).sum(axis=0)), 0.0))
+    return float(np.clip((_BLUNT / max(float(sine.min(initial=1.0)), 1e-9)) ** 3, 1.0, _SHARPEST))
 
 
 def zones_of(model: Model, face: Face, z: State) -> Zones:

@@ -654,9 +654,14 @@ class March:
 
     def sunk(self) -> bool:
         """Whether beams have sunk so far into the penalties of a way that a further step might bring them through."""
-        return any(
+        return self.cut() or any(
             isinstance(one.pair, Pair) and one.penetration > _SINKING * one.pair.scale for one in self.system.touches
         )
+
+    def cut(self) -> bool:
+        """Whether tips of what is rigid have: on those that are sharp no step may find an equilibrium any more."""
+        faces = (one.pair for one in self.system.touches if isinstance(one.pair, Face) and one.closed)
+        return any(cut(self.model, face, self.system.z) > _SINKING * face.scale for face in faces)
 
     def settle(self, load: int) -> None:
         """Tighten penalties, and let stops change whose side is another with them, until all is as it should be.
