@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from fea_reference.contacts import CLOSED, least_gap
+from fea_reference.face import cut
 from fea_reference.march import March
 from fea_reference.model import Model, OnBeam
 from fea_reference.stops import acting_stops
 from fea_reference.supports import grounded, held, support
 from fea_reference.system import NOTHING, System
-from fea_reference.touch import LACKING, Pair, Touch
+from fea_reference.touch import LACKING, Face, Pair, Touch
 from fea_reference.yielding import FELT, felt
 from scene.answer import Array, Certificate
 
@@ -82,6 +83,10 @@ def certify(march: March) -> Certificate:
                 f"what touches in {one.pair.name} overlaps by {one.penetration * model.units.length:.1e} m, which "
                 f"changes what presses or moves by {share:.0%}"
             )
+        if isinstance(one.pair, Face) and one.closed:
+            deep = cut(model, one.pair, system.z)
+            if not deep <= max(settings.penetration, _RESOLVED) * one.pair.measure:
+                failures.append(f"a tip of {one.pair.name} cuts in by {deep * model.units.length:.1e} m")
         far = _across(march, one)
         if not far <= _FROM_AFAR * min(one.pair.measure, _SLENDER):
             failures.append(f"what touches in {one.pair.name} presses across a gap of {far * model.units.length:.1e} m")

@@ -37,6 +37,7 @@ from fea_reference.edge import edge_of
 from fea_reference.hermite import Around, NeutralLine, along, plane, shapes, twice_along
 from fea_reference.model import Model, turned
 from fea_reference.state import Complex, State, squared, summed
+from fea_reference.swept import gone_over
 from fea_reference.touch import Circle, Penalty, Touch, gauss, together
 from fea_reference.zones import Gap, Zones, negative, stepped
 from scene.answer import Array, Ints
@@ -118,6 +119,11 @@ def passed(model: Model, circle: Circle, before: State, after: State) -> bool:
     winding = np.arctan2(a[0] * b[1] - a[1] * b[0], (a * b).sum(axis=0)).sum()
     if abs(winding) > np.pi:
         return True
+    centres = [np.array([complex(*centre(model, circle, z))]) for z in (before, after)]
+    lines = [model.line(beam, z) for z in (before, after)]
+    first, last, over = gone_over((lines[0], centres[0]), (lines[1], centres[1]))
+    if (over & (first.d * last.d < 0.0)).any():
+        return True  # a circle smaller than what chords leave of arcs
     way = np.hypot(*(new - old)).max()
     allowed = circle.radius + circle.edge.nearest - circle.deepest - _SAGITTA * way**2
     return any(np.hypot(*(old + part * (new - old))).min() < allowed for part in _BETWEEN)

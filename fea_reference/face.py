@@ -43,16 +43,18 @@ from dataclasses import replace
 
 import numpy as np
 
+from fea_reference import swept
 from fea_reference.edge import edge_of
 from fea_reference.element import layer
 from fea_reference.hermite import Around, Index, NeutralLine, along, plane, shapes, twice_along
 from fea_reference.model import BodyPart, Model, turned
-from fea_reference.outline import Near
+from fea_reference.outline import Near, Outline
 from fea_reference.own_pins import held_on
 from fea_reference.state import Complex, State, summed
+from fea_reference.swept import Beside, gone_over
 from fea_reference.touch import THINNEST, Face, Penalty, Touch, gauss, together
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, none
-from scene.answer import Array
+from scene.answer import Array, Flags
 from scene.statement import EdgeContact, Scene
 
 _SLENDER = 0.01  # of the longest beam: what stands for the thickness of a beam that touches as a line
@@ -64,6 +66,9 @@ _REACH = 2.0  # elements, from a corner to where what happens there is looked fo
 _CROSSING_STEPS = 15
 _ARRIVED = 1e-10  # elements
 _AT_END = 1e-6  # elements
+_BLUNT = 0.5  # sine of half the angle of a tip on which loose penalties hold a beam
+_SHARPEST = 1e5
+_LOOKED = 4  # Gauss points, to see where a zone presses to
 _PARTS = 4  # of a way on which a beam must not have passed through
 
 
@@ -98,11 +103,23 @@ def faces(scene: Scene, model: Model, penetration: float) -> tuple[Face, ...]:
                 edge,
                 2.0 * edge.nearest if contact.thick else _SLENDER,
                 max(2.0 * edge.nearest, THINNEST) if contact.thick else 1.0,
-                beam.softest / width**4,
+                sharpness(outline) * beam.softest / width**4,
                 beam.softest / max(h / _RESOLVED, beam.length / thinnest) ** 4,
             )
         )
     return tuple(found)
+
+
+def sharpness(outline: Outline) -> float:
+    """How much stiffer the sides of the sharpest tip have to be, to hold a beam on that as those of a blunt one do.
+
+    What overlaps of a wedge goes with the cube of the sine of half its angle.
+    """
+    corners = outline.corners
+    before, behind = (one[:, corners.jutting] for one in corners.normals)
+    # half of the angle between both sides, whose normals turn by all the rest
+    sine = np.sqrt(np.maximum(0.5 * (1.0 + (before * behind).sum(axis=0)), 0.0))
+    return float(np.clip((_BLUNT / max(float(sine.min(initial=1.0)), 1e-9)) ** 3, 1.0, _SHARPEST))
 
 
 def zones_of(model: Model, face: Face, z: State) -> Zones:
@@ -131,7 +148,38 @@ def passed(model: Model, face: Face, before: State, after: State) -> bool:
         through = (old_side > 0.0) & (new_side < 0.0) & (from_a * from_b < 0.0)
         if (through & apart & ~inside).any():
             return True
-    return False
+    return _gone_over_a_tip(face, *seen)
+
+
+def _gone_over_a_tip(face: Face, before: _Seen, after: _Seen) -> bool:
+    """Whether a beam has gone over a tip of the edge, between two of its samples, and does not press on it any more."""
+    tips = [one.tips() for one in (before, after)]
+    if tips[0][0].size == 0:
+        return False
+    first, last, over = gone_over((before.line, tips[0][0]), (after.line, tips[1][0]))
+    for end in face.own:
+        over &= np.abs(first.zeta - end) > 1.0
+    over &= last.seen_along(tips[1][1]) < 0.0
+    if not over.any():
+        return False
+    over &= (first.d * last.d <= 0.0) | before.pressed_at(first, tips[0][1])
+    return bool((over & ~after.pressed_at(last, tips[1][1])).any())
+
+
+def cut(model: Model, face: Face, z: State) -> float:
+    """How deep tips of the edge are in the beam that presses on them; what is thin is cut by much less overlap."""
+    seen = _Seen(model, face, z)
+    tips, out = seen.tips()
+    if tips.size == 0:
+        return 0.0
+    there = swept.beside(seen.line, tips)
+    depth = face.edge.at(there.zeta) - there.seen_along(out)
+    deep = there.found & (depth > 0.0)
+    for end in face.own:
+        deep &= np.abs(there.zeta - end) > 1.0
+    if not deep.any():
+        return 0.0
+    return float(depth[deep & seen.pressed_at(there, out)].max(initial=0.0))
 
 
 def beside(model: Model, face: Face, z: State, zeta: Array) -> Near:
@@ -274,6 +322,29 @@ class _Seen:
         if not moves:
             return own
         return np.concatenate([own, -v, -(v[1] * r[0] - v[0] * r[1])[None]])
+
+    def tips(self) -> tuple[Complex, Complex]:
+        """Where tips are now, and what may press there is directed on the mean, (t,) each, as complex numbers."""
+        points, out = (one[0] + 1j * one[1] for one in self.face.outline.tips)
+        return complex(*self.centre) + self.back.conjugate() * points, self.back.conjugate() * out
+
+    def pressed_at(self, there: Beside, out: Complex) -> Flags:
+        """Whether the beam is pressed away from tips (t,), ``out`` as they point, within an element beside them."""
+        zones, _ = self.zones()
+        pressed = np.zeros(out.size, dtype=bool)
+        if not len(zones.intervals):
+            return pressed
+        places, weights = gauss(_LOOKED)
+        width = np.diff(zones.intervals, axis=1)
+        zeta = (zones.intervals.mean(axis=1)[:, None] + 0.5 * width * places).ravel()
+        near = self.face.outline.near(self.place(zeta))
+        overlap = np.maximum(self.face.edge.at(zeta) - near.distance, 0.0) * (width * weights).ravel()
+        n = self.turned(near.normal)
+        pushes = overlap * (n[0] + 1j * n[1])
+        for i, (at, normal) in enumerate(zip(there.zeta, there.along(out), strict=True)):
+            push = pushes[np.abs(zeta - at) < 1.0].sum()
+            pressed[i] = (normal.conjugate() * push).real > 0.0
+        return pressed
 
     def zones(self, lead: float = 0.0) -> tuple[Zones, dict[float, np.int64]]:
         """All intervals on which the gap is less than a ``lead``, which their least gap leaves out, and the corners of

@@ -24,6 +24,7 @@ from fea_reference.contacts import (
     zones_of,
 )
 from fea_reference.curvature import positive, smallest_curvature
+from fea_reference.face import cut
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.onward import Onward, onward
@@ -33,7 +34,7 @@ from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import LACKING, Circle, Contact, Face, Pair, Penalty, Rigid, Touch
-from fea_reference.yielding import FELT, ROUNDED, felt
+from fea_reference.yielding import FELT, ROUNDED, felt, in_points
 from scene.answer import Array, Critical, Ending
 from scene.frozendict import frozendict
 
@@ -323,16 +324,22 @@ class March:
     def _stiffer(self, system: System) -> dict[Contact, Penalty]:
         """Stiffer penalties for what is too deep under those of now; none where all is as stiff as it may be.
 
-        A circle's penalty is never stiffer than at a station.
+        A circle's penalty is never stiffer than at a station, where it is as stiff as the depth asks in a point.
         """
-        deep = {one: self.penalties[one].stiffness for one in _too_deep(system)}
-        limits = {one: one.stiffest if isinstance(one, Circle) else np.inf for one in deep}
+        deep = {one: self.penalties[one].stiffness for one in _too_deep(self.model, system)}
+        wide = {one.pair for one in system.touches if isinstance(one.pair, Circle) and not in_points(one)}
+        limits = {one: one.stiffest if one in wide else np.inf for one in deep}
         return {one: Penalty(min(_STIFFER * now, limits[one])) for one, now in deep.items() if now < limits[one]}
 
     def _closes_more(self, system: System) -> bool:
         """Whether something overlaps in a system that is open now: no step could be made from there."""
         gaps = zip(self.gaps(self.system), self.gaps(system), strict=True)
         return any(after < 0.0 <= before for before, after in gaps)
+
+    def _gone_through(self, system: System) -> bool:
+        """Whether under other penalties something rigid has been gone through that presses."""
+        rigid = (pair for pair in self.penalties if isinstance(pair, Rigid))
+        return any(passed_through(self.model, pair, self.system.z, system.z) for pair in rigid)
 
     def _foreseen(self, load: int, step: float, rate: Array) -> Array:
         """By what a step will move, (size,): to third order by the rate and the last step, if that tells."""
@@ -560,9 +567,9 @@ class March:
             self.model, self.settings, looser, self.values, self.system.z, self.acting, self.depths(), self.pushes()
         )
         self.iterations += solved.iterations
-        if not solved.converged or _too_deep(solved.system) or self._closes_more(solved.system):
+        if not solved.converged or _too_deep(self.model, solved.system) or self._closes_more(solved.system):
             return False
-        if self.moved(solved.system, self.system.z) <= _CORRECTED:
+        if self.moved(solved.system, self.system.z) <= _CORRECTED and not self._gone_through(solved.system):
             self.system, self.penalties, self.loose = solved.system, looser, True
             self.change_places()
             return True
@@ -634,7 +641,8 @@ class March:
             z = sunk(self.model, tighter, self.settings.quadrature, self.system, self.system.z, pushes, known)
             solved = equilibrium(self.model, self.settings, tighter, self.values, z, self.acting, held, pushes)
             self.iterations += solved.iterations
-            if solved.converged and self.moved(solved.system, self.system.z) <= _CORRECTED:
+            near = solved.converged and self.moved(solved.system, self.system.z) <= _CORRECTED
+            if near and not self._gone_through(solved.system):
                 falls = self._falls(solved.system, tighter)
                 self.system, self.penalties = solved.system, tighter
                 most = min(most**1.5, _TIGHTEN)
@@ -646,9 +654,14 @@ class March:
 
     def sunk(self) -> bool:
         """Whether beams have sunk so far into the penalties of a way that a further step might bring them through."""
-        return any(
+        return self.cut() or any(
             isinstance(one.pair, Pair) and one.penetration > _SINKING * one.pair.scale for one in self.system.touches
         )
+
+    def cut(self) -> bool:
+        """Whether tips of what is rigid have: on those that are sharp no step may find an equilibrium any more."""
+        faces = (one.pair for one in self.system.touches if isinstance(one.pair, Face) and one.closed)
+        return any(cut(self.model, face, self.system.z) > _SINKING * face.scale for face in faces)
 
     def settle(self, load: int) -> None:
         """Tighten penalties, and let stops change whose side is another with them, until all is as it should be.
@@ -801,12 +814,17 @@ class March:
         return f"{part.name} = {value * part.unit:.6g}"
 
 
-def _too_deep(system: System) -> list[Contact]:
+def _too_deep(model: Model, system: System) -> list[Contact]:
     """What sinks so far into what it touches that it is about to be taken for having gone through.
 
     Where neutral lines cross, the one does not lie on a side of the other any more, and no penalty parts them.
     """
-    return [one.pair for one in system.touches if one.penetration > _SUNK * _deepest(one.pair)]
+    return [
+        one.pair
+        for one in system.touches
+        if one.penetration > _SUNK * _deepest(one.pair)
+        or (isinstance(one.pair, Face) and one.closed and cut(model, one.pair, system.z) > _SUNK * one.pair.scale)
+    ]
 
 
 def _deepest(what: Contact) -> float:

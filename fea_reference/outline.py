@@ -89,6 +89,11 @@ class HalfPlane:
         return np.empty((2, 0))
 
     @property
+    def tips(self) -> tuple[Array, Array]:
+        """None, see :class:`Broken`."""
+        return np.empty((2, 0)), np.empty((2, 0))
+
+    @property
     def straight(self) -> bool:
         """Whether all of it is but for corners."""
         return True
@@ -136,6 +141,11 @@ class Broken:
             points, before = np.column_stack([points, corner]), np.column_stack([before, last])
             behind = np.column_stack([behind, first])
         return Corners(points, (before, behind), (_left(before), _left(behind)))
+
+    @cached_property
+    def tips(self) -> tuple[Array, Array]:
+        """Corners that jut out, (2, t), and the mean direction (2, t) of what may press there."""
+        return _tips(self.corners)
 
     @property
     def straight(self) -> bool:
@@ -278,6 +288,14 @@ class Graph:
         before = np.column_stack([_left(tau[:, :1]), tau[:, 1:]])
         behind = np.column_stack([tau[:, :1], -_left(tau[:, 1:])])
         return Corners(points, (before, behind), (_left(before), _left(behind)))
+
+    @cached_property
+    def tips(self) -> tuple[Array, Array]:
+        """Corners that jut out and the places of the ``chain``, (2, t), and the directions (2, t) of what may press."""
+        v = np.linspace(*self.span, _PIECES + 1)[1:-1]
+        points, tau, _ = self._at(v)
+        ends, out = _tips(self.corners)
+        return np.column_stack([ends, points]), np.column_stack([out, _left(tau)])
 
     @property
     def straight(self) -> bool:
@@ -427,6 +445,12 @@ def ends_at(outline: Outline, place: Array, near: float) -> tuple[Array | None, 
         corners.tangents[1][:, corner] if round_it or corner < last else None,
         -corners.tangents[0][:, corner] if round_it or corner > 0 else None,
     )
+
+
+def _tips(corners: Corners) -> tuple[Array, Array]:
+    """Corners that jut out, (2, t), and the sums of their sides' normals (2, t)."""
+    some = corners.jutting
+    return corners.points[:, some], (corners.normals[0] + corners.normals[1])[:, some]
 
 
 def _crossing(place: Array, ahead: Array, places: Array, aheads: Array) -> tuple[Array, Array]:

@@ -258,7 +258,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
         else:
             march.restore(saved)
             rate = None
-            if trouble[0] is Ending.BEAMS_CROSSED and march.sunk():
+            if march.cut() or (trouble[0] is Ending.BEAMS_CROSSED and march.sunk()):
                 # what presses is not to go through what gives way
                 march.tighten()
                 known, march.behind = [], None

@@ -26,8 +26,8 @@ def stages(*steps):
     return [{"name": f"stage{i}", "steps": name, "stations": list(values)} for i, (name, *values) in enumerate(steps)]
 
 
-def last(scene, elements=40, kinematics="bending"):
-    got = answer(scene, Settings(elements=elements, kinematics=kinematics))
+def last(scene, elements=40, kinematics="bending", penetration=1e-4):
+    got = answer(scene, Settings(elements=elements, kinematics=kinematics, penetration=penetration))
     assert got.ending is Ending.COMPLETED, got.sentence
     return got.stations[-1]
 
@@ -83,9 +83,13 @@ def test_a_driven_bar_stretches():
 
 
 def test_the_hinge_turned_by_a_drive_is_the_hinge_turned_by_a_moment():
-    """With its contact closed: the reaction is the moment, and the rest the same."""
-    loaded = last(hinge(stages=stages(("M", 0.4)))).values
-    driven = last(driven_hinge(float(loaded["BD.rotation"][0]))).values
+    """With its contact closed: the reaction is the moment, and the rest the same.
+
+    How deep the contact may be hangs on what is felt of it, which is less where a drive holds the rest: here the depth
+    is a tenth of the standard one.
+    """
+    loaded = last(hinge(stages=stages(("M", 0.4))), penetration=1e-5).values
+    driven = last(driven_hinge(float(loaded["BD.rotation"][0])), penetration=1e-5).values
     assert driven["BD.reaction_moment"][0] == pytest.approx(0.4, rel=1e-6)
     assert driven["contact.force"][0] > 1.0
     for name, value in loaded.items():
