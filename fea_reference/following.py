@@ -45,6 +45,7 @@ _FIRST = 0.01  # arc length of the first step
 _MOST = 0.03  # rad (and lengths): the most that one may move anything
 _LEAST = 1e-9
 _STEPS = 400
+_LOOK = 30  # of them after which it is seen whether they lead on
 _STRAIGHT = 0.9  # cosine between the directions at both ends of a step
 _SHARP = 1e-6  # arc length below which a turn is one
 _GROWN = 1.2  # of the least curvature on the way: it has come past
@@ -104,7 +105,13 @@ def followed(march: March, load: int, target: float, span: float) -> Lost | None
         return None
     first, least, past = here, here.curvature, 0
     length = _FIRST
-    for _ in range(_STEPS):
+    known = here.curvature, length
+    for tried in range(_STEPS):
+        if tried % _LOOK == 0 and tried > 0:
+            # at this pace it is not lost in all steps
+            if here.curvature > (1.0 - _LOOK / _STEPS) * known[0] and length <= known[1]:
+                return None
+            known = here.curvature, length
         length = min(length, _MOST / max(float(np.abs(here.way[march.model.moving]).max()), _MOST))
         there = onwards(branch, here, length)
         if there is None or (_cosine(branch, here, there) < _STRAIGHT and length > _SHARP):

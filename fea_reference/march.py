@@ -71,6 +71,7 @@ _POINT = 1.0  # elements: a zone no wider is a point
 _SUNK = 0.3  # of how deep something may be and not have gone through: what is deeper is about to
 _STIFFER = 10.0  # times: the penalty with which the step is tried again then
 _STIFFENINGS = 3
+_LOOSER = (1.0, 0.5)  # of the way from tight penalties to the loosest, in orders of magnitude, that are tried
 _NONE: Mapping[Contact, Touch] = frozendict()
 
 Trouble = tuple[Ending, str]
@@ -557,8 +558,14 @@ class March:
         Returns whether it could be done: not where that sinks in too far, or lets something overlap that is open.
         Most pairs of beams touch in a point, whose zone is found all the same.
         """
+        return any(self._loosened(kinds, share) for share in _LOOSER)
+
+    def _loosened(self, kinds: tuple[type[Contact], ...], share: float) -> bool:
+        """The same by a ``share`` of the way, in orders of magnitude."""
         looser = {
-            pair: Penalty(pair.loosest) if isinstance(pair, kinds) and pair.loosest < now.stiffness else now
+            pair: Penalty(now.stiffness ** (1.0 - share) * pair.loosest**share)
+            if isinstance(pair, kinds) and pair.loosest < now.stiffness
+            else now
             for pair, now in self.penalties.items()
         }
         if looser == self.penalties:
