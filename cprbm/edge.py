@@ -222,6 +222,9 @@ class Edge:
             own = len(self.faces) * self._own_keys + corner
             places, ahead = self.whole.places[corner], self.whole.ahead[corner]
             found.append(self._cornering(places, ahead, np.zeros(len(own)), line, frame, at_corners, own))
+        corner, at_ends = self._end_on(line, frame)
+        if at_ends.size:
+            found.append(self._capping(corner, line, frame, at_ends))
         for _, top in tops:
             centres = top.place - top.radius[:, None] * top.normal
             keys = np.full(len(top.s), -1)
@@ -283,6 +286,21 @@ class Edge:
 
         values = self._half(s) - (rho - radius) - leading * beyond.integral
         return self._group(A, values, self._slopes(A, z, m, frame), bent, tuple(keys.tolist()))
+
+    def _capping(self, number: Ints, line: smooth.SmoothLine, frame: Frame, s: Array) -> Group:
+        """Rows of the beam's ends ``s`` (k,), which are round, against the corners of some ``number`` (k,)."""
+        A = line.at(s)
+        r, z = self._from(self.whole.places[number], A, frame), moving(A)
+        rho = np.hypot(r[:, 0], r[:, 1])
+        n = r / rho[:, None]
+
+        def bent() -> Array:
+            along, _, second = self._second(A, z, n, frame)
+            return np.asarray(second + along[:, :, None] * along[:, None, :] / rho[:, None, None])
+
+        last = len(self.faces) * self._own_keys + len(self.corners)
+        keys = last + 2 * number + (s > 0.0)
+        return self._group(A, self._half(s) - rho, self._slopes(A, z, n, frame), bent, tuple(keys.tolist()))
 
     def _slopes(self, A: smooth.Points, z: Moving, along: Array, frame: Frame) -> Array:
         """Of v_z its part along some directions (k, 2), over the local numbers (k, p)."""
@@ -585,11 +603,13 @@ class Edge:
             return none
         A, places = line.sampled, frame.outwards(self.whole.places)
         D = np.hypot(A.x - places[:, :1], A.y - places[:, 1:]) - self._half(A.s)
-        before, inner, behind = D[:, :-2], D[:, 1:-1], D[:, 2:]
+        # an end may be the lowest sample, and the closest place beside it
+        fenced = np.pad(D, ((0, 0), (1, 1)), constant_values=np.inf)
+        before, inner, behind = fenced[:, :-2], D, fenced[:, 2:]
         number, sample = ((before >= inner) & (behind > inner) & (inner < REACH)).nonzero()
         if not number.size:
             return none
-        twice, s = np.concatenate((number, number)), A.s[sample + 1]
+        twice, s = np.concatenate((number, number)), A.s[sample]
 
         def slope(s: Array) -> tuple[Array, Array]:
             A, corner = line.at(s), twice[: len(s)]
@@ -629,6 +649,23 @@ class Edge:
         faced = facing & ~beside & ((rho >= -NEAREST) | inside)
         faced[list(through)] = True
         return corner[faced], s[faced], list(through.values())
+
+    def _end_on(self, line: smooth.SmoothLine, frame: Frame) -> tuple[Ints, Array]:
+        """Corners to which an end of the beam is closest, beyond which they are, and which of both ends that is."""
+        if not self.corners or self.offset == 0.0:
+            return np.zeros(0, dtype=np.intp), np.zeros(0)
+        A = line.sampled
+        number, end = np.indices((len(self.corners), 2)).reshape(2, -1)
+        ends = A.only((len(A.s) - 1) * end)
+        r = self._from(self.whole.places[number], ends, frame)
+        rho = np.hypot(r[:, 0], r[:, 1])
+        outwards = np.where(end == 0, 1.0, -1.0) * (r[:, 0] * np.cos(ends.psi) + r[:, 1] * np.sin(ends.psi))
+        beyond = (outwards > 0.0) & (rho < REACH + self.offset) & (rho > NEAREST)
+        beyond &= ~np.array(self.held)[end] & ~self._ruled(ends.s)
+        seen = frame.turned(r, -frame.phi)
+        for i in np.flatnonzero(beyond).tolist():
+            beyond[i] = self.corners[number[i]].beyond(seen[i : i + 1])[0] >= 0.0
+        return number[beyond], ends.s[beyond]
 
     def _cut_off(
         self,

@@ -55,3 +55,25 @@ def test_it_is_the_same_from_a_body_that_is_elsewhere_and_turned():
     cos, sin = np.cos(0.7), np.sin(0.7)
     inwards = (np.array(PLACES) - (0.3, -0.4)) @ np.array([[cos, -sin], [sin, cos]])
     assert gone_through((0.0, 0.0), (-0.25, -0.1), inwards.tolist(), **frame) == [True, False, True, False, False]
+
+
+def over_the_centre(frames):
+    """Whether a straight beam sweeps over what is at the origin of frames: of each the origin and how it is turned."""
+    centre = [(0.0, 0.0)]
+    seen_from = [seen(0.0, 0.0, centre, turn, origin) for origin, turn in frames]
+    ends = np.stack([end for _, end in seen_from], axis=1)
+    return swept(seen_from[0][0], seen_from[-1][0], ends, np.array(centre), None).tolist() == [True]
+
+
+@pytest.mark.parametrize("place", [0.03, 0.31, 0.48, 0.97])
+@pytest.mark.parametrize("angle", [-2.9, -1.7, 0.3, 1.9, 3.05])
+def test_a_beam_that_turns_about_the_centre_does_not_sweep_over_it(place, angle):
+    # reference: all its places stay as far from the centre as they are
+    assert not over_the_centre([((place, -0.057), share * angle) for share in np.linspace(0.0, 1.0, 9)])
+
+
+@pytest.mark.parametrize(("place", "sweeps"), [(-0.13, False), (0.03, True), (0.48, True), (0.97, True), (1.09, False)])
+def test_a_beam_that_is_shifted_across_sweeps_over_what_is_between_its_ends(place, sweeps):
+    way = [((place, y), 0.0) for y in np.linspace(-0.057, 0.043, 9)]
+    assert over_the_centre(way) is sweeps
+    assert over_the_centre(way[::-1]) is sweeps
