@@ -262,7 +262,8 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
                 # what presses is not to go through what gives way
                 march.tighten()
                 known, march.behind = [], None
-                stride, cuts, reason = size, cuts + 1, trouble
+                crossed = trouble[0] is Ending.BEAMS_CROSSED
+                stride, cuts, reason = size if crossed else 0.25 * size, cuts + 1, trouble
             elif not searching and march.loosen(Circle, Face, Pair):
                 if watched and minimum and not march.curvature > 0.0:
                     # what stands by a contact alone does not stand by a loose one, and whatever follows would pass

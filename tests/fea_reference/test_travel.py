@@ -76,6 +76,9 @@ class Ways:
         self.loose = True
         return True
 
+    def cut(self):
+        return False
+
     def gone(self, load, saved, rate, ahead):
         return None
 
