@@ -24,9 +24,11 @@ from cprbm.kinematics import most_turned
 from cprbm.locking import Locked, between_ends, drawn_taut, locked_on, pressed_on, taut
 from cprbm.mechanism import Mechanism
 from cprbm.midway import doubt, uneven
+from cprbm.nearest import Pair
 from cprbm.point import Point
 from cprbm.rate import carried_by_others, rate, strayed
 from cprbm.settings import Settings
+from cprbm.slipping import slipped
 from cprbm.stretching import stretched
 from scene import Certificate, Ending
 from scene.answer import Array
@@ -254,6 +256,10 @@ class Follower:
             return Ending.STEP_TOO_SMALL, f"a link turned by {turned:.2f} rad in one load step"
         if crossed := self.mechanism.passed(self.point, found, (start, end)):
             return Ending.BEAMS_CROSSED, f"in contact '{crossed}' the beam went across what it may touch"
+        for name in pressing(self.point):
+            pair = self.mechanism.pairs.get(name)
+            if isinstance(pair, Pair) and slipped(pair, self.point, found):
+                return Ending.STEP_TOO_SMALL, f"in contact '{name}' an end slips off the other on the way"
         if self.careful and turned > ISOLATED and pressing(found) != pressing(self.point):
             return Ending.STEP_TOO_SMALL, "a contact or stop closes or opens on the way"
         change = found.state.theta - self.point.state.theta

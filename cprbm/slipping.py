@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm.nearest import Pair, distance_along, past_foot
+from cprbm.nearest import Lines, Pair, distance_along, past_foot
 from cprbm.point import Point
 
 SAME = 1e-6  # of an element: where a row stands that is an end's
@@ -22,18 +22,59 @@ SAME = 1e-6  # of an element: where a row stands that is an end's
 
 def left_to_go(pair: Pair, point: Point) -> float | None:
     """p or ℓ − p, whichever is less, units of length; None where a contact is not that of one end on a side."""
+    end = _pressing_end(pair, point)
+    return None if end is None else _left(*_seen(pair, point, mine=end[0]), end[1])
+
+
+def slipped(pair: Pair, before: Point, after: Point) -> bool:
+    """Whether the end that pressed on a side ``before``, and alone, has come past the other beam's end ``after``.
+
+    Not that of a thick beam which leads from it towards the other: that one's end has come to lie on it by then.
+    """
+    end = _pressing_end(pair, before)
+    if end is None or _leads_across(*_seen(pair, before, mine=end[0]), end[1]):
+        return False
+    here, there = (_left(*_seen(pair, point, mine=end[0]), end[1]) for point in (before, after))
+    return here > 0.0 > there
+
+
+def _pressing_end(pair: Pair, point: Point) -> tuple[bool, int] | None:
+    """Whether the end that presses, and no other place, is one of the contact's first beam, and which (0 or −1)."""
     parts = [(group.arc, lam) for group, lam in point.rows.shares(point.lam) if group.contact == pair.name]
     arcs = np.concatenate([arc[lam > 0.0] for arc, lam in parts]) if parts else np.zeros(0)
     if arcs.size != 1:
         return None
-    pair = pair.brought_to(point.state)
-    lines = pair.lines(point.state, point.at)
-    for one, both, mine in ((pair, lines, True), (pair.exchanged(), lines[::-1], False)):
+    for mine in (True, False):
+        one, both = _seen(pair, point, mine=mine)
         ends = one.a.s[[0, -1]]
         _, feet, facing = distance_along(one, both, ends)
         # the row of an end stands there, or at its foot, on the contact's first beam
         here = facing & (np.abs((ends if mine else feet) - arcs) <= SAME * one.a.h)
         if here.any():
-            p = feet[here] + past_foot(one, both, ends[here], feet[here])
-            return float(np.minimum(p, one.b.s[-1] - p).min())
+            return mine, -int(here[-1])
     return None
+
+
+def _seen(pair: Pair, point: Point, *, mine: bool) -> tuple[Pair, Lines]:
+    """The contact in a state, and both lines, with the beam as the first whose end it is."""
+    pair = pair.brought_to(point.state)
+    lines = pair.lines(point.state, point.at)
+    return (pair, lines) if mine else (pair.exchanged(), lines[::-1])
+
+
+def _left(one: Pair, both: Lines, which: int) -> float:
+    """What is left to go of the first beam's end, less than nothing beyond the other's."""
+    ends = one.a.s[[which]]
+    _, feet, _ = distance_along(one, both, ends)
+    p = float((feet + past_foot(one, both, ends, feet))[0])
+    return min(p, float(one.b.s[-1]) - p)
+
+
+def _leads_across(one: Pair, both: Lines, which: int) -> bool:
+    """Whether the first beam leads from its end towards the side of the second on which that presses."""
+    ends = one.a.s[[which]]
+    _, feet, _ = distance_along(one, both, ends)
+    end, foot = one.on_a(both, ends), one.on_b(both, feet)
+    inwards = np.array([np.cos(end.tangent[0]), np.sin(end.tangent[0])]) * (1.0 if which == 0 else -1.0)
+    away = np.array([end.x[0] - foot.x[0], end.y[0] - foot.y[0]])
+    return one.offset > 0.0 and float(inwards @ away) < 0.0

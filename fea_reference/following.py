@@ -59,6 +59,7 @@ _TURNING = 0.1  # of dλ/ds at the beginning: what is left of it at a fold
 _APPROACHED = 1e-8  # of the span: from where a contact's force is zero
 _SHARE = 0.9  # of the way there, at a time
 _SLIPPING = 0.1  # of the span: from how far an end is followed to where it slips off another
+_BACK = 2.0  # times as far as it has come past it, if it has
 _AS_GOOD = 1e-6  # of the span: from where it is as good as there
 _FORESEEN = 1e-3  # of the span: from where it is foreseen, if no step leads nearer
 _DIFFERENCE = 1e-7  # of the span: what rates are seen by
@@ -254,10 +255,24 @@ def _slipping_off(march: March, load: int, target: float, span: float) -> Lost |
     is left is foreseen, and is what is uncertain.
     """
     onward, saved = float(np.sign(target - march.values[load])), march.saved()
+    tight = behind = False
     while (going := _next_to_slip(march, load, onward * span)) is not None:
         one, way = going
+        if tight and not behind and -_SLIPPING * span <= way * onward < 0.0:
+            # where tight penalties have it, the march has come past
+            march.restore(saved)
+            if not _nearer(march, load, _BACK * way):
+                break
+            march.tighten()
+            behind = True
+            continue
         if not 0.0 <= way * onward <= min(_SLIPPING * span, (target - march.values[load]) * onward):
             break
+        if not tight:
+            # what sinks into the penalties of a way slips elsewhere, and that may lie behind
+            march.tighten()
+            tight = True
+            continue
         if abs(way) > _AS_GOOD * span and _nearer(march, load, way):
             continue
         if abs(way) > _FORESEEN * span:

@@ -30,6 +30,7 @@ from fea_reference.newton import equilibrium
 from fea_reference.onward import Onward, onward
 from fea_reference.settings import Settings
 from fea_reference.sinking import Depth, known_depths, sunk
+from fea_reference.slipping import left_to_go
 from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
@@ -269,7 +270,8 @@ class March:
                     Ending.STEP_TOO_SMALL,
                     f"beyond {self.shown(load, start)} {again[0]} neither holds nor lets go",
                 )
-        trouble = self.passed(before, system, f"beyond {self.shown(load, start)}")
+        where = f"beyond {self.shown(load, start)}"
+        trouble = self.passed(before, system, where) or self._slipped(system, where)
         if trouble is not None:
             return trouble
         self.values[load], self.system = value, system
@@ -372,6 +374,15 @@ class March:
         for pair in (*self.open, *self.penalties):
             if passed_through(self.model, pair, before, system.z):
                 return Ending.BEAMS_CROSSED, f"{where} what touches in {pair.name} passes through each other"
+        return None
+
+    def _slipped(self, system: System, where: str) -> Trouble | None:
+        """Whether an end that presses on another beam has come past the end of that on the way to a system."""
+        for one in self.system.touches:
+            here = left_to_go(self.model, one, self.system.z)
+            there = None if here is None else left_to_go(self.model, one, system.z)
+            if here is not None and there is not None and here > 0.0 > there:
+                return Ending.STEP_TOO_SMALL, f"{where} an end slips off the other in {one.pair.name}"
         return None
 
     def room(self, stop: StopPart, system: System) -> float:

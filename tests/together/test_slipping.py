@@ -87,3 +87,58 @@ def test_the_branch_ends_where_an_end_slips_off_another(solver, order):
     assert (critical.loss, critical.what) == (Loss.SLIP, "touch")
     assert critical.value == pytest.approx(SLIPS, abs=0.02 * SHORTER)
     assert critical.energy == pytest.approx(1.5 * EI * PRESSED**2 / L**3, rel=3e-3)
+
+
+def bent_past_an_end(moments):
+    """A cantilever bent by a moment M (N m) across a curved one, both thick, until an end passes the other."""
+    curved = [[-0.021601, 0.0240269], [0.0068393, -0.0220891], [0.0094681, -0.0636223]]
+    free = {"material": "m", "end": {"joint": "free"}}
+    return scene_from(
+        {
+            "name": "bent-past",
+            "materials": {"m": {"youngs_modulus": 1.14e11, "poisson_ratio": 0.33}},
+            "bodies": {"wall": {"motion": "fixed", "points": {"R": [0.0, 0.0], "Q": curved[0]}}},
+            "beams": {
+                "straight": {
+                    **free,
+                    "curve": {"kind": "line", "start": [0.0, 0.0], "end": [0.0264413, -0.0724486]},
+                    "thickness": 0.000406,
+                    "width": 0.008,
+                    "start": {"joint": "weld", "point": "R"},
+                },
+                "curved": {
+                    **free,
+                    "curve": {"kind": "spline", "points": curved},
+                    "thickness": 0.000285,
+                    "width": 0.018,
+                    "start": {"joint": "weld", "point": "Q"},
+                },
+            },
+            "loads": {"M": {"kind": "beam_moment", "beam": "straight", "at": 0.8}},
+            "contacts": {
+                "touch": {"kind": "beam-beam", "between": ["straight", "curved"]},
+                "post": {
+                    "kind": "beam-circle",
+                    "beam": "straight",
+                    "body": "wall",
+                    "center": [0.0054029, -0.0226188],
+                    "radius": 0.00231,
+                },
+            },
+            "stages": [{"name": "bend", "steps": "M", "stations": moments}],
+            "probes": [{"of": "scene", "quantity": "potential_energy"}, {"of": "touch", "quantity": "force"}],
+        }
+    )
+
+
+@pytest.mark.parametrize("solver", SOLVED)
+def test_an_end_that_slips_in_a_long_step_is_told(solver):
+    # reference: the same branch by steps that are short beside what the end has left to go
+    ends = []
+    for moments in ([-0.1927], [-0.12, -0.14, -0.155, -0.16, -0.164, -0.1927]):
+        got = SOLVED[solver](bent_past_an_end(moments))
+        assert got.ending is Ending.BRANCH_ENDS, got.sentence
+        (critical,) = got.critical
+        assert (critical.loss, critical.what) == (Loss.SLIP, "touch")
+        ends.append(critical.value)
+    assert ends[0] == pytest.approx(ends[1], rel=1e-4)
