@@ -24,7 +24,7 @@ import numpy as np
 from fea_reference.contacts import least_gap, touch
 from fea_reference.model import Model
 from fea_reference.system import System
-from fea_reference.touch import Contact, Penalty, Touch
+from fea_reference.touch import Contact, Face, Penalty, Touch
 from scene.answer import Array
 
 FELT = 0.01
@@ -42,13 +42,21 @@ _NEAR = 0.1  # lengths of the longest beam: what is farther nothing sinks into b
 
 
 def in_points(one: Touch) -> bool:
-    """Whether a contact presses in points only: in zones that are no wider than an element each."""
-    if not one.closed:
+    """Whether a contact presses in points only: in zones that are no wider than an element each.
+
+    What presses beside a joint that lies on it has no point: its push grows without end towards the joint.
+    """
+    if not one.closed or _beside_joint(one):
         return False
     first, last = one.zones.intervals.T
     begins = np.append(True, first[1:] > last[:-1])
     ends = np.append(begins[1:], True)
     return bool((last[ends] - first[begins]).max() < _POINT)
+
+
+def _beside_joint(one: Touch) -> bool:
+    """Whether something rigid presses within an element of a joint that lies on it, and nowhere else."""
+    return isinstance(one.pair, Face) and any(np.abs(one.zeta - end).max() < _POINT for end in one.pair.own)
 
 
 def felt(
@@ -70,6 +78,7 @@ def felt(
         *_beside(model, system, (one.pair for one in system.touches if not one.closed), penalties, quadrature),
         *_beside(model, system, waiting, penalties, quadrature),
     ]
+    told = _told(pressing)
     found = {}
     for one in sinking:
         right = np.zeros(model.size)
@@ -79,16 +88,44 @@ def felt(
             continue
         way *= _FALLS[one.sharp]
         share = float(np.abs(way[places]).max()) / motion
-        for other in pressing:
-            more = float(other.foreseen(way).sum()) - other.push
-            more += _FALLS[one.sharp] * one.push if other is one else 0.0
-            share = max(share, abs(more) / max(other.push, _FAINT * largest))
+        for group in told:
+            more = sum(float(other.foreseen(way).sum()) - other.push for other in group)
+            more += _FALLS[one.sharp] * one.push if any(other is one for other in group) else 0.0
+            known = sum(other.push for other in group)
+            share = max(share, abs(more) / max(known, _FAINT * largest))
         for gap, opening, compliance in beside:
             overlap = -(gap + float(opening @ way))
             if overlap > 0.0:
                 share = max(share, overlap / compliance / (_FAINT * largest))
         found[one.pair] = share
     return found
+
+
+def _told(pressing: Iterable[Touch]) -> list[list[Touch]]:
+    """Contacts whose pushes are known: those that press one beam at one place by their sum alone.
+
+    Of what presses beside a joint that lies on it only the moment about the joint is, which the motion tells.
+    """
+    groups: list[list[Touch]] = []
+    for one in pressing:
+        if _beside_joint(one):
+            continue
+        for group in groups:
+            if _at_one_place(group[0], one):
+                group.append(one)
+                break
+        else:
+            groups.append([one])
+    return groups
+
+
+def _at_one_place(one: Touch, other: Touch) -> bool:
+    """Whether two contacts push the same beam to the same side at places that no element parts."""
+    if one.pair.first != other.pair.first:
+        return False
+    apart = max(one.zeta.min(), other.zeta.min()) - min(one.zeta.max(), other.zeta.max())
+    alike = float(one.force.sum(axis=1) @ other.force.sum(axis=1))
+    return apart < _POINT and alike > 0.0
 
 
 def _beside(
