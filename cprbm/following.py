@@ -35,6 +35,7 @@ from scene.answer import Array
 
 GROWTH = 2.0
 AGAIN, NEARER = 0.5, 0.25  # of the way to what was refused before: from so near it is tried again, and once more
+OVER = 4.0  # times a step at whose end links are too long to hold beams apart
 FASTER = 4.0  # where no step was refused
 LEAST = 0.06  # part of a step that is tried after it: what a rate makes too much of goes with the step's root
 SETTLE = 0.1  # of the way: in shorter steps steady rows may settle which places there are
@@ -128,6 +129,7 @@ class Follower:
         doubted: tuple[float, Equilibrium] | None = None
         believed: Certificate | None = None  # of what is doubted, if that is known
         bad, nearest, again = np.inf, np.inf, AGAIN  # what was refused last, and from how near
+        before_leap: float | None = None  # the step whose end a longer one is to go over
         self.values, self.reached, self.locked = dict(way.begin), way.value(0.0), None
         problem = self.mechanism.problem
         here = there = rate(problem, self.point, way.change)
@@ -172,7 +174,7 @@ class Follower:
                 self.trail = [*self.trail[-TRAIL:], Minimum(way.value(fraction), self.point.bare, certificate)]
                 if fraction == 1.0:
                     return Reached(ending, "", replace(certificate, iterations=iterations))
-                bad = bad if fraction < bad else np.inf
+                bad, before_leap = bad if fraction < bad else np.inf, None
                 step = self._next(way, done, GROWTH * step, bad, again * nearest) if refused else FASTER * step
                 continue
             if doubtful > 1.0 and step > self.settings.smallest_step and iterations <= self.settings.iteration_limit:
@@ -185,8 +187,16 @@ class Follower:
                 self.locked = locked_on(problem, self.point, way.change)
                 if self.locked is not None:
                     return Reached(Ending.STEP_TOO_SMALL, self.locked.told, certificate=None)
-            again = AGAIN if np.isinf(bad) else NEARER
-            bad, nearest = fraction, step
+            # where links are so long that beams overlap in between, what lies beyond may hold
+            overlapping = ending is Ending.BEAMS_CROSSED and bool(certificate.failures)
+            if overlapping and before_leap is None and fraction < 1.0:
+                before_leap, step, refused = step, OVER * step, True
+                continue
+            if before_leap is not None:
+                before_leap, step = None, before_leap
+            elif not overlapping:
+                again = AGAIN if np.isinf(bad) else NEARER
+                bad, nearest = fraction, step
             step, refused = self._cut(way, done, 0.5 * step), True
             if abs(self.refused - self.reached) <= NEARLY_TAUT * abs(way.value(1.0) - way.value(0.0)):
                 limit = taut(self._minima, self.refused)

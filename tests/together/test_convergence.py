@@ -75,9 +75,11 @@ SMOOTH = (
 CONTACT = ("contact.force", "contact.closing_load")
 
 
-def _observed(families: dict[tuple[str, float], Family], probes: tuple[str, ...], stations: tuple[float, ...]):
-    """All orders; of the finest sizes there is none where the fourth order has brought a change down to round-off."""
-    every = [families[probe, station].orders for probe in probes for station in stations]
+def _observed(
+    families: dict[tuple[str, float], Family], probes: tuple[str, ...], stations: tuple[float, ...], first: int = 0
+):
+    """All orders from the ``first`` on; of the finest sizes there is none where a change is down to round-off."""
+    every = [families[probe, station].orders[first:] for probe in probes for station in stations]
     assert all(orders[0] is not None for orders in every)
     return [order for orders in every for order in orders if order is not None]
 
@@ -97,8 +99,9 @@ def test_the_order_of_the_elements_before_anything_presses(hinge, probes, statio
 
 def test_the_order_of_the_elements_where_a_penalty_presses(hinge):
     # The penetration that is allowed falls with the fourth power of N, what a penalty leaves of it is up to the march:
-    # a quarter of that at one size and all of it at the next are two orders more or less.
-    found = _observed(_families(hinge, "fea"), (*SMOOTH, *CONTACT), TOUCHING)
+    # a quarter of that at one size and all of it at the next are two orders more or less.  With 10 elements that would
+    # be felt by more than a hundredth of the force; it is held to that, and the order is that from 20 on.
+    found = _observed(_families(hinge, "fea"), (*SMOOTH, *CONTACT), TOUCHING, first=1)
     assert median(found) == pytest.approx(4.0, abs=0.05)
     assert 2.0 < min(found) <= max(found) < 6.0
 

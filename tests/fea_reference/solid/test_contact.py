@@ -126,7 +126,8 @@ def test_a_free_end_presses_into_another_beams_side(turned):
     force = (q * a**4 / 8 - rigidity * gap) * 3 / (2 * a**3)
     assert values["tip.force"][0] == pytest.approx(force, rel=1e-2)
     assert values["tip.centre"][0] == pytest.approx(a, rel=2e-3)
-    assert np.hypot(*values["low_root.reaction"]) == pytest.approx(values["tip.force"][0], rel=1e-8)
+    # equilibrium; nodes are in balance to 1e-9 of the largest force, or to round-off, which is a few 1e-8 of this one
+    assert np.hypot(*values["low_root.reaction"]) == pytest.approx(values["tip.force"][0], rel=1e-7)
 
 
 @pytest.mark.parametrize(
