@@ -193,7 +193,8 @@ class Follower:
                 before_leap, step, refused = step, OVER * step, True
                 continue
             if before_leap is not None:
-                before_leap, step = None, before_leap
+                step = before_leap
+                before_leap = None
             elif not overlapping:
                 again = AGAIN if np.isinf(bad) else NEARER
                 bad, nearest = fraction, step
