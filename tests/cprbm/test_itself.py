@@ -411,7 +411,8 @@ def test_an_even_strip_that_closes_to_a_circle_presses_its_ends_until_they_slip(
     data["loads"] = {"M": {"kind": "moment", "body": "tip"}}
     data["stages"] = [{"name": "roll", "steps": "M", "stations": [turn * 2.0 * np.pi * unit for turn in turns]}]
     data["probes"] = [{"of": "T", "quantity": "displacement"}, {"of": "lap", "quantity": "force"}]
-    answer = cprbm.answer(scene_from(data), cprbm.Settings(links=40))
+    # what is held against geometry to nine digits of the thickness is solved to more of them than by default
+    answer = cprbm.answer(scene_from(data), cprbm.Settings(links=40, tolerance=1e-13))
     assert answer.ending is Ending.BRANCH_ENDS
     assert len(answer.stations) == len(turns) - 1
     for turn, station in zip(turns, answer.stations, strict=False):

@@ -51,7 +51,7 @@ def ring(load, *, contact):
     )
 
 
-LINKS = cprbm.Settings(links=80, tolerance=1e-12)  # what is held against geometry to nine digits is solved to more
+LINKS = cprbm.Settings(links=80, tolerance=1e-12)  # nine digits of the thickness are held against geometry
 ELEMENTS = fea_reference.Settings(elements=33, kinematics="bending")
 
 
