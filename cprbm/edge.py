@@ -551,6 +551,10 @@ class Edge:
         level = sign * np.sqrt(1.0 - lean**2)
         return np.stack((lean * cos - level * sin, lean * sin + level * cos), axis=1)
 
+    def _far(self, places: Array, ahead: Array, A: smooth.Points, frame: Frame) -> Array:
+        """ρ (k,) of the same."""
+        return np.asarray(np.sum(self._away(ahead, A, frame) * self._from(places, A, frame), axis=1))
+
     def _summits(
         self, line: smooth.SmoothLine, frame: Frame
     ) -> tuple[list[tuple[int, Summits]], list[tuple[float, float]]]:
@@ -574,7 +578,7 @@ class Edge:
         found = summits(face, line, frame, self.kinks, REACH + self.offset)
         held, cuts = np.zeros(len(found.s), dtype=bool), list[tuple[float, float]]()
         A = line.at(found.s)
-        rho = np.sum(self._away(found.normal, A, frame) * self._from(found.place, A, frame), axis=1)
+        rho = self._far(found.place, found.normal, A, frame)
         for i in range(len(found.s)):
             held[i] = rho[i] >= -NEAREST
             if not held[i]:
@@ -797,12 +801,12 @@ class Edge:
         corner, s, _ = self._closest(line, frame, np.zeros(0))
         if s.size:
             A = line.at(s)
-            m, r = self._away(self.whole.ahead[corner], A, frame), self._from(self.whole.places[corner], A, frame)
-            least.append((np.sum(m * r, axis=1) - (self._half(s) - self.offset)).min())
+            rho = self._far(self.whole.places[corner], self.whole.ahead[corner], A, frame)
+            least.append((rho - (self._half(s) - self.offset)).min())
         for _, top in tops:
             A = line.at(top.s)
-            m, r = self._away(top.normal, A, frame), self._from(top.place, A, frame)
-            least.append((np.sum(m * r, axis=1) - (self._half(top.s) - self.offset)).min())
+            rho = self._far(top.place, top.normal, A, frame)
+            least.append((rho - (self._half(top.s) - self.offset)).min())
         return float(min(least)) - self.offset
 
 

@@ -174,7 +174,9 @@ class Follower:
                 self.trail = [*self.trail[-TRAIL:], Minimum(way.value(fraction), self.point.bare, certificate)]
                 if fraction == 1.0:
                     return Reached(ending, "", replace(certificate, iterations=iterations))
-                bad, before_leap = bad if fraction < bad else np.inf, None
+                before_leap = None
+                if fraction >= bad:
+                    bad = np.inf
                 step = self._next(way, done, GROWTH * step, bad, again * nearest) if refused else FASTER * step
                 continue
             if doubtful > 1.0 and step > self.settings.smallest_step and iterations <= self.settings.iteration_limit:

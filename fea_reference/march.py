@@ -35,7 +35,7 @@ from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import LACKING, Circle, Contact, Face, Pair, Penalty, Rigid, Touch
-from fea_reference.yielding import FELT, ROUNDED, felt, in_points
+from fea_reference.yielding import FELT, POINT, ROUNDED, felt, in_points
 from scene.answer import Array, Critical, Ending
 from scene.frozendict import frozendict
 
@@ -68,7 +68,6 @@ _SAME = 1e-9  # by which the one of a circle may
 _POLISHINGS = 8  # tries after which a penetration below the one asked will do
 _IN_A_POINT = 1.5  # the power of one over the penetration with which the penalty of a contact in a point goes
 _FALLS = (1.0, 2.0)  # in an area, and at a tip
-_POINT = 1.0  # elements: a zone no wider is a point
 _SUNK = 0.3  # of how deep something may be and not have gone through: what is deeper is about to
 _STIFFER = 10.0  # times: the penalty with which the step is tried again then
 _STIFFENINGS = 3
@@ -646,7 +645,7 @@ class March:
             depths: dict[Contact, float] = {}
             held: dict[Contact, float] = {}
             for one in self.system.touches:
-                narrow = one.closed and np.ptp(one.zones.intervals) < _POINT
+                narrow = one.closed and np.ptp(one.zones.intervals) < POINT
                 limit = most**_NARROW if narrow else most
                 factor = min(max(factors[one.pair], 1.0 / limit), limit)
                 stiffness = factor * self.penalties[one.pair].stiffness

@@ -33,11 +33,13 @@ FELT = 0.01
 ROUNDED = 2e-12
 """Of the longest beam: less deep, what places are rounded to is felt."""
 
+POINT = 1.0
+"""Elements: a zone no wider is a point."""
+
 _FALLS = (1.5, 2.0)  # m between sides, and at a tip
 _FAINT = 0.1  # of the largest push: a smaller one is measured by that
 _STILL = 1e-4  # of what the largest push does to a beam at its length: motions below are measured by that
 _BESIDE = 1e-6  # of the measure: how near a place is to the least gap that stands for it
-_POINT = 1.0  # elements: a zone no wider is a point
 _NEAR = 0.1  # lengths of the longest beam: what is farther nothing sinks into by loose penalties
 
 
@@ -51,12 +53,12 @@ def in_points(one: Touch) -> bool:
     first, last = one.zones.intervals.T
     begins = np.append(True, first[1:] > last[:-1])
     ends = np.append(begins[1:], True)
-    return bool((last[ends] - first[begins]).max() < _POINT)
+    return bool((last[ends] - first[begins]).max() < POINT)
 
 
 def _beside_joint(one: Touch) -> bool:
     """Whether something rigid presses within an element of a joint that lies on it, and nowhere else."""
-    return isinstance(one.pair, Face) and any(np.abs(one.zeta - end).max() < _POINT for end in one.pair.own)
+    return isinstance(one.pair, Face) and any(np.abs(one.zeta - end).max() < POINT for end in one.pair.own)
 
 
 def felt(
@@ -125,7 +127,7 @@ def _at_one_place(one: Touch, other: Touch) -> bool:
         return False
     apart = max(one.zeta.min(), other.zeta.min()) - min(one.zeta.max(), other.zeta.max())
     alike = float(one.force.sum(axis=1) @ other.force.sum(axis=1))
-    return apart < _POINT and alike > 0.0
+    return apart < POINT and alike > 0.0
 
 
 def _beside(
