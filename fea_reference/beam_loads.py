@@ -7,21 +7,32 @@ symbol  meaning
 x(ζ)    place on the neutral line, :mod:`fea_reference.hermite`; ψ its tangent angle at a node
 ξ*      where the line's arc length from the element's first node is ξ L
 l, α    length and angle of an element's chord; n = (−sin α, cos α), t = (cos α, sin α)
-c       give of the place of a force across an element whose ends are held, u³v³/(3 EI L³), u + v = L
-W       Σ f_g·(x(ζ_g) − x⁰(ζ_g)), and of a force ½ c (f·n)²
+γ       angle of shear of the place's element, by which its line leans from the sections at both of its ends
+c, c_t   give of the place of a force across an element whose ends are held, and along it
+φ, σ    12 EI/(GA L²) and 1/(1 + φ), which by the slip c of :mod:`fea_reference.element` is 1 − c₁ − c₂
+m       speed of the place's cubic at both nodes, l (1 + (ψ₂ − ψ₁)²/16)
+W       Σ f_g·(x(ζ_g) − x⁰(ζ_g)), and of a force ½ c (f·n)² + ½ c_t (f·t)²
 ======  =====================================================================================
 
 A force within an element and a distributed load act on the nodes by the cubic shape functions, as if these held what
 they do in between.  In small deflections the nodes are then where they would be (P. Tong, Exact solution of certain
-problems by finite-element method, AIAA Journal 7 (1969) 178-180).  What the shape functions lack is a bubble: under a
-distributed load its energy is of fifth order in each element, but of third under a force, so that this one is added.
-It moves the place by c (f·n) n; that two forces in one element have a share in each other's is left out.
+problems by finite-element method, AIAA Journal 7 (1969) 178-180), with shear too if each element's cubic leans by its
+own γ, and not by the mean that makes a line smooth: under a force γ jumps, and how much of the jump is before the place
+would be the mesh's to tell.  What the shape functions lack is a bubble: under a distributed load its energy is of fifth
+order in each element, and of third with shear, but of third and first under a force, so that this one is added.  It
+moves the place by c (f·n) n + c_t (f·t) t; that two forces in one element have a share in each other's is left out.
+With u + v = L, a cantilever's formulas for either end, and the element's axial compliance c_N,
+
+    c = (u v/(12 EI L)) [ u v (1 − σ (v − u)²/L²) + φ L² ],     u³v³/(3 EI L³) without shear,     c_t = c_N u v/L.
+
+The speed is that of :mod:`fea_reference.hermite` for an arc, by the chord and not by the axial force: that would be
+worked on by what acts within its element, and be off by a tenth of it.
 
 A cubic over an arc is slower in the middle, by α²/8 of its speed with the element's turning 2α, so that a force acts at
 
     ξ* = ξ − (ψ₂ − ψ₁)² ξ (1 − ξ)(1 − 2ξ)/48
 
-    ∂(½ c (f·n)²)/∂α = −c (f·n)(f·t),    ∂²/∂α² = c ((f·t)² − (f·n)²)
+    ∂(½ c (f·n)² + ½ c_t (f·t)²)/∂α = (c_t − c)(f·n)(f·t),    ∂²/∂α² = (c − c_t)((f·t)² − (f·n)²)
 
 A moment M does the work M (θ − θ⁰) of the section's rotation θ at its place, and not of the line's tangent: that leans
 by the shear, and a moment on it would be a couple of forces as far apart as an element is long, which shear the beam
@@ -35,8 +46,7 @@ power of the element's turning and more or less by where in its element the plac
     dα = n·d(x₂ − x₁)/l,    d²α = −2 (n·d(x₂ − x₁)) (t·d(x₂ − x₁))/l²
 
 As a force has, it has a give of its place in an element whose ends are held, c' = (u v/L)(1 − 3 σ u v/L²)/EI: a
-constant ½ c' M².  Two in one element, at u ≤ u', turn each other's places by (u v'/L)(1 − 3 σ v u'/L²)/EI.  With shear
-σ = 1/(1 + 12 EI/(GA L²)), which by the slip c of :mod:`fea_reference.element` is 1 − c₁ − c₂.
+constant ½ c' M².  Two in one element, at u ≤ u', turn each other's places by (u v'/L)(1 − 3 σ v u'/L²)/EI.
 """
 
 from __future__ import annotations
@@ -92,18 +102,16 @@ def beam_load(model: Model, part: OnBeam, value: float, z: State) -> BeamLoad:
     if isinstance(part, BeamMomentPart):
         return _beam_moment(model, part, value, z)
     beam = model.beams[part.beam]
-    line = model.line(beam, z)
     force = value * part.forces
-    placed = _placed(part, line)
-    place, start = placed.place, _placed(part, model.line(beam, model.start)).place
+    placed = _placed(model, part, z)
+    place, start = placed.place, _placed(model, part, model.start).place
     local, twice = placed.along(force)
     done = float((force * (place - start)).sum())
     if not part.distributed:
-        give = (placed.xi * (1.0 - placed.xi) * line.lengths[placed.e]) ** 3 / (3.0 * beam.bending(part.zeta / line.n))
-        bubble = _bubble(line, placed.e, give, force)
+        bubble = _bubble(placed.line, placed.local, _gives(model, part, placed), force)
         local, twice, place = local + bubble.local, twice + bubble.twice, place + bubble.moved
         done += 0.5 * float((bubble.moved * force).sum())
-    chain = model.chain([(beam, placed.e)], z)
+    chain = model.chain_apart(beam, placed.e, z)
     return BeamLoad(part, value, force, place, done, chain, chain.gradient(local), chain.hessian(twice, local))
 
 
@@ -165,10 +173,13 @@ def _turning(line: NeutralLine, zeta: Array) -> tuple[Array, Array, Array]:
 
 @dataclass(frozen=True, slots=True)
 class _Placed:
-    """Where a load acts on its ``line``: elements ``e``, ξ* and ξ (k,), and ∂ξ* and ∂²ξ* by the nodes' ψ (2, k)."""
+    """Where a load acts: elements ``e``, which are ``local`` ones of the ``line``, ξ* and ξ (k,), and ∂ξ* and ∂²ξ* by
+    the nodes' ψ (2, k).
+    """
 
     line: NeutralLine
     e: Index
+    local: Index
     at: Array
     xi: Array
     slope: Array
@@ -177,45 +188,87 @@ class _Placed:
     @property
     def place(self) -> Array:
         """x (2, k)."""
-        return self.line.at(self.e + self.at)[0]
+        return self.line.at(self.local + self.at)[0]
 
     def along(self, f: Array) -> tuple[Array, Array]:
         """Derivatives of f·x(ξ*) for forces (2, k) by what the elements' lines go by: (7, k) and (7, 7, k)."""
-        line, e, H, H1 = self.line, self.e, shapes(self.at), shape_slopes(self.at)
+        line, e, H, H1 = self.line, self.local, shapes(self.at), shape_slopes(self.at)
         _, x1, x2 = line.at(e + self.at)
         ahead, bent = (f * x1).sum(axis=0), (f * x2).sum(axis=0)
         moved, turned = np.zeros((_LINE, e.size)), np.zeros((_LINE, _LINE, e.size))
         moved[[2, 5]] = -self.slope, self.slope
         turned[2, 2] = turned[5, 5] = self.second
         turned[2, 5] = turned[5, 2] = -self.second
-        both = along(f, H1, line, e)[:, None] * moved[None, :]
-        twice = twice_along(f, H, line, e) + both + both.transpose(1, 0, 2)
-        return along(f, H, line, e) + ahead * moved, twice + bent * moved[:, None] * moved[None, :] + ahead * turned
+        speed, speed_twice = _speed(line, e)
+        local, twice = along(f, H, line, e), twice_along(f, H, line, e)
+        by, by1 = _by_nodes(local, speed), _by_nodes(along(f, H1, line, e), speed)
+        both = twice[_LINE - 1][:, None] * speed[None, :]
+        by_twice = twice + both + both.transpose(1, 0, 2) + local[_LINE - 1] * speed_twice
+        by_twice[_LINE - 1] = by_twice[:, _LINE - 1] = 0.0
+        both = by1[:, None] * moved[None, :]
+        twice = by_twice + both + both.transpose(1, 0, 2)
+        return by + ahead * moved, twice + bent * moved[:, None] * moved[None, :] + ahead * turned
 
 
-def _placed(part: BeamLoadPart, line: NeutralLine) -> _Placed:
+def _by_nodes(local: Array, speed: Array) -> Array:
+    """Derivatives (7, k) by the nodes alone of what has ``local`` ones, the last of them by the speed."""
+    by = local + local[_LINE - 1] * speed
+    by[_LINE - 1] = 0.0
+    return np.asarray(by)
+
+
+def _speed(line: NeutralLine, e: Index) -> tuple[Array, Array]:
+    """Derivatives of m − L (1 + (ψ₂ − ψ₁)²/48) by the nodes, (7, k) and (7, 7, k)."""
+    _, _, turn, stretch = _chord(line, e)
+    l = np.abs(line.nodes[e + 1] - line.nodes[e])  # noqa: E741 - the chord's length
+    turned, L = line.angles[e + 1] - line.angles[e], line.lengths[e]
+    ends = np.zeros((_LINE, 1))
+    ends[2], ends[5] = -1.0, 1.0
+    both = stretch[:, None] * ends[None, :]
+    once = l * (1.0 + turned**2 / 16.0) * stretch + (l / 8.0 - L / 24.0) * turned * ends
+    twice = l * (1.0 + turned**2 / 16.0) * turn[:, None] * turn[None, :]
+    twice += l * turned / 8.0 * (both + both.transpose(1, 0, 2)) + (l / 8.0 - L / 24.0) * ends[:, None] * ends[None, :]
+    return once, twice
+
+
+def _placed(model: Model, part: BeamLoadPart, z: State) -> _Placed:
     """A distributed load's places need no ξ*: what one half of an element gains the other loses."""
-    e, xi = line.locate(part.zeta)
+    beam = model.beams[part.beam]
+    e = np.minimum(part.zeta.astype(np.int64), beam.elements.stop - beam.elements.start - 1)
+    xi, local = part.zeta - e, 2 * np.arange(e.size)
+    line = model.apart_at_nodes(beam, e, z)
     g = np.zeros_like(xi) if part.distributed else xi * (1.0 + xi * (2.0 * xi - 3.0)) / 48.0
-    turned = line.angles[e + 1] - line.angles[e]
-    return _Placed(line, e, xi - g * turned**2, xi, -2.0 * g * turned, -2.0 * g)
+    turned = line.angles[local + 1] - line.angles[local]
+    return _Placed(line, e, local, xi - g * turned**2, xi, -2.0 * g * turned, -2.0 * g)
+
+
+def _gives(model: Model, part: BeamLoadPart, placed: _Placed) -> tuple[Array, Array]:
+    """c and c_t (k,) of the places of forces."""
+    beam, elements, xi = model.beams[part.beam], model.elements, placed.xi
+    e = beam.elements.start + placed.e
+    L, sigma = elements.length[e], 1.0 - elements.slip[:, e].sum(axis=0)
+    bending = beam.bending(part.zeta / (beam.elements.stop - beam.elements.start))
+    uv = xi * (1.0 - xi)
+    across = L**3 * uv * (uv * (1.0 - sigma * (1.0 - 2.0 * xi) ** 2) + 1.0 / sigma - 1.0) / (12.0 * bending)
+    return np.asarray(across), np.asarray(elements.compliance[e] * L * uv)
 
 
 @dataclass(frozen=True, slots=True)
 class _Bubble:
-    """What ½ c (f·n)² adds to the derivatives of W, ``local`` (7, k) and ``twice`` (7, 7, k), and to x (2, k)."""
+    """What the gives add to the derivatives of W, ``local`` (7, k) and ``twice`` (7, 7, k), and to x (2, k)."""
 
     local: Array
     twice: Array
     moved: Array
 
 
-def _bubble(line: NeutralLine, e: Index, give: Array, f: Array) -> _Bubble:
+def _bubble(line: NeutralLine, e: Index, gives: tuple[Array, Array], f: Array) -> _Bubble:
     t, n, turn, stretch = _chord(line, e)
+    c, c_t = gives
     across, ahead = (f * n).sum(axis=0), (f * t).sum(axis=0)
     both = stretch[:, None] * turn[None, :]
     twice = (ahead**2 - across**2) * turn[:, None] * turn[None, :] + across * ahead * (both + both.transpose(1, 0, 2))
-    return _Bubble(-give * across * ahead * turn, give * twice, give * across * n)
+    return _Bubble((c_t - c) * across * ahead * turn, (c - c_t) * twice, c * across * n + c_t * ahead * t)
 
 
 def _chord(line: NeutralLine, e: Index) -> tuple[Array, Array, Array, Array]:
@@ -237,8 +290,8 @@ def load_forces(model: Model, part: OnBeam, z: State) -> Array:
         f = np.zeros(model.size)
         np.add.at(f, one.dofs, one.gradient)
         return f
-    placed = _placed(part, model.line(beam, z))
-    chain = model.chain([(beam, placed.e)], z)
+    placed = _placed(model, part, z)
+    chain = model.chain_apart(beam, placed.e, z)
     f = np.zeros(model.size)
     np.add.at(f, chain.dofs, chain.gradient(placed.along(part.forces)[0]))
     return f

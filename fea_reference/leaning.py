@@ -147,5 +147,16 @@ def own_chain(span: Span, e: Index) -> Chain:
     return _upright(span.dofs[:, e], ((0, 0, e),))
 
 
+def sheared_chain(elements: Elements, span: Span, e: Index, z: State) -> Chain:
+    """Of elements (k,) of a beam whose lines lean from both of their sections by their own angle of shear."""
+    own = span.dofs[:, e]
+    if not elements.slip[:, span.part].any():
+        return _upright(own, ((0, 0, e),))
+    slip = shear(elements, span.part.start + e, own, z)
+    by, twice = np.zeros(own.shape), np.zeros((_LINE, *own.shape))
+    by[:6], twice[:6, :6] = slip.by, slip.by_twice
+    return Chain(own, _TANGENTS, np.stack([by, by]), np.stack([twice, twice]), ((0, 0, e),))
+
+
 def _upright(own: Index, shares: tuple[tuple[int, int, Index], ...]) -> Chain:
     return Chain(own, (), np.empty((0, *own.shape)), np.empty((0, len(own), *own.shape)), shares)

@@ -22,7 +22,7 @@ from fea_reference.curves import length, sample
 from fea_reference.element import ElementForces, Elements, Shear, forces, reference, shear, shear_angle
 from fea_reference.hermite import Index, NeutralLine
 from fea_reference.known import Known
-from fea_reference.leaning import Chain, Span, chain, own_chain, tangent_angles
+from fea_reference.leaning import Chain, Span, chain, own_chain, sheared_chain, tangent_angles
 from fea_reference.own_pins import own_pins
 from fea_reference.pattern import Patterns
 from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
@@ -327,6 +327,25 @@ class Model:
             self.elements.compliance[beam.elements],
             z[self.element_dofs[6, beam.elements]],
         )
+
+    def apart_at_nodes(self, beam: BeamPart, e: Index, z: State) -> NeutralLine:
+        """Elements (k,) of a beam, each leaning from its sections by its own angle of shear, as long as its chord says.
+
+        They are the elements 0, 2, ... 2 k − 2 of a line; what lies between says nothing.  In place of an axial force a
+        line goes by what its speed l (1 + (ψ₂ − ψ₁)²/16) is more than one without stretch.
+        """
+        nodes = np.stack([e, e + 1], axis=1).ravel()
+        dofs = self.node_dofs[:, beam.nodes][:, nodes]
+        gamma = shear_angle(self.elements, beam.elements, self.element_dofs[:, beam.elements], z)[e]
+        angles, lengths = z[dofs[2]] + np.repeat(gamma, 2), np.repeat(self.elements.length[beam.elements][e], 2)[:-1]
+        dx, dy = z.difference(dofs[:2, 1:], dofs[:2, :-1])
+        turned = np.diff(angles)
+        more = np.hypot(dx, dy) * (1.0 + turned**2 / 16.0) - lengths * (1.0 + turned**2 / 48.0)
+        return NeutralLine.through(z[dofs[:2]], angles, lengths, z.rest[dofs[:2]], 1.0 / lengths, more)
+
+    def chain_apart(self, beam: BeamPart, e: Index, z: State) -> Chain:
+        """From what the elements (k,) of :meth:`apart_at_nodes` go by to the unknowns."""
+        return sheared_chain(self.elements, self._span(beam), e, z)
 
     def chain(self, places: Sequence[tuple[BeamPart, Index]], z: State, body: Index | None = None) -> Chain:
         """From what lines go by to the unknowns: of beams at elements (k,) of theirs, and of a ``body``'s three."""

@@ -9,7 +9,7 @@ from fea_reference.model import build
 from fea_reference.solve import answer
 from fea_reference.state import State
 from fea_reference.system import assemble
-from tests.cprbm.scenes import LENGTH, RIGIDITY
+from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH
 from tests.fea_reference.test_derivatives import bent
 from tests.together.test_beam_loads import FORCE, acting, point, scene_from, spread
 
@@ -71,6 +71,18 @@ def test_in_small_deflections_two_elements_are_exact(load, tip):
     if load[0]["kind"] == "beam_force":
         energy = -0.5 * 0.37**3 / 3.0 * 1e-10 * RIGIDITY / LENGTH
         assert values["scene.potential_energy"][0] == pytest.approx(energy, rel=1e-7)
+
+
+@pytest.mark.parametrize("at", [0.13, 0.37, 0.5, 0.86])
+@pytest.mark.parametrize("kinematics", ["stretch", "shear"])
+def test_wherever_in_its_element_a_force_is_its_energy_is_exact(kinematics, at):
+    """Reference: the give a³/(3 EI) + a/GA across and a/EA along, by Clapeyron; in small deflections."""
+    EA, a = MODULUS * WIDTH * THICKNESS, at * LENGTH
+    GA = 5.0 / 6.0 * EA / (2.0 * (1.0 + 0.31)) if kinematics == "shear" else np.inf
+    for load, give in ((point(at, 1e-3, 0.0), a / EA), (point(at, 0.0, 1e-5), a**3 / (3.0 * RIGIDITY) + a / GA)):
+        (station,) = answer(scene_from(acting([load])), Settings(elements=3, kinematics=kinematics)).stations
+        energy = -0.5 * load[1] ** 2 * give
+        assert station.values["scene.potential_energy"][0] == pytest.approx(energy, rel=1e-6)
 
 
 def test_what_is_asked_is_balanced():
