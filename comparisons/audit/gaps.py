@@ -319,7 +319,14 @@ def _surface(contact: CircleContact | LineContact | HalfPlaneContact | FunctionC
     normal = np.where(
         lying | ~corner & (size < 1e-9), side[piece], sign * away / np.maximum(size, np.finfo(float).tiny)
     )
-    return Feet(sign * size, normal, 0.0 * size, ended & ~closed)
+    distance, ended = sign * size, ended & ~closed
+    # behind an end what is rigid has a side, square to the last piece
+    first = (piece == 0) & (share < 0.0)
+    end, beyond = np.where(first, corners[0], corners[-1]), np.where(first, -steps[0], steps[-1])
+    beyond = beyond / np.abs(beyond)
+    on_side = ended & (((places - end) * np.conj(side[piece])).real < 0.0)
+    distance = np.where(on_side, ((places - end) * np.conj(beyond)).real, distance)
+    return Feet(distance, np.where(on_side, beyond, normal), 0.0 * size, ended)
 
 
 def _pieces(contact: LineContact | FunctionContact, places: Complex, corners: Complex) -> Ints:

@@ -23,7 +23,7 @@ from scene import Ending
 from scene.answer import frozen_array
 from scene.reading import scene_from
 from scene.statement import FunctionContact, LineContact
-from tests.cprbm.scenes import LENGTH, MODULUS, THICKNESS, WIDTH, cantilever_data
+from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH, cantilever_data
 from tests.fea_reference.on_an_edge import T, cantilever_over, scene_of
 from tests.references import columns
 from tests.together import branches
@@ -220,6 +220,42 @@ def test_a_graph_over_y_is_looked_at_from_its_side(side, ahead):
         kind="beam-function", beam="b", body="w", axis="y", coefficients=(0.3, 0.0), range=(-1.0, 0.7), side=side
     )
     assert _surface(contact, np.array([0.41 + 0.2j])).distance == pytest.approx([0.11 * ahead])
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_behind_its_ends_a_line_has_sides(side):
+    """By hand: what is rigid is half a strip, between -0.2 and 0.5 across, and goes on for ever behind the line."""
+    points = ((-0.2, 0.0), (0.1, 0.0), (0.5, 0.0))
+    points = points if side == "left" else points[::-1]
+    contact = LineContact(kind="beam-line", beam="b", body="w", points=points, side=side)
+    places = np.array([0.57 - 0.3j, -0.31 - 0.9j, 0.55 + 0.12j])
+    feet = _surface(contact, places)
+    assert feet.distance == pytest.approx([0.07, 0.11, 0.13], rel=1e-12)
+    assert feet.normal == pytest.approx(np.array([1.0, -1.0, (0.05 + 0.12j) / 0.13]), rel=1e-12)
+
+
+@BOTH
+def test_a_beam_on_the_side_of_what_is_rigid_is_sound(solve):
+    """A cantilever is blown against the side of half a strip; drawn as one more piece of the line it is the same."""
+    right, top = 0.19 * LENGTH, -0.39 * LENGTH
+    data = cantilever_data({}, [])
+    data["bodies"]["tip"]["points"]["T"] = data["beams"]["beam"]["curve"]["end"] = [0.0, -LENGTH]
+    data["loads"] = {"wind": {"kind": "distributed", "beam": "beam", "direction": [1.0, 0.0], "along": [0.0, 0.5]}}
+    data["stages"] = [{"name": "blow", "steps": "wind", "stations": [57.0 * RIGIDITY / LENGTH**3]}]
+    data["probes"] = [{"of": "strip", "quantity": "force"}]
+    line = {"kind": "beam-line", "beam": "beam", "body": "wall", "side": "right"}
+    forces = []
+    for points in ([[2.0 * right, top], [right, top]], [[2.0 * right, top], [right, top], [right, -3.0 * LENGTH]]):
+        scene = scene_from(data | {"contacts": {"strip": line | {"points": points}}})
+        found = solve(scene)
+        assert found.completed, found.sentence
+        assert audited(scene, found) == ()
+        (station,) = found.stations
+        forces.append(station.values["strip.force"][0])
+        pressed = station.statics.places[np.array(station.statics.by) == "strip"]
+        assert (pressed[:, 1] < top - 0.1 * LENGTH).all()
+    assert forces[0] > 0.1 * RIGIDITY / LENGTH**2
+    assert forces[0] == pytest.approx(forces[1], rel=1e-6)
 
 
 def test_places_are_as_far_from_a_parabola_as_the_roots_of_its_cubic_say():
