@@ -333,6 +333,12 @@ def _holding(first: System, now: System) -> Iterator[tuple[Touch, Touch]]:
             yield from zip(before, zones, strict=True)
 
 
+def _parts(one: Touch) -> list[Touch]:
+    """What of a contact may let go: its zones, where it has several, and all of it."""
+    zones = _zones(one)
+    return [one, *zones] if len(zones) > 1 else [one]
+
+
 def _zones(one: Touch) -> list[Touch]:
     """A contact as that of each of its zones alone, along the first beam."""
     order = np.argsort(one.zeta, kind="stable")
@@ -353,12 +359,10 @@ def _gone(march: March, branch: Branch, first: Place, begun: Touch, one: Touch, 
 
 
 def _next_to_go(march: March, load: int, onward: float) -> tuple[Touch, float] | None:
-    """The contact whose force is first to vanish at the rate of now, and how far it is there."""
+    """The contact, or the zone of several, whose force is first to vanish at the rate of now, and how far that is."""
     rate = march.rate(load)
     found: tuple[Touch, float] | None = None
-    for one in march.system.touches:
-        if not one.closed:
-            continue
+    for one in (part for each in march.system.touches if each.closed for part in _parts(each)):
         change = float(one.foreseen(onward * rate).sum()) - one.push
         if change >= 0.0:
             continue
@@ -369,7 +373,9 @@ def _next_to_go(march: March, load: int, onward: float) -> tuple[Touch, float] |
 
 
 def _without(march: March, one: Touch) -> System:
-    """The state of now without one contact."""
+    """The state of now without one contact, or without one of its zones."""
+    if all(one is not each for each in march.system.touches):
+        return stiffened(march.model, march.system, one, 0.0)
     others = {pair: penalty for pair, penalty in march.penalties.items() if pair != one.pair}
     return assemble(march.model, others, march.settings.quadrature, march.values, march.system.z, march.acting)
 
