@@ -64,7 +64,8 @@ It is at least 1e-12 of the family's natural scale, for what round-off does to t
 themselves.  A contact that is open in every run has no force, and nothing is left open there.
 
 Of contacts that press a beam at one place the sum of their forces is measured in place of each
-(:mod:`comparisons.shared`).
+(:mod:`comparisons.shared`).  Of one that presses within an element of its beam's joint the sum of both is measured as
+well (:mod:`comparisons.beside`).
 """
 
 from __future__ import annotations
@@ -76,6 +77,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from comparisons.beside import joint_beside
 from comparisons.branches import Place, Spot, spots_of
 from comparisons.choices import KINEMATICS
 from comparisons.geometry import length
@@ -93,6 +95,11 @@ SAFETY = 1.25
 SHARE_OF_LARGEST = SAFETY - 1.0
 ROUND_OFF = 1e-12
 EXACT_TO = 1e-9
+_BESIDE_JOINTS = (
+    "force",
+    "centre",
+    "ends",
+)  # what of a contact elements do not resolve that are longer than its way to a joint
 """Share of a probe's scale below which a distance from the exact value says nothing."""
 
 OPEN_AT_ZERO: frozenset[Quantity] = frozenset({"force", "moment"})
@@ -209,6 +216,9 @@ class Row:
     force ``difference``, ``same_theory`` and ``bounds`` are then those of the resultant of all of them,
     ``together`` (1,) the CPRBM's and the finite elements', absent where some answer does not say what acts.
 
+    ``beside`` is the same row where some answer has the contact press within an element of a joint
+    (:mod:`comparisons.beside`), which it then names as ``shared``: of a force measured by the sum of both.
+
     ``branch`` is the number of the branch that all answers are on at the station, None where there is no such one, and
     ``place`` what that makes of it (:mod:`comparisons.branches`).  Only where it is compared there are ``bounds``; near
     a critical value there are differences alone, and elsewhere the values.
@@ -235,6 +245,7 @@ class Row:
     branch: int | None = 0
     shared: frozenset[str] = frozenset()
     together: tuple[Array, Array] | None = None
+    beside: Row | None = None
 
     def fraction(self, value: float) -> float | None:
         """``value`` as a fraction of the denominator; None where that says nothing."""
@@ -373,6 +384,12 @@ def _row(
         return row
     if shared:
         return _of_resultants(scene, runs, replace(row, shared=shared), stations, unsettled)
+    joint = joint_beside(scene, stations.values(), probe.of) if probe.quantity in _BESIDE_JOINTS else None
+    if joint is not None:
+        beside = replace(row, shared=frozenset({joint}))
+        if probe.quantity == "force":
+            beside = _of_resultants(scene, runs, beside, stations, unsettled)
+        row = replace(row, beside=beside)
     row = replace(
         row,
         largest=abs(norm(probe.quantity, v_c) - norm(probe.quantity, v_f)) if is_stress else None,
@@ -415,8 +432,8 @@ def _row(
 
 
 def _of_resultants(scene: Scene, runs: Runs, row: Row, stations: Mapping[str, StationAnswer], unsettled: float) -> Row:
-    """The bare ``row`` of the force of a contact that presses at one place with those that it names as ``shared``,
-    measured by what they do together in all runs' ``stations``.
+    """The bare ``row`` of the force of a contact that presses at one place with those that it names as ``shared``, or
+    beside a joint, measured by what they do together in all runs' ``stations``.
     """
     probe = row.probe
     beam = scene.contacts[probe.of].beams[0]

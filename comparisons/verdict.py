@@ -17,7 +17,9 @@ The second condition makes the first one tight.  By the triangle inequality
 between the theories; within one theory it has only the two discretisations to hide behind.
 
 Of contacts that press a beam at one place the sum of the forces alone is determined (:mod:`comparisons.shared`): a row
-that asks for one of them says DIFFER if the sums do, and UNDECIDED otherwise.
+that asks for one of them says DIFFER if the sums do, and UNDECIDED otherwise.  So does one that would differ and asks
+for the force of a contact within an element of its beam's joint (:mod:`comparisons.beside`), by the sum of both; one
+that would and asks where such a contact presses is UNDECIDED.
 
 Rows at which the answers are not on one branch, or near where one ends, say what their place makes them say
 (:mod:`comparisons.branches`); a critical value says what :mod:`comparisons.criticals` makes of it.
@@ -165,6 +167,7 @@ def _reactions(scene: Scene, runs: Runs) -> tuple[Reaction, ...]:
 
 def judged(scene: Scene, rows: tuple[Row, ...], criticals: tuple[CriticalRow, ...] = ()) -> Verdict:
     """The verdict on the rows and the critical values of whole answers."""
+    rows = tuple(_with_joint(scene, row) for row in rows)
     words = tuple(_word(scene, row) for row in rows)
     of_rows, of_them = _judged_rows(scene, rows, words)
     branches = branch_verdicts(rows, words)
@@ -189,6 +192,15 @@ def _judged_rows(scene: Scene, rows: tuple[Row, ...], words: tuple[Word | None, 
     row = max((row for row, _ in judged_rows), key=lambda row: max(_between(row)))
     said = _sentence(scene, row, Word.AGREE, len(judged_rows), len(judged_rows))
     return Word.AGREE, (said, *_allowed(scene), *_exactly(rows))
+
+
+def _with_joint(scene: Scene, row: Row) -> Row:
+    """The row that speaks for one: of a force that would differ, and no mesh resolves, the one with the joint beside.
+
+    Where an exact value says whose force is wrong, it does.
+    """
+    unresolved = row.beside is not None and not any(each.pressure > 1.0 for each in every(row))
+    return row.beside if unresolved and row.beside is not None and _word(scene, row) is Word.DIFFER else row
 
 
 def _word(scene: Scene, row: Row) -> Word | None:
@@ -288,9 +300,12 @@ def _sentence(scene: Scene, row: Row, word: Word, count: int, rows: int) -> str:
 
 
 def _of_shared(scene: Scene, row: Row) -> str:
-    """Why the force of one of several contacts at one place cannot be told, and what all of them do."""
+    """Why the force of a contact cannot be told that shares a place with others or a joint, and what all of them do."""
     beam, others = scene.contacts[row.probe.of].beams[0], " and ".join(sorted(row.shared))
-    why = f"{others} and {row.probe.of} press {beam} at one place, and no mechanics says how they share the force"
+    if row.shared <= scene.contacts.keys():
+        why = f"{others} and {row.probe.of} press {beam} at one place, and no mechanics says how they share the force"
+    else:
+        why = f"{row.probe.of} presses {beam} within an element of its joint at {others}, which no such mesh resolves"
     if row.together is None:
         return f"{why}."
     mine, theirs = (f"{number(float(value[0]), 5)} {row.unit}" for value in row.together)

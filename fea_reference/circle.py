@@ -178,7 +178,6 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
         x=x,
         x_m=c[:, None] + circle.radius * n,
         normal=n,
-        missing=0.0,
     )
 
 

@@ -22,7 +22,8 @@ the exact intervals on which g < δ, so the pressure vanishes at their moving en
 to either derivative, and what is integrated is smooth in between.  It does not vanish where an interval ends
 because the second beam does; there ½ ε (δ − g)²/|x'·τ| along τ is missing, x' by arc length.  So a beam whose end
 lies over the inside of the other is the first, what is missing all the same is measured, and where that is more than
-nothing the beams change places.
+nothing the beams change places.  Where ends of both lie so, each zone is left to the beam whose end it has
+(:mod:`fea_reference.carrying`).
 
 Where a thickness varies, g is the least of |x − x_m| − T − T_m over x_m, T and T_m being half of the thickness at
 either place (:mod:`fea_reference.facing`): a zone's middle is where that is least over x as well, n·x' = T' and, away
@@ -41,11 +42,12 @@ and δ = p/ε lets it act where the gap is zero; see :mod:`fea_reference.circle`
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
+from fea_reference.carrying import cut_off, numbered, seen_from_first, shared_out
 from fea_reference.edge import edge_of
 from fea_reference.facing import Borders, Tapers, borders, lean
 from fea_reference.hermite import NeutralLine, along, apart, plane, shape_slopes, shapes, twice_along
@@ -68,12 +70,15 @@ from fea_reference.zones import (
     seen,
     side_of,
 )
+from scene.answer import Array, Ints
 from scene.statement import BeamContact, BeamEnd, FreeEnd, Scene, SelfContact
 
 _AT_END = 1e-6  # elements
 _BESIDE = 2.0  # mean thicknesses: held ends no further apart stand beside each other
 _SLENDER = 0.01  # of the longest beam: what stands for the thickness of beams that touch as lines
 _LYING = 1.0  # elements: what is shorter at an end does not lie on the other beam
+_LINE = 7  # unknowns of an element's line
+_WEIGHTLESS = 1e-6  # of what all zones press with
 _LAYERS = 32.0  # the widest in a beam's length
 
 
@@ -248,18 +253,103 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     A ``held`` contact acts, in tension too, where the gap is least by up to that depth: while Newton's method
     is still far from equilibrium, a contact that was closed before neither vanishes nor hits like a wall.
     """
-    beam, beam_m = model.beams[pair.first], model.beams[pair.second]
-    line, line_m = model.line(beam, z), model.line(beam_m, z)
     distance = pair.distance + penalty.lead
-    gaps = _seen(model, pair, z, distance)
-    level = 0.0 if held is None else gaps.least + held
-    if level < line_m.longest:
-        zones = overlap(line, line_m, distance, gaps, level, _rays(pair, line_m))
-    else:
-        wider = _seen(model, pair, z, distance + level)
-        zones = overlap(line, line_m, distance + level, wider, 0.0, _rays(pair, line_m))
-    zones = replace(zones, least=gaps.least + penalty.lead)
+    least = _seen(model, pair, z, distance).least
+    level = 0.0 if held is None else least + held
+    first = _overlap(model, pair, z, distance, level)
+    zones_m: Zones | None = None
+    if pair.carried:
+        line_m = model.line(model.beams[pair.second], z)
+        first, second = shared_out(first, _overlap(model, pair.about(), z, distance, level), line_m.n, pair.carried)
+        if second.intervals.size:
+            zones_m, least = second, min(least, second.least)
+    here = _along(model, pair, distance, quadrature, z, first)
+    missing, lacks = _missing(model, pair, penalty, z, first, here)
+    intervals, zeta_m = first.intervals, first.zeta_m
+    if zones_m is not None:
+        there = _along(model, pair.about(), distance, quadrature, z, zones_m)
+        more, most = _missing(model, pair.about(), penalty, z, zones_m, there)
+        missing, lacks = missing + more, max(lacks, most)
+        intervals_m, facing_m = seen_from_first(zones_m)
+        intervals, zeta_m = np.concatenate([intervals, intervals_m]), np.concatenate([zeta_m, facing_m])
+        order = np.argsort(intervals[:, 0])
+        intervals, zeta_m = intervals[order], zeta_m[order]
+        here = here.with_other(there, (order[:, None] * quadrature + np.arange(quadrature)).ravel())
 
+    beam, beam_m = model.beams[pair.first], model.beams[pair.second]
+    alike = together(quadrature, here.e, here.e_m)
+    return Touch(
+        pair=pair,
+        zones=Zones(intervals, zeta_m, least + penalty.lead),
+        chain=model.chain(((beam, here.e[::alike]), (beam_m, here.e_m[::alike])), z),
+        alike=alike,
+        stiffness=penalty.stiffness * here.ds,
+        gap=here.g,
+        gap_by=here.by,
+        gap_by_twice=here.by_twice,
+        zeta=here.zeta,
+        zeta_m=here.zeta_m,
+        x=here.x,
+        x_m=here.x_m,
+        normal=here.normal,
+        missing=missing,
+        lacks=lacks,
+    )
+
+
+def _overlap(model: Model, pair: Pair, z: State, distance: float, level: float) -> Zones:
+    """Where the gap is below a ``level``, along the first beam, both neutral lines being ``distance`` apart."""
+    line, line_m = model.line(model.beams[pair.first], z), model.line(model.beams[pair.second], z)
+    if level < line_m.longest:
+        return overlap(line, line_m, distance, _seen(model, pair, z, distance), level, _rays(pair, line_m))
+    wider = _seen(model, pair, z, distance + level)
+    return overlap(line, line_m, distance + level, wider, 0.0, _rays(pair, line_m))
+
+
+@dataclass(frozen=True, slots=True)
+class _Along:
+    """Gauss points (k,) of an integral along the first beam, and the gap there with its derivatives.
+
+    Of either line the element, the place and the point, ``ds`` of the first's arc; ``by`` what the first line goes by
+    and then the second, (14, k).
+    """
+
+    e: Ints
+    e_m: Ints
+    zeta: Array
+    zeta_m: Array
+    x: Array
+    x_m: Array
+    ds: Array
+    g: Array
+    by: Array
+    by_twice: Array
+    normal: Array
+
+    def with_other(self, other: _Along, order: Ints) -> _Along:
+        """These points and those of an integral along the second, put in ``order``."""
+
+        def both(one: Array, its: Array) -> Array:
+            return np.concatenate([one, its], axis=-1)[..., order]
+
+        return _Along(
+            e=np.concatenate([self.e, other.e_m])[order],
+            e_m=np.concatenate([self.e_m, other.e])[order],
+            zeta=both(self.zeta, other.zeta_m),
+            zeta_m=both(self.zeta_m, other.zeta),
+            x=both(self.x, other.x_m),
+            x_m=both(self.x_m, other.x),
+            ds=both(self.ds, other.ds),
+            g=both(self.g, other.g),
+            by=both(self.by, np.roll(other.by, _LINE, axis=0)),
+            by_twice=both(self.by_twice, np.roll(other.by_twice, (_LINE, _LINE), axis=(0, 1))),
+            normal=both(self.normal, -other.normal),
+        )
+
+
+def _along(model: Model, pair: Pair, distance: float, quadrature: int, z: State, zones: Zones) -> _Along:
+    """The gap at the Gauss points of the first beam's ``zones``."""
+    line, line_m = model.line(model.beams[pair.first], z), model.line(model.beams[pair.second], z)
     points, weights = gauss(quadrature)
     share = 0.5 * (points + 1.0)
     width = zones.intervals[:, 1] - zones.intervals[:, 0]
@@ -288,33 +378,14 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     H, H_m, H_m1 = shapes(xi), shapes(xi_m), shape_slopes(xi_m)
     d_q = np.concatenate([along(n, H, line, e), -along(n, H_m, line_m, e_m)])
     p = np.concatenate([along(tau, H, line, e), -along(tau, H_m, line_m, e_m)])
-    k = np.concatenate([np.zeros_like(d_q[:7]), along(n, H_m1, line_m, e_m)])
+    k = np.concatenate([np.zeros_like(d_q[:_LINE]), along(n, H_m1, line_m, e_m)])
     pk = p[:, None] * k[None, :]
     d_qq = -(a * p[:, None] * p[None, :] + d * k[:, None] * k[None, :] + J * (pk + pk.transpose(1, 0, 2))) / Z
     if faced.fixed.any():
         d_qq = np.where(faced.fixed, p[:, None] * p[None, :] / np.where(d == 0.0, 1.0, d), d_qq)
-    d_qq[:7, :7] += twice_along(n, H, line, e)
-    d_qq[7:, 7:] -= twice_along(n, H_m, line_m, e_m)
-
-    weight = penalty.stiffness * ds
-    alike = together(quadrature, e, e_m)
-    normal = side * n
-    return Touch(
-        pair=pair,
-        zones=zones,
-        chain=model.chain(((beam, e[::alike]), (beam_m, e_m[::alike])), z),
-        alike=alike,
-        stiffness=weight,
-        gap=g,
-        gap_by=side * d_q,
-        gap_by_twice=side * d_qq,
-        zeta=zeta,
-        zeta_m=zeta_m,
-        x=plane(x),
-        x_m=plane(x_m),
-        normal=normal,
-        missing=_missing(line, line_m, pair, penalty, zones),
-    )
+    d_qq[:_LINE, :_LINE] += twice_along(n, H, line, e)
+    d_qq[_LINE:, _LINE:] -= twice_along(n, H_m, line_m, e_m)
+    return _Along(e, e_m, zeta, zeta_m, plane(x), plane(x_m), ds, g, side * d_q, side * d_qq, side * n)
 
 
 def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
@@ -349,15 +420,18 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
     return max(0.0, float(np.median(pressure[[0, -1]][at_end] if at_end.any() else pressure)))
 
 
-def _missing(first: NeutralLine, second: NeutralLine, pair: Pair, penalty: Penalty, zones: Zones) -> float:
-    """½ ε g²/|x'·τ|, summed over the intervals' ends that are across from an end of the second beam."""
+def _missing(model: Model, pair: Pair, penalty: Penalty, z: State, zones: Zones, found: _Along) -> tuple[float, float]:
+    """½ ε g²/|x'·τ|, summed over the intervals' ends that are across from an end of the second beam.
+
+    And the largest share that it is of what a zone presses with; zones without any weight in the whole do not count.
+    """
     if pair.ended:
-        return 0.0
-    zeta, zeta_m = zones.intervals.ravel(), zones.zeta_m.ravel()
-    across = np.minimum(zeta_m, second.n - zeta_m) <= _AT_END
-    zeta, zeta_m = zeta[across], zeta_m[across]
-    if not zeta.size:
-        return 0.0
+        return 0.0, 0.0
+    first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
+    across = cut_off(zones, second.n, (0, 1))
+    if not across.any():
+        return 0.0, 0.0
+    zeta, zeta_m = zones.intervals[across], zones.zeta_m[across]
     there, there_m = first.around(zeta), second.around(zeta_m)
     back = (there_m.ahead / np.abs(there_m.ahead)).conj()
     d = (back * apart(first, there, second, there_m)).imag
@@ -367,4 +441,10 @@ def _missing(first: NeutralLine, second: NeutralLine, pair: Pair, penalty: Penal
         d = (back * apart(first, there, second, there_m)).imag
     g = np.minimum(side * d - pair.apart(zeta, zeta_m) - penalty.lead, 0.0)
     ahead = np.abs((back * there.ahead).real) / first.lengths[there.element]
-    return float((0.5 * penalty.stiffness * g**2 / np.maximum(ahead, 1e-3)).sum())
+    left_out = 0.5 * penalty.stiffness * g**2 / np.maximum(ahead, 1e-3)
+    number = numbered(zones)
+    each = (-penalty.stiffness * found.ds * found.g).reshape(len(number), -1).sum(axis=1)
+    pushes = np.abs(np.bincount(number, each))
+    missing = np.bincount(number[np.nonzero(across)[0]], left_out, minlength=pushes.size)
+    counts = (missing > _WEIGHTLESS * pushes.sum()) & (pushes > 0.0)
+    return float(missing.sum()), float((missing[counts] / pushes[counts]).max(initial=0.0))

@@ -242,7 +242,6 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
         x=x,
         x_m=x - near.distance * n,
         normal=n,
-        missing=0.0,
         bent=bent,
         sharp=bool(ends.any()) or bent is not None or bool(near.corner.any()),
     )

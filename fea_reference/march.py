@@ -593,23 +593,35 @@ class March:
         return False
 
     def change_places(self) -> None:
-        """Let the beams of a pair change places where an end of the second presses: only ends of the first are seen."""
+        """Let the beams of a pair change places where an end of the second presses: only ends of the first are seen.
+
+        Where ends of the first press as well, each beam is to carry the zones at its own ends.
+        """
         for one in self.system.touches:
-            if not isinstance(one.pair, Pair) or one.pair.roles is not None or one.lacks <= LACKING:
+            pair, lacks = one.pair, one.lacks
+            if not isinstance(pair, Pair) or pair.roles is not None:
                 continue
-            other = one.pair.about()
-            penalties = {other if pair == one.pair else pair: penalty for pair, penalty in self.penalties.items()}
-            depths = {other if pair == one.pair else pair: depth for pair, depth in self.depths().items()}
-            pushes = {pair: push for pair, push in self.pushes().items() if pair != one.pair}
-            solved = equilibrium(
-                self.model, self.settings, penalties, self.values, self.system.z, self.acting, depths, pushes
-            )
-            self.iterations += solved.iterations
-            if not solved.converged or self.moved(solved.system, self.system.z) > _CORRECTED:
-                continue
-            lacks = next((found.lacks for found in solved.system.touches if found.pair == other), 0.0)
-            if lacks < one.lacks:
-                self.system, self.penalties = solved.system, penalties
+            about = pair.about()
+            for other in (about, replace(pair, carried=pair.ends_m), replace(about, carried=about.ends_m)):
+                if lacks <= LACKING:
+                    break
+                if other != pair and (solved := self._instead(pair, other)) is not None:
+                    less = next((found.lacks for found in solved[0].touches if found.pair == other), 0.0)
+                    if less < lacks:
+                        (self.system, self.penalties), pair, lacks = solved, other, less
+
+    def _instead(self, pair: Pair, other: Pair) -> tuple[System, dict[Contact, Penalty]] | None:
+        """The equilibrium with a pair that is seen in an ``other`` way, and its penalties, if it is the same."""
+        penalties = {other if one == pair else one: penalty for one, penalty in self.penalties.items()}
+        depths = {other if one == pair else one: depth for one, depth in self.depths().items()}
+        pushes = {one: push for one, push in self.pushes().items() if one != pair}
+        solved = equilibrium(
+            self.model, self.settings, penalties, self.values, self.system.z, self.acting, depths, pushes
+        )
+        self.iterations += solved.iterations
+        if not solved.converged or self.moved(solved.system, self.system.z) > _CORRECTED:
+            return None
+        return solved.system, penalties
 
     def zones(self) -> dict[Contact, Array]:
         """Where the zones on what is rigid begin and end, (2,) each."""

@@ -38,6 +38,7 @@ class Pair:
         distance: T, of the neutral lines when they touch where the beams are thickest.
         ends, ends_m: which ends of the first and of the second (0 and 1) may come to lie on the other's side: not those
             that a body holds beside it.
+        carried: ends of the second beam whose zones the second carries the integral of, as ends of the first press too.
         tapers: how the thickness varies, of beams that touch by their edges if it does.
         scale: what the penetration asked is a share of: the mean thickness, or a hundredth of the longest beam for
             lines, which have none.
@@ -62,6 +63,7 @@ class Pair:
     stiffest: float
     ends: tuple[int, ...] = ()
     ends_m: tuple[int, ...] = ()
+    carried: tuple[int, ...] = ()
     roles: Roles | None = None
     tapers: Tapers | None = None
 
@@ -93,6 +95,7 @@ class Pair:
             side_m=self.side,
             ends=self.ends_m,
             ends_m=self.ends,
+            carried=(),
             tapers=None if self.tapers is None else Tapers(self.tapers.second, self.tapers.first),
         )
 
@@ -184,7 +187,7 @@ class Face:
 
 
 LACKING = 1e-3
-"""Of a contact's resultant: more may not be left out."""
+"""Of what a zone presses with: more may not be left out at its end."""
 
 Rigid = Circle | Face
 Contact = Pair | Rigid
@@ -215,8 +218,9 @@ class Touch:
     Places ``zeta`` (k,) on the first beam and ``zeta_m`` on the second (empty for what is rigid), points ``x`` of the
     first beam's neutral line and ``x_m`` of the second's or of the rigid edge (2, k), the ``normal`` (2, k) away
     from what it touches.
-    ``missing`` is the force that ends of the second beam leave out, ``bent`` (m, m, k) what else the energy's second
-    derivatives have, at some of the points.  Where a contact is ``sharp``, something with an edge of its own presses.
+    ``missing`` is the force that ends of the second beam leave out, and what it is of its zone's own push at most, what
+    it ``lacks``; ``bent`` (m, m, k) what else the energy's second derivatives have, at some of the points.  Where a
+    contact is ``sharp``, something with an edge of its own presses.
     """
 
     pair: Contact
@@ -232,7 +236,8 @@ class Touch:
     x: Array
     x_m: Array
     normal: Array
-    missing: float
+    missing: float = 0.0
+    lacks: float = 0.0
     bent: Array | None = None
     sharp: bool = False
 
@@ -285,12 +290,6 @@ class Touch:
     def push(self) -> float:
         """The resultant with its sign: negative while a held contact pulls."""
         return float(self.pushes.sum())
-
-    @property
-    def lacks(self) -> float:
-        """What ends of the second beam leave out, as a share of the resultant; none where that is none."""
-        resultant = float(np.hypot(*self.force.sum(axis=1)))
-        return self.missing / resultant if self.missing > 0.0 < resultant else 0.0
 
     @property
     def closed(self) -> bool:

@@ -1,0 +1,47 @@
+"""Contacts that press a beam within an element of its own joint: what their force is there, no mesh tells.
+
+======  ==================================================================================
+symbol  meaning
+======  ==================================================================================
+M       the moment with which joint and contact together turn the beam beside the joint
+d, F    distance of the contact's force from the joint, and the force
+======  ==================================================================================
+
+A beam that is held on what it lies on is pressed flat from its joint on.  Up to the value at which it begins to lie
+flat the joint, or its stop, gives M as a couple, and the contact has no force; from there on the force at the end of
+what lies flat is that of the whole beam, however short d is.  Elements longer than d can not tell the one from the
+other.  What mechanics determines, and every mesh has, is the sum of the forces of joint and contact.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from scene import FreeEnd, Scene, StationAnswer
+from scene.answer import Inside
+from scene.statement import RigidContact
+
+NOTHING = 1e-3  # of a contact's largest force: where it hardly presses is no place of its
+
+
+def joint_beside(scene: Scene, stations: Iterable[StationAnswer], name: str) -> str | None:
+    """The point of a joint of its beam within an element of which alone a rigid contact presses in some answer."""
+    contact = scene.contacts[name]
+    if not isinstance(contact, RigidContact):
+        return None
+    beam = scene.beams[contact.beam]
+    for station in stations:
+        if station.statics is None or not isinstance(inside := station.statics.inside[contact.beam], Inside):
+            continue
+        of = station.statics
+        mine = np.array([by == name and on == contact.beam for by, on in zip(of.by, of.on, strict=True)], dtype=bool)
+        size = np.hypot(*of.forces[mine].T)
+        s = of.s[mine][size > NOTHING * size.max(initial=0.0)]
+        if not s.size:
+            continue
+        for end, near in ((beam.start, s <= inside.borders[1]), (beam.end, s >= inside.borders[-2])):
+            if not isinstance(end, FreeEnd) and near.all():
+                return end.point
+    return None
