@@ -32,7 +32,7 @@ one, not in the other) decides, and the row itself is undecided only if the scen
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from comparisons.audit import Audit, audit
@@ -48,8 +48,11 @@ from comparisons.soundness import ABSENT_WHILE_OPEN, complaints, sound_part
 from comparisons.tolerances.search import Tolerance
 from comparisons.words import Word, worst_of
 from comparisons.work_energy import Reaction, reactions
-from scene import Scene
+from scene import Answer, Scene
 from scene.frozendict import frozendict
+
+Auditor = Callable[[Scene, Answer], Audit]
+"""What finds in an answer to a scene what does not hold."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,11 +101,16 @@ class Comparison:
     audits: Mapping[str, Audit] = frozendict()
 
 
-def compared(scene: Scene, runs: Runs) -> Comparison:
+def compared(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
     """Put the answers beside each other and judge them.
 
     Rows stand only if every run gave a whole answer, or one that is whole up to where its branch ends; the drives'
     reactions if those at N and n did.
+
+    Args:
+        scene: the question.
+        runs: the answers.
+        look: the audit, or one that remembers what it has looked at.
     """
     reach = within_reach(scene, runs)
     within, cut = (scene, runs) if reach is None else reach
@@ -123,10 +131,10 @@ def compared(scene: Scene, runs: Runs) -> Comparison:
     verdict = judged(within, rows, criticals)
     if reach is not None:
         verdict = _up_to_there(verdict, rows[-1])
-    audits = {answer.solver: audit(within, answer) for answer in (cut.cprbm[0], cut.reference)}
+    audits = {answer.solver: look(within, answer) for answer in (cut.cprbm[0], cut.reference)}
     verdict = _as_audited(verdict, audits)
     if cut.solid is not None and cut.solid[-1].completed:  # on which no verdict rests
-        audits["solid"] = audit(within, cut.solid[-1])
+        audits["solid"] = look(within, cut.solid[-1])
     return Comparison(scene, runs, rows, verdict, criticals, _reactions(scene, runs), audits=audits)
 
 

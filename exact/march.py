@@ -142,8 +142,9 @@ def _advance(way: Way, target: float, step: float) -> float:
     whole, changes = target - way.lam, 0
     largest, smallest = way.settings.largest_step * abs(whole), way.settings.smallest_step * abs(whole)
     step = min(largest, step or _FIRST_STEP * abs(whole))
-    reason = ""
+    reason, tried = "", 0
     while way.lam != target:
+        tried += 1
         goal = target if abs(target - way.lam) <= step else way.lam + math.copysign(step, whole)
         try:
             trial = way.attempt(goal)
@@ -156,6 +157,10 @@ def _advance(way: Way, target: float, step: float) -> float:
                 changes += 1
             else:
                 step *= 0.4
+        if tried >= way.settings.steps and way.lam != target:
+            raise NotCoveredError(
+                f"{way.settings.steps} steps lead no farther than {way.lam * way.unit:.6g} of {way.stepped}"
+            )
         if step < smallest or changes > _CHANGES:
             raise NotCoveredError(f"no equilibrium was found beyond {way.lam * way.unit:.6g} of {way.stepped}{reason}")
     return step

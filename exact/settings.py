@@ -16,6 +16,7 @@ class Settings(BaseModel):
         tolerance: largest residual of an equilibrium, without dimension, with either number of points.
         largest_step: largest step of the load or drive, as a fraction of the way between two stations.
         smallest_step: smallest one.
+        steps: most steps tried between two stations.
         iterations: most Newton iterations of one equilibrium.
     """
 
@@ -26,6 +27,7 @@ class Settings(BaseModel):
     tolerance: Annotated[float, Field(gt=0.0, le=1e-6)] = 1e-10
     largest_step: Annotated[float, Field(gt=0.0, le=1.0)] = 0.5
     smallest_step: Annotated[float, Field(gt=0.0, le=1.0)] = 1e-4
+    steps: Annotated[int, Field(ge=1)] = 100
     iterations: Annotated[int, Field(ge=4)] = 15
 
     def plain(self) -> dict[str, object]:

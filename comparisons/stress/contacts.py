@@ -19,6 +19,7 @@ _AWAY = 0.85  # of the states before one that was not found
 DEEP = 0.2  # of the size: farther behind it is what has come round its end
 SUNK = 0.03  # of the size: a node that sinks deeper into a barrier is led there, and nothing gives way
 TAKEN = 1e-5  # of the size: so near to a barrier's surface a spot is on it
+_LATE = 0.6  # of the mechanisms: what is in their way they meet once they have turned far, if they do
 _REACHED = 0.55  # of the way: a mechanism that a barrier ends before is left without it
 
 
@@ -31,15 +32,16 @@ def put_in_the_way(
     """
     rng = draft.rng
     contacts: Data = {}
+    spots: list[Spot] = []
     barriers: list[Barrier] = []
-    way = list(states)
+    way, late = list(states), happens(rng, _LATE)
     for i in range(weighted(rng, ((0, 0.07), (1, 0.45), (2, 0.3), (3, 0.12), (4, 0.06)))):
         name = f"contact{i + 1}"
         for _ in range(_TRIES):
             before = deepcopy(draft.data)
             try:
-                spot = spot_on(draft, model, way)
-                if _is_taken(model, spot, barriers):
+                spot = spot_on(draft, model, way, late=late)
+                if _is_taken(model, spot, spots, barriers):
                     raise RedrawError
                 obstacle = _obstacle(draft, spot)
             except RedrawError:
@@ -53,6 +55,7 @@ def put_in_the_way(
                 draft.data = before
                 continue
             contacts[name] = obstacle.data | ({} if thick else {"thick": False})
+            spots.append(spot)
             barriers.append(barrier)
             # beyond where the estimate found nothing there may be a jump: what follows keeps away from it
             way = held if len(held) == len(states[::-_STRIDE]) else held[: int(_AWAY * len(held))]
@@ -64,18 +67,23 @@ def put_in_the_way(
 
 def _obstacle(draft: Draft, spot: Spot) -> Obstacle:
     beams = draft.data["beams"]
-    if len(beams) < MOST_BEAMS and happens(draft.rng, 0.36):
+    if len(beams) < MOST_BEAMS and happens(draft.rng, 0.42):
         return companion(draft, f"beam{len(beams) + 1}", spot)
     found = rigid(draft.rng, spot)
     kind = found.data["kind"]
     return Obstacle({"kind": kind, "beam": spot.beam, "body": "wall"} | found.data, found.distance)
 
 
-def _is_taken(model: Estimate, spot: Spot, barriers: Sequence[Barrier]) -> bool:
-    """Whether something has its surface at a spot already: how two would share the force is no question."""
+def _is_taken(model: Estimate, spot: Spot, spots: Sequence[Spot], barriers: Sequence[Barrier]) -> bool:
+    """Whether something has its surface at a spot already: how two would share the force is no question.
+
+    Barriers are asked beside the ``spots`` they stand at, as graphs are known by few of their places.
+    """
     s = spot.s[None]
     return any(
-        barrier.beam == spot.beam and abs(float(barrier.distance(s)[0])) < TAKEN * model.size for barrier in barriers
+        barrier.beam == spot.beam
+        and min(abs(float(barrier.distance(s)[0])), float(np.hypot(*(other.s - spot.s)))) < TAKEN * model.size
+        for other, barrier in zip(spots, barriers, strict=True)
     )
 
 

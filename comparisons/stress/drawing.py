@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator, Philox
 
-from comparisons.stress.actions import ENERGY, drawn_action, drawn_turn, led, stations_to
+from comparisons.stress.actions import ENERGY, Action, drawn_action, drawn_turn, led, stations_to
 from comparisons.stress.chance import RedrawError, between, happens, rounded, weighted
 from comparisons.stress.contacts import put_in_the_way
 from comparisons.stress.draft import Draft, started
@@ -29,6 +29,8 @@ from scene.reading import scene_from
 
 Data = dict[str, Any]
 _MOST_DRAWS = 400
+_FURTHER = 3  # actions are tried at most where the first ones turn a mechanism too little
+NEARLY = 0.7  # of what a mechanism is to turn
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,19 +78,18 @@ def _scene(rng: Generator, name: str) -> Data:
 
 
 def _act(draft: Draft) -> None:
-    rng = draft.rng
-    actions = [drawn_action(draft, f"act{i + 1}") for i in range(1 if happens(rng, 0.65) else 2)]
-    for action in actions:
-        draft.data.setdefault(action.group, {})[action.name] = action.data
-    stages: list[Data] = [
-        {"name": f"stage{i + 1}", "steps": action.name, "stations": [1.0]} for i, action in enumerate(actions)
-    ]
-    draft.data |= {"stages": stages, "probes": ENERGY}
-    model = Estimate(scene_from(draft.data))
-    states, state = [], State(np.zeros(model.unknowns), {})
-    for action in actions:
-        states += led(model, state, action, drawn_turn(rng))
-        state = states[-1]
+    rng, number = draft.rng, 1 if happens(draft.rng, 0.65) else 2
+    turn = max(drawn_turn(rng) for _ in range(number))
+    model, actions, states = _led(draft, number, turn)
+    for _ in range(_FURTHER):
+        if model.largest_turn(states[-1].q) > NEARLY * turn:
+            break
+        before = {**draft.data}
+        try:
+            model, actions, states = _led(draft, number, turn)
+        except RedrawError:
+            draft.data = before
+    stages = draft.data["stages"]
     put_stops(draft, model, states)
     way, barriers = put_in_the_way(draft, model, states, [action.name for action in actions])
     rigid = [
@@ -105,6 +106,26 @@ def _act(draft: Draft) -> None:
         begun.append({"name": "back", "steps": acting, "stations": [rounded(between(rng, 0.2, 0.7) * last[acting])]})
     draft.data["stages"] = begun
     made_thin(draft, share_of(model, way, barriers))
+
+
+def _led(draft: Draft, number: int, turn: float) -> tuple[Estimate, list[Action], list[State]]:
+    """So many actions in the place of all there are, and the states through which they lead, the last by ψ.
+
+    Raises:
+        RedrawError: one of them leads nowhere.
+    """
+    actions = [drawn_action(draft, f"act{i + 1}") for i in range(number)]
+    draft.data |= {"loads": {}, "drives": {}}
+    for action in actions:
+        draft.data[action.group][action.name] = action.data
+    stages = [{"name": f"stage{i + 1}", "steps": action.name, "stations": [1.0]} for i, action in enumerate(actions)]
+    draft.data |= {"stages": stages, "probes": ENERGY}
+    model = Estimate(scene_from(draft.data))
+    states, state = list[State](), State(np.zeros(model.unknowns), {})
+    for i, action in enumerate(actions):
+        states += led(model, state, action, turn * (i + 1) / number)
+        state = states[-1]
+    return model, actions, states
 
 
 _ORDER = (

@@ -131,7 +131,7 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Remembering) 
     exact = solvers.exact(scene, finding.choices)
     if not exact.stations:
         return finding
-    comparison = compared(scene, replace(finding.runs, exact=exact))
+    comparison = compared(scene, replace(finding.runs, exact=exact), memory.audit)
     return replace(_of_comparison(finding.choices, comparison), apart=finding.apart)
 
 
@@ -150,11 +150,11 @@ def _at_one_size(scene: Scene, choices: Choices, memory: Remembering) -> _Findin
             Way.ENDED, _why(early), choices, ending=early[0][1].ending.name, reached=reached, early=_whose(early)
         )
     runs = paired(scene, choices, solvers, memory, bare=True)
-    finding = _of_comparison(choices, compared(scene, runs))
+    finding = _of_comparison(choices, compared(scene, runs, memory.audit))
     reached = min(len(answer.stations) for _, answer in runs.everything())
     if finding.way is not Way.ENDED or finding.rows or reached == 0:
         return finding
-    part = compared(*up_to(scene, runs, reached))
+    part = compared(*up_to(scene, runs, reached), memory.audit)
     if part.verdict.word is Word.DIFFER:
         return replace(finding, way=Way.WRONG, sentence=part.verdict.sentence, rows=part.rows, ending="")
     return replace(finding, rows=part.rows)

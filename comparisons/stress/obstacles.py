@@ -26,6 +26,8 @@ from comparisons.stress.estimate import BARS, Estimate, State
 Array = NDArray[np.float64]
 Distance = Callable[[Array], Array]
 SLACK = 0.08  # of the size: by how much a beam between two held ends is bowed at least
+TURNED = 1.15  # rad: a mechanism that has turned by so much meets what is late in its way
+ON = 0.01  # of the size: how far a beam would go on at least from where something is in its way
 _TRIES = 12
 _KINDS = (("circle", 0.3), ("half-plane", 0.16), ("line", 0.22), ("roof", 0.14), ("block", 0.12), ("function", 0.18))
 
@@ -53,16 +55,18 @@ class Obstacle:
     distance: Distance
 
 
-def spot_on(draft: Draft, model: Estimate, states: Sequence[State]) -> Spot:
-    """Where some beam is on its way, and how it moves there.
+def spot_on(draft: Draft, model: Estimate, states: Sequence[State], *, late: bool) -> Spot:
+    """Where some beam is on its way, and how it moves there; ``late`` once the mechanism has turned far, if it does.
 
     Raises:
         RedrawError: nothing moves across itself.
     """
     rng, size = draft.rng, draft.frame.size
+    far = next((i for i, state in enumerate(states) if model.largest_turn(state.q) > TURNED), len(states))
+    shares = (far / len(states), 1.0) if late and far < len(states) - 1 else (0.12, 0.65)
     for _ in range(_TRIES):
         beam = any_of(rng, list(model.scene.beams))
-        share = between(rng, 0.12, 0.65)
+        share = between(rng, *shares)
         state = states[min(int(share * len(states)), len(states) - 1)]
         place = int(rng.integers(2, BARS)) if happens(rng, 0.9) else int(any_of(rng, (1, BARS)))
         now, at_rest = model.shape(state.q, beam), model.shape(np.zeros(model.unknowns), beam)
@@ -71,9 +75,11 @@ def spot_on(draft: Draft, model: Estimate, states: Sequence[State]) -> Spot:
         tangent = (now[high] - now[low]) / np.hypot(*(now[high] - now[low]))
         n = np.array([-tangent[1], tangent[0]])
         moved = float((after - at_rest)[place] @ n)
-        come = float((now - at_rest)[place] @ n)
+        come, on = float((now - at_rest)[place] @ n), float((after - now)[place] @ n)
         thickness = float(model.scene.beams[beam].thickness_at(np.array([place / BARS]))[0])
         if abs(moved) < 0.01 * size or come * moved <= 0.0 or abs(come) < 2e-3 * size:
+            continue
+        if on * np.sign(moved) < ON * size:
             continue
         n = n * np.sign(moved)
         return Spot(beam, now[place] + 0.5 * thickness * n, n, size)

@@ -22,6 +22,14 @@ STOUTEST_COLUMN = 120.0  # times as long as thick
 STOUTEST_HELD = 60.0  # the same of a beam with both ends held, which has to stretch where it can bend but little
 TAUT = 0.95  # of a beam's length, between its ends
 FLAT = 0.93  # of the way on which a beam comes to lie flat
+NEAREST_WALL = 0.1  # of a column's length
+PRESSED: dict[tuple[str, ...], tuple[float, float]] = {("weld", "weld"): (2.2, 3.9), ("weld", "pin"): (2.3, 4.9)}
+"""How far a column between walls is pressed, L = 1 its length and g its distance from each wall, as shares of g².
+
+By beams of small slopes it touches a wall at e = (π²/4) g² = 2.47 g² where both ends are clamped (2.58 g² where one is
+pinned), lies on it along a length from 3 g² (27/8 g²) on, and what lies there buckles off again at 9/2 g² (45/8 g²),
+as soon as it is as long as what leads there from a clamp.  Beyond, it snaps into waves, where its branch ends.
+"""
 
 
 def rolled(draft: Draft) -> None:
@@ -154,17 +162,17 @@ def column(draft: Draft) -> None:
         loads["nudge"] = {"kind": "distributed", "beam": "beam1", "direction": [round(c, 3) for c in side]}
         stages.append({"name": "aside", "steps": "nudge", "stations": [rounded(spread(rng, 0.3, 1.5) * force / size)]})
     walled = happens(rng, 0.8)
+    gap = between(rng, NEAREST_WALL if driven else 0.06, 0.3)
     if driven:
         draft.data["drives"] = {"press": {"kind": "displacement", "point": "T", "direction": back}}
-        # pressed further a column between walls snaps into waves, where its branch ends
-        last = size * between(rng, 0.05, 0.15 if walled else 0.45)
+        last = size * (gap**2 * between(rng, *PRESSED[ends]) if walled else between(rng, 0.05, 0.45))
     else:
         loads["press"] = {"kind": "force", "point": "T", "direction": back}
         last = force * critical * between(rng, 1.12, 1.6 if ends == ("free",) else 1.15)
     stages.append({"name": "press", "steps": "press", "stations": [rounded(share * last) for share in (0.6, 0.9, 1.0)]})
     draft.data |= {"loads": loads, "stages": stages}
     if walled:
-        _walls(draft, between(rng, 0.06, 0.3), start, end)
+        _walls(draft, gap, start, end)
 
 
 def _walls(draft: Draft, gap: float, start: tuple[float, float], end: tuple[float, float]) -> None:

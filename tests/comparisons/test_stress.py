@@ -12,7 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from comparisons import cases
+from comparisons import cases, memory
+from comparisons.audit import audit
 from comparisons.cli.main import run as command
 from comparisons.cli.stress_ import exit_code
 from comparisons.pairing import Solvers
@@ -381,6 +382,27 @@ def test_an_exact_answer_that_is_far_is_wrong():
 
     assert way(exact) is Way.AGREE
     assert way(off) is Way.WRONG
+
+
+def test_an_answer_is_audited_once_however_often_it_is_compared(monkeypatch):
+    looked = []
+
+    def noted(scene, answer):
+        looked.append((answer.solver, answer.settings["n"]))
+        return audit(scene, answer)
+
+    monkeypatch.setattr(memory, "audit", noted)
+    scene, right = scene_from(fated(1, 0).data), fated_solvers()
+
+    def exact(scene, choices):
+        return MadeUp("exact", 0.0, contact=False)(scene, replace(choices, links=10**6, elements=10**6))
+
+    # 1.25 times 0.16 is too much to be told at 80 links and not at 320; the exact answer is asked beside what agrees
+    doubtful = MadeUp("cprbm", 0.16, contact=False)
+    outcome = judged(scene, Solvers(doubtful, right.fea, exact=exact), Effort())
+    assert outcome.links > 80
+    assert len(looked) == len(set(looked)) > 2
+    assert {solver for solver, _ in looked} == {"cprbm", "fea"}
 
 
 def test_the_part_that_was_reached_can_be_wrong():

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import cprbm
+import exact
 from scene import Ending, SceneError
 from scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
@@ -45,6 +46,16 @@ def test_a_column_under_its_load_is_stable_until_then():
     first, last = (station.certificate.smallest_curvature for station in completed(data).stations)
     # reference: the energy's second variation at the mode sin(π s/(2 L)) vanishes at Euler's load
     assert 0.0 < last < 1e-5 * first
+
+
+def test_it_gives_up_where_steps_are_many():
+    # ten times E·I/L² across the tip in one station: the first steps are a fifth of the way and less
+    scene = scene_from(cantilever_data(force(0.0, -1.0), [0.1 * UNIT, 10.0 * UNIT]))
+    found = exact.answer(scene, exact.Settings(steps=2))
+    assert found.ending is Ending.NOT_COVERED
+    assert "2 steps lead no farther than" in found.sentence
+    assert len(found.stations) < 2
+    assert exact.answer(scene).completed
 
 
 def test_a_shallow_arch_ends_at_its_fold():

@@ -3,6 +3,8 @@
 import re
 from pathlib import Path
 
+from scene import read
+
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "edges.md"
 
@@ -20,3 +22,9 @@ def test_every_test_that_the_page_names_is_there():
         path = ROOT / "tests" / file
         assert path.is_file(), file
         assert not test or f"def {test}(" in path.read_text(encoding="utf-8"), f"{file}::{test}"
+
+
+def test_scenes_that_are_kept_for_the_pages_are_read():
+    kept = sorted((ROOT / "docs" / "scenes").glob("*.toml"))
+    assert kept
+    assert [read(path).name for path in kept] == [path.stem for path in kept]
