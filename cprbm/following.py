@@ -109,6 +109,7 @@ class Follower:
         reached, refused: the values up to which the last way was gone, and at which its last step was refused.
         beyond: those (SI) of all loads and drives at which it was.
         careful: whether no end of a branch may be passed.
+        settles: whether steady rows may settle which places there are.
         locked: the straight beam that the last way asked to change its length, where it could not be gone.
     """
 
@@ -121,6 +122,7 @@ class Follower:
     refused: float = 0.0
     beyond: Mapping[str, float] = field(default_factory=dict)
     careful: bool = False
+    settles: bool = True
     locked: Locked | None = None
 
     def go(self, way: Way, accept: Callable[[Point, dict[str, float]], None]) -> Reached:
@@ -148,7 +150,9 @@ class Follower:
                     most = SOON if start is ahead else self.settings.iterations
                     wary = self.careful or refused
                     farthest = self._farthest((fraction - done) * here) if wary else np.inf
-                    found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
+                    found = self._solved(
+                        values, start, most, farthest, settle=self.settles and step <= SETTLE and start is self.point
+                    )
                     iterations += found.iterations
                 if found is before and believed is not None:
                     certificate, ending = believed, Ending.COMPLETED
