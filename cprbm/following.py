@@ -18,6 +18,7 @@ import numpy as np
 
 from cprbm.certifying import certify
 from cprbm.critical import Minimum, foreseen
+from cprbm.edge import Edge
 from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import KEPT, continued
 from cprbm.kinematics import most_turned
@@ -28,7 +29,7 @@ from cprbm.nearest import Pair
 from cprbm.point import Point
 from cprbm.rate import carried_by_others, rate, strayed
 from cprbm.settings import Settings
-from cprbm.slipping import slipped
+from cprbm.slipping import slipped, slipped_off
 from cprbm.stretching import stretched
 from scene import Certificate, Ending
 from scene.answer import Array
@@ -277,6 +278,8 @@ class Follower:
             pair = self.mechanism.pairs.get(name)
             if isinstance(pair, Pair) and slipped(pair, self.point, found):
                 return Ending.STEP_TOO_SMALL, f"in contact '{name}' an end slips off the other on the way"
+            if isinstance(pair, Edge) and slipped_off(pair, self.point, found):
+                return Ending.STEP_TOO_SMALL, f"in contact '{name}' an end slips off a corner on the way"
         if self.careful and turned > ISOLATED and pressing(found) != pressing(self.point):
             return Ending.STEP_TOO_SMALL, "a contact or stop closes or opens on the way"
         change = found.state.theta - self.point.state.theta

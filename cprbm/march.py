@@ -27,6 +27,7 @@ from cprbm.leaving import aside, left
 from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of, swept_between
 from cprbm.model import Fit
+from cprbm.nearest import Pair
 from cprbm.point import Point, point_at, potential_energy
 from cprbm.probing import probed, shapes, touching
 from cprbm.rate import rate, strayed
@@ -219,8 +220,9 @@ class March:
         problem = on.mechanism.problem
         before, after = potential_energy(problem, on.point) * problem.model.unit_moment, None
         landed, reached = None, Reached(Ending.BRANCH_ENDS, of, certificate=None)
-        # where another branch goes off, either of its sides is as good as the other
-        beside = stage.beyond is None and end.loss not in (Loss.BIFURCATION, Loss.SLIP)
+        # where another branch goes off, either of its sides is as good as the other; off a beam there is nothing beside
+        off = end.loss is Loss.SLIP and isinstance(on.mechanism.pairs[end.what], Pair)
+        beside = stage.beyond is None and end.loss is not Loss.BIFURCATION and not off
         if (beside and not end.far) or stage.beyond == "jump":
             ends = (end.value, on.refused)
             furthest = max(ends) if target > on.reached else min(ends)
