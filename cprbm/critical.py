@@ -8,7 +8,8 @@ F           resultant of a contact, moment of a stop: sum of its multipliers
 ==========  =====================================================================================
 
 * A contact or stop lets go: F goes to zero, linearly, with κ still positive; without it κ is negative.
-* An end slips off another: what it has left to go there goes to zero, linearly, with F and κ still positive.
+* An end slips off another, or off a corner: what it has left to go there goes to zero, linearly, with F and κ still
+  positive.
 * A fold: the branch turns back.  κ² is linear in v_c − v, and τ turns into φ.
 * A bifurcation: another branch crosses.  κ is linear in v_c − v; τ has no part in φ.
 """
@@ -21,10 +22,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm.edge import Edge
 from cprbm.mechanism import Mechanism
 from cprbm.nearest import Pair
 from cprbm.point import Point
-from cprbm.slipping import left_to_go
+from cprbm.slipping import left_of_side, left_to_go
 from cprbm.stability import Softest, released, softest
 from scene import Certificate, Loss
 from scene.answer import Array
@@ -136,23 +138,22 @@ def _let_go(
 
 
 def _slipped(mechanism: Mechanism, trail: list[Minimum], before: Minimum, width: float) -> BranchEnd | None:
-    """The end at which an end of a beam has come past the one of another on which it presses.
+    """The end at which an end of a beam has come past the one of another on which it presses, or past a corner.
 
     A foot is one by a little more than that, so that the last minima may lie beyond.
     """
     last = trail[-1]
     for name in sorted(last.point.rows.pressing(last.point.lam)):
-        pair = mechanism.pairs.get(name)
-        if not isinstance(pair, Pair) or (left := left_to_go(pair, last.point)) is None:
+        if (left := _left(mechanism, name, last.point)) is None:
             continue
         here, there, behind, uncertain = last, left, before, abs(width)
         for one in reversed(trail[:-1]) if left <= 0.0 else ():
             behind, uncertain = one, uncertain + abs(here.value - one.value)
-            earlier = left_to_go(pair, one.point)
+            earlier = _left(mechanism, name, one.point)
             if earlier is None or earlier > 0.0:
                 break
             here, there = one, earlier
-        earlier = left_to_go(pair, behind.point)
+        earlier = _left(mechanism, name, behind.point)
         zero = None if earlier is None else _continued(here.value, there, behind.value, earlier)
         if zero is None or not (left <= 0.0 or 0.0 <= (zero - last.value) / width <= NEAR):
             continue
@@ -160,6 +161,14 @@ def _slipped(mechanism: Mechanism, trail: list[Minimum], before: Minimum, width:
         soft = softest(mechanism.problem, released(last.point, others))
         return BranchEnd(zero, uncertain, Loss.SLIP, name, last.curvature, soft.curvature, soft.direction)
     return None
+
+
+def _left(mechanism: Mechanism, name: str, point: Point) -> float | None:
+    """What an end has left to go in a contact until it slips off, units of length; None where that says nothing."""
+    pair = mechanism.pairs.get(name)
+    if isinstance(pair, Pair):
+        return left_to_go(pair, point)
+    return left_of_side(pair, point) if isinstance(pair, Edge) else None
 
 
 def foreseen(trail: list[Minimum], ahead: float) -> float | None:

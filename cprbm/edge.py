@@ -231,6 +231,14 @@ class Edge:
             found.append(self._cornering(centres, top.normal, top.radius, line, frame, top.s, keys))
         return tuple(found)
 
+    def on_corner(self, key: int) -> bool:
+        """Whether a row, by its ``key``, is that of a corner that presses on the beam's side."""
+        return 0 <= key - len(self.faces) * self._own_keys < len(self.corners)
+
+    def by_corner(self, key: int) -> bool:
+        """The same, or that of a corner that presses on an end."""
+        return key >= len(self.faces) * self._own_keys
+
     def _beside(self, s: Array, places: Array) -> Flags:
         """Which arc lengths ``s`` (k,) are so close to some ``places`` (j,) that what presses is left to those."""
         reach = wells.BESIDE * self.a.size_at(places)

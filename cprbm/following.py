@@ -18,6 +18,7 @@ import numpy as np
 
 from cprbm.certifying import certify
 from cprbm.critical import Minimum, foreseen
+from cprbm.edge import Edge
 from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import KEPT, continued
 from cprbm.kinematics import most_turned
@@ -28,7 +29,7 @@ from cprbm.nearest import Pair
 from cprbm.point import Point
 from cprbm.rate import carried_by_others, rate, strayed
 from cprbm.settings import Settings
-from cprbm.slipping import slipped
+from cprbm.slipping import slipped, slipped_off
 from cprbm.stretching import stretched
 from scene import Certificate, Ending
 from scene.answer import Array
@@ -109,6 +110,7 @@ class Follower:
         reached, refused: the values up to which the last way was gone, and at which its last step was refused.
         beyond: those (SI) of all loads and drives at which it was.
         careful: whether no end of a branch may be passed.
+        settles: whether steady rows may settle which places there are.
         locked: the straight beam that the last way asked to change its length, where it could not be gone.
     """
 
@@ -121,6 +123,7 @@ class Follower:
     refused: float = 0.0
     beyond: Mapping[str, float] = field(default_factory=dict)
     careful: bool = False
+    settles: bool = True
     locked: Locked | None = None
 
     def go(self, way: Way, accept: Callable[[Point, dict[str, float]], None]) -> Reached:
@@ -148,7 +151,9 @@ class Follower:
                     most = SOON if start is ahead else self.settings.iterations
                     wary = self.careful or refused
                     farthest = self._farthest((fraction - done) * here) if wary else np.inf
-                    found = self._solved(values, start, most, farthest, settle=step <= SETTLE and start is self.point)
+                    found = self._solved(
+                        values, start, most, farthest, settle=self.settles and step <= SETTLE and start is self.point
+                    )
                     iterations += found.iterations
                 if found is before and believed is not None:
                     certificate, ending = believed, Ending.COMPLETED
@@ -273,6 +278,8 @@ class Follower:
             pair = self.mechanism.pairs.get(name)
             if isinstance(pair, Pair) and slipped(pair, self.point, found):
                 return Ending.STEP_TOO_SMALL, f"in contact '{name}' an end slips off the other on the way"
+            if isinstance(pair, Edge) and slipped_off(pair, self.point, found):
+                return Ending.STEP_TOO_SMALL, f"in contact '{name}' an end slips off a corner on the way"
         if self.careful and turned > ISOLATED and pressing(found) != pressing(self.point):
             return Ending.STEP_TOO_SMALL, "a contact or stop closes or opens on the way"
         change = found.state.theta - self.point.state.theta

@@ -27,6 +27,7 @@ from cprbm.leaving import aside, left
 from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of, swept_between
 from cprbm.model import Fit
+from cprbm.nearest import Pair
 from cprbm.point import Point, point_at, potential_energy
 from cprbm.probing import probed, shapes, touching
 from cprbm.rate import rate, strayed
@@ -50,6 +51,8 @@ BEYOND = 10.0  # times as far beyond a branch's end as that is known, there is n
 ENDS = 10  # of branches between two stations
 ONWARD = 0.01  # of the way on from there, at least: beside a bifurcation all branches are near
 FURTHER = 30.0  # times as far before it, the fitted mesh is on the branch still
+FARTHER = 2.0  # times as far where it is not
+REFITTED = 3  # meshes, each fitted to a state nearer to the end than the one before
 SOON = 6  # iterations to a state that is nearly known
 NEARLY = 3  # from one that is near already
 ROUGHLY = 1e-7  # residual on a mesh whose places of contact may ask for another; on the last one none is left
@@ -146,15 +149,21 @@ class March:
             end = self._end(reached, stage.steps)
             if end is None:
                 return reached
-            finer = self._finer(stage.steps, end)
-            if finer is not None:
+            for _ in range(REFITTED):
+                finer = self._finer(stage.steps, end)
+                if finer is None:
+                    break
                 again = finer.go(to(stage.steps, finer.values, target), accept)
                 if again.certificate is not None:
                     self.on, self.before = finer, {}
                     return again
                 sharper = self._told(finer, stage.steps)
-                if sharper is not None:
-                    self.on, end = finer, sharper
+                if sharper is None:
+                    # as far as the branch was followed on the mesh that fits it may end anywhere beyond
+                    doubt = max(end.uncertainty, abs(end.value - finer.reached))
+                    end = replace(end, uncertainty=doubt)
+                    break
+                self.on, end = finer, sharper
             landed, reached = self._ended(stage, target, end)
             if landed is None or self.on.values[stage.steps] == target:
                 return reached
@@ -177,24 +186,28 @@ class March:
     def _finer(self, load: str, end: BranchEnd) -> Follower | None:
         """From a little before the end, the same branch on the mesh that was asked, fitted to where contact is then.
 
-        None where this is that mesh already, or the branch is not found on it.
+        None where this is that mesh already, or the branch is not found on it.  What joints of even elements hold is no
+        end of the branch where it has ended before on a mesh that fits: so it is sought from farther and farther back.
         """
         on = self.on
-        if on.mechanism is not self.whole:
-            return None
-        width = abs(on.refused - on.reached) + abs(end.value - on.reached)
+        least = FURTHER * (abs(on.refused - on.reached) + abs(end.value - on.reached))
         for start in reversed(on.trail):
-            if abs(end.value - start.value) < FURTHER * width:
+            away = abs(end.value - start.value)
+            if away < least:
                 continue
             values = {**on.values, load: start.value}
+            zones = all_zones(on.mechanism, start.point)
+            if on.settings is self.family[-1] and fits(
+                on.mechanism, fitted(on.mechanism, start.point, zones, on.settings)
+            ):
+                return None
             found = self._fitted(start.point, values, start.certificate)
-            if found is None:
+            if found is None or found[0] is on.mechanism:
+                least = FARTHER * away
                 continue
             mechanism, point, certificate = found
-            if mechanism is on.mechanism:
-                return None
             stood = Minimum(start.value, point, certificate)
-            return Follower(mechanism, self.family[-1], point, values, [stood], careful=on.careful)
+            return Follower(mechanism, self.family[-1], point, values, [stood], careful=on.careful, settles=False)
         return None
 
     def _ended(self, stage: Stage, target: float, end: BranchEnd) -> tuple[Landed | None, Reached]:
@@ -207,8 +220,9 @@ class March:
         problem = on.mechanism.problem
         before, after = potential_energy(problem, on.point) * problem.model.unit_moment, None
         landed, reached = None, Reached(Ending.BRANCH_ENDS, of, certificate=None)
-        # where another branch goes off, either of its sides is as good as the other
-        beside = stage.beyond is None and end.loss not in (Loss.BIFURCATION, Loss.SLIP)
+        # where another branch goes off, either of its sides is as good as the other; off a beam there is nothing beside
+        off = end.loss is Loss.SLIP and isinstance(on.mechanism.pairs[end.what], Pair)
+        beside = stage.beyond is None and end.loss is not Loss.BIFURCATION and not off
         if (beside and not end.far) or stage.beyond == "jump":
             ends = (end.value, on.refused)
             furthest = max(ends) if target > on.reached else min(ends)

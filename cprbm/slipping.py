@@ -1,4 +1,4 @@
-"""How far an end of a beam that presses on another has to go there until it slips off.
+"""How far an end of a beam that presses on another has to go there until it slips off, or until it slips off a corner.
 
 ==========  ===========================================================================
 s_e, σ_e    arc length of an end, and of its foot on the other beam
@@ -8,12 +8,16 @@ p           σ_e; beyond an end from there along the tangent
 
 Nothing beyond a beam's end faces it: an end that goes past the other's presses on nothing any more, whatever it pressed
 with just before, and there is no equilibrium near by.
+
+A corner of something rigid that comes past a beam's end presses on its round face from there on, by a force that turns
+away with 2/t: what it held against the beam's side, it pushes off.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from cprbm.edge import Edge
 from cprbm.nearest import Lines, Pair, distance_along, past_foot
 from cprbm.point import Point
 
@@ -24,6 +28,32 @@ def left_to_go(pair: Pair, point: Point) -> float | None:
     """p or ℓ − p, whichever is less, units of length; None where a contact is not that of one end on a side."""
     end = _pressing_end(pair, point)
     return None if end is None else _left(*_seen(pair, point, mine=end[0]), end[1])
+
+
+def left_of_side(edge: Edge, point: Point) -> float | None:
+    """How far from the nearest end of the beam a corner presses, units of length; None where no corner does alone."""
+    alone = _alone(edge, point)
+    if alone is None or not edge.on_corner(alone[0]):
+        return None
+    return min(alone[1], float(edge.a.s[-1]) - alone[1])
+
+
+def slipped_off(edge: Edge, before: Point, after: Point) -> bool:
+    """Whether a corner pressed on the beam's side ``before``, alone, and an end lies on a piece of the edge ``after``.
+
+    In between that corner pressed on the end's round face, or pushed it off.
+    """
+    here, there = _alone(edge, before), _alone(edge, after)
+    if here is None or there is None or not edge.on_corner(here[0]):
+        return False
+    return there[1] in edge.a.s[[0, -1]] and not edge.by_corner(there[0])
+
+
+def _alone(edge: Edge, point: Point) -> tuple[int, float] | None:
+    """Key and arc length of the one row that presses in a contact; None where more do, or none."""
+    shares = [(group, lam > 0.0) for group, lam in point.rows.shares(point.lam) if group.contact == edge.name]
+    found = [(group.keys[row], float(group.arc[row])) for group, on in shares for row in np.flatnonzero(on)]
+    return found[0] if len(found) == 1 else None
 
 
 def slipped(pair: Pair, before: Point, after: Point) -> bool:

@@ -134,7 +134,14 @@ def followed(march: March, load: int, target: float, span: float) -> Lost | None
             here = again
             continue
         if there.curvature <= 0.0:
-            return _lost(march, branch, first, here, there, length)
+            lost = _lost(march, branch, first, here, there, length)
+            if lost is not None:
+                return lost
+            # a step that long leads to another branch
+            length *= 0.25
+            if length < _LEAST:
+                return None
+            continue
         if (there.value - target) * onward >= 0.0:
             return None
         if march.passed(here.system.z, there.system, "") is not None:
@@ -380,8 +387,11 @@ def _without(march: March, one: Touch) -> System:
     return assemble(march.model, others, march.settings.quadrature, march.values, march.system.z, march.acting)
 
 
-def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place, length: float) -> Lost:
-    """What happens between two places, the one with a positive and the other without."""
+def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place, length: float) -> Lost | None:
+    """What happens between two places, the one with a positive curvature and the other without.
+
+    None where no places are found between them at which it goes to zero: they are on no one branch.
+    """
     low, high = (0.0, here), (length, there)
     weights = [1.0, 1.0]
     for _ in range(_ROOTS):
@@ -395,6 +405,8 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
         tried = ((part, onwards(branch, here, s + part * (t - s))) for part in (share, 0.5 * share, 0.5 + 0.5 * share))
         share, middle = next(((part, found) for part, found in tried if found is not None), (share, None))
         if middle is None:
+            if min(before.curvature, -behind.curvature) > _HELD * first.curvature:
+                return None
             break
         if middle.curvature > 0.0:
             low, weights = (s + share * (t - s), middle), [1.0, 0.5 * weights[1]]

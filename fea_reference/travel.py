@@ -46,6 +46,7 @@ _NOWHERE = 1e-6  # rad (and lengths): a way that is none
 _RISES = 10.0  # times what had sunk in: the way of something else
 _BESIDE = 0.3  # rad (and lengths): a state in which nothing has moved by more is beside another
 _AGAIN = 1e-5  # of the span: an end that is met again, not another
+_MANY, _CROWDED = 4, 0.01  # ends that follow each other within such a part of the span: they lead on to nothing
 _HALF = 0.5  # of the way to where the curvature is foreseen to vanish
 _NEAR = 1e-2  # of the span: a step shorter than this is left to following the branch
 _TIRED = 3  # cuts in a row after which that is tried
@@ -224,15 +225,14 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
         tired = crept or tiny or (trouble is not None and cuts >= _TIRED)
         paced = (paced[0], march.iterations) if crept else paced
         if minimum and follow and (close or unstable or tired):
-            march.restore(saved)
-            lost = followed(march, load, target, course.span) if march.curvature > 0.0 else None
-            if lost is None and tight is not None:
+            lost = None
+            if tight is not None:
                 # with loose penalties the march may have come past where the branch ends with tight ones
-                loose = march.saved()
                 march.restore(tight)
                 tight, lost = None, followed(march, load, target, course.span)
-                if lost is None and not tired:
-                    march.restore(loose)
+            if lost is None:
+                march.restore(saved)
+                lost = followed(march, load, target, course.span) if march.curvature > 0.0 else None
             if lost is not None:
                 _beyond(march, course, target, lost)
                 stride, cuts, failed, searching = np.inf, 0, 0, False
@@ -332,14 +332,12 @@ def _record(march: March, course: Course, lost: Lost, after: float | None) -> Cr
 
 def _goes_on(march: March, course: Course, lost: Lost) -> bool:
     """Whether the march may go on over an end: not where another branch goes off, either of whose sides is as good as
-    the other, nor where it has been before.
+    the other, nor where it has been before, nor from one end to the next of many.
     """
-    last = march.left[-1].critical if march.left else None
-    again = (
-        last is not None
-        and last.stage == course.stage
-        and abs(lost.value - last.value / march.model.stepped[course.load].unit) <= _AGAIN * course.span
-    )
+    unit = march.model.stepped[course.load].unit
+    gone = [left.critical.value / unit for left in march.left if left.critical.stage == course.stage]
+    again = len(gone) > 0 and abs(lost.value - gone[-1]) <= _AGAIN * course.span
+    again = again or (len(gone) >= _MANY and abs(lost.value - gone[-_MANY]) <= _CROWDED * course.span)
     return lost.loss not in (Loss.SLIP, Loss.BIFURCATION) and not again
 
 

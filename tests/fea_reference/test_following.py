@@ -99,9 +99,12 @@ def test_a_turn_sharper_than_a_step_is_not_stepped_over(monkeypatch):
     monkeypatch.setattr(following, "_branch", lambda march, load, span: unit)
     monkeypatch.setattr(following, "place", lambda branch, value, system, before: sharp.at(0.0))
     monkeypatch.setattr(following, "onwards", sharp.onwards)
-    monkeypatch.setattr(
-        following, "_lost", lambda march, branch, first, here, there, length: ends.append((here, there))
-    )
+
+    def lost(march, branch, first, here, there, length):
+        ends.append((here, there))
+        return there
+
+    monkeypatch.setattr(following, "_lost", lost)
     march = SimpleNamespace(
         look=lambda: None,
         loose=False,

@@ -74,3 +74,44 @@ def test_where_one_of_two_places_lets_go_the_branch_ends():
     (lost,) = answer.critical
     assert (lost.loss, lost.what) == (Loss.CONTACT, "plane")
     assert lost.value == pytest.approx(END, rel=0.015)
+
+
+# the chain and the finite elements, both in the theory of bending, in steps of 0.1 mm: of these, which cannot pass it,
+# with 160 elements the squares of the smallest curvature at 25.3 and 25.4 mm come to nothing at 25.427 mm
+FOLDS = 0.025427
+
+
+def uneven() -> Data:
+    """An arc with a rise of 1/90 whose thickness varies, and which stands on two places of a plane before it folds."""
+    data = pressed(0.02016, 0.03024)
+    data["beams"]["beam"] |= {
+        "curve": {"kind": "arc", "direction": "counterclockwise", "start": [0.0, 0.0],
+                  "end": [-0.165874, -0.202581], "center": [2.1392229414476525, -1.9208024884277788]},
+        "thickness": {"at": [0.0, 0.4, 1.0], "values": [0.00171, 0.00126, 0.00163]},
+        "width": 0.0256,
+    }  # fmt: skip
+    data["materials"]["abs"] = {"youngs_modulus": 1.37e9, "poisson_ratio": 0.42}
+    data["bodies"]["tip"] |= {"along": [-0.6335, -0.7737], "points": {"T": [-0.165874, -0.202581]}}
+    data["drives"]["press"]["direction"] = [0.6335, 0.7737]
+    data["contacts"]["plane"] |= {"point": [-0.112711, -0.076911], "normal": [0.7737, -0.6335]}
+    return data
+
+
+@pytest.mark.parametrize(("links", "within"), [(40, 0.006), (80, 0.003)])
+def test_what_joints_of_even_elements_hold_does_not_hide_a_fold(links, within):
+    # two joints beside a place hold it as the place itself does not, up to 26.3 mm, where one of them lets go
+    answer = cprbm.answer(scene_from(uneven()), cprbm.Settings(links=links))
+    assert answer.ending is Ending.BRANCH_ENDS, answer.sentence
+    (lost,) = answer.critical
+    assert lost.loss is Loss.FOLD
+    assert lost.value == pytest.approx(FOLDS, rel=within)
+
+
+def test_loose_penalties_do_not_lead_past_a_fold():
+    # from loose penalties at 26 mm tight ones lead to another branch, that folds at 26.4 mm
+    settings = fea_reference.Settings(elements=80, kinematics="bending")
+    answer = fea_reference.answer(scene_from(uneven()), settings)
+    assert answer.ending is Ending.BRANCH_ENDS, answer.sentence
+    (lost,) = answer.critical
+    assert lost.loss is Loss.FOLD
+    assert lost.value == pytest.approx(FOLDS, rel=0.001)
