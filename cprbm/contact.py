@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import accumulate, pairwise
 
 import numpy as np
@@ -17,6 +16,7 @@ import numpy as np
 from cprbm import kinematics
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
+from cprbm.once import once
 from cprbm.strands import Faces
 from scene.answer import Array, Flags, Ints
 from scene.frozendict import frozendict
@@ -202,30 +202,30 @@ class Rows:
     groups: tuple[Group, ...]
     faces: Mapping[str, Faces] = frozendict()
 
-    @cached_property
+    @once
     def values(self) -> Array:
         """c (m,)."""
         if len(self.groups) == 1:
             return self.groups[0].values
         return np.concatenate([group.values for group in self.groups]) if self.groups else np.zeros(0)
 
-    @cached_property
+    @once
     def arc(self) -> Array:
         """Arc length on each contact's first beam (m,)."""
         return np.concatenate([group.arc for group in self.groups]) if self.groups else np.zeros(0)
 
-    @cached_property
+    @once
     def holds_angles(self) -> Flags:
         """Which rows limit angles alone (m,)."""
         found = [np.full(len(group.values), group.holds_angles) for group in self.groups]
         return np.concatenate([np.zeros(0, dtype=bool), *found])
 
-    @cached_property
+    @once
     def reach(self) -> Array:
         """Length of the first beam before and behind each row whose joints have no others (m,)."""
         return np.repeat([group.reach for group in self.groups], [len(group.values) for group in self.groups])
 
-    @cached_property
+    @once
     def keys(self) -> tuple[tuple[str, int], ...]:
         """What each row is: its contact and its key there."""
         return tuple((group.contact, key) for group in self.groups for key in group.keys)
@@ -238,7 +238,7 @@ class Rows:
             for row in (lam > 0.0).nonzero()[0].tolist()
         )
 
-    @cached_property
+    @once
     def contact(self) -> tuple[str, ...]:
         """Name of each row's contact."""
         return tuple(group.contact for group in self.groups for _ in group.keys)
@@ -255,7 +255,7 @@ class Rows:
         near = np.flatnonzero(mine & (away <= reach))
         return near[np.argsort(away[near], kind="stable")[:1]]
 
-    @cached_property
+    @once
     def spans(self) -> tuple[slice, ...]:
         """Where the rows of each group are."""
         ends = [0, *accumulate(len(group.values) for group in self.groups)]

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -26,6 +25,7 @@ from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions
 from cprbm.model import Chain
 from cprbm.moving import LOCALS
+from cprbm.once import once
 from scene.answer import Array, Flags, Ints
 
 
@@ -45,7 +45,7 @@ class Touches:
     bent: Callable[[], Array]
     links: Ints
 
-    @cached_property
+    @once
     def second(self) -> Array:
         """∂²c/∂z² (k, 10, 10)."""
         return self.bent()

@@ -12,11 +12,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
 
 import numpy as np
 
 from cprbm.model import Layout, Model
+from cprbm.once import once
 from cprbm.posture import Posture, posture, stood
 from cprbm.standing import Attachment
 from scene.answer import Array, Ints
@@ -33,7 +33,7 @@ class State:
         """The state after a ``step`` (n_links + 3B,) of all unknowns."""
         return State(self.theta + step[:n_links], self.bodies + step[n_links:].reshape(-1, 3))
 
-    @cached_property
+    @once
     def posture(self) -> Posture:
         """How the bodies stand."""
         return posture(self.bodies)

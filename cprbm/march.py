@@ -9,7 +9,6 @@ from __future__ import annotations
 import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
 
 import numpy as np
 
@@ -27,6 +26,7 @@ from cprbm.leaving import aside, left
 from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of, swept_between
 from cprbm.model import Fit
+from cprbm.once import once
 from cprbm.point import Point, point_at, potential_energy
 from cprbm.probing import probed, shapes, touching
 from cprbm.rate import rate, strayed
@@ -514,7 +514,7 @@ class March:
                 self.closed_at[name] = closing
                 self.events.append(Event(stage, name, "closes", closing))
 
-    @cached_property
+    @once
     def asked(self) -> Mechanism:
         """The scene on even elements of the mesh that was asked."""
         return self.whole if len(self.family) == 1 else mechanism_of(self.scene, self.family[-1], before=self.whole)

@@ -20,10 +20,10 @@ and + after it,
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
+from cprbm.once import once
 from cprbm.polynomial import ComplexArray
 from cprbm.smooth import ARCS, Points, series
 from scene.answer import Array
@@ -56,7 +56,7 @@ class Moving:
     over_angles: Array
     over_turn: ComplexArray
 
-    @cached_property
+    @once
     def along_over_turn(self) -> ComplexArray:
         """C′_δ (k,)."""
         u, phi, _ = self.arc
@@ -64,7 +64,7 @@ class Moving:
         R_xi, cos, sin = R * u / self.carried[4], np.cos(phi), np.sin(phi)
         return np.asarray(self.border * (R_1 * cos - R_xi * sin + 1j * self.sign * (R_1 * sin + R_xi * cos)))
 
-    @cached_property
+    @once
     def over_turn_twice(self) -> ComplexArray:
         """C_δδ (k,)."""
         u, phi, (S, S1, S2, V, V1, V2) = self.arc

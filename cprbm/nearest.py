@@ -44,7 +44,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -58,6 +57,7 @@ from cprbm.kinematics import Positions, State
 from cprbm.kinks import kinked, missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
 from cprbm.moving import LOCALS, angle_slopes, moving, position_curvature, position_slopes, tangent_slopes
+from cprbm.once import once
 from cprbm.pairs import Pressed
 from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
@@ -215,7 +215,7 @@ class Pair:
         """The same contact with the parts of A and B exchanged."""
         return self._exchanged
 
-    @cached_property
+    @once
     def _exchanged(self) -> Pair:
         return replace(
             self,

@@ -25,7 +25,6 @@ press, then by a shift.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -35,6 +34,7 @@ from cprbm.complementarity import pressing
 from cprbm.contact import Factored, Rows, over_unknowns
 from cprbm.kinematics import twice
 from cprbm.local import GIVING, LocalSystem, local_step, local_system
+from cprbm.once import once
 from cprbm.point import Point, Problem
 from scene.answer import Array, Flags, Ints
 
@@ -88,17 +88,17 @@ class System:
         """Border columns of the equalities."""
         return slice(self.n_base - self.n_equalities, self.n_base)
 
-    @cached_property
+    @once
     def schur(self) -> Symmetric:
         """Factors of S without the contacts."""
         return Symmetric(self.factors.schur[: self.n_base, : self.n_base])
 
-    @cached_property
+    @once
     def convex(self) -> bool:
         """Whether the Hessian is positive definite where the equalities hold."""
         return self.factors.tridiagonal.negative() + self.schur.negative == self.expected
 
-    @cached_property
+    @once
     def kept(self) -> Kept:
         """The system with the contacts that press, and no others.
 

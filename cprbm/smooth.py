@@ -34,13 +34,14 @@ element, κ⁰′h²/8: of fifth order in h.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
+from cprbm.once import once
 from cprbm.polynomial import ComplexArray
 from scene.answer import Array, Ints
 
@@ -150,24 +151,24 @@ class SmoothLine:
     known: dict[tuple[str, str], tuple[Any, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
     faced: dict[str, tuple[Array, Points, Points]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
-    @cached_property
+    @once
     def sampled(self) -> Points:
         """Points at :func:`halves`."""
         return self._at(self.chain.halves, self.chain.excess_at_halves)
 
-    @cached_property
+    @once
     def radii_1(self) -> Array:
         """∂R over δ (N,)."""
         sine, versine = _of_rest(self.chain)
         return np.asarray(sine * (0.5 * (self.chain.turns + self.turns)) * self.cotangents[1] + versine)
 
-    @cached_property
+    @once
     def radii_2(self) -> Array:
         """∂²R over δ (N,)."""
         q = 0.25 * (self.chain.turns + self.turns) ** 2
         return np.asarray(0.5 * _of_rest(self.chain)[0] * (self.cotangents[1] + 2.0 * q * self.cotangents[2]))
 
-    @cached_property
+    @once
     def arcs(self) -> Array:
         """Of every half of an element its border, Θ/h and R, and there x, y and the tangent's cos, sin and angle."""
         chain = self.chain
@@ -182,7 +183,7 @@ class SmoothLine:
         arcs[6:, ::2] = arcs[6:, 1::2] = (chain.turns + self.turns) / chain.sizes, self.radii
         return arcs
 
-    @cached_property
+    @once
     def carried(self) -> Array:
         """Of every half of an element x and y of its link's joint, cos and sin of the tangent at its border, h, Θ, R,
         ∂R and ∂²R over δ, (9, 2N).
