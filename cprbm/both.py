@@ -73,7 +73,7 @@ def made(one: Chain, other: Chain, kinks: tuple[Kinks, ...]) -> Made | None:
     tables = []
     for chain in (one, other):
         if chain.excess is None:
-            tables.append(Tabulated(np.zeros((2 * chain.n, 1, 3), dtype=complex), np.ones(2 * chain.n)))
+            tables.append(Tabulated(np.zeros((2 * chain.n, 1, 6))))
         elif isinstance(chain.excess, Tabulated):
             tables.append(chain.excess)
         else:
@@ -87,8 +87,7 @@ def made(one: Chain, other: Chain, kinks: tuple[Kinks, ...]) -> Made | None:
 
 def _joined(one: Tabulated, other: Tabulated) -> Tabulated:
     """Halves of the one and then of the other, by polynomials with as many coefficients."""
-    first, points = len(one.size), max(one.coefficients.shape[1], other.coefficients.shape[1])
-    coefficients = np.zeros((first + len(other.size), points, 3), dtype=complex)
-    coefficients[:first, : one.coefficients.shape[1]] = one.coefficients
-    coefficients[first:, : other.coefficients.shape[1]] = other.coefficients
-    return Tabulated(coefficients, np.concatenate((one.size, other.size)))
+    (first, its, _), (second, more, _) = one.coefficients.shape, other.coefficients.shape
+    coefficients = np.zeros((first + second, max(its, more), 6))
+    coefficients[:first, :its], coefficients[first:, :more] = one.coefficients, other.coefficients
+    return Tabulated(coefficients)

@@ -118,12 +118,15 @@ class Chain:
         )
 
     @once
-    def excess_at_halves(self) -> ComplexArray | None:
-        """The same at :attr:`halves`, (3, 2N+3)."""
-        if self.excess is None:
-            return None
+    def in_halves(self) -> tuple[Ints, Array]:
+        """Of :attr:`halves` the half of an element that each lies in, and how far from its border (2N+3,)."""
         half = self.breaks.searchsorted(self.halves, side="right")
-        return self.excess.seen(half, self.halves - self.borders[(half + 1) // 2])
+        return half, self.halves - self.borders[(half + 1) // 2]
+
+    @once
+    def excess_at_halves(self) -> ComplexArray | None:
+        """:attr:`excess` there (3, 2N+3)."""
+        return None if self.excess is None else self.excess.seen(*self.in_halves)
 
     @once
     def at_home(self) -> Chain:

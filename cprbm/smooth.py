@@ -154,7 +154,8 @@ class SmoothLine:
     @once
     def sampled(self) -> Points:
         """Points at :func:`halves`."""
-        return self._at(self.chain.halves, self.chain.excess_at_halves)
+        half, off = self.chain.in_halves
+        return self._points(self.chain.halves, half, off, self.arcs.take(half, axis=1), self.chain.excess_at_halves)
 
     @once
     def radii_1(self) -> Array:
@@ -198,16 +199,15 @@ class SmoothLine:
 
     def at(self, s: Array) -> Points:
         """Points at arc lengths ``s`` (k,), units of length; beyond the ends the end itself."""
-        return self._at(np.minimum(np.maximum(s, 0.0), self.chain.s[-1]), None)
-
-    def _at(self, s: Array, excess: ComplexArray | None) -> Points:
-        """Points at arc lengths ``s`` within the beam; where it lies off the arcs by an ``excess`` (3, k), if known."""
         chain = self.chain
+        s = np.minimum(np.maximum(s, 0.0), chain.s[-1])
         half = chain.breaks.searchsorted(s, side="right")
         arcs = self.arcs.take(half, axis=1)
         off = s - arcs[0]
-        if excess is None and chain.excess is not None:
-            excess = chain.excess.seen(half, off)
+        return self._points(s, half, off, arcs, None if chain.excess is None else chain.excess.seen(half, off))
+
+    def _points(self, s: Array, half: Ints, off: Array, arcs: Array, excess: ComplexArray | None) -> Points:
+        """Points at arc lengths ``s`` within the beam, as :func:`placed` says."""
         x, y, tangent, speed, bend, gain = placed(arcs, off, excess)
         return Points(self, half, s, off, x, y, tangent, tangent, speed, bend, gain, speed)
 
