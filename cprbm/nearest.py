@@ -151,6 +151,11 @@ class Pair:
     kinks: tuple[Kinks, ...] = (NO_KINKS, NO_KINKS)
     fixed: bool = False
 
+    @once
+    def kinked(self) -> bool:
+        """Whether either beam has kinks."""
+        return any(each.places.size for each in self.kinks)
+
     def lines(self, state: State, at: Positions) -> Lines:
         """The smooth lines of A and B in a state."""
         return (
@@ -476,7 +481,7 @@ class Pair:
         of_foot = -B.pace + distance * B.bend
         # what D gains over s by the tangents' γ, the foot going along
         gained: Array | float = 0.0
-        if any(each.places.size for each in self.kinks):
+        if self.kinked:
             more_A, more_B = missed(self.a, self.kinks[0], A), missed(self.b, self.kinks[1], B)
             back = of_foot / (facing * A.pace)
             if self.tapered:  # no tangents of B's go along what stays at a corner
@@ -533,7 +538,7 @@ def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Fl
 
 def _distance_of(pair: Pair, lines: Lines, A: smooth.Points) -> tuple[Array, Array, Flags]:
     """The same of points of A (k,)."""
-    nearest = nearest_samples(_places(lines[1].sampled), _places(A), np.inf)[1]
+    nearest = nearest_samples(lines[1].sampled, A, np.inf)[1]
     return _feet_from(pair, lines, A, pair.samples_on_b(lines, nearest), CLOSE)[:3]
 
 
@@ -567,7 +572,7 @@ def _feet_from(
         sigma = np.minimum(np.maximum(before + np.minimum(np.maximum(step, -h), h), 0.0), end)
         if ridges.size:
             sigma = _up_to(ridges, before, sigma)
-        moved = float(np.abs(sigma - before).max())
+        moved = float(np.maximum.reduce(np.abs(sigma - before)))
         if moved < close or (not ridges.size and moved * moved < LAST * close * last):
             break
         last = moved
@@ -618,10 +623,8 @@ def places_along(pair: Pair, lines: Lines, D: Array, sigma: Array, ends: Array) 
     for end in (0, -1):
         near[end] = reach > D[end] and not held_together(a, b, end, float(sigma[end]))
     joints = near.nonzero()[0]
-    keys = np.full(len(joints) + len(s), -1)
-    keys[: len(joints)] = joints
-    if pair.fixed:
-        keys[len(joints) :] = a.n + 6 + np.arange(len(s))
+    own = a.n + 6 + np.arange(len(s)) if pair.fixed else np.zeros(len(s), dtype=np.intp) - 1
+    keys = np.concatenate((joints, own))
     found = Places(np.concatenate((a.s[joints], s)), np.concatenate((sigma[2 * joints], turned)), keys)
     return found.joined(_corners(pair, lines, D, sigma)) if pair.tapered and a.section.ridges.size else found
 
@@ -704,39 +707,41 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     return D, sigma
 
 
-def nearest_samples(G: Array, A: Array, within: float) -> tuple[Array, Ints]:
-    """Distance from places of ``A`` (k, 2) to the nearest of ``G`` (m, 2), infinite beyond ``within``; its number."""
-    if len(G) * len(A) <= MANY:
-        apart, across = (np.subtract.outer(mine, its) for mine, its in zip(A.T, G.T, strict=True))
+def nearest_samples(G: smooth.Points, A: smooth.Points, within: float) -> tuple[Array, Ints]:
+    """Distance from points of ``A`` (k,) to the nearest of ``G`` (m,), infinite beyond ``within``; its number."""
+    return nearest_places((G.x, G.y), (A.x, A.y), within)
+
+
+def nearest_places(G: tuple[Array, Array], A: tuple[Array, Array], within: float) -> tuple[Array, Ints]:
+    """The same of places by their x and y, (m,) and (k,) each."""
+    if G[0].size * A[0].size <= MANY:
+        apart, across = A[0][:, None] - G[0], A[1][:, None] - G[1]
         apart *= apart
         across *= across
         apart += across
         number = apart.argmin(axis=1)
-        distance = np.sqrt(apart[np.arange(len(A)), number])
+        distance = np.sqrt(np.minimum.reduce(apart, axis=1))
         return np.where(distance < within, distance, np.inf), number
     from scipy.spatial import cKDTree  # loaded where beams with many links may touch each other
 
     # places follow each other along lines: a tree that is not levelled is soon made and soon gone through
-    tree = cKDTree(G, balanced_tree=False, compact_nodes=False)
-    distance, number = tree.query(A, distance_upper_bound=within)
+    tree = cKDTree(np.array(G).T, balanced_tree=False, compact_nodes=False)
+    distance, number = tree.query(np.array(A).T, distance_upper_bound=within)
     return np.asarray(distance), np.asarray(number)
-
-
-def _places(points: smooth.Points) -> Array:
-    return np.array((points.x, points.y)).T
 
 
 def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     A, G = lines[0].sampled, lines[1].sampled
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
-    rough, nearest = nearest_samples(_places(G), _places(A), pair.offset + reach(pair.a, pair.b))
+    rough, nearest = nearest_samples(G, A, pair.offset + reach(pair.a, pair.b))
     close = np.isfinite(rough).nonzero()[0]
-    D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
+    sigma = np.zeros(len(A.s))
+    D = sigma + np.inf
     if not close.size:
         return D, sigma
     at_A, at_B = pair.samples_on_a(lines, close), pair.samples_on_b(lines, nearest[close])
     distance, sigma[close], foot, at_B = _feet_from(pair, lines, at_A, at_B, CLOSE)
-    D[close] = np.where(foot, distance, np.inf)
+    D[close[foot]] = distance[foot]
     D = not_gone_round(pair, lines, D, pair.wider(A.s, sigma))
     if not pair.tapered:  # else these are points of edges
         joints = ((close % 2 == 0) & np.isfinite(D[close])).nonzero()[0]
@@ -775,7 +780,7 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     lowest = lowest[pair.own_places & (lowest > first) & (lowest < 2 * (pair.a.n + 1) - last)]
     if not lowest.size:
         return np.zeros(0), np.zeros(0)
-    parting, near = np.full(pair.a.n + 2, np.inf), np.isfinite(D[::2]).nonzero()[0]
+    parting, near = np.zeros(pair.a.n + 2) + np.inf, np.isfinite(D[::2]).nonzero()[0]
     parting[near] = pair.parting_at(lines, *_faced(pair, lines, D, sigma, near), D[2 * near])
     found = wells.wells(pair.a, D - pair.offset, parting, lowest, LEAST_CURVATURE, pair.kinks[0].places)
     if not found.samples.size:
@@ -804,7 +809,7 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
         low, high = np.where(falls, s, low), np.where(falls, high, s)
         ahead = s - slope / np.where(convex, bends, np.inf)
         newton = convex & (ahead >= low) & (ahead <= high)
-        step = np.where(newton, ahead, 0.5 * (low + high)) - s
+        step = (ahead if newton.all() else np.where(newton, ahead, 0.5 * (low + high))) - s
         ahead = np.minimum(np.maximum(sigma + left + towards * step, 0.0), end)
         if ridges.size:
             ahead = np.where(leaning.at_corner(B), sigma, _up_to(ridges, sigma, ahead))
@@ -813,6 +818,8 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
         inner = (sigma > 0.0) & (sigma < end)
         # what Newton's method would leave after one more step is nothing
         known = newton & inner & (moved * moved < LAST * CLOSE * latest)
+        if known.all():
+            break
         there = known | ((np.abs(step) < CLOSE) & (np.abs(along) < CLOSE) & (np.abs(slope) < SETTLED))
         if not ridges.size:  # no slope as steep as that goes through zero in so little
             there |= (high - low < CLOSE) & (np.abs(slope) > STEEP)
