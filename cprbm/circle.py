@@ -274,7 +274,7 @@ class Circle:
             return found
         for clamped, outer, inner in zip(self.clamped, (1, self.a.n), (2, self.a.n - 1), strict=True):
             if clamped:
-                rows = np.flatnonzero((keys == outer) | (keys == inner))
+                rows = ((keys == outer) | (keys == inner)).nonzero()[0]
                 if rows.size == 2:
                     found.append(rows if outer < inner else rows[::-1])
         return found
@@ -409,7 +409,7 @@ def _some(group: Group, these: Ints) -> Group:
         every[these] = multipliers
         return group.curvature(every)
 
-    keys = tuple(group.keys[i] for i in these.tolist())
+    keys = tuple([group.keys[i] for i in these.tolist()])
     of = group.joints[these], group.angles[these], group.slopes[these]
     return Group(group.contact, group.values[these], *of, curvature, keys, group.arc[these])
 

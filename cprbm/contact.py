@@ -228,20 +228,17 @@ class Rows:
     @once
     def keys(self) -> tuple[tuple[str, int], ...]:
         """What each row is: its contact and its key there."""
-        return tuple((group.contact, key) for group in self.groups for key in group.keys)
+        return tuple([(group.contact, key) for group in self.groups for key in group.keys])
 
     def pressed(self, multipliers: Array) -> frozenset[tuple[str, int]]:
         """Keys of the rows whose multiplier is positive."""
-        return frozenset(
-            (group.contact, group.keys[row])
-            for group, lam in self.shares(multipliers)
-            for row in (lam > 0.0).nonzero()[0].tolist()
-        )
+        pressing = (multipliers > 0.0).nonzero()[0].tolist()
+        return frozenset([self.keys[row] for row in pressing]) if pressing else frozenset()
 
     @once
     def contact(self) -> tuple[str, ...]:
         """Name of each row's contact."""
-        return tuple(group.contact for group in self.groups for _ in group.keys)
+        return tuple([group.contact for group in self.groups for _ in group.keys])
 
     @property
     def size(self) -> int:
@@ -252,8 +249,8 @@ class Rows:
         """Number of the row of a contact that is nearest to an arc length, (1,); (0,) where none is within reach."""
         mine = np.array([name == contact for name in self.contact], dtype=bool)
         away = np.abs(self.arc - arc)
-        near = np.flatnonzero(mine & (away <= reach))
-        return near[np.argsort(away[near], kind="stable")[:1]]
+        near = (mine & (away <= reach)).nonzero()[0]
+        return near[away[near].argsort(kind="stable")[:1]]
 
     @once
     def spans(self) -> tuple[slice, ...]:
@@ -263,9 +260,10 @@ class Rows:
 
     def same(self, before: Rows) -> bool:
         """Whether these are the rows of another state, by contacts and keys."""
-        return len(self.groups) == len(before.groups) and all(
-            mine.contact == other.contact and mine.keys == other.keys
-            for mine, other in zip(self.groups, before.groups, strict=True)
+        # the same keys of another contact are other rows
+        return len(self.groups) == len(before.groups) and (
+            [(group.contact, group.keys) for group in self.groups]
+            == [(group.contact, group.keys) for group in before.groups]
         )
 
     def shares(self, multipliers: Array) -> list[tuple[Group, Array]]:

@@ -25,6 +25,8 @@ STILL = 1e-12  # rad: a state from which a step leads no farther is where it wou
 NOTHING = 1e-12  # S: moments below it are no load at all, and what is left is measured by S
 EPS = float(np.finfo(float).eps)
 
+_most = np.maximum.reduce  # what the method max of an array comes to
+
 Held = frozenset[tuple[str, int]]
 
 
@@ -58,17 +60,17 @@ def measure(problem: Problem, point: Point) -> Measure:
     """Residuals of the optimality conditions over the largest terms in them; over S where there is no load."""
     model, c = problem.model, point.rows.values
     terms = np.abs(point.gradient) + np.abs(point.held) + np.abs(point.pressed)
-    scale = max(float(terms.max()), float(np.abs(point.moments).max()))
+    scale = max(float(_most(terms)), float(_most(np.abs(point.moments))))
     scale = scale if scale > NOTHING else 1.0
     # an angle is known to eps·|θ|, a spring's moment to the stiffness times that
-    turned = max(1.0, float(np.abs(point.state.theta).max()))
+    turned = max(1.0, float(_most(np.abs(point.state.theta))))
     floor = 4.0 * EPS * model.stiffest * turned + 4.0 * EPS * sqrt(model.n_links) * scale
     return Measure(
-        residual=float(np.abs(problem.moves * point.unbalanced).max()) / scale,
+        residual=float(_most(np.abs(problem.moves * point.unbalanced))) / scale,
         floor=floor / scale,
-        violation=float(np.abs(point.Z).max(initial=0.0)),
-        overlap=float(c.max(initial=0.0)),
-        complementarity=float(np.abs(point.lam * c).max(initial=0.0)) / scale,
+        violation=float(_most(np.abs(point.Z), initial=0.0)),
+        overlap=float(_most(c, initial=0.0)),
+        complementarity=float(_most(np.abs(point.lam * c), initial=0.0)) / scale,
     )
 
 

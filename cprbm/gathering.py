@@ -144,7 +144,8 @@ def gathered(
     for past, further, x, along, across in passed:
         places.append(row[past] * size + further)
         parts.append(own[past, x] * along + own[past, x + 1] * across)
-    slopes: Array = np.bincount(np.concatenate(places), np.concatenate(parts), m * size).reshape(m, size)
+    summed = np.bincount(np.concatenate(places), np.concatenate(parts), m * size)
+    slopes: Array = np.asarray(summed, dtype=float).reshape(m, size)
     joints = (first + np.array([[chain.first_joint] for chain in chains])).T
 
     def to_row() -> tuple[Array, Array]:
@@ -164,9 +165,7 @@ def gathered(
         diagonal = np.arange(size)
         matrices[:, diagonal, diagonal] += turned
         matrices *= (np.repeat(multipliers[pressing], q) * share[mine])[:, None, None]
-        return Blocks(
-            joints[pressing], over[pressing], matrices.reshape(pressing.size, q, size, size).sum(axis=1)
-        )
+        return Blocks(joints[pressing], over[pressing], matrices.reshape(pressing.size, q, size, size).sum(axis=1))
 
     return Group(
         contact=name,

@@ -46,7 +46,7 @@ def most_turned(before: State, after: State) -> float:
 
 def rest_state(model: Model) -> State:
     """The stress-free state."""
-    return State(model.rest.copy(), np.zeros((len(model.free_bodies), 3)))
+    return State(model.rest.copy(), np.zeros((model.n_bodies, 3)))
 
 
 def arm(attachment: Attachment, bodies: Array) -> tuple[float, float]:
@@ -181,7 +181,7 @@ def over_unknowns_by(model: Model, state: State, at: Positions, fx: Array, fy: A
 
 def _held(model: Model, state: State, sums: Array | tuple[Array, Array]) -> tuple[Array, Array]:
     """What :func:`summed` forces mean for the bodies that beams' starts and marks are on."""
-    (fx, fy), n, count = sums, model.n_links, len(model.free_bodies)
+    (fx, fy), n, count = sums, model.n_links, model.n_bodies
     if not model.layout.moving.size:
         shape = fx.shape[:-1]
         return np.zeros((*shape, 3 * count)), np.zeros((*shape, count))

@@ -225,7 +225,7 @@ class Model:
         """Initial position of each free body's reference place (its first point), (B, 2), units of length."""
         return self.outset.references
 
-    @property
+    @once
     def unit_length(self) -> float:
         """ℓ, m."""
         return self.outset.unit_length
@@ -246,9 +246,14 @@ class Model:
         return len(self.lengths)
 
     @once
+    def n_bodies(self) -> int:
+        """B."""
+        return len(self.free_bodies)
+
+    @once
     def n_unknowns(self) -> int:
         """Link angles, and u, v, φ of the free bodies."""
-        return self.n_links + 3 * len(self.free_bodies)
+        return self.n_links + 3 * self.n_bodies
 
     @once
     def n_joints(self) -> int:
@@ -277,7 +282,7 @@ class Model:
             moving=roots[on_bodies],
             moved=Linear(
                 base[:, on_bodies].ravel(),
-                over[:, on_bodies].reshape(2 * int(on_bodies.sum()), 5 * len(self.free_bodies)),
+                over[:, on_bodies].reshape(2 * int(on_bodies.sum()), 5 * self.n_bodies),
             ),
         )
 
@@ -306,6 +311,14 @@ class Model:
         off = -self.couplings
         diagonal.flags.writeable = off.flags.writeable = False
         return diagonal, off
+
+    @once
+    def nothing(self) -> tuple[Array, Array, Array]:
+        """Noughts for a diagonal over θ (n_links,), what is beside it (n_links−1,) and all joints (n_joints,)."""
+        found = np.zeros(self.n_links), np.zeros(self.n_links - 1), np.zeros(self.n_joints)
+        for each in found:
+            each.flags.writeable = False
+        return found
 
     @once
     def stiffest(self) -> float:

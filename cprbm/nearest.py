@@ -48,7 +48,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cprbm import leaning, smooth, wells
-from cprbm.both import Both, made
+from cprbm.both import Both, Made, made
 from cprbm.brought import as_drawn
 from cprbm.contact import Group
 from cprbm.crossing import cross
@@ -152,6 +152,11 @@ class Pair:
     fixed: bool = False
 
     @once
+    def made(self) -> Made | None:
+        """What both beams' lines have in every state."""
+        return made(self.a, self.b, self.kinks)
+
+    @once
     def kinked(self) -> bool:
         """Whether either beam has kinks."""
         return any(each.places.size for each in self.kinks)
@@ -173,7 +178,7 @@ class Pair:
 
     def on_both(self, lines: Lines, s: Array, sigma: Array) -> tuple[smooth.Points, smooth.Points]:
         """Points of A at arc lengths ``s`` (k,) and of B at ``sigma`` (j,), bent as their kinks say."""
-        what = made(self.a, self.b, self.kinks)
+        what = self.made
         if what is None:
             return self.on_a(lines, s), self.on_b(lines, sigma)
         known, key = lines[0].known, (self.name, "both")
@@ -562,7 +567,8 @@ def _feet_from(
     sigma, h, end, last = B.s, pair.b.h, pair.b.s[-1], 0.0
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
     for iteration in range(FOOT_ITERATIONS if not ridges.size else CORNER_ITERATIONS):
-        B = pair.facing(A, pair.on_b(lines, sigma) if iteration else B)
+        B = pair.on_b(lines, sigma) if iteration else B
+        B = pair.facing(A, B) if pair.tapered else B
         along, across = _seen_from(B, A)
         # along the circle of curvature, where that is round the foot
         left = along / np.maximum(B.pace - B.bend * across, 0.2)
