@@ -259,9 +259,10 @@ class Circle:
         together = self._beside_clamps(keys)
         if not together:
             return (every,)
-        alone = np.delete(np.arange(len(s)), np.concatenate(together))
+        alone = np.ones(len(s), dtype=bool)
+        alone[np.concatenate(together)] = False
         groups = [_summed(every, two) for two in together]
-        return (*groups, _some(every, alone)) if alone.size else tuple(groups)
+        return (*groups, _some(every, alone.nonzero()[0])) if alone.any() else tuple(groups)
 
     def _against(self, slopes: Array, along: Array) -> Array:
         """Slopes (k, 5) of parts along some directions (k, 2), with those over the centre's place where that moves."""
@@ -302,7 +303,7 @@ class Circle:
         last = np.inf if seen.course[-1] > ON_IT and not self.held[1] else -np.inf
         lowest = wells.lowest(np.concatenate(((first,), D, (last,))), REACH) - 1
         # the two joints beside a clamp on the circle press together, a place of its own among them would part them
-        first, last = (4 if clamped else -1 for clamped in self.clamped)
+        first, last = [4 if clamped else -1 for clamped in self.clamped]
         lowest = lowest[self.own_places & (lowest > first) & (lowest < 2 * (self.a.n + 1) - last)]
         if not lowest.size:
             return NOWHERE

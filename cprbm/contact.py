@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from itertools import accumulate, pairwise
 
 import numpy as np
+from scipy.linalg import lapack
 
 from cprbm import kinematics
 from cprbm.kinematics import Positions, State
@@ -51,7 +52,7 @@ def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Loc
     rows = kinematics.over_unknowns_by(model, state, at, every[:, 0], every[:, 1])
     first = 0
     for part in parts:
-        r, p, a = len(part.slopes), part.joints.shape[1], part.angles.shape[1]
+        (r, _), (_, p), (_, a) = part.slopes.shape, part.joints.shape, part.angles.shape
         mine = rows[first : first + r]
         if part.alike and a:
             link = int(part.angles[0, 0])
@@ -65,7 +66,7 @@ def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Loc
 
 def _sums(model: Model, part: Local) -> Array:
     """Slopes over x and over y of joints, summed as :func:`cprbm.kinematics.summed` says (r, 2, n_links + k)."""
-    r, p = len(part.slopes), part.joints.shape[1]
+    (r, _), (_, p) = part.slopes.shape, part.joints.shape
     if part.behind is not None:
         # twice as many rows, x and y in turns
         return (part.slopes[:, : 2 * p].reshape(2 * r, p) @ part.behind).reshape(r, 2, -1)
@@ -127,11 +128,25 @@ class Blocks:
         """The same by eigenvalues."""
         if not self.matrices.size:
             return Factored(Local(self.joints[:0], self.angles[:0], np.zeros((0, self.matrices.shape[1]))), np.zeros(0))
-        sigma, vectors = np.linalg.eigh(self.matrices)
+        sigma, vectors = _by_eigenvalues(self.matrices)
         size = np.abs(sigma)
-        block, number = np.nonzero(size > REAL * size.max())
+        block, number = (size > REAL * size.max()).nonzero()
         columns = Local(self.joints[block], self.angles[block], vectors[block, :, number])
         return Factored(columns, sigma[block, number])
+
+
+def _by_eigenvalues(matrices: Array) -> tuple[Array, Array]:
+    """Eigenvalues (g, n) and vectors (g, n, n) of g symmetric matrices; of one without what NumPy asks before.
+
+    Raises:
+        np.linalg.LinAlgError: they were not found.
+    """
+    if len(matrices) > 1:
+        return np.linalg.eigh(matrices)
+    sigma, vectors, failed = lapack.dsyevd(matrices[0], lower=1)
+    if failed:
+        raise np.linalg.LinAlgError("no eigenvalues of a contact's second derivative")
+    return sigma[None], vectors[None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -243,7 +258,7 @@ class Rows:
     @property
     def size(self) -> int:
         """Number of constraints m."""
-        return len(self.values)
+        return self.values.size
 
     def nearest(self, contact: str, arc: float, reach: float = np.inf) -> Ints:
         """Number of the row of a contact that is nearest to an arc length, (1,); (0,) where none is within reach."""
@@ -255,8 +270,8 @@ class Rows:
     @once
     def spans(self) -> tuple[slice, ...]:
         """Where the rows of each group are."""
-        ends = [0, *accumulate(len(group.values) for group in self.groups)]
-        return tuple(slice(begin, end) for begin, end in pairwise(ends))
+        ends = [0, *accumulate([group.values.size for group in self.groups])]
+        return tuple([slice(begin, end) for begin, end in pairwise(ends)])
 
     def same(self, before: Rows) -> bool:
         """Whether these are the rows of another state, by contacts and keys."""

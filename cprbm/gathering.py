@@ -70,13 +70,12 @@ BESIDE = np.arange(3)
 
 def single(name: str, chains: tuple[Chain, Chain], touches: Touches, keys: Ints, arc: Array) -> Group:
     """Rows (m,) of one contact, each of one place; arguments as of :func:`gathered`."""
-    firsts = ((chain.first_joint, chain.first_link, chain.n) for chain in chains)
-    joints, angles = np.empty((len(arc), 2), dtype=np.intp), np.empty((len(arc), 6), dtype=np.intp)
-    for beam, ((joint, link, n), on) in enumerate(zip(firsts, touches.links, strict=True)):
-        joints[:, beam] = joint + on
-        for k in range(3):
-            # beyond a beam's ends the end itself: what is there has no share
-            angles[:, 3 * beam + k] = link + np.minimum(np.maximum(on + (k - 1), 0), n)
+    joints, angles = np.empty((arc.size, 2), dtype=np.intp), np.empty((arc.size, 6), dtype=np.intp)
+    for beam, (chain, on) in enumerate(zip(chains, touches.links, strict=True)):
+        joints[:, beam] = chain.first_joint + on
+        # beyond a beam's ends the end itself: what is there has no share
+        around = np.minimum(np.maximum(on[:, None] + (BESIDE - 1), 0), chain.n)
+        angles[:, 3 * beam : 3 * beam + 3] = chain.first_link + around
 
     def curvature(multipliers: Array) -> Blocks:
         pressing = multipliers.nonzero()[0]

@@ -782,7 +782,7 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     if not lowest.size:
         return np.zeros(0), np.zeros(0)
     # the joints beside a common clamp press together, a place of its own among them would part them
-    first, last = (4 * pair.shared if clamped else 0 for clamped in pair.clamped)
+    first, last = [4 * pair.shared if clamped else 0 for clamped in pair.clamped]
     lowest = lowest[pair.own_places & (lowest > first) & (lowest < 2 * (pair.a.n + 1) - last)]
     if not lowest.size:
         return np.zeros(0), np.zeros(0)
