@@ -168,8 +168,8 @@ class Clearances:
 
     def at(self, state: State, at: Positions) -> Array:
         """C of all contacts (m,)."""
-        found = at.known.get(KNOWN)
-        if not isinstance(found, np.ndarray):
+        found: Array | None = at.known.get(KNOWN)
+        if found is None:
             found = at.known[KNOWN] = self._at(state, at)
         return found
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -79,7 +80,7 @@ class Positions:
     y: Array
     dx: Array
     dy: Array
-    known: dict[int, object] = field(default_factory=dict, init=False, repr=False, compare=False)
+    known: dict[int, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
 
 def positions(model: Model, state: State) -> Positions:

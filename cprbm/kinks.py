@@ -74,7 +74,8 @@ class Missed:
     def integral(self) -> Array:
         """Γ (k,), units of length, nought at both borders of the element."""
         c, off = self.coefficients, self.off
-        return np.asarray((((c[3] / 4.0 * off + c[2] / 3.0) * off + c[1] / 2.0) * off + c[0]) * off)
+        found: Array = (((c[3] / 4.0 * off + c[2] / 3.0) * off + c[1] / 2.0) * off + c[0]) * off
+        return found
 
 
 def missed(chain: Chain, kinks: Kinks, points: Points) -> Missed:

@@ -161,7 +161,8 @@ class Chain:
 
     def size_at(self, arc: Array) -> Array:
         """h of the elements at arc lengths ``arc`` (k,), units of length."""
-        return np.asarray(self.sizes[np.minimum(np.maximum(self.borders.searchsorted(arc) - 1, 0), self.n - 1)])
+        found: Array = self.sizes[np.minimum(np.maximum(self.borders.searchsorted(arc) - 1, 0), self.n - 1)]
+        return found
 
     @once
     def joints(self) -> slice:

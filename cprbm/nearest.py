@@ -188,13 +188,15 @@ class Pair:
             known[key] = (both,)
         return both.at(s, sigma)
 
-    def samples_on_a(self, lines: Lines, these: Ints) -> smooth.Points:
-        """The same at some of the samples of A, by their numbers (k,), which are worked out once in a state."""
-        return kinked(self.a, self.kinks[0], lines[0].sampled.only(these))
-
-    def samples_on_b(self, lines: Lines, these: Ints) -> smooth.Points:
-        """The same at some of the samples of B."""
-        return kinked(self.b, self.kinks[1], lines[1].sampled.only(these))
+    def samples(self, lines: Lines) -> tuple[smooth.Points, smooth.Points]:
+        """The same at the samples of A and of B, once in a state."""
+        if not self.kinked:
+            return lines[0].sampled, lines[1].sampled
+        known, what = lines[0].known, (self.name, "kinked")
+        if what not in known:
+            known[what] = tuple(map(kinked, self.chains, self.kinks, (line.sampled for line in lines)))
+        A, B = known[what]
+        return A, B
 
     def foot(self, lines: Lines, A: smooth.Points, sigma: Array) -> smooth.Points:
         """Points of B at arc lengths ``sigma`` (k,) with the tangents of the edge that faces A."""
@@ -544,7 +546,7 @@ def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Fl
 def _distance_of(pair: Pair, lines: Lines, A: smooth.Points) -> tuple[Array, Array, Flags]:
     """The same of points of A (k,)."""
     nearest = nearest_samples(lines[1].sampled, A, np.inf)[1]
-    return _feet_from(pair, lines, A, pair.samples_on_b(lines, nearest), CLOSE)[:3]
+    return _feet_from(pair, lines, A, pair.samples(lines)[1].only(nearest), CLOSE)[:3]
 
 
 def past_foot(pair: Pair, lines: Lines, s: Array, sigma: Array) -> Array:
@@ -583,7 +585,7 @@ def _feet_from(
             break
         last = moved
     foot = np.abs(along) <= PARALLEL * np.maximum(np.abs(across), pair.b.h)
-    return pair.side * across - pair.wider(A.s, sigma), sigma, foot, B
+    return pair.side * across - (pair.wider(A.s, sigma) if pair.tapered else 0.0), sigma, foot, B
 
 
 def _up_to(ridges: Array, before: Array, after: Array) -> Array:
@@ -660,20 +662,20 @@ def feet_of_ridges(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Ar
 def _facing_ends(pair: Pair, lines: Lines) -> Places:
     """The ends of B that face A within reach, and their feet on A; the keys follow A's joints."""
     a, b, reach = pair.a, pair.b, pair.offset + REACH
-    A, B, ends = lines[0].sampled, lines[1].sampled, b.s[[0, -1]]
+    (A, B), ends = pair.samples(lines), b.s[[0, -1]]
     away = np.hypot(A.x - B.x[[0, -1], None], A.y - B.y[[0, -1], None])
     nearest = away.argmin(axis=1)
     near = (away[[0, 1], nearest] < reach + a.h).nonzero()[0]
     if near.size and not pair.tapered:
         # what is beyond an end of A has its foot there
-        beyond = _seen_from(pair.samples_on_a(lines, nearest[near]), B.only(near * (2 * b.n + 2)))[0]
+        beyond = _seen_from(A.only(nearest[near]), B.only(near * (2 * b.n + 2)))[0]
         first, last = nearest[near] == 0, nearest[near] == len(A.s) - 1
         near = near[~((first & (beyond <= 0.0)) | (last & (beyond >= 0.0)))]
     if not near.size:
         return Places(np.zeros(0), np.zeros(0), near)
     turned = pair.exchanged()
-    at_B = turned.samples_on_a(lines[::-1], near * (2 * b.n + 2))
-    E, foot, facing, _ = _feet_from(turned, lines[::-1], at_B, turned.samples_on_b(lines[::-1], nearest[near]), CLOSE)
+    at_B = B.only(near * (2 * b.n + 2))
+    E, foot, facing, _ = _feet_from(turned, lines[::-1], at_B, A.only(nearest[near]), CLOSE)
     E = not_gone_round(turned, lines[::-1], E, pair.wider(foot, ends[near]))
     facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
     for i, end in enumerate(near):
@@ -685,7 +687,7 @@ def _faced(pair: Pair, lines: Lines, D: Array, sigma: Array, joints: Ints) -> tu
     """Some joints of A, by their numbers (k,), and their feet, ``D`` and ``sigma`` being those of A's samples."""
     known, what = lines[0].faced, pair.name
     if what not in known or known[what][0] is not D:
-        known[what] = D, pair.samples_on_a(lines, 2 * joints), pair.on_b(lines, sigma[2 * joints])
+        known[what] = D, pair.samples(lines)[0].only(2 * joints), pair.on_b(lines, sigma[2 * joints])
     return known[what][1:]
 
 
@@ -737,7 +739,7 @@ def nearest_places(G: tuple[Array, Array], A: tuple[Array, Array], within: float
 
 
 def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
-    A, G = lines[0].sampled, lines[1].sampled
+    A, G = pair.samples(lines)
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
     rough, nearest = nearest_samples(G, A, pair.offset + reach(pair.a, pair.b))
     close = np.isfinite(rough).nonzero()[0]
@@ -745,7 +747,7 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     D = sigma + np.inf
     if not close.size:
         return D, sigma
-    at_A, at_B = pair.samples_on_a(lines, close), pair.samples_on_b(lines, nearest[close])
+    at_A, at_B = A.only(close), G.only(nearest[close])
     distance, sigma[close], foot, at_B = _feet_from(pair, lines, at_A, at_B, CLOSE)
     D[close[foot]] = distance[foot]
     D = not_gone_round(pair, lines, D, pair.wider(A.s, sigma))

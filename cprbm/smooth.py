@@ -161,13 +161,15 @@ class SmoothLine:
     def radii_1(self) -> Array:
         """∂R over δ (N,)."""
         sine, versine = _of_rest(self.chain)
-        return np.asarray(sine * (0.5 * (self.chain.turns + self.turns)) * self.cotangents[1] + versine)
+        found: Array = sine * (0.5 * (self.chain.turns + self.turns)) * self.cotangents[1] + versine
+        return found
 
     @once
     def radii_2(self) -> Array:
         """∂²R over δ (N,)."""
         q = 0.25 * (self.chain.turns + self.turns) ** 2
-        return np.asarray(0.5 * _of_rest(self.chain)[0] * (self.cotangents[1] + 2.0 * q * self.cotangents[2]))
+        found: Array = 0.5 * _of_rest(self.chain)[0] * (self.cotangents[1] + 2.0 * q * self.cotangents[2])
+        return found
 
     @once
     def arcs(self) -> Array:
@@ -224,7 +226,7 @@ def placed(arcs: Array, off: Array, excess: ComplexArray | None) -> tuple[Array,
     else:
         # stress-free piece and difference of two arcs make one arc, from the border on
         along, across = _arc(off, rate, R)
-        tangent, speed, bend, gain = tangent + rate * off, R, rate, np.zeros(len(off))
+        tangent, speed, bend, gain = tangent + rate * off, R, rate, np.zeros(off.size)
     return x + along * cos - across * sin, y + along * sin + across * cos, tangent, speed, bend, gain
 
 
@@ -257,8 +259,8 @@ def _arc(off: Array, rate: Array, R: Array | float) -> tuple[Array, Array]:
 
 def smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -> SmoothLine:
     """The smooth line of ``chain`` in a state, the same one each time it is asked for at the same positions."""
-    line = at.known.get(chain.first_link)
-    if not isinstance(line, SmoothLine):
+    line: SmoothLine | None = at.known.get(chain.first_link)
+    if line is None:
         line = at.known[chain.first_link] = _smooth_line(chain, unit_length, state, at)
     return line
 
