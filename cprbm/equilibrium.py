@@ -83,6 +83,7 @@ def equilibrium(
     *,
     settle: bool = False,
     farthest: float = np.inf,
+    same: bool = False,
 ) -> Equilibrium:
     """Newton's method from ``start`` to the equilibrium under the loads' and drives' ``values`` (SI).
 
@@ -90,7 +91,7 @@ def equilibrium(
     the step is taken.  Where it comes back for good, or comes no nearer, the steady rows decide if they may ``settle``
     it; otherwise that is the end, as it is where these are no others or lead nowhere either.  Where ``farthest`` says
     (rad) by what a link turns at most, so it is beyond that, and where steps grow and grow: they lead away from a state
-    that is no minimum.
+    that is no minimum.  The ``start`` may itself be the equilibrium if its rows were found under the ``same`` values.
     """
     model = problem.model
     point = point_under(problem, values, start)
@@ -108,8 +109,8 @@ def equilibrium(
         longest = float(np.abs(change[: model.n_links]).max())
         if not np.isfinite(longest):
             return Equilibrium(point, now, iteration, converged=False)
-        # not at once: which rows there are was asked of the start under other values
-        still = iteration > 1 and longest <= STILL and np.array_equal(lam > 0.0, point.lam > 0.0)
+        # not at once where it was asked of the start under other values which rows there are
+        still = (iteration > 1 or same) and longest <= STILL and np.array_equal(lam > 0.0, point.lam > 0.0)
         if still and _settled(now, longest, tolerance):
             return Equilibrium(point, now, iteration, converged=True)
         grown, last = grown + 1 if longest > last else 0, longest

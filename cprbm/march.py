@@ -484,7 +484,7 @@ class March:
         # meshes that end where zones do may take turns, and which is the last must not hang on what was left
         left = settings.tolerance if target.fit.ends else max(settings.tolerance, ROUGHLY)
         for steady in (False, True) if settle and not coarse else (coarse,):
-            solved = equilibrium(target.problem, values, start, left, most, settle=steady)
+            solved = equilibrium(target.problem, values, start, left, most, settle=steady, same=True)
             self.spent += solved.iterations
             if solved.converged:
                 break
