@@ -223,16 +223,17 @@ class Circle:
             values -= np.where(free, leading * beyond.integral, 0.0)
             convexity = convexity + leading * beyond.bend
 
-        def second() -> Array:
-            """∂²D/∂z² (k, p, p)."""
-            D_sz, found = tangent_slopes(z, n), position_curvature(z, n)
+        def second(some: Ints) -> Array:
+            """∂²D/∂z² (j, p, p) of places with some numbers (j,)."""
+            its, normals = z.only(some), n[some]
+            D_sz, found = tangent_slopes(its, normals), position_curvature(its, normals)
             if self.body >= 0:
                 D_sz, found = np.pad(D_sz, ((0, 0), (0, 2))), np.pad(found, ((0, 0), (0, 2), (0, 2)))
-            across = np.stack((-y, x), axis=1)
-            q_z = self._against(position_slopes(z, across), across)
-            found += q_z[:, :, None] * q_z[:, None, :] / rho[:, None, None]
-            D_sz -= (across_s / rho)[:, None] * q_z
-            going = np.where(free, 1.0 / np.where(free, convexity, 1.0), 0.0)
+            across = np.array((-normals[:, 1], normals[:, 0])).T
+            q_z = self._against(position_slopes(its, across), across)
+            found += q_z[:, :, None] * q_z[:, None, :] / rho[some, None, None]
+            D_sz -= (across_s[some] / rho[some])[:, None] * q_z
+            going = np.where(free[some], 1.0 / np.where(free[some], convexity[some], 1.0), 0.0)
             found -= going[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
             return found[:, order[:, None], order]
 
@@ -247,13 +248,9 @@ class Circle:
             at_ends = np.isin(s, self.ends)
             keys[at_ends] = self.a.n + 2 + np.arange(np.sum(at_ends))
 
-        known: list[Array] = []
-
         def curvature(multipliers: Array) -> Blocks:
-            if not known:
-                known.append(second())
             pressing = multipliers.nonzero()[0]
-            return Blocks(joints[pressing], angles[pressing], -multipliers[pressing, None, None] * known[0][pressing])
+            return Blocks(joints[pressing], angles[pressing], -multipliers[pressing, None, None] * second(pressing))
 
         every = Group(self.name, values, joints, angles, slopes, curvature, tuple(keys.tolist()), s)
         together = self._beside_clamps(keys)

@@ -25,7 +25,6 @@ from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions
 from cprbm.model import Chain
 from cprbm.moving import LOCALS
-from cprbm.once import once
 from scene.answer import Array, Flags, Ints
 
 
@@ -36,29 +35,29 @@ class Touches:
     Attributes:
         values: c (k,), units of length.
         slopes: ∂c/∂z (k, 10).
-        bent: yields ∂²c/∂z² (k, 10, 10), which only what presses needs.
+        bent: yields ∂²c/∂z² (j, 10, 10) of places with some numbers (j,), which only what presses needs.
         links: of A and of B in their own numbering, (2, k).
     """
 
     values: Array
     slopes: Array
-    bent: Callable[[], Array]
+    bent: Callable[[Ints], Array]
     links: Ints
-
-    @once
-    def second(self) -> Array:
-        """∂²c/∂z² (k, 10, 10)."""
-        return self.bent()
 
     def only(self, these: Flags | Ints | slice) -> Touches:
         """Some of the places."""
-        return Touches(self.values[these], self.slopes[these], lambda: self.second[these], self.links[:, these])
+        numbers = np.arange(self.values.size)[these]
+        values, slopes, links = self.values[these], self.slopes[these], self.links[:, these]
+        return Touches(values, slopes, lambda some: self.bent(numbers[some]), links)
 
     def exchanged(self) -> Touches:
         """The same with the parts of A and B exchanged."""
         turned = (np.arange(2 * LOCALS) + LOCALS) % (2 * LOCALS)
         return Touches(
-            self.values, self.slopes[:, turned], lambda: self.second[:, turned[:, None], turned], self.links[::-1]
+            values=self.values,
+            slopes=self.slopes[:, turned],
+            bent=lambda some: self.bent(some)[:, turned[:, None], turned],
+            links=self.links[::-1],
         )
 
 
@@ -79,7 +78,7 @@ def single(name: str, chains: tuple[Chain, Chain], touches: Touches, keys: Ints,
 
     def curvature(multipliers: Array) -> Blocks:
         pressing = multipliers.nonzero()[0]
-        matrices = touches.second[pressing][:, ALONE[:, None], ALONE]
+        matrices = touches.bent(pressing)[:, ALONE[:, None], ALONE]
         return Blocks(joints[pressing], angles[pressing], multipliers[pressing, None, None] * matrices)
 
     return Group(
@@ -160,7 +159,7 @@ def gathered(
         pressing = multipliers.nonzero()[0]
         mine = (pressing[:, None] * q + np.arange(q)).ravel()
         M, turned = (each[mine] for each in to_row())
-        matrices = M.transpose(0, 2, 1) @ touches.second[mine] @ M
+        matrices = M.transpose(0, 2, 1) @ touches.bent(mine) @ M
         diagonal = np.arange(size)
         matrices[:, diagonal, diagonal] += turned
         matrices *= (np.repeat(multipliers[pressing], q) * share[mine])[:, None, None]

@@ -26,7 +26,7 @@ import numpy as np
 from cprbm.once import once
 from cprbm.polynomial import ComplexArray
 from cprbm.smooth import ARCS, Points, series
-from scene.answer import Array
+from scene.answer import Array, Ints
 
 LOCALS = 5
 BEFORE, AFTER = np.array(((-1.0, 1.0, 0.0), (0.0, -1.0, 1.0)))  # ∂δ over angles, before and after a border
@@ -55,6 +55,22 @@ class Moving:
     arc: tuple[Array, Array, Array]
     over_angles: Array
     over_turn: ComplexArray
+
+    def only(self, these: Ints) -> Moving:
+        """Some of the places, by their numbers."""
+        u, phi, arc = self.arc
+        return Moving(
+            carried=self.carried[:, these],
+            sign=self.sign[these],
+            off=self.off[these],
+            at=self.at[these],
+            along=self.along[these],
+            arm=self.arm[these],
+            border=self.border[these],
+            arc=(u[these], phi[these], arc[:, these]),
+            over_angles=self.over_angles[these],
+            over_turn=self.over_turn[these],
+        )
 
     @once
     def along_over_turn(self) -> ComplexArray:

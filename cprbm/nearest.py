@@ -67,7 +67,7 @@ from cprbm.gathering import Touches, gathered, single
 from cprbm.kinematics import Positions, State
 from cprbm.kinks import kinked, missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
-from cprbm.moving import LOCALS, angle_slopes, moving, position_curvature, position_slopes, tangent_slopes
+from cprbm.moving import LOCALS, Moving, angle_slopes, moving, position_curvature, position_slopes, tangent_slopes
 from cprbm.once import once
 from cprbm.pairs import Pressed
 from cprbm.spot import FEW, spots
@@ -480,7 +480,7 @@ class Pair:
     def touches(self, lines: Lines, s: Array, sigma: Array, free: Flags) -> Touches:
         """The constraint at feet (s, σ); where ``free`` (k,) the place moves with the minimum."""
         A, B = self.facing_each_other(*self.on_both(lines, s, sigma))
-        m, k = len(s), LOCALS
+        m = len(s)
         cos, sin = np.cos(B.psi), np.sin(B.psi)
         normals = np.empty((2 * m, 2))
         normals[:m, 0], normals[:m, 1] = -sin, cos
@@ -488,40 +488,18 @@ class Pair:
         distance = cos * (A.y - B.y) - sin * (A.x - B.x)
         both = moving(A, B)
         n_r = _between(position_slopes(both, normals))
-        facing = np.cos(A.psi - B.psi)
-        of_foot = -B.pace + distance * B.bend
         # what D gains over s by the tangents' γ, the foot going along
         gained: Array | float = 0.0
         if self.kinked:
             more_A, more_B = missed(self.a, self.kinks[0], A), missed(self.b, self.kinks[1], B)
-            back = of_foot / (facing * A.pace)
+            facing = np.cos(A.psi - B.psi)
+            back = (-B.pace + distance * B.bend) / (facing * A.pace)
             if self.tapered:  # no tangents of B's go along what stays at a corner
                 back[leaning.at_corner(B)] = 0.0
             gained = np.sign(facing) * (more_A.integral + back * more_B.integral)
 
-        def bent() -> Array:
-            # ds/dz and dσ/dz from (i) and (ii)
-            psi_z = np.zeros((2, m, 2 * k))
-            psi = angle_slopes(both)
-            if self.tapered:
-                psi = leaning.angle_slopes(both, np.concatenate((A.lead, B.lead)))
-            psi_z[0, :, :k], psi_z[1, :, k:] = psi[:m], psi[m:]
-            psi_A, psi_B = psi_z
-            tangents = np.stack((normals[:, 1], -normals[:, 0]), axis=1)
-            t_r = _between(position_slopes(both, tangents))
-            one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
-            determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.pace, 1.0)
-            s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
-            sigma_z = (two - (facing * A.pace)[:, None] * s_z) / of_foot[:, None]
-            turning = psi_B + B.bend[:, None] * sigma_z
-            second = np.zeros((m, 2 * k, 2 * k))
-            curved, n_s = position_curvature(both, normals), tangent_slopes(both, normals)
-            second[:, :k, :k], second[:, k:, k:] = curved[:m], -curved[m:]
-            second += -t_r[:, :, None] * turning[:, None, :]
-            second[:, :k] += n_s[:m, :, None] * s_z[:, None, :]
-            second[:, k:] -= n_s[m:, :, None] * sigma_z[:, None, :]
-            # γ leaves a part of its own size uneven
-            return np.asarray(-self.side * 0.5 * (second + np.swapaxes(second, 1, 2)))
+        def bent(some: Ints) -> Array:
+            return self._bent(A.only(some), B.only(some), both.only(np.concatenate((some, m + some))), free[some])
 
         return Touches(
             values=self.offset + self.wider(s, sigma) - self.side * (distance + gained),
@@ -529,6 +507,35 @@ class Pair:
             bent=bent,
             links=np.array((A.link, B.link)),
         )
+
+    def _bent(self, A: smooth.Points, B: smooth.Points, both: Moving, free: Flags) -> Array:
+        """∂²c/∂z² (m, 10, 10) at places of A and their feet on B, ``both`` of which move as that says."""
+        m, k = len(A.s), LOCALS
+        cos, sin = np.cos(B.psi), np.sin(B.psi)
+        normals, tangents = np.empty((2, 2 * m, 2))
+        normals[:m, 0], normals[:m, 1] = -sin, cos
+        normals[m:] = normals[:m]
+        tangents[:, 0], tangents[:, 1] = normals[:, 1], -normals[:, 0]
+        distance = cos * (A.y - B.y) - sin * (A.x - B.x)
+        facing, of_foot = np.cos(A.psi - B.psi), -B.pace + distance * B.bend
+        # ds/dz and dσ/dz from (i) and (ii)
+        psi_A, psi_B = psi_z = np.zeros((2, m, 2 * k))
+        psi = leaning.angle_slopes(both, np.concatenate((A.lead, B.lead))) if self.tapered else angle_slopes(both)
+        psi_z[0, :, :k], psi_z[1, :, k:] = psi[:m], psi[m:]
+        t_r = _between(position_slopes(both, tangents))
+        one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
+        determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.pace, 1.0)
+        s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
+        sigma_z = (two - (facing * A.pace)[:, None] * s_z) / of_foot[:, None]
+        turning = psi_B + B.bend[:, None] * sigma_z
+        second = np.zeros((m, 2 * k, 2 * k))
+        curved, n_s = position_curvature(both, normals), tangent_slopes(both, normals)
+        second[:, :k, :k], second[:, k:, k:] = curved[:m], -curved[m:]
+        second += -t_r[:, :, None] * turning[:, None, :]
+        second[:, :k] += n_s[:m, :, None] * s_z[:, None, :]
+        second[:, k:] -= n_s[m:, :, None] * sigma_z[:, None, :]
+        # γ leaves a part of its own size uneven
+        return np.asarray(-self.side * 0.5 * (second + second.transpose(0, 2, 1)))
 
 
 def _between(slopes: Array) -> Array:
