@@ -149,12 +149,6 @@ class Chain:
         """Arc lengths between the halves of the elements: springs and, within the beam, borders (2N−1,)."""
         return np.stack((self.s[1:-1], self.borders[1:]), axis=1).ravel()[:-1]
 
-    @once
-    def listed_breaks(self) -> list[float]:
-        """The same as plain numbers."""
-        found: list[float] = self.breaks.tolist()
-        return found
-
     @property
     def thickness(self) -> float:
         """The largest one; of beams that touch by their edges the same everywhere."""

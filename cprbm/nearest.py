@@ -50,17 +50,6 @@ import numpy as np
 from cprbm import leaning, smooth, wells
 from cprbm.both import Both, Made, made
 from cprbm.brought import as_drawn
-from cprbm.closest import (
-    CLOSE,
-    ITERATIONS,
-    LAST,
-    LEAST_CURVATURE,
-    LIPSCHITZ,
-    PATIENCE,
-    SETTLED,
-    STEEP,
-    closest,
-)
 from cprbm.contact import Group
 from cprbm.crossing import cross
 from cprbm.gathering import Touches, gathered, single
@@ -70,18 +59,25 @@ from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
 from cprbm.moving import LOCALS, Moving, angle_slopes, moving, position_curvature, position_slopes, tangent_slopes
 from cprbm.once import once
 from cprbm.pairs import Pressed
-from cprbm.spot import FEW, spots
 from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
 
 FOOT_ITERATIONS = 8
 CORNER_ITERATIONS = 40  # where edges have corners that stand out, at each of which a step ends
 NO_RIDGES = np.zeros(0)
+CLOSE = 1e-10  # units of length: a step after which a place is known to round-off
+LAST = 0.1  # of that: what the next step would be, shorter by as much again as the last was, where none is taken
+CLOSEST_ITERATIONS = 50
+PATIENCE = 4  # iterations of Newton's method, after which a minimum may be sought where B has ended
+LIPSCHITZ = 1.2  # a way along B's tangent over the arc length of A that makes it, with something to spare
+LEAST_CURVATURE = 1e-3  # of D, 1/ℓ: elements that end elsewhere on either beam leave as much in a zone
 REACH = 0.1  # minima and ends with gaps wider than this part of the longest beam are no constraints yet
 ARCHING = 1.0  # of what the largest force bends one element by: unlike elements of two beams arch by as much
 JOINT_REACH = 2.0  # joints with gaps wider than this many h²·(|ψ_A'| + |ψ_B'| + 1/ℓ) are none
 PARALLEL = 1e-3  # a foot whose perpendicular misses by more (sine) is an end, not a foot
 SAME = 1e-3  # lengths that differ by less than this part are one
+SETTLED = 1e-9  # slope of D at a minimum
+STEEP = 1e-3  # slope of D where there is no minimum within CLOSE
 BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces A leaves its place to that
 
 DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even
@@ -812,32 +808,9 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     # where no parabola goes through, the middle one's foot
     sigma = np.where(ahead == 0.0, sigma[here], sigma[here] + share * (sigma[beside] - sigma[here]))
     s = s[here] + ahead
-    one_by_one = _one_by_one(pair, lines, s, sigma, low, high) if s.size <= FEW and not pair.tapered else None
-    s, sigma, across, settled = _at_once(pair, lines, s, sigma, low, high) if one_by_one is None else one_by_one
-    settled &= found.held(pair.side * across - pair.wider(s, sigma) - pair.offset)
-    return s[settled], sigma[settled]
-
-
-def _one_by_one(
-    pair: Pair, lines: Lines, s: Array, sigma: Array, low: Array, high: Array
-) -> tuple[Array, Array, Array, Flags] | None:
-    """What :func:`_at_once` does, of few places; None where a line has no places in plain numbers."""
-    on_a, on_b = (spots(line, kinks) for line, kinks in zip(lines, pair.kinks, strict=True))
-    if on_a is None or on_b is None:
-        return None
-    begins, within = zip(s.tolist(), sigma.tolist(), strict=True), zip(low.tolist(), high.tolist(), strict=True)
-    found = [closest(pair.side, on_a, on_b, *each) for each in zip(begins, within, strict=True)]
-    s, sigma, across, settled = np.array(found).T
-    return s, sigma, across, settled > 0.0
-
-
-def _at_once(
-    pair: Pair, lines: Lines, s: Array, sigma: Array, low: Array, high: Array
-) -> tuple[Array, Array, Array, Flags]:
-    """Where D is least, from places to begin at, s between ``low`` and ``high``: s, σ, n·r, and which settled."""
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
     end, latest = pair.b.s[-1], np.zeros(len(s))
-    for iteration in range(ITERATIONS):
+    for iteration in range(CLOSEST_ITERATIONS):
         A, B = pair.facing_each_other(*pair.on_both(lines, s, sigma))
         along, across = _seen_from(B, A)
         turned = A.psi - B.psi
@@ -870,9 +843,10 @@ def _at_once(
         if there.all():
             break
         latest = moved
+    held = found.held(pair.side * across - pair.wider(s, sigma) - pair.offset)
     # beyond an end of B there is no foot: what lies there faces that end, which has a row of its own
-    settled = convex & (known | ((np.abs(slope) < SETTLED) & (inner | (np.abs(along) < SETTLED))))
-    return s, sigma, across, settled
+    settled = held & convex & (known | ((np.abs(slope) < SETTLED) & (inner | (np.abs(along) < SETTLED))))
+    return s[settled], sigma[settled]
 
 
 def _beyond_ends(b: Chain, sigma: Array, along: Array, within: Array) -> Flags:
