@@ -105,7 +105,8 @@ class Tridiagonal:
         else:
             dl, d, du, du2, pivots = self.factors
             solution, _ = lapack.dgttrs(dl, d, du, du2, pivots, right)
-        return np.asarray(solution)
+        found: Array = solution
+        return found
 
     def times(self, x: Array) -> Array:
         """Q applied to columns (n, k)."""
@@ -172,8 +173,8 @@ class Symmetric:
         """Solution for columns (m, k)."""
         if not len(right):
             return right
-        solution, _ = lapack.dsytrs(self._factors, self._pivots, right, lower=1)
-        return np.asarray(solution)
+        solution: Array = lapack.dsytrs(self._factors, self._pivots, right, lower=1)[0]
+        return solution
 
 
 @dataclass(frozen=True, slots=True)

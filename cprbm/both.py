@@ -43,8 +43,8 @@ class Both:
 
     def at(self, s: Array, sigma: Array) -> tuple[Points, Points]:
         """Points at arc lengths ``s`` (k,) of the one and ``sigma`` (j,) of the other, bent as their kinks say."""
-        made, k = self.made, len(s)
-        every, half = np.empty(k + len(sigma)), np.empty(k + len(sigma), dtype=np.intp)
+        made, k = self.made, s.size
+        every, half = np.empty(k + sigma.size), np.empty(k + sigma.size, dtype=np.intp)
         np.minimum(s, made.ends[0], out=every[:k])
         np.minimum(sigma, made.ends[1], out=every[k:])
         np.maximum(every, 0.0, out=every)
@@ -59,12 +59,8 @@ class Both:
             angle, bends = Missed(made.bent.take(half, axis=1), off).tangent
             psi, bend = psi + angle, bend + bends
         x, y, tangent, speed, _, gain = at
-        lines = (self.one, half[:k], slice(k)), (self.other, on_other, slice(k, None))
-        found = [
-            Points(line, its, every[i], off[i], x[i], y[i], tangent[i], psi[i], speed[i], bend[i], gain[i], speed[i])
-            for line, its, i in lines
-        ]
-        return found[0], found[1]
+        found = np.array((every, off, x, y, tangent, psi, speed, bend, gain, speed))
+        return Points(self.one, half[:k], *found[:, :k]), Points(self.other, on_other, *found[:, k:])
 
 
 @lru_cache(maxsize=64)
@@ -73,7 +69,7 @@ def made(one: Chain, other: Chain, kinks: tuple[Kinks, ...]) -> Made | None:
     tables = []
     for chain in (one, other):
         if chain.excess is None:
-            tables.append(Tabulated(np.zeros((2 * chain.n, 1, 3), dtype=complex), np.ones(2 * chain.n)))
+            tables.append(Tabulated(np.zeros((2 * chain.n, 1, 6))))
         elif isinstance(chain.excess, Tabulated):
             tables.append(chain.excess)
         else:
@@ -87,8 +83,7 @@ def made(one: Chain, other: Chain, kinks: tuple[Kinks, ...]) -> Made | None:
 
 def _joined(one: Tabulated, other: Tabulated) -> Tabulated:
     """Halves of the one and then of the other, by polynomials with as many coefficients."""
-    first, points = len(one.size), max(one.coefficients.shape[1], other.coefficients.shape[1])
-    coefficients = np.zeros((first + len(other.size), points, 3), dtype=complex)
-    coefficients[:first, : one.coefficients.shape[1]] = one.coefficients
-    coefficients[first:, : other.coefficients.shape[1]] = other.coefficients
-    return Tabulated(coefficients, np.concatenate((one.size, other.size)))
+    (first, its, _), (second, more, _) = one.coefficients.shape, other.coefficients.shape
+    coefficients = np.zeros((first + second, max(its, more), 6))
+    coefficients[:first, :its], coefficients[first:, :more] = one.coefficients, other.coefficients
+    return Tabulated(coefficients)

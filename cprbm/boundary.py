@@ -30,7 +30,7 @@ With dτ = ½(dθ_{i−1} + dθ_i) the second derivative of L is
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -40,6 +40,7 @@ from cprbm.contact import REAL, Factored, Group, Local
 from cprbm.kinematics import Positions, State, behind
 from cprbm.model import Model
 from cprbm.offset_points import offset_vectors
+from cprbm.once import once
 from cprbm.related import related_joints
 from scene import BeamContact, Mistake, Scene, SceneError
 from scene.answer import Array, Ints
@@ -80,14 +81,14 @@ class FittedBoundary:
     on_first: bool
     behind: Array | None
 
-    @cached_property
+    @once
     def _local(self) -> tuple[Ints, Ints]:
         """Joints and angles of each row, (m, m + n) and (m, n + 1)."""
         joints = np.concatenate((self.joints, self.points))
         m = len(self.joints)
         return np.broadcast_to(joints, (m, len(joints))), np.broadcast_to(self.links, (m, len(self.links)))
 
-    @cached_property
+    @once
     def _spans(self) -> tuple[slice, slice, slice]:
         """The related joints of both beams and the links, which are neighbours."""
         joints, points, links = (
@@ -95,7 +96,7 @@ class FittedBoundary:
         )
         return joints, points, links
 
-    @cached_property
+    @once
     def _keys(self) -> tuple[int, ...]:
         return tuple(self.joints.tolist())
 

@@ -31,6 +31,7 @@ where drives have brought both together, as long as they are (:mod:`cprbm.brough
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -42,6 +43,7 @@ from cprbm.kinematics import Positions, State
 from cprbm.kinks import missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
 from cprbm.moving import moving, position_curvature, position_slopes, tangent_slopes
+from cprbm.once import once
 from cprbm.pairs import THINNEST, Pressed
 from cprbm.standing import Attachment
 from scene import CircleContact, Scene
@@ -57,10 +59,30 @@ ON_IT = 1e-9  # gap of a clamped end, and how far its normal passes from the cen
 BESIDE_ROW = 1e-3  # a corner of the edge closer than this many h to a row has none of its own
 ARCHING = 0.2  # of what the largest force bends one element by: where a zone ends within one it arches by less
 JOINT_REACH = 2.0  # joints farther than this many h²·(1/R + 1/ℓ) are none
+NOWHERE = np.zeros(0)
 NEAREST_STEPS = 4  # of Newton's method to a circle's nearest place, from a sample beside it
 
 
-@dataclass(frozen=True, slots=True)
+class Sight(NamedTuple):
+    """Some points of the beam as they are seen from the centre, (k,) each.
+
+    Attributes:
+        rho, x, y: ρ and both components of n.
+        across: τ·C_s, τ being n turned clockwise.
+        course, convexity: D_s and D_ss.
+        leading: by how much D_s grows as the tangent leads, ±1: whether the circle is on the beam's right.
+    """
+
+    rho: Array
+    x: Array
+    y: Array
+    across: Array
+    course: Array
+    convexity: Array
+    leading: Array
+
+
+@dataclass(frozen=True)
 class Circle:
     """A beam and a rigid circle.
 
@@ -130,10 +152,13 @@ class Circle:
 
     def distance(self, points: smooth.Points) -> Array:
         """D at some points of the beam."""
-        away = np.hypot(points.x - self.x, points.y - self.y) - self.radius
-        return away - (self.half(points.s) - self.offset) if self.tapered else away
+        return self._less(np.hypot(points.x - self.x, points.y - self.y), points.s)
 
-    @property
+    def _less(self, rho: Array, s: Array) -> Array:
+        """D at arc lengths ``s`` (k,), from ρ."""
+        return rho - self.radius - (self.half(s) - self.offset) if self.tapered else rho - self.radius
+
+    @once
     def tapered(self) -> bool:
         """Whether the beam touches by edges that are not as far from its neutral line everywhere."""
         return self.offset > 0.0 and not self.a.section.level
@@ -160,11 +185,23 @@ class Circle:
         """T_s at arc lengths ``s``."""
         return 0.5 * self.a.section.thinning_at(s) if self.tapered else 0.0
 
-    def _away(self, points: smooth.Points) -> tuple[Array, Array, Array]:
-        """ρ and both components of n at some points of the beam, (k,) each."""
-        x, y = points.x - self.x, points.y - self.y
+    def seen(self, A: smooth.Points) -> Sight:
+        """Points of the beam as they are seen from the centre."""
+        x, y = A.x - self.x, A.y - self.y
         rho = np.hypot(x, y)
-        return rho, x / rho, y / rho
+        x, y = x / rho, y / rho
+        cos, sin = np.cos(A.psi), np.sin(A.psi)
+        facing, leaning = y * cos - x * sin, x * cos + y * sin
+        across, course = A.speed * facing, A.speed * leaning
+        return Sight(
+            rho=rho,
+            x=x,
+            y=y,
+            across=across,
+            course=course - self.widening(A.s) if self.tapered else course,
+            convexity=across * A.bend + leaning * A.gain + across * across / rho,
+            leading=np.copysign(1.0, facing),
+        )
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
@@ -176,25 +213,27 @@ class Circle:
         if not s.size:
             return ()
         A = line.at(s)
-        rho, x, y = self._away(A)
+        rho, x, y, across_s, _, convexity, leading = self.seen(A)
         n, z = np.array((x, y)).T, moving(A)
         D_z = self._against(position_slopes(z, n), n)
-        _, convexity, leading = self.course(A)
-        beyond = missed(self.a, self.kinks, A)
         order = ALONE if self.body < 0 else WITH_CENTRE
+        values = self.offset - self._less(rho, s)
+        if self.kinks.places.size:
+            beyond = missed(self.a, self.kinks, A)
+            values -= np.where(free, leading * beyond.integral, 0.0)
+            convexity = convexity + leading * beyond.bend
 
-        def second() -> Array:
-            """∂²D/∂z² (k, p, p)."""
-            D_sz, found = tangent_slopes(z, n), position_curvature(z, n)
+        def second(some: Ints) -> Array:
+            """∂²D/∂z² (j, p, p) of places with some numbers (j,)."""
+            its, normals = z.only(some), n[some]
+            D_sz, found = tangent_slopes(its, normals), position_curvature(its, normals)
             if self.body >= 0:
                 D_sz, found = np.pad(D_sz, ((0, 0), (0, 2))), np.pad(found, ((0, 0), (0, 2), (0, 2)))
-            across = np.stack((-y, x), axis=1)
-            q_s = A.speed * (x * np.sin(A.psi) - y * np.cos(A.psi))
-            q_z = self._against(position_slopes(z, across), across)
-            found += q_z[:, :, None] * q_z[:, None, :] / rho[:, None, None]
-            D_sz += (q_s / rho)[:, None] * q_z
-            D_ss = convexity + leading * beyond.bend
-            going = np.where(free, 1.0 / np.where(free, D_ss, 1.0), 0.0)
+            across = np.array((-normals[:, 1], normals[:, 0])).T
+            q_z = self._against(position_slopes(its, across), across)
+            found += q_z[:, :, None] * q_z[:, None, :] / rho[some, None, None]
+            D_sz -= (across_s[some] / rho[some])[:, None] * q_z
+            going = np.where(free[some], 1.0 / np.where(free[some], convexity[some], 1.0), 0.0)
             found -= going[:, None, None] * D_sz[:, :, None] * D_sz[:, None, :]
             return found[:, order[:, None], order]
 
@@ -202,7 +241,6 @@ class Circle:
         joints = (self.a.first_joint + link)[:, None]
         if self.body >= 0:
             joints = np.stack((joints[:, 0], np.full(len(s), self.mark)), axis=1)
-        values = self.offset - self.distance(A) - np.where(free, leading * beyond.integral, 0.0)
         slopes = -D_z[:, order]
         angles = self.a.first_link + np.minimum(np.maximum(link[:, None] + BESIDE, 0), self.a.n)
         keys = np.where(free, -1, self.a.s.searchsorted(s))
@@ -210,21 +248,18 @@ class Circle:
             at_ends = np.isin(s, self.ends)
             keys[at_ends] = self.a.n + 2 + np.arange(np.sum(at_ends))
 
-        known: list[Array] = []
-
         def curvature(multipliers: Array) -> Blocks:
-            if not known:
-                known.append(second())
             pressing = multipliers.nonzero()[0]
-            return Blocks(joints[pressing], angles[pressing], -multipliers[pressing, None, None] * known[0][pressing])
+            return Blocks(joints[pressing], angles[pressing], -multipliers[pressing, None, None] * second(pressing))
 
         every = Group(self.name, values, joints, angles, slopes, curvature, tuple(keys.tolist()), s)
         together = self._beside_clamps(keys)
         if not together:
             return (every,)
-        alone = np.delete(np.arange(len(s)), np.concatenate(together))
+        alone = np.ones(len(s), dtype=bool)
+        alone[np.concatenate(together)] = False
         groups = [_summed(every, two) for two in together]
-        return (*groups, _some(every, alone)) if alone.size else tuple(groups)
+        return (*groups, _some(every, alone.nonzero()[0])) if alone.any() else tuple(groups)
 
     def _against(self, slopes: Array, along: Array) -> Array:
         """Slopes (k, 5) of parts along some directions (k, 2), with those over the centre's place where that moves."""
@@ -237,87 +272,73 @@ class Circle:
             return found
         for clamped, outer, inner in zip(self.clamped, (1, self.a.n), (2, self.a.n - 1), strict=True):
             if clamped:
-                rows = np.flatnonzero((keys == outer) | (keys == inner))
+                rows = ((keys == outer) | (keys == inner)).nonzero()[0]
                 if rows.size == 2:
                     found.append(rows if outer < inner else rows[::-1])
         return found
 
-    def course(self, A: smooth.Points) -> tuple[Array, Array, Array]:
-        """D_s, D_ss, and by how much D_s grows as the tangent leads, ±1: whether the circle is on the beam's right."""
-        rho, x, y = self._away(A)
-        cos, sin = np.cos(A.psi), np.sin(A.psi)
-        facing, leaning = y * cos - x * sin, x * cos + y * sin
-        across = A.speed * facing
-        convexity = across * A.bend + leaning * A.gain + across * across / rho
-        return A.speed * leaning - self.widening(A.s), convexity, np.copysign(1.0, facing)
-
     def _places(self, line: smooth.SmoothLine) -> tuple[Array, Flags]:
         """Arc lengths of the rows, and which of them move with a minimum."""
         A = line.sampled
-        s = A.s
-        D = self.distance(A) - self.offset
+        seen, s = self.seen(A), A.s
+        D = self._less(seen.rho, s) - self.offset
         near = _beside(self.a, self.radius) > D
         near[1::2] = False
         # of an end that cannot move against the circle the gap is no unknown
-        for end, held in zip((0, -1), self.held, strict=True):
-            near[end] &= not held
-        if not D.min() < REACH:
-            fixed = np.concatenate((s[near], self.ends))
-            return fixed, np.zeros(len(fixed), dtype=bool)
+        near[0] &= not self.held[0]
+        near[-1] &= not self.held[1]
+        found = self._minima(line, seen, D) if D.min() < REACH else NOWHERE
+        for place in found:
+            near &= np.abs(s - place) > wells.BESIDE * self.a.size_at(place)
+        places = np.concatenate((s[near], self.ends, found))
+        return places, np.arange(len(places)) >= len(places) - len(found)
+
+    def _minima(self, line: smooth.SmoothLine, seen: Sight, D: Array) -> Array:
+        """Where D has minima of their own, from what is ``seen`` of the beam's samples and D there."""
         # at an end that is lowest the minimum lies within if the way to it rises
-        slope, convexity, _ = self.course(A)
-        fence = [
-            np.inf if inwards and not fixed else -np.inf
-            for inwards, fixed in zip((slope[0] < -ON_IT, slope[-1] > ON_IT), self.held, strict=True)
-        ]
-        fenced = np.empty(len(D) + 2)
-        fenced[0], fenced[1:-1], fenced[-1] = fence[0], D, fence[1]
-        lowest = wells.lowest(fenced, REACH) - 1
+        first = np.inf if seen.course[0] < -ON_IT and not self.held[0] else -np.inf
+        last = np.inf if seen.course[-1] > ON_IT and not self.held[1] else -np.inf
+        lowest = wells.lowest(np.concatenate(((first,), D, (last,))), REACH) - 1
         # the two joints beside a clamp on the circle press together, a place of its own among them would part them
-        first, last = (4 if clamped else -1 for clamped in self.clamped)
+        first, last = [4 if clamped else -1 for clamped in self.clamped]
         lowest = lowest[self.own_places & (lowest > first) & (lowest < 2 * (self.a.n + 1) - last)]
-        found = wells.wells(self.a, D, convexity[::2], lowest, LEAST_CURVATURE, self.kinks.places)
-        places, settled = self._refined(line, D, found.samples)
+        if not lowest.size:
+            return NOWHERE
+        found = wells.wells(self.a, D, seen.convexity[::2], lowest, LEAST_CURVATURE, self.kinks.places)
+        if not found.samples.size:
+            return NOWHERE
+        places, settled = self._refined(line, seen, D, found.samples)
         if not found.parted.all():
             settled = settled & found.held(self.distance(line.at(places)) - self.offset)
-        places = places[settled]
-        for place in places:
-            near &= np.abs(s - place) > wells.BESIDE * self.a.size_at(place)
-        fixed = np.concatenate((s[near], self.ends))
-        return np.concatenate((fixed, places)), np.arange(len(fixed) + len(places)) >= len(fixed)
+        return places[settled]
 
-    def _refined(self, line: smooth.SmoothLine, D: Array, samples: Ints) -> tuple[Array, Flags]:
+    def _refined(self, line: smooth.SmoothLine, seen: Sight, D: Array, samples: Ints) -> tuple[Array, Flags]:
         """Newton's method on D_s = 0 from the lowest ``samples`` (k,) of D: s, and where it settled nearby."""
-        start = line.sampled.s[samples]
-        if not samples.size:
-            return start, np.zeros(0, dtype=bool)
+        A = line.sampled
+        start = A.s[samples]
         # an end has no parabola through it
         inner = np.minimum(np.maximum(samples, 1), len(D) - 2)
-        s = start + np.where(inner == samples, wells.lowest_of_parabola(line.sampled.s, D, inner), 0.0)
+        s = start + np.where(inner == samples, wells.lowest_of_parabola(A.s, D, inner), 0.0)
 
         def slope(s: Array) -> tuple[Array, Array]:
-            return self._steep(line.at(s))
+            A = line.at(s)
+            return self._steep(A, self.seen(A))
 
         within = np.minimum(np.maximum((start - self.a.h, start + self.a.h), 0.0), self.a.s[-1])
-        rho = self._away(line.at(s))[0]
-        return wells.bottom(slope, s, within, LEAST_CURVATURE * rho, CLOSE)
+        return wells.bottom(slope, s, within, LEAST_CURVATURE * seen.rho[samples], CLOSE)
 
-    def _steep(self, A: smooth.Points) -> tuple[Array, Array]:
+    def _steep(self, A: smooth.Points, seen: Sight) -> tuple[Array, Array]:
         """ρ D_s and its derivative over s, the beam's kinks taken in.
 
         D has a bend as sharp as the circle, and is straight all round: beside a circle far smaller than an element
         Newton's method on D_s would go astray.  ρ D_s is straight along a straight beam, however small the circle.
         """
-        course, convexity, leading = self.course(A)
-        if not self.kinks.places.size:
-            return self._times_distance(A, course, course, convexity)
-        angle, bend = missed(self.a, self.kinks, A).tangent
-        return self._times_distance(A, course, course + leading * angle, convexity + leading * bend)
-
-    def _times_distance(self, A: smooth.Points, course: Array, slope: Array, convexity: Array) -> tuple[Array, Array]:
-        """ρ times a ``slope`` (k,) and its derivative, ``course`` being D_s."""
-        rho = self._away(A)[0]
-        return rho * slope, (course + self.widening(A.s)) * slope + rho * convexity
+        slope, convexity = seen.course, seen.convexity
+        if self.kinks.places.size:
+            angle, bend = missed(self.a, self.kinks, A).tangent
+            slope, convexity = slope + seen.leading * angle, convexity + seen.leading * bend
+        going = seen.course + self.widening(A.s) if self.tapered else seen.course
+        return seen.rho * slope, going * slope + seen.rho * convexity
 
     def lowest_near(self, line: smooth.SmoothLine, samples: Ints) -> Array:
         """D where it is least beside each of the beam's ``samples`` (k,)."""
@@ -326,9 +347,10 @@ class Circle:
         s, least = A.s[samples], np.full(len(samples), np.inf)
         for _ in range(NEAREST_STEPS):
             B = line.at(s)
-            least = np.minimum(least, self.distance(B))
-            slope, convexity, _ = self.course(B)
-            steep, bent = self._times_distance(B, slope, slope, convexity)
+            seen = self.seen(B)
+            least = np.minimum(least, self._less(seen.rho, B.s))
+            course = seen.course + self.widening(B.s)
+            steep, bent = seen.rho * seen.course, course * seen.course + seen.rho * seen.convexity
             s = np.clip(s - steep / np.where(bent > 0.0, bent, np.inf), low, high)
         return np.asarray(np.minimum(least, self.distance(line.at(s))))
 
@@ -385,7 +407,7 @@ def _some(group: Group, these: Ints) -> Group:
         every[these] = multipliers
         return group.curvature(every)
 
-    keys = tuple(group.keys[i] for i in these.tolist())
+    keys = tuple([group.keys[i] for i in these.tolist()])
     of = group.joints[these], group.angles[these], group.slopes[these]
     return Group(group.contact, group.values[these], *of, curvature, keys, group.arc[these])
 

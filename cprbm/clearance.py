@@ -168,14 +168,14 @@ class Clearances:
 
     def at(self, state: State, at: Positions) -> Array:
         """C of all contacts (m,)."""
-        found = at.known.get(KNOWN)
-        if not isinstance(found, np.ndarray):
+        found: Array | None = at.known.get(KNOWN)
+        if found is None:
             found = at.known[KNOWN] = self._at(state, at)
         return found
 
     def _at(self, state: State, at: Positions) -> Array:
         x, y = at.x[self.joints], at.y[self.joints]
-        found = np.full(len(self.names), -np.inf)
+        found = np.zeros(len(self.names)) - np.inf
         if self.circles is not None:
             found[self.circles.number] = self.circles.clearances(x, y, at)
         if self.edges is not None:
@@ -196,7 +196,7 @@ class Clearances:
         return self._named(both - self._moved(before, after) < 2.0 * self.half)
 
     def _named(self, these: Flags) -> list[str]:
-        return [self.names[i] for i in np.flatnonzero(these).tolist()]
+        return [self.names[i] for i in these.nonzero()[0].tolist()]
 
     def _moved(self, before: tuple[State, Positions], after: tuple[State, Positions]) -> Array:
         """The most by which beams move against what they may touch, (m,)."""

@@ -84,7 +84,7 @@ def closure_of(
     ends, welds, fixed = list[int](), list[tuple[int, int]](), list[int]()
     starts, places = list[tuple[int, tuple[float, float]]](), list[tuple[int, tuple[float, float]]]()
     given = list[tuple[str, int, float]]()
-    count = len(model.free_bodies)
+    count = model.n_bodies
     for c, chain in enumerate(model.chains):
         start, end = chain.start, chain.end
         if start.welded:
@@ -141,7 +141,8 @@ def closure_values(model: Model, closure: Closure, state: State, at: Positions, 
     values[1:k:2] += at.y[closure.end_joints]
     values[k : k + len(closure.welds)] += state.theta[closure.weld_links]
     for name, row, unit in closure.given:
-        values[row] -= unit * given.get(name, 0.0)
+        if name in given:
+            values[row] -= unit * given[name]
     return values
 
 
@@ -152,7 +153,7 @@ def closure_rows(model: Model, closure: Closure, state: State, at: Positions) ->
         links = model.layout.links[c]
         np.negative(at.dy[links], out=rows[2 * r, links])
         rows[2 * r + 1, links] = at.dx[links]
-    rows[:, model.n_links :] = closure.whole.over @ state.posture.derivatives[:, : 3 * len(model.free_bodies)]
+    rows[:, model.n_links :] = closure.whole.over @ state.posture.derivatives[:, : 3 * model.n_bodies]
     return rows
 
 

@@ -9,14 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import accumulate, pairwise
 
 import numpy as np
+from scipy.linalg import lapack
 
 from cprbm import kinematics
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
+from cprbm.once import once
 from cprbm.strands import Faces
 from scene.answer import Array, Flags, Ints
 from scene.frozendict import frozendict
@@ -51,7 +52,7 @@ def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Loc
     rows = kinematics.over_unknowns_by(model, state, at, every[:, 0], every[:, 1])
     first = 0
     for part in parts:
-        r, p, a = len(part.slopes), part.joints.shape[1], part.angles.shape[1]
+        (r, _), (_, p), (_, a) = part.slopes.shape, part.joints.shape, part.angles.shape
         mine = rows[first : first + r]
         if part.alike and a:
             link = int(part.angles[0, 0])
@@ -65,7 +66,7 @@ def over_unknowns(model: Model, state: State, at: Positions, parts: Sequence[Loc
 
 def _sums(model: Model, part: Local) -> Array:
     """Slopes over x and over y of joints, summed as :func:`cprbm.kinematics.summed` says (r, 2, n_links + k)."""
-    r, p = len(part.slopes), part.joints.shape[1]
+    (r, _), (_, p) = part.slopes.shape, part.joints.shape
     if part.behind is not None:
         # twice as many rows, x and y in turns
         return (part.slopes[:, : 2 * p].reshape(2 * r, p) @ part.behind).reshape(r, 2, -1)
@@ -127,11 +128,25 @@ class Blocks:
         """The same by eigenvalues."""
         if not self.matrices.size:
             return Factored(Local(self.joints[:0], self.angles[:0], np.zeros((0, self.matrices.shape[1]))), np.zeros(0))
-        sigma, vectors = np.linalg.eigh(self.matrices)
+        sigma, vectors = _by_eigenvalues(self.matrices)
         size = np.abs(sigma)
-        block, number = np.nonzero(size > REAL * size.max())
+        block, number = (size > REAL * size.max()).nonzero()
         columns = Local(self.joints[block], self.angles[block], vectors[block, :, number])
         return Factored(columns, sigma[block, number])
+
+
+def _by_eigenvalues(matrices: Array) -> tuple[Array, Array]:
+    """Eigenvalues (g, n) and vectors (g, n, n) of g symmetric matrices; of one without what NumPy asks before.
+
+    Raises:
+        np.linalg.LinAlgError: they were not found.
+    """
+    if len(matrices) > 1:
+        return np.linalg.eigh(matrices)
+    sigma, vectors, failed = lapack.dsyevd(matrices[0], lower=1)
+    if failed:
+        raise np.linalg.LinAlgError("no eigenvalues of a contact's second derivative")
+    return sigma[None], vectors[None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,70 +217,68 @@ class Rows:
     groups: tuple[Group, ...]
     faces: Mapping[str, Faces] = frozendict()
 
-    @cached_property
+    @once
     def values(self) -> Array:
         """c (m,)."""
         if len(self.groups) == 1:
             return self.groups[0].values
         return np.concatenate([group.values for group in self.groups]) if self.groups else np.zeros(0)
 
-    @cached_property
+    @once
     def arc(self) -> Array:
         """Arc length on each contact's first beam (m,)."""
         return np.concatenate([group.arc for group in self.groups]) if self.groups else np.zeros(0)
 
-    @cached_property
+    @once
     def holds_angles(self) -> Flags:
         """Which rows limit angles alone (m,)."""
         found = [np.full(len(group.values), group.holds_angles) for group in self.groups]
         return np.concatenate([np.zeros(0, dtype=bool), *found])
 
-    @cached_property
+    @once
     def reach(self) -> Array:
         """Length of the first beam before and behind each row whose joints have no others (m,)."""
         return np.repeat([group.reach for group in self.groups], [len(group.values) for group in self.groups])
 
-    @cached_property
+    @once
     def keys(self) -> tuple[tuple[str, int], ...]:
         """What each row is: its contact and its key there."""
-        return tuple((group.contact, key) for group in self.groups for key in group.keys)
+        return tuple([(group.contact, key) for group in self.groups for key in group.keys])
 
     def pressed(self, multipliers: Array) -> frozenset[tuple[str, int]]:
         """Keys of the rows whose multiplier is positive."""
-        return frozenset(
-            (group.contact, group.keys[row])
-            for group, lam in self.shares(multipliers)
-            for row in (lam > 0.0).nonzero()[0].tolist()
-        )
+        pressing = (multipliers > 0.0).nonzero()[0].tolist()
+        return frozenset([self.keys[row] for row in pressing]) if pressing else frozenset()
 
-    @cached_property
+    @once
     def contact(self) -> tuple[str, ...]:
         """Name of each row's contact."""
-        return tuple(group.contact for group in self.groups for _ in group.keys)
+        return tuple([group.contact for group in self.groups for _ in group.keys])
 
     @property
     def size(self) -> int:
         """Number of constraints m."""
-        return len(self.values)
+        return self.values.size
 
     def nearest(self, contact: str, arc: float, reach: float = np.inf) -> Ints:
         """Number of the row of a contact that is nearest to an arc length, (1,); (0,) where none is within reach."""
         mine = np.array([name == contact for name in self.contact], dtype=bool)
         away = np.abs(self.arc - arc)
-        near = np.flatnonzero(mine & (away <= reach))
-        return near[np.argsort(away[near], kind="stable")[:1]]
+        near = (mine & (away <= reach)).nonzero()[0]
+        return near[away[near].argsort(kind="stable")[:1]]
 
-    @cached_property
+    @once
     def spans(self) -> tuple[slice, ...]:
         """Where the rows of each group are."""
-        ends = [0, *accumulate(len(group.values) for group in self.groups)]
-        return tuple(slice(begin, end) for begin, end in pairwise(ends))
+        ends = [0, *accumulate([group.values.size for group in self.groups])]
+        return tuple([slice(begin, end) for begin, end in pairwise(ends)])
 
     def same(self, before: Rows) -> bool:
         """Whether these are the rows of another state, by contacts and keys."""
-        return len(self.groups) == len(before.groups) and all(
-            mine.contact == other.contact and mine.keys == other.keys
-            for mine, other in zip(self.groups, before.groups, strict=True)
+        # the same keys of another contact are other rows
+        return len(self.groups) == len(before.groups) and (
+            [(group.contact, group.keys) for group in self.groups]
+            == [(group.contact, group.keys) for group in before.groups]
         )
 
     def shares(self, multipliers: Array) -> list[tuple[Group, Array]]:

@@ -144,11 +144,11 @@ def load_work(
     model: Model, loads: Mapping[str, AnyLoad], values: dict[str, float], state: State, at: Positions
 ) -> LoadWork:
     """Work of all loads at their present ``values`` (SI)."""
-    total, B = 0.0, len(model.free_bodies)
+    total, B = 0.0, model.n_bodies
     linear: Array | None = None  # the work of loads on bodies over their posture
     gradient = np.zeros(model.n_unknowns)
-    diagonal, off = np.zeros(model.n_links), np.zeros(model.n_links - 1)
-    on_x, on_y = np.zeros(model.n_joints), np.zeros(model.n_joints)
+    diagonal, off, on_x = model.nothing
+    on_y = on_x
     on_beams: list[tuple[BeamLoad, float]] = []
     moments: list[tuple[MomentOnBeam, float]] = []
     for name, load in loads.items():
@@ -167,10 +167,10 @@ def load_work(
             work = beam_work(model, load, state, at)
             total += value * work.value
             gradient[: model.n_links] += value * work.gradient
-            diagonal += value * work.diagonal
-            off += value * work.off
-            on_x += value * work.fx
-            on_y += value * work.fy
+            diagonal = diagonal + value * work.diagonal
+            off = off + value * work.off
+            on_x = on_x + value * work.fx
+            on_y = on_y + value * work.fy
             on_beams.append((load, value))
         elif isinstance(load, EndMoment):
             total += value * load.moment * float(state.theta[load.link] - model.rest[load.link])

@@ -25,6 +25,8 @@ STILL = 1e-12  # rad: a state from which a step leads no farther is where it wou
 NOTHING = 1e-12  # S: moments below it are no load at all, and what is left is measured by S
 EPS = float(np.finfo(float).eps)
 
+_most = np.maximum.reduce  # what the method max of an array comes to
+
 Held = frozenset[tuple[str, int]]
 
 
@@ -58,17 +60,17 @@ def measure(problem: Problem, point: Point) -> Measure:
     """Residuals of the optimality conditions over the largest terms in them; over S where there is no load."""
     model, c = problem.model, point.rows.values
     terms = np.abs(point.gradient) + np.abs(point.held) + np.abs(point.pressed)
-    scale = max(float(terms.max()), float(np.abs(point.moments).max()))
+    scale = max(float(_most(terms)), float(_most(np.abs(point.moments))))
     scale = scale if scale > NOTHING else 1.0
     # an angle is known to eps·|θ|, a spring's moment to the stiffness times that
-    turned = max(1.0, float(np.abs(point.state.theta).max()))
+    turned = max(1.0, float(_most(np.abs(point.state.theta))))
     floor = 4.0 * EPS * model.stiffest * turned + 4.0 * EPS * sqrt(model.n_links) * scale
     return Measure(
-        residual=float(np.abs(problem.moves * point.unbalanced).max()) / scale,
+        residual=float(_most(np.abs(problem.moves * point.unbalanced))) / scale,
         floor=floor / scale,
-        violation=float(np.abs(point.Z).max(initial=0.0)),
-        overlap=float(c.max(initial=0.0)),
-        complementarity=float(np.abs(point.lam * c).max(initial=0.0)) / scale,
+        violation=float(_most(np.abs(point.Z), initial=0.0)),
+        overlap=float(_most(c, initial=0.0)),
+        complementarity=float(_most(np.abs(point.lam * c), initial=0.0)) / scale,
     )
 
 
@@ -81,6 +83,7 @@ def equilibrium(
     *,
     settle: bool = False,
     farthest: float = np.inf,
+    same: bool = False,
 ) -> Equilibrium:
     """Newton's method from ``start`` to the equilibrium under the loads' and drives' ``values`` (SI).
 
@@ -88,7 +91,7 @@ def equilibrium(
     the step is taken.  Where it comes back for good, or comes no nearer, the steady rows decide if they may ``settle``
     it; otherwise that is the end, as it is where these are no others or lead nowhere either.  Where ``farthest`` says
     (rad) by what a link turns at most, so it is beyond that, and where steps grow and grow: they lead away from a state
-    that is no minimum.
+    that is no minimum.  The ``start`` may itself be the equilibrium if its rows were found under the ``same`` values.
     """
     model = problem.model
     point = point_under(problem, values, start)
@@ -106,8 +109,8 @@ def equilibrium(
         longest = float(np.abs(change[: model.n_links]).max())
         if not np.isfinite(longest):
             return Equilibrium(point, now, iteration, converged=False)
-        # not at once: which rows there are was asked of the start under other values
-        still = iteration > 1 and longest <= STILL and np.array_equal(lam > 0.0, point.lam > 0.0)
+        # not at once where it was asked of the start under other values which rows there are
+        still = (iteration > 1 or same) and longest <= STILL and np.array_equal(lam > 0.0, point.lam > 0.0)
         if still and _settled(now, longest, tolerance):
             return Equilibrium(point, now, iteration, converged=True)
         grown, last = grown + 1 if longest > last else 0, longest

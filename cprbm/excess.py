@@ -91,22 +91,20 @@ class Asked:
 
 @dataclass(frozen=True, slots=True)
 class Tabulated:
-    """E by polynomials of u.
+    """E by polynomials of off.
 
     Attributes:
-        coefficients: lowest power first, of E″, E′/(d u) and E/(d u)², of all halves (2N, points, 3).
-        size: d (2N,).
+        coefficients: lowest power first, of real and imaginary parts of E″, E′/off and E/off², of all halves
+            (2N, points, 6).
     """
 
-    coefficients: ComplexArray
-    size: Array
+    coefficients: Array
 
     def seen(self, half: Ints, off: Array) -> ComplexArray:
         """E″, E′ and E at places ``off`` (k,) in halves of elements (k,): (3, k)."""
-        # real and imaginary parts beside each other: powers are real
-        mine = self.coefficients.view(float).take(half, axis=0)
-        powers = np.empty((len(half), 1, mine.shape[1]))
-        powers[:, 0, 0], powers[:, 0, 1:] = 1.0, (off / self.size.take(half))[:, None]
+        mine = self.coefficients.take(half, axis=0)
+        powers = np.empty((half.size, 1, mine.shape[1]))
+        powers[:, 0, 0], powers[:, 0, 1:] = 1.0, off[:, None]
         found: ComplexArray = (np.multiply.accumulate(powers, axis=2, out=powers) @ mine)[:, 0].view(complex).T
         found[1] *= off
         found[2] *= off * off
@@ -121,7 +119,7 @@ def excess(halves: Halves) -> Excess:
         u = 0.5 - 0.5 * np.cos(np.pi * np.array((0, points // 2, points)) / points)
         half, off = _places(halves, u)
         missed = (found.seen(half, off) - halves.exactly(half, off))[0]
-        if float((np.abs(missed) * np.abs(found.size[half])).max()) <= ENOUGH:
+        if float((np.abs(missed) * np.abs(halves.end - halves.border)[half]).max()) <= ENOUGH:
             return found
     return Asked(halves)
 
@@ -137,8 +135,8 @@ def _through(halves: Halves, points: int) -> Tabulated:
     half, off = _places(halves, u)
     second = halves.exactly(half, off)[0].reshape(-1, points)
     powers = np.arange(points)
-    coefficients = np.linalg.solve(u[:, None] ** powers, second.T)
+    coefficients = np.linalg.solve(u[:, None] ** powers, second.T).T / (halves.end - halves.border)[:, None] ** powers
     once = 1.0 / (powers + 1.0)
-    twice = once / (powers + 2.0)
-    each = np.stack((np.ones(points), once, twice), axis=1)
-    return Tabulated(np.ascontiguousarray(coefficients.T[:, :, None] * each), halves.end - halves.border)
+    each = np.array((np.ones(points), once, once / (powers + 2.0))).T
+    # real and imaginary parts beside each other: powers are real
+    return Tabulated(np.ascontiguousarray(coefficients[:, :, None] * each).view(float))

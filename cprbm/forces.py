@@ -164,7 +164,7 @@ def balances(problem: Problem, point: Point) -> tuple[float, float]:
     parts = [_about(each.place, each.force, each.moment) for each in _supports(problem, point, contact)]
     parts += [_about(each.place, each.force, each.moment) for each in holding(problem, point)]
     work, stops = (over[model.n_links :].reshape(-1, 3) for over in (point.work.gradient, contact.moments))
-    for b in range(len(model.free_bodies)):
+    for b in range(model.n_bodies):
         place = model.references[b] + point.state.bodies[b, :2]
         parts.append(_about(place, work[b, :2], float(work[b, 2] + stops[b, 2])))
     # of loads on beams that is the moment about the beam's start; where the ground holds that, the force is no body's

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -36,49 +35,50 @@ class Touches:
     Attributes:
         values: c (k,), units of length.
         slopes: ∂c/∂z (k, 10).
-        bent: yields ∂²c/∂z² (k, 10, 10), which only what presses needs.
+        bent: yields ∂²c/∂z² (j, 10, 10) of places with some numbers (j,), which only what presses needs.
         links: of A and of B in their own numbering, (2, k).
     """
 
     values: Array
     slopes: Array
-    bent: Callable[[], Array]
+    bent: Callable[[Ints], Array]
     links: Ints
-
-    @cached_property
-    def second(self) -> Array:
-        """∂²c/∂z² (k, 10, 10)."""
-        return self.bent()
 
     def only(self, these: Flags | Ints | slice) -> Touches:
         """Some of the places."""
-        return Touches(self.values[these], self.slopes[these], lambda: self.second[these], self.links[:, these])
+        numbers = np.arange(self.values.size)[these]
+        values, slopes, links = self.values[these], self.slopes[these], self.links[:, these]
+        return Touches(values, slopes, lambda some: self.bent(numbers[some]), links)
 
     def exchanged(self) -> Touches:
         """The same with the parts of A and B exchanged."""
         turned = (np.arange(2 * LOCALS) + LOCALS) % (2 * LOCALS)
         return Touches(
-            self.values, self.slopes[:, turned], lambda: self.second[:, turned[:, None], turned], self.links[::-1]
+            values=self.values,
+            slopes=self.slopes[:, turned],
+            bent=lambda some: self.bent(some)[:, turned[:, None], turned],
+            links=self.links[::-1],
         )
 
 
 # local numbers of a place to those of a row that has no other
 ALONE = np.array((0, 5, 1, 6, 2, 3, 4, 7, 8, 9))
+POSITIONS = np.array((0, 1, LOCALS, LOCALS + 1))  # x and y of both beams' joints among them
+BESIDE = np.arange(3)
 
 
 def single(name: str, chains: tuple[Chain, Chain], touches: Touches, keys: Ints, arc: Array) -> Group:
     """Rows (m,) of one contact, each of one place; arguments as of :func:`gathered`."""
-    firsts = ((chain.first_joint, chain.first_link, chain.n) for chain in chains)
-    joints, angles = np.empty((len(arc), 2), dtype=np.intp), np.empty((len(arc), 6), dtype=np.intp)
-    for beam, ((joint, link, n), on) in enumerate(zip(firsts, touches.links, strict=True)):
-        joints[:, beam] = joint + on
-        for k in range(3):
-            # beyond a beam's ends the end itself: what is there has no share
-            angles[:, 3 * beam + k] = link + np.minimum(np.maximum(on + (k - 1), 0), n)
+    joints, angles = np.empty((arc.size, 2), dtype=np.intp), np.empty((arc.size, 6), dtype=np.intp)
+    for beam, (chain, on) in enumerate(zip(chains, touches.links, strict=True)):
+        joints[:, beam] = chain.first_joint + on
+        # beyond a beam's ends the end itself: what is there has no share
+        around = np.minimum(np.maximum(on[:, None] + (BESIDE - 1), 0), chain.n)
+        angles[:, 3 * beam : 3 * beam + 3] = chain.first_link + around
 
     def curvature(multipliers: Array) -> Blocks:
-        pressing = np.flatnonzero(multipliers)
-        matrices = touches.second[pressing][:, ALONE[:, None], ALONE]
+        pressing = multipliers.nonzero()[0]
+        matrices = touches.bent(pressing)[:, ALONE[:, None], ALONE]
         return Blocks(joints[pressing], angles[pressing], multipliers[pressing, None, None] * matrices)
 
     return Group(
@@ -114,65 +114,62 @@ def gathered(
     """
     m, q = weights.shape
     links = touches.links.reshape(2, m, q)
-    first = np.min(links, axis=2)
-    widths = np.max(links - first[:, :, None], axis=(1, 2)) + 3
-    angles, lefts = [], []
-    for chain, begin, width in zip(chains, first, widths, strict=True):
-        # beyond a beam's ends the end itself: what is there has no share
-        angles.append(chain.first_link + np.minimum(np.maximum(begin[:, None] - 1 + np.arange(width), 0), chain.n))
-        lefts.append(np.repeat(begin, q))
+    first = np.minimum.reduce(links, axis=2)
+    # how many links a place lies behind its row's first
+    behind = (links - first[:, :, None]).reshape(2, m * q)
+    widths = (np.maximum.reduce(behind, axis=1) + 3).tolist()
     # where a place's local numbers stand among its row's, and those of the links in between
-    place, size = np.arange(m * q), 4 + int(widths.sum())
-    columns = np.zeros((m * q, 2 * LOCALS), dtype=np.intp)
-    passed: list[tuple[Ints, Ints, int, Array, Array]] = []
+    place, size = np.arange(m * q), 4 + sum(widths)
+    row = place // q
+    columns, over = np.empty((m * q, 2 * LOCALS), dtype=np.intp), np.empty((m, size - 4), dtype=np.intp)
+    columns[:, POSITIONS] = 0, 2, 1, 3
+    passed: list[tuple[Ints, int, int, Array, Array]] = []
     column = 4
-    for beam, (chain, link, left, width) in enumerate(zip(chains, touches.links, lefts, widths, strict=True)):
-        x = LOCALS * beam
-        columns[:, x], columns[:, x + 1] = beam, 2 + beam
-        columns[:, x + 2 : x + LOCALS] = (column + link - left)[:, None] + np.arange(3)
+    for beam, (chain, width) in enumerate(zip(chains, widths, strict=True)):
+        x, on = LOCALS * beam, first[beam]
+        columns[:, x + 2 : x + LOCALS] = (column + behind[beam])[:, None] + BESIDE
+        # beyond a beam's ends the end itself: what is there has no share
+        angles = on[:, None] + np.arange(-1, width - 1)
+        over[:, column - 4 : column - 4 + width] = chain.first_link + np.minimum(np.maximum(angles, 0), chain.n)
         for k in range(width - 3):
-            past = np.flatnonzero(left + k < link)
-            crossed = chain.first_link + left[past] + k
-            passed.append((past, np.full(len(past), column + 1 + k), x, -at.dy[crossed], at.dx[crossed]))
+            past = (behind[beam] > k).nonzero()[0]
+            crossed = chain.first_link + k + on[row[past]]
+            passed.append((past, column + 1 + k, x, -at.dy[crossed], at.dx[crossed]))
         column += width
     share = weights.ravel()
     own = share[:, None] * touches.slopes
-    rows, over_row, parts = [np.repeat(place // q, columns.shape[1])], [columns.ravel()], [own.ravel()]
+    places, parts = [(row[:, None] * size + columns).ravel()], [own.ravel()]
     for past, further, x, along, across in passed:
-        rows.append(past // q)
-        over_row.append(further)
+        places.append(row[past] * size + further)
         parts.append(own[past, x] * along + own[past, x + 1] * across)
-    flat = np.concatenate(rows) * size + np.concatenate(over_row)
-    slopes: Array = np.bincount(flat, np.concatenate(parts), m * size).astype(float).reshape(m, size)
-    joints = np.stack([chain.first_joint + begin for chain, begin in zip(chains, first, strict=True)], axis=1)
-    over = np.concatenate(angles, axis=1)
+    summed = np.bincount(np.concatenate(places), np.concatenate(parts), m * size)
+    slopes: Array = np.asarray(summed, dtype=float).reshape(m, size)
+    joints = (first + np.array([[chain.first_joint] for chain in chains])).T
 
     def to_row() -> tuple[Array, Array]:
         """M (m·q, 10, size), and what −∂c/∂p_l · L_k (cos θ_k, sin θ_k) adds to its square (m·q, size)."""
-        M, turned = np.zeros((m * q, columns.shape[1], size)), np.zeros((m * q, size))
-        M[place[:, None], np.arange(columns.shape[1]), columns] = 1.0
+        M, turned = np.zeros((m * q, 2 * LOCALS, size)), np.zeros((m * q, size))
+        M[place[:, None], np.arange(2 * LOCALS), columns] = 1.0
         for past, further, x, along, across in passed:
             M[past, x, further], M[past, x + 1, further] = along, across
             turned[past, further] = touches.slopes[past, x + 1] * along - touches.slopes[past, x] * across
         return M, turned
 
     def curvature(multipliers: Array) -> Blocks:
-        pressing = np.flatnonzero(multipliers)
+        pressing = multipliers.nonzero()[0]
         mine = (pressing[:, None] * q + np.arange(q)).ravel()
         M, turned = (each[mine] for each in to_row())
-        matrices = np.swapaxes(M, 1, 2) @ touches.second[mine] @ M
+        matrices = M.transpose(0, 2, 1) @ touches.bent(mine) @ M
         diagonal = np.arange(size)
         matrices[:, diagonal, diagonal] += turned
         matrices *= (np.repeat(multipliers[pressing], q) * share[mine])[:, None, None]
-        return Blocks(
-            joints[pressing], over[pressing], matrices.reshape(len(pressing), q, *matrices.shape[1:]).sum(axis=1)
-        )
+        return Blocks(joints[pressing], over[pressing], matrices.reshape(pressing.size, q, size, size).sum(axis=1))
 
     return Group(
         contact=name,
-        values=np.sum(weights * touches.values.reshape(m, q), axis=1),
+        values=np.add.reduce(weights * touches.values.reshape(m, q), axis=1),
         joints=joints,
-        angles=np.asarray(over, dtype=np.intp),
+        angles=over,
         slopes=slopes,
         curvature=curvature,
         keys=tuple(keys.tolist()),

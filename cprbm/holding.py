@@ -49,7 +49,7 @@ class Hold:
         """Z_h with the drive at zero, one number."""
         point = point_of(self.at.body, self.at.point, model.references)
         moved = np.array([self.along]) @ point.over
-        return Linear(np.zeros(1), moved + self.turn * turn_of(self.at.body, len(model.free_bodies)))
+        return Linear(np.zeros(1), moved + self.turn * turn_of(self.at.body, model.n_bodies))
 
     def row(self, state: State) -> tuple[float, float, float]:
         """∂Z_h over the body's u, v, φ."""

@@ -12,11 +12,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from cprbm.model import Layout, Model
+from cprbm.once import once
 from cprbm.posture import Posture, posture, stood
 from cprbm.standing import Attachment
 from scene.answer import Array, Ints
@@ -33,7 +34,7 @@ class State:
         """The state after a ``step`` (n_links + 3B,) of all unknowns."""
         return State(self.theta + step[:n_links], self.bodies + step[n_links:].reshape(-1, 3))
 
-    @cached_property
+    @once
     def posture(self) -> Posture:
         """How the bodies stand."""
         return posture(self.bodies)
@@ -46,7 +47,7 @@ def most_turned(before: State, after: State) -> float:
 
 def rest_state(model: Model) -> State:
     """The stress-free state."""
-    return State(model.rest.copy(), np.zeros((len(model.free_bodies), 3)))
+    return State(model.rest.copy(), np.zeros((model.n_bodies, 3)))
 
 
 def arm(attachment: Attachment, bodies: Array) -> tuple[float, float]:
@@ -79,7 +80,7 @@ class Positions:
     y: Array
     dx: Array
     dy: Array
-    known: dict[int, object] = field(default_factory=dict, init=False, repr=False, compare=False)
+    known: dict[int, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
 
 def positions(model: Model, state: State) -> Positions:
@@ -181,7 +182,7 @@ def over_unknowns_by(model: Model, state: State, at: Positions, fx: Array, fy: A
 
 def _held(model: Model, state: State, sums: Array | tuple[Array, Array]) -> tuple[Array, Array]:
     """What :func:`summed` forces mean for the bodies that beams' starts and marks are on."""
-    (fx, fy), n, count = sums, model.n_links, len(model.free_bodies)
+    (fx, fy), n, count = sums, model.n_links, model.n_bodies
     if not model.layout.moving.size:
         shape = fx.shape[:-1]
         return np.zeros((*shape, 3 * count)), np.zeros((*shape, count))

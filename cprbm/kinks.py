@@ -74,7 +74,8 @@ class Missed:
     def integral(self) -> Array:
         """Γ (k,), units of length, nought at both borders of the element."""
         c, off = self.coefficients, self.off
-        return np.asarray((((c[3] / 4.0 * off + c[2] / 3.0) * off + c[1] / 2.0) * off + c[0]) * off)
+        found: Array = (((c[3] / 4.0 * off + c[2] / 3.0) * off + c[1] / 2.0) * off + c[0]) * off
+        return found
 
 
 def missed(chain: Chain, kinks: Kinks, points: Points) -> Missed:
@@ -136,9 +137,10 @@ def kinks_at(chain: Chain, state: State, places: Array) -> Kinks:
     nothing = np.zeros(len(places))
     if chain.n <= 2 * SPRINGS:
         return Kinks(places, nothing, nothing)
-    kappa = (np.diff(state.theta[chain.links]) - np.diff(chain.rest)) / chain.sizes
+    theta = state.theta[chain.links]
+    kappa = (theta[1:] - theta[:-1] - chain.rest_turns) / chain.sizes
     springs, h = chain.s[1:-1], chain.sizes[e]
-    u = np.clip(places - chain.borders[e], 0.0, h)
+    u = np.minimum(np.maximum(places - chain.borders[e], 0.0), h)
     far_p = (kappa[e - 1] - kappa[e - 2]) / (springs[e - 1] - springs[e - 2])
     far_q = (kappa[e + 2] - kappa[e + 1]) / (springs[e + 2] - springs[e + 1])
     bent = (far_q - far_p) / (2.0 * h)

@@ -133,7 +133,7 @@ def local_system(
     stiffened: Array,
 ) -> LocalSystem:
     """Assemble the system at a state; ``stiffened`` (n_links,) is added to the second derivatives over θ."""
-    n, J, n_bodies = model.n_links, model.n_joints, 3 * len(model.free_bodies)
+    n, J, n_bodies = model.n_links, model.n_joints, 3 * model.n_bodies
     first_body = n + 2 * J
     first_rho = first_body + n_bodies
     first_mu = first_rho + 2 * (n + len(model.chains) + len(model.marks))
@@ -148,7 +148,7 @@ def local_system(
     links = np.arange(n)
     entries.add(links, links, diagonal + second + stiffened)
     entries.both(links[:-1], links[1:], off)
-    bodies = first_body + 2 + 3 * np.arange(len(model.free_bodies))
+    bodies = first_body + 2 + 3 * np.arange(model.n_bodies)
     entries.add(bodies, bodies, over_phi)
 
     # link i of beam b runs between joints i + b and i + b + 1 of the shared numbering

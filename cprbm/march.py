@@ -9,7 +9,6 @@ from __future__ import annotations
 import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
 
 import numpy as np
 
@@ -28,6 +27,7 @@ from cprbm.levelling import levelled
 from cprbm.mechanism import Mechanism, mechanism_of, swept_between
 from cprbm.model import Fit
 from cprbm.nearest import Pair
+from cprbm.once import once
 from cprbm.point import Point, point_at, potential_energy
 from cprbm.probing import probed, shapes, touching
 from cprbm.rate import rate, strayed
@@ -498,7 +498,7 @@ class March:
         # meshes that end where zones do may take turns, and which is the last must not hang on what was left
         left = settings.tolerance if target.fit.ends else max(settings.tolerance, ROUGHLY)
         for steady in (False, True) if settle and not coarse else (coarse,):
-            solved = equilibrium(target.problem, values, start, left, most, settle=steady)
+            solved = equilibrium(target.problem, values, start, left, most, settle=steady, same=True)
             self.spent += solved.iterations
             if solved.converged:
                 break
@@ -528,7 +528,7 @@ class March:
                 self.closed_at[name] = closing
                 self.events.append(Event(stage, name, "closes", closing))
 
-    @cached_property
+    @once
     def asked(self) -> Mechanism:
         """The scene on even elements of the mesh that was asked."""
         return self.whole if len(self.family) == 1 else mechanism_of(self.scene, self.family[-1], before=self.whole)

@@ -352,20 +352,33 @@ def _refused(scene: Scene, model: Model, boundaries: Mapping[str, Boundary], nam
         boundaries[name]
 
 
+def _cut_alike(before: Mechanism, settings: Settings, fit: Fit) -> bool:
+    """Whether a mesh ``before`` of the scene has the same elements as that of a ``fit``, which may have other kinks."""
+    if settings.formulation == "paper" or before.boundaries or before.fit.borders.keys() != fit.borders.keys():
+        return False
+    return all(settings.links_of(chain.name) == chain.n for chain in before.problem.model.chains) and all(
+        np.array_equal(borders, fit.borders[beam]) for beam, borders in before.fit.borders.items()
+    )
+
+
 def mechanism_of(scene: Scene, settings: Settings, fit: Fit = EVEN, before: Mechanism | None = None) -> Mechanism:
     """Make a scene ready on even elements or those of a ``fit``, with what is known from a mesh ``before`` of it.
 
     Raises:
         SceneError: the settings do not fit the scene, or the formulation lacks what it must be told.
     """
-    model = build(scene, settings, fit, None if before is None else before.problem.model.outset)
+    known = None if before is None else before.problem.model
+    if before is not None and known is not None and _cut_alike(before, settings, fit):
+        model, clearances = known, before.clearances
+    else:
+        model = build(scene, settings, fit, None if known is None else known.outset)
+        clearances = clearances_of(scene, model)
     pairs = Made(scene.contacts, lambda name: _pair(scene, model, name, fit))
     told = list(scene.contacts) if settings.formulation == "paper" else []
     boundaries = Made(told, lambda name: _boundary(scene, model, pairs[name], settings))
     for name in told:
         _refused(scene, model, boundaries, name)
     stops = {name: stop_of(scene, model, name) for name in scene.stops}
-    clearances = clearances_of(scene, model)
     selves = [name for name, contact in scene.contacts.items() if isinstance(contact, SelfContact)]
     alone = Made(selves, lambda name: itself_of(scene, model, name, fit))
     closure = closure_of(model, hinges_of(scene, model), holds_of(scene, model))

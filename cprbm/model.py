@@ -20,12 +20,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
 from cprbm.curves import NeutralLine
 from cprbm.excess import Excess, Halves, excess
+from cprbm.once import once
 from cprbm.outset import Outset, outset_of
 from cprbm.pieces import CurvePieces, Pieces, pieces
 from cprbm.polynomial import ComplexArray, Places
@@ -87,7 +87,7 @@ class Chain:
     end: Attachment | None
     held: tuple[bool, bool]
 
-    @cached_property
+    @once
     def halves(self) -> Array:
         """Arc lengths of the joints and of the places half-way between them, (2N+3,)."""
         s = np.empty(2 * self.n + 3)
@@ -96,7 +96,7 @@ class Chain:
         s.flags.writeable = False
         return s
 
-    @cached_property
+    @once
     def excess(self) -> Excess | None:
         """By what the stress-free line lies off the arcs of the elements, where its curvature varies."""
         if not isinstance(self.pieces, CurvePieces):
@@ -117,31 +117,34 @@ class Chain:
             )
         )
 
-    @cached_property
-    def excess_at_halves(self) -> ComplexArray | None:
-        """The same at :attr:`halves`, (3, 2N+3)."""
-        if self.excess is None:
-            return None
+    @once
+    def in_halves(self) -> tuple[Ints, Array]:
+        """Of :attr:`halves` the half of an element that each lies in, and how far from its border (2N+3,)."""
         half = self.breaks.searchsorted(self.halves, side="right")
-        return self.excess.seen(half, self.halves - self.borders[(half + 1) // 2])
+        return half, self.halves - self.borders[(half + 1) // 2]
 
-    @cached_property
+    @once
+    def excess_at_halves(self) -> ComplexArray | None:
+        """:attr:`excess` there (3, 2N+3)."""
+        return None if self.excess is None else self.excess.seen(*self.in_halves)
+
+    @once
     def at_home(self) -> Chain:
         """The same while bodies at its ends that drives lead are where they are drawn; itself, where there are none."""
         start, end = self.start.at_home, None if self.end is None else self.end.at_home
         return self if start is self.start and end is self.end else replace(self, start=start, end=end)
 
-    @cached_property
+    @once
     def springs(self) -> Places:
         """Of the stress-free neutral line where springs stand, from its start, m."""
         return self.line.at(self.s[1:-1] * (self.line.length / float(self.s[-1])))
 
-    @cached_property
+    @once
     def rest_turns(self) -> Array:
         """From each stress-free link to the next (N,)."""
         return np.asarray(self.rest[1:] - self.rest[:-1])
 
-    @cached_property
+    @once
     def breaks(self) -> Array:
         """Arc lengths between the halves of the elements: springs and, within the beam, borders (2N−1,)."""
         return np.stack((self.s[1:-1], self.borders[1:]), axis=1).ravel()[:-1]
@@ -151,16 +154,17 @@ class Chain:
         """The largest one; of beams that touch by their edges the same everywhere."""
         return float(self.section.thickness.max())
 
-    @cached_property
+    @once
     def links(self) -> slice:
         """This beam's links in the shared numbering."""
         return slice(self.first_link, self.first_link + self.n + 1)
 
     def size_at(self, arc: Array) -> Array:
         """h of the elements at arc lengths ``arc`` (k,), units of length."""
-        return np.asarray(self.sizes[np.minimum(np.maximum(self.borders.searchsorted(arc) - 1, 0), self.n - 1)])
+        found: Array = self.sizes[np.minimum(np.maximum(self.borders.searchsorted(arc) - 1, 0), self.n - 1)]
+        return found
 
-    @cached_property
+    @once
     def joints(self) -> slice:
         """This beam's joints in the shared numbering."""
         return slice(self.first_joint, self.first_joint + self.n + 2)
@@ -222,7 +226,7 @@ class Model:
         """Initial position of each free body's reference place (its first point), (B, 2), units of length."""
         return self.outset.references
 
-    @property
+    @once
     def unit_length(self) -> float:
         """ℓ, m."""
         return self.outset.unit_length
@@ -237,22 +241,27 @@ class Model:
         """Centres of circles and first places of edges on bodies that move, by contact; numbered behind all joints."""
         return self.outset.marks
 
-    @cached_property
+    @once
     def n_links(self) -> int:
         """Links of all beams."""
         return len(self.lengths)
 
-    @cached_property
+    @once
+    def n_bodies(self) -> int:
+        """B."""
+        return len(self.free_bodies)
+
+    @once
     def n_unknowns(self) -> int:
         """Link angles, and u, v, φ of the free bodies."""
-        return self.n_links + 3 * len(self.free_bodies)
+        return self.n_links + 3 * self.n_bodies
 
-    @cached_property
+    @once
     def n_joints(self) -> int:
         """Joints of all beams, ends included, and the marks behind them."""
         return self.first_mark + len(self.marks)
 
-    @cached_property
+    @once
     def layout(self) -> Layout:
         """Where everything stands."""
         behind = tuple(slice(chain.joints.start + 1, chain.joints.stop) for chain in self.chains)
@@ -274,11 +283,11 @@ class Model:
             moving=roots[on_bodies],
             moved=Linear(
                 base[:, on_bodies].ravel(),
-                over[:, on_bodies].reshape(2 * int(on_bodies.sum()), 5 * len(self.free_bodies)),
+                over[:, on_bodies].reshape(2 * int(on_bodies.sum()), 5 * self.n_bodies),
             ),
         )
 
-    @cached_property
+    @once
     def hanging(self) -> Array | None:
         """Which links, starts and marks on bodies each joint hangs on: ones and noughts (n_joints, n_links + k).
 
@@ -294,7 +303,7 @@ class Model:
             found[root : ends.get(root, root + 1), column] = 1.0
         return found
 
-    @cached_property
+    @once
     def stiffness(self) -> tuple[Array, Array]:
         """Diagonal (n_links,) and off-diagonal (n_links−1,) of the strain energy's Hessian."""
         diagonal = np.zeros(self.n_links)
@@ -304,17 +313,25 @@ class Model:
         diagonal.flags.writeable = off.flags.writeable = False
         return diagonal, off
 
-    @cached_property
+    @once
+    def nothing(self) -> tuple[Array, Array, Array]:
+        """Noughts for a diagonal over θ (n_links,), what is beside it (n_links−1,) and all joints (n_joints,)."""
+        found = np.zeros(self.n_links), np.zeros(self.n_links - 1), np.zeros(self.n_joints)
+        for each in found:
+            each.flags.writeable = False
+        return found
+
+    @once
     def stiffest(self) -> float:
         """The largest of the springs' stiffnesses."""
         return float(self.couplings.max())
 
-    @cached_property
+    @once
     def first_mark(self) -> int:
         """Number of the first mark, which is that of all joints."""
         return self.n_links + len(self.chains)
 
-    @cached_property
+    @once
     def unit_force(self) -> float:
         """S/ℓ, N."""
         return self.unit_moment / self.unit_length

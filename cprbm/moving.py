@@ -20,13 +20,13 @@ and + after it,
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
+from cprbm.once import once
 from cprbm.polynomial import ComplexArray
 from cprbm.smooth import ARCS, Points, series
-from scene.answer import Array
+from scene.answer import Array, Ints
 
 LOCALS = 5
 BEFORE, AFTER = np.array(((-1.0, 1.0, 0.0), (0.0, -1.0, 1.0)))  # ∂δ over angles, before and after a border
@@ -56,7 +56,23 @@ class Moving:
     over_angles: Array
     over_turn: ComplexArray
 
-    @cached_property
+    def only(self, these: Ints) -> Moving:
+        """Some of the places, by their numbers."""
+        u, phi, arc = self.arc
+        return Moving(
+            carried=self.carried[:, these],
+            sign=self.sign[these],
+            off=self.off[these],
+            at=self.at[these],
+            along=self.along[these],
+            arm=self.arm[these],
+            border=self.border[these],
+            arc=(u[these], phi[these], arc[:, these]),
+            over_angles=self.over_angles[these],
+            over_turn=self.over_turn[these],
+        )
+
+    @once
     def along_over_turn(self) -> ComplexArray:
         """C′_δ (k,)."""
         u, phi, _ = self.arc
@@ -64,7 +80,7 @@ class Moving:
         R_xi, cos, sin = R * u / self.carried[4], np.cos(phi), np.sin(phi)
         return np.asarray(self.border * (R_1 * cos - R_xi * sin + 1j * self.sign * (R_1 * sin + R_xi * cos)))
 
-    @cached_property
+    @once
     def over_turn_twice(self) -> ComplexArray:
         """C_δδ (k,)."""
         u, phi, (S, S1, S2, V, V1, V2) = self.arc
@@ -106,7 +122,7 @@ def moving(*points: Points) -> Moving:
 
 
 def _rows(points: Points) -> Array:
-    rows = np.empty((15, len(points.s)))
+    rows = np.empty((15, points.s.size))
     rows[:9] = points.line.carried.take(points.half, axis=1)
     rows[9] = 1 - 2 * (points.half % 2)
     rows[10], rows[11], rows[12] = points.off, points.x, points.y
@@ -119,7 +135,7 @@ def _over(z: Moving, on: ComplexArray, over_turn: ComplexArray, turned: ComplexA
     """Derivatives over x, y and θ of vectors' parts along directions, ``on`` conjugated, from those over δ and of what
     turns with the link, (k, 5).
     """
-    slopes = np.zeros((len(z.off), LOCALS))
+    slopes = np.zeros((z.off.size, LOCALS))
     np.multiply((on * over_turn).real[:, None], z.over_angles, out=slopes[:, 2:])
     slopes[:, 3] -= (on * turned).imag
     return slopes
@@ -127,7 +143,8 @@ def _over(z: Moving, on: ComplexArray, over_turn: ComplexArray, turned: ComplexA
 
 def _against(along: Array) -> ComplexArray:
     """Directions (k, 2) as conjugate numbers (k,)."""
-    return np.asarray(along[:, 0] - 1j * along[:, 1])
+    conjugate: ComplexArray = along[:, 0] - 1j * along[:, 1]
+    return conjugate
 
 
 def position_slopes(z: Moving, along: Array) -> Array:
@@ -144,7 +161,7 @@ def tangent_slopes(z: Moving, along: Array) -> Array:
 
 def position_curvature(z: Moving, along: Array) -> Array:
     """Second derivatives of along·C over the local numbers for directions ``along`` (k, 2): (k, 5, 5)."""
-    second, turns = np.zeros((len(z.off), LOCALS, LOCALS)), z.over_angles
+    second, turns = np.zeros((z.off.size, LOCALS, LOCALS)), z.over_angles
     on = _against(along)
     second[:, 2:, 2:] = (on * z.over_turn_twice).real[:, None, None] * turns[:, :, None] * turns[:, None, :]
     over = -(on * z.over_turn).imag[:, None] * turns
@@ -156,7 +173,7 @@ def position_curvature(z: Moving, along: Array) -> Array:
 
 def angle_slopes(z: Moving) -> Array:
     """∂ψ over the local numbers, (k, 5)."""
-    slopes = np.zeros((len(z.off), LOCALS))
+    slopes = np.zeros((z.off.size, LOCALS))
     slopes[:, 2:] = (turned_by(z).imag)[:, None] * z.over_angles
     slopes[:, 3] += 1.0
     return slopes

@@ -44,12 +44,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
 from cprbm import leaning, smooth, wells
-from cprbm.both import Both, made
+from cprbm.both import Both, Made, made
 from cprbm.brought import as_drawn
 from cprbm.contact import Group
 from cprbm.crossing import cross
@@ -57,7 +56,8 @@ from cprbm.gathering import Touches, gathered, single
 from cprbm.kinematics import Positions, State
 from cprbm.kinks import kinked, missed
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
-from cprbm.moving import LOCALS, angle_slopes, moving, position_curvature, position_slopes, tangent_slopes
+from cprbm.moving import LOCALS, Moving, angle_slopes, moving, position_curvature, position_slopes, tangent_slopes
+from cprbm.once import once
 from cprbm.pairs import Pressed
 from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
@@ -151,6 +151,16 @@ class Pair:
     kinks: tuple[Kinks, ...] = (NO_KINKS, NO_KINKS)
     fixed: bool = False
 
+    @once
+    def made(self) -> Made | None:
+        """What both beams' lines have in every state."""
+        return made(self.a, self.b, self.kinks)
+
+    @once
+    def kinked(self) -> bool:
+        """Whether either beam has kinks."""
+        return any(each.places.size for each in self.kinks)
+
     def lines(self, state: State, at: Positions) -> Lines:
         """The smooth lines of A and B in a state."""
         return (
@@ -168,7 +178,7 @@ class Pair:
 
     def on_both(self, lines: Lines, s: Array, sigma: Array) -> tuple[smooth.Points, smooth.Points]:
         """Points of A at arc lengths ``s`` (k,) and of B at ``sigma`` (j,), bent as their kinks say."""
-        what = made(self.a, self.b, self.kinks)
+        what = self.made
         if what is None:
             return self.on_a(lines, s), self.on_b(lines, sigma)
         known, key = lines[0].known, (self.name, "both")
@@ -178,13 +188,15 @@ class Pair:
             known[key] = (both,)
         return both.at(s, sigma)
 
-    def samples_on_a(self, lines: Lines, these: Ints) -> smooth.Points:
-        """The same at some of the samples of A, by their numbers (k,), which are worked out once in a state."""
-        return kinked(self.a, self.kinks[0], lines[0].sampled.only(these))
-
-    def samples_on_b(self, lines: Lines, these: Ints) -> smooth.Points:
-        """The same at some of the samples of B."""
-        return kinked(self.b, self.kinks[1], lines[1].sampled.only(these))
+    def samples(self, lines: Lines) -> tuple[smooth.Points, smooth.Points]:
+        """The same at the samples of A and of B, once in a state."""
+        if not self.kinked:
+            return lines[0].sampled, lines[1].sampled
+        known, what = lines[0].known, (self.name, "kinked")
+        if what not in known:
+            known[what] = tuple(map(kinked, self.chains, self.kinks, (line.sampled for line in lines)))
+        A, B = known[what]
+        return A, B
 
     def foot(self, lines: Lines, A: smooth.Points, sigma: Array) -> smooth.Points:
         """Points of B at arc lengths ``sigma`` (k,) with the tangents of the edge that faces A."""
@@ -215,7 +227,7 @@ class Pair:
         """The same contact with the parts of A and B exchanged."""
         return self._exchanged
 
-    @cached_property
+    @once
     def _exchanged(self) -> Pair:
         return replace(
             self,
@@ -464,7 +476,7 @@ class Pair:
     def touches(self, lines: Lines, s: Array, sigma: Array, free: Flags) -> Touches:
         """The constraint at feet (s, σ); where ``free`` (k,) the place moves with the minimum."""
         A, B = self.facing_each_other(*self.on_both(lines, s, sigma))
-        m, k = len(s), LOCALS
+        m = len(s)
         cos, sin = np.cos(B.psi), np.sin(B.psi)
         normals = np.empty((2 * m, 2))
         normals[:m, 0], normals[:m, 1] = -sin, cos
@@ -472,40 +484,18 @@ class Pair:
         distance = cos * (A.y - B.y) - sin * (A.x - B.x)
         both = moving(A, B)
         n_r = _between(position_slopes(both, normals))
-        facing = np.cos(A.psi - B.psi)
-        of_foot = -B.pace + distance * B.bend
         # what D gains over s by the tangents' γ, the foot going along
         gained: Array | float = 0.0
-        if any(each.places.size for each in self.kinks):
+        if self.kinked:
             more_A, more_B = missed(self.a, self.kinks[0], A), missed(self.b, self.kinks[1], B)
-            back = of_foot / (facing * A.pace)
+            facing = np.cos(A.psi - B.psi)
+            back = (-B.pace + distance * B.bend) / (facing * A.pace)
             if self.tapered:  # no tangents of B's go along what stays at a corner
                 back[leaning.at_corner(B)] = 0.0
             gained = np.sign(facing) * (more_A.integral + back * more_B.integral)
 
-        def bent() -> Array:
-            # ds/dz and dσ/dz from (i) and (ii)
-            psi_z = np.zeros((2, m, 2 * k))
-            psi = angle_slopes(both)
-            if self.tapered:
-                psi = leaning.angle_slopes(both, np.concatenate((A.lead, B.lead)))
-            psi_z[0, :, :k], psi_z[1, :, k:] = psi[:m], psi[m:]
-            psi_A, psi_B = psi_z
-            tangents = np.stack((normals[:, 1], -normals[:, 0]), axis=1)
-            t_r = _between(position_slopes(both, tangents))
-            one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
-            determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.pace, 1.0)
-            s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
-            sigma_z = (two - (facing * A.pace)[:, None] * s_z) / of_foot[:, None]
-            turning = psi_B + B.bend[:, None] * sigma_z
-            second = np.zeros((m, 2 * k, 2 * k))
-            curved, n_s = position_curvature(both, normals), tangent_slopes(both, normals)
-            second[:, :k, :k], second[:, k:, k:] = curved[:m], -curved[m:]
-            second += -t_r[:, :, None] * turning[:, None, :]
-            second[:, :k] += n_s[:m, :, None] * s_z[:, None, :]
-            second[:, k:] -= n_s[m:, :, None] * sigma_z[:, None, :]
-            # γ leaves a part of its own size uneven
-            return np.asarray(-self.side * 0.5 * (second + np.swapaxes(second, 1, 2)))
+        def bent(some: Ints) -> Array:
+            return self._bent(A.only(some), B.only(some), both.only(np.concatenate((some, m + some))), free[some])
 
         return Touches(
             values=self.offset + self.wider(s, sigma) - self.side * (distance + gained),
@@ -513,6 +503,35 @@ class Pair:
             bent=bent,
             links=np.array((A.link, B.link)),
         )
+
+    def _bent(self, A: smooth.Points, B: smooth.Points, both: Moving, free: Flags) -> Array:
+        """∂²c/∂z² (m, 10, 10) at places of A and their feet on B, ``both`` of which move as that says."""
+        m, k = len(A.s), LOCALS
+        cos, sin = np.cos(B.psi), np.sin(B.psi)
+        normals, tangents = np.empty((2, 2 * m, 2))
+        normals[:m, 0], normals[:m, 1] = -sin, cos
+        normals[m:] = normals[:m]
+        tangents[:, 0], tangents[:, 1] = normals[:, 1], -normals[:, 0]
+        distance = cos * (A.y - B.y) - sin * (A.x - B.x)
+        facing, of_foot = np.cos(A.psi - B.psi), -B.pace + distance * B.bend
+        # ds/dz and dσ/dz from (i) and (ii)
+        psi_A, psi_B = psi_z = np.zeros((2, m, 2 * k))
+        psi = leaning.angle_slopes(both, np.concatenate((A.lead, B.lead))) if self.tapered else angle_slopes(both)
+        psi_z[0, :, :k], psi_z[1, :, k:] = psi[:m], psi[m:]
+        t_r = _between(position_slopes(both, tangents))
+        one, two = -(psi_A - psi_B), -(t_r + distance[:, None] * psi_B)
+        determinant = np.where(free, A.bend * of_foot + B.bend * facing * A.pace, 1.0)
+        s_z = np.where(free[:, None], of_foot[:, None] * one + B.bend[:, None] * two, 0.0) / determinant[:, None]
+        sigma_z = (two - (facing * A.pace)[:, None] * s_z) / of_foot[:, None]
+        turning = psi_B + B.bend[:, None] * sigma_z
+        second = np.zeros((m, 2 * k, 2 * k))
+        curved, n_s = position_curvature(both, normals), tangent_slopes(both, normals)
+        second[:, :k, :k], second[:, k:, k:] = curved[:m], -curved[m:]
+        second += -t_r[:, :, None] * turning[:, None, :]
+        second[:, :k] += n_s[:m, :, None] * s_z[:, None, :]
+        second[:, k:] -= n_s[m:, :, None] * sigma_z[:, None, :]
+        # γ leaves a part of its own size uneven
+        return np.asarray(-self.side * 0.5 * (second + second.transpose(0, 2, 1)))
 
 
 def _between(slopes: Array) -> Array:
@@ -533,8 +552,8 @@ def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Fl
 
 def _distance_of(pair: Pair, lines: Lines, A: smooth.Points) -> tuple[Array, Array, Flags]:
     """The same of points of A (k,)."""
-    nearest = nearest_samples(_places(lines[1].sampled), _places(A), np.inf)[1]
-    return _feet_from(pair, lines, A, pair.samples_on_b(lines, nearest), CLOSE)[:3]
+    nearest = nearest_samples(lines[1].sampled, A, np.inf)[1]
+    return _feet_from(pair, lines, A, pair.samples(lines)[1].only(nearest), CLOSE)[:3]
 
 
 def past_foot(pair: Pair, lines: Lines, s: Array, sigma: Array) -> Array:
@@ -557,7 +576,8 @@ def _feet_from(
     sigma, h, end, last = B.s, pair.b.h, pair.b.s[-1], 0.0
     ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
     for iteration in range(FOOT_ITERATIONS if not ridges.size else CORNER_ITERATIONS):
-        B = pair.facing(A, pair.on_b(lines, sigma) if iteration else B)
+        B = pair.on_b(lines, sigma) if iteration else B
+        B = pair.facing(A, B) if pair.tapered else B
         along, across = _seen_from(B, A)
         # along the circle of curvature, where that is round the foot
         left = along / np.maximum(B.pace - B.bend * across, 0.2)
@@ -567,12 +587,12 @@ def _feet_from(
         sigma = np.minimum(np.maximum(before + np.minimum(np.maximum(step, -h), h), 0.0), end)
         if ridges.size:
             sigma = _up_to(ridges, before, sigma)
-        moved = float(np.abs(sigma - before).max())
+        moved = float(np.maximum.reduce(np.abs(sigma - before)))
         if moved < close or (not ridges.size and moved * moved < LAST * close * last):
             break
         last = moved
     foot = np.abs(along) <= PARALLEL * np.maximum(np.abs(across), pair.b.h)
-    return pair.side * across - pair.wider(A.s, sigma), sigma, foot, B
+    return pair.side * across - (pair.wider(A.s, sigma) if pair.tapered else 0.0), sigma, foot, B
 
 
 def _up_to(ridges: Array, before: Array, after: Array) -> Array:
@@ -618,10 +638,8 @@ def places_along(pair: Pair, lines: Lines, D: Array, sigma: Array, ends: Array) 
     for end in (0, -1):
         near[end] = reach > D[end] and not held_together(a, b, end, float(sigma[end]))
     joints = near.nonzero()[0]
-    keys = np.full(len(joints) + len(s), -1)
-    keys[: len(joints)] = joints
-    if pair.fixed:
-        keys[len(joints) :] = a.n + 6 + np.arange(len(s))
+    own = a.n + 6 + np.arange(len(s)) if pair.fixed else np.zeros(len(s), dtype=np.intp) - 1
+    keys = np.concatenate((joints, own))
     found = Places(np.concatenate((a.s[joints], s)), np.concatenate((sigma[2 * joints], turned)), keys)
     return found.joined(_corners(pair, lines, D, sigma)) if pair.tapered and a.section.ridges.size else found
 
@@ -651,20 +669,20 @@ def feet_of_ridges(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Ar
 def _facing_ends(pair: Pair, lines: Lines) -> Places:
     """The ends of B that face A within reach, and their feet on A; the keys follow A's joints."""
     a, b, reach = pair.a, pair.b, pair.offset + REACH
-    A, B, ends = lines[0].sampled, lines[1].sampled, b.s[[0, -1]]
+    (A, B), ends = pair.samples(lines), b.s[[0, -1]]
     away = np.hypot(A.x - B.x[[0, -1], None], A.y - B.y[[0, -1], None])
     nearest = away.argmin(axis=1)
     near = (away[[0, 1], nearest] < reach + a.h).nonzero()[0]
     if near.size and not pair.tapered:
         # what is beyond an end of A has its foot there
-        beyond = _seen_from(pair.samples_on_a(lines, nearest[near]), B.only(near * (2 * b.n + 2)))[0]
+        beyond = _seen_from(A.only(nearest[near]), B.only(near * (2 * b.n + 2)))[0]
         first, last = nearest[near] == 0, nearest[near] == len(A.s) - 1
         near = near[~((first & (beyond <= 0.0)) | (last & (beyond >= 0.0)))]
     if not near.size:
         return Places(np.zeros(0), np.zeros(0), near)
     turned = pair.exchanged()
-    at_B = turned.samples_on_a(lines[::-1], near * (2 * b.n + 2))
-    E, foot, facing, _ = _feet_from(turned, lines[::-1], at_B, turned.samples_on_b(lines[::-1], nearest[near]), CLOSE)
+    at_B = B.only(near * (2 * b.n + 2))
+    E, foot, facing, _ = _feet_from(turned, lines[::-1], at_B, A.only(nearest[near]), CLOSE)
     E = not_gone_round(turned, lines[::-1], E, pair.wider(foot, ends[near]))
     facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
     for i, end in enumerate(near):
@@ -676,7 +694,7 @@ def _faced(pair: Pair, lines: Lines, D: Array, sigma: Array, joints: Ints) -> tu
     """Some joints of A, by their numbers (k,), and their feet, ``D`` and ``sigma`` being those of A's samples."""
     known, what = lines[0].faced, pair.name
     if what not in known or known[what][0] is not D:
-        known[what] = D, pair.samples_on_a(lines, 2 * joints), pair.on_b(lines, sigma[2 * joints])
+        known[what] = D, pair.samples(lines)[0].only(2 * joints), pair.on_b(lines, sigma[2 * joints])
     return known[what][1:]
 
 
@@ -704,39 +722,41 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     return D, sigma
 
 
-def nearest_samples(G: Array, A: Array, within: float) -> tuple[Array, Ints]:
-    """Distance from places of ``A`` (k, 2) to the nearest of ``G`` (m, 2), infinite beyond ``within``; its number."""
-    if len(G) * len(A) <= MANY:
-        apart, across = (np.subtract.outer(mine, its) for mine, its in zip(A.T, G.T, strict=True))
+def nearest_samples(G: smooth.Points, A: smooth.Points, within: float) -> tuple[Array, Ints]:
+    """Distance from points of ``A`` (k,) to the nearest of ``G`` (m,), infinite beyond ``within``; its number."""
+    return nearest_places((G.x, G.y), (A.x, A.y), within)
+
+
+def nearest_places(G: tuple[Array, Array], A: tuple[Array, Array], within: float) -> tuple[Array, Ints]:
+    """The same of places by their x and y, (m,) and (k,) each."""
+    if G[0].size * A[0].size <= MANY:
+        apart, across = A[0][:, None] - G[0], A[1][:, None] - G[1]
         apart *= apart
         across *= across
         apart += across
         number = apart.argmin(axis=1)
-        distance = np.sqrt(apart[np.arange(len(A)), number])
+        distance = np.sqrt(np.minimum.reduce(apart, axis=1))
         return np.where(distance < within, distance, np.inf), number
     from scipy.spatial import cKDTree  # loaded where beams with many links may touch each other
 
     # places follow each other along lines: a tree that is not levelled is soon made and soon gone through
-    tree = cKDTree(G, balanced_tree=False, compact_nodes=False)
-    distance, number = tree.query(A, distance_upper_bound=within)
+    tree = cKDTree(np.array(G).T, balanced_tree=False, compact_nodes=False)
+    distance, number = tree.query(np.array(A).T, distance_upper_bound=within)
     return np.asarray(distance), np.asarray(number)
 
 
-def _places(points: smooth.Points) -> Array:
-    return np.array((points.x, points.y)).T
-
-
 def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
-    A, G = lines[0].sampled, lines[1].sampled
+    A, G = pair.samples(lines)
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
-    rough, nearest = nearest_samples(_places(G), _places(A), pair.offset + reach(pair.a, pair.b))
+    rough, nearest = nearest_samples(G, A, pair.offset + reach(pair.a, pair.b))
     close = np.isfinite(rough).nonzero()[0]
-    D, sigma = np.full(len(A.s), np.inf), np.zeros(len(A.s))
+    sigma = np.zeros(len(A.s))
+    D = sigma + np.inf
     if not close.size:
         return D, sigma
-    at_A, at_B = pair.samples_on_a(lines, close), pair.samples_on_b(lines, nearest[close])
+    at_A, at_B = A.only(close), G.only(nearest[close])
     distance, sigma[close], foot, at_B = _feet_from(pair, lines, at_A, at_B, CLOSE)
-    D[close] = np.where(foot, distance, np.inf)
+    D[close[foot]] = distance[foot]
     D = not_gone_round(pair, lines, D, pair.wider(A.s, sigma))
     if not pair.tapered:  # else these are points of edges
         joints = ((close % 2 == 0) & np.isfinite(D[close])).nonzero()[0]
@@ -771,11 +791,11 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
     if not lowest.size:
         return np.zeros(0), np.zeros(0)
     # the joints beside a common clamp press together, a place of its own among them would part them
-    first, last = (4 * pair.shared if clamped else 0 for clamped in pair.clamped)
+    first, last = [4 * pair.shared if clamped else 0 for clamped in pair.clamped]
     lowest = lowest[pair.own_places & (lowest > first) & (lowest < 2 * (pair.a.n + 1) - last)]
     if not lowest.size:
         return np.zeros(0), np.zeros(0)
-    parting, near = np.full(pair.a.n + 2, np.inf), np.isfinite(D[::2]).nonzero()[0]
+    parting, near = np.zeros(pair.a.n + 2) + np.inf, np.isfinite(D[::2]).nonzero()[0]
     parting[near] = pair.parting_at(lines, *_faced(pair, lines, D, sigma, near), D[2 * near])
     found = wells.wells(pair.a, D - pair.offset, parting, lowest, LEAST_CURVATURE, pair.kinks[0].places)
     if not found.samples.size:
@@ -804,7 +824,7 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
         low, high = np.where(falls, s, low), np.where(falls, high, s)
         ahead = s - slope / np.where(convex, bends, np.inf)
         newton = convex & (ahead >= low) & (ahead <= high)
-        step = np.where(newton, ahead, 0.5 * (low + high)) - s
+        step = (ahead if newton.all() else np.where(newton, ahead, 0.5 * (low + high))) - s
         ahead = np.minimum(np.maximum(sigma + left + towards * step, 0.0), end)
         if ridges.size:
             ahead = np.where(leaning.at_corner(B), sigma, _up_to(ridges, sigma, ahead))
@@ -813,6 +833,8 @@ def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Arra
         inner = (sigma > 0.0) & (sigma < end)
         # what Newton's method would leave after one more step is nothing
         known = newton & inner & (moved * moved < LAST * CLOSE * latest)
+        if known.all():
+            break
         there = known | ((np.abs(step) < CLOSE) & (np.abs(along) < CLOSE) & (np.abs(slope) < SETTLED))
         if not ridges.size:  # no slope as steep as that goes through zero in so little
             there |= (high - low < CLOSE) & (np.abs(slope) > STEEP)

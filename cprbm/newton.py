@@ -25,7 +25,6 @@ press, then by a shift.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -35,6 +34,7 @@ from cprbm.complementarity import pressing
 from cprbm.contact import Factored, Rows, over_unknowns
 from cprbm.kinematics import twice
 from cprbm.local import GIVING, LocalSystem, local_step, local_system
+from cprbm.once import once
 from cprbm.point import Point, Problem
 from scene.answer import Array, Flags, Ints
 
@@ -54,58 +54,40 @@ class System:
         factors: the tridiagonal part, and the border: bodies, anchors, curvatures, equalities and contacts.
         anchors: unknowns over θ that stand in the border, behind the bodies.
         n_bodies: u, v, φ of all bodies.
+        n_base: border columns without those of the contacts, which stand behind them.
         active: the contacts that press (m,).
         added: right-hand sides of the curvatures' columns (r,): of those that were added.
-        n_equalities: columns behind the curvatures'; those of the contacts stand behind them.
+        equalities: their columns, behind the curvatures'.
         expected: negative eigenvalues of a minimum's system without contacts.
     """
 
     factors: Bordered
     anchors: Ints
     n_bodies: int
+    n_base: int
     active: Flags
     added: Array
-    n_equalities: int
+    equalities: slice
     expected: int
 
-    @property
-    def n_base(self) -> int:
-        """Border columns without those of the contacts."""
-        return self.n_bodies + len(self.anchors) + len(self.added) + self.n_equalities
-
-    @property
-    def base(self) -> Ints:
-        """Border columns without those of the contacts."""
-        return np.arange(self.n_base)
-
-    @property
-    def contacts(self) -> Ints:
-        """Border columns of the contacts."""
-        return np.arange(self.n_base, self.factors.corner.shape[0])
-
-    @property
-    def equalities(self) -> slice:
-        """Border columns of the equalities."""
-        return slice(self.n_base - self.n_equalities, self.n_base)
-
-    @cached_property
+    @once
     def schur(self) -> Symmetric:
         """Factors of S without the contacts."""
         return Symmetric(self.factors.schur[: self.n_base, : self.n_base])
 
-    @cached_property
+    @once
     def convex(self) -> bool:
         """Whether the Hessian is positive definite where the equalities hold."""
         return self.factors.tridiagonal.negative() + self.schur.negative == self.expected
 
-    @cached_property
+    @once
     def kept(self) -> Kept:
         """The system with the contacts that press, and no others.
 
         Raises:
             np.linalg.LinAlgError: it is exactly singular.
         """
-        return self.factors.kept(np.concatenate((self.base, self.contacts[self.active])))
+        return self.factors.kept(np.concatenate((np.arange(self.n_base), self.n_base + self.active.nonzero()[0])))
 
     @property
     def stable(self) -> bool:
@@ -135,7 +117,7 @@ def system(problem: Problem, point: Point, stiffness: float, shift: float) -> Sy
         np.linalg.LinAlgError: the tridiagonal part is exactly singular.
     """
     model, closure, A_I = problem.model, problem.closure, point.slopes
-    n, n_bodies = model.n_links, 3 * len(model.free_bodies)
+    n, n_bodies = model.n_links, 3 * model.n_bodies
     sums = closure_sums(closure, point.mu)
     if point.lam.any():
         sums += point.rows.sums(point.lam, model)
@@ -170,7 +152,8 @@ def system(problem: Problem, point: Point, stiffness: float, shift: float) -> Sy
 
     r, k = len(sigma), len(anchors)
     first, inner = n_bodies + k, n_bodies + k + r
-    size = inner + len(point.A_E) + len(A_I)
+    n_base = inner + len(point.A_E)
+    size = n_base + len(A_I)
     border, corner, own = np.zeros((n, size), order="F"), np.zeros((size, size)), np.zeros(size)
     wide = np.concatenate((low_rank, point.A_E, A_I))
     border[:, first:] = wide[:, :n].T
@@ -178,9 +161,9 @@ def system(problem: Problem, point: Point, stiffness: float, shift: float) -> Sy
     own[2:n_bodies:3] = over_phi
     own[n_bodies:first] = diagonal[anchors]
     own[first:inner] = -1.0 / sigma
-    own[inner : inner + len(point.A_E)] = -GIVING
+    own[inner:n_base] = -GIVING
     if len(point.rows.groups) > 1:
-        own[inner + len(point.A_E) :][_twins(point.rows, A_I)] = -GIVING
+        own[n_base:][_twins(point.rows, A_I)] = -GIVING
     corner.reshape(-1)[:: size + 1] = own
     for place, link in enumerate(anchors.tolist(), start=n_bodies):
         corner[place, first:] = border[link, first:]
@@ -192,9 +175,10 @@ def system(problem: Problem, point: Point, stiffness: float, shift: float) -> Sy
         factors=bordered(tridiagonal, border, corner),
         anchors=anchors,
         n_bodies=n_bodies,
+        n_base=n_base,
         active=active,
         added=added,
-        n_equalities=len(point.A_E),
+        equalities=slice(inner, n_base),
         expected=len(point.A_E) + int(np.count_nonzero(sigma > 0.0)),
     )
 
@@ -207,7 +191,7 @@ def _twins(rows: Rows, A_I: Array) -> Ints:
     apart = size[:, None] * size - A_I @ A_I.T
     of = np.array(rows.contact)
     alike = (apart <= ALIKE * size[:, None] * size) & (of[:, None] != of)
-    return np.flatnonzero(alike.any(axis=1))
+    return np.asarray(alike.any(axis=1)).nonzero()[0]
 
 
 def _curvatures(point: Point) -> list[Factored]:

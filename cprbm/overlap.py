@@ -35,7 +35,7 @@ from cprbm.nearest import (
     Pair,
     distance_along,
     feet_near,
-    nearest_samples,
+    nearest_places,
     not_gone_round,
 )
 from cprbm.pairs import Touching
@@ -158,7 +158,7 @@ def _nearest_springs(x: Array, y: Array, B: Points) -> tuple[Array, Ints]:
     """Distance of places (k,) to the nearest spring or end of B, and its number among B's samples, (k,) each."""
     bx, by = B.x[::2], B.y[::2]
     if len(x) * len(bx) > FEW:
-        distance, nearest = nearest_samples(np.stack((bx, by), axis=1), np.stack((x, y), axis=1), np.inf)
+        distance, nearest = nearest_places((bx, by), (x, y), np.inf)
         return distance, 2 * nearest
     squares, across = x[:, None] - bx, y[:, None] - by
     squares *= squares

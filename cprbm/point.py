@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,6 +22,7 @@ from cprbm.contact import Formulation, Rows
 from cprbm.energy import AnyLoad, LoadWork, load_work, spring_moments, strain_energy, strain_gradient, strain_hessian
 from cprbm.kinematics import Positions, State, positions, pulled_back
 from cprbm.model import Model
+from cprbm.once import once
 from scene.answer import Array, Ints
 
 if TYPE_CHECKING:
@@ -58,32 +58,32 @@ class Problem:
     steady: Formulation
     drag: Drag | None = None
 
-    @cached_property
+    @once
     def springs(self) -> tuple[Array, Array]:
         """Diagonal (n_links,) and off-diagonal (n_links−1,) of what the second derivatives over θ always hold."""
         diagonal, off = strain_hessian(self.model)
         return diagonal + self.stiffened(), off
 
-    @cached_property
+    @once
     def moves(self) -> Array:
         """One for each unknown, nought for links that do not turn (n_unknowns,)."""
         moves = np.ones(self.model.n_unknowns)
         moves[self.closure.fixed] = 0.0
         return moves
 
-    @cached_property
+    @once
     def loose(self) -> Ints:
         """The first links of beams, but those that do not turn."""
         fixed = set(self.closure.fixed.tolist())
         first = [chain.first_link for chain in self.model.chains if chain.first_link not in fixed]
         return np.array(first, dtype=np.intp)
 
-    @cached_property
+    @once
     def still(self) -> Held:
         """The :attr:`loose` ones and those that do not turn."""
         return Held(np.concatenate((self.loose, self.closure.fixed)), self.model.n_links)
 
-    @cached_property
+    @once
     def generic(self) -> Array:
         """A right-hand side with a part in every direction, :func:`cprbm.bordered.generic`, (n_links,)."""
         return generic(self.model.lengths, self.still.unknowns)
@@ -129,22 +129,22 @@ class Point:
         """The same without what was worked out from it, for those who keep many."""
         return replace(self)
 
-    @cached_property
+    @once
     def slopes(self) -> Array:
         """∂c over q, (m, n_links + 3B)."""
         return contact_rows(self.model, self)
 
-    @cached_property
+    @once
     def held(self) -> Array:
         """∂(μ·Z) over q (n_links + 3B,)."""
         return np.asarray(self.mu @ self.A_E)
 
-    @cached_property
+    @once
     def unbalanced(self) -> Array:
         """∂L over q (n_links + 3B,)."""
         return self.gradient + self.held + self.pressed
 
-    @cached_property
+    @once
     def pressed(self) -> Array:
         """∂(λ·c) over q (n_links + 3B,)."""
         # few rows are wanted as such for the next step

@@ -44,7 +44,7 @@ def posture(bodies: Array) -> Posture:
     cos, minus = [1.0 + each for each in less], [-each for each in sin]
     even, places = _even(len(turns))
     derivatives = even.copy()
-    derivatives.reshape(-1)[places] = [*minus, *cos, *(-each for each in cos), *minus]
+    derivatives.reshape(-1)[places] = [*minus, *cos, *[-each for each in cos], *minus]
     return Posture(np.array([*bodies.ravel().tolist(), *less, *sin]), derivatives)
 
 
@@ -79,7 +79,8 @@ class Linear:
 
     def values(self, standing: Posture) -> Array:
         """ℓ (r,)."""
-        return np.asarray(self.base + self.over @ standing.w)
+        found: Array = self.base + self.over @ standing.w
+        return found
 
     def gradient(self, standing: Posture, weights: Array) -> tuple[Array, Array]:
         """f·∂ℓ over the bodies (..., 3B) and f·∂²ℓ over φ of each (..., B), for ``weights`` f (..., r)."""

@@ -275,6 +275,8 @@ def _as_bent(chain: Chain, made: Kinks, now: Kinks) -> bool:
 
 def carried_state(before: Model, state: State, after: Model) -> State:
     """The unknowns of one mesh as those of another."""
+    if after is before:
+        return state
     theta = after.rest.copy()
     # each link has the beam's tangent at the border that lies on it
     for source, target in zip(before.chains, after.chains, strict=True):

@@ -22,13 +22,13 @@ moment with h, how clamp and circle share the force with √h only.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from cprbm.contact import Factored, Group, Local
 from cprbm.kinematics import Positions, State
 from cprbm.model import Model
+from cprbm.once import once
 from cprbm.related import related_joints
 from scene import CircleContact, Scene
 from scene.answer import Array, Ints
@@ -85,14 +85,14 @@ class RigidCircle:
         """What is ``x`` and ``y`` (k,) over p − o, over x of joint and centre, then y: (k, 4), or (k, 2)."""
         return np.stack((x, -x, y, -y) if self.mark >= 0 else (x, y), axis=1)
 
-    @cached_property
+    @once
     def _local(self) -> tuple[Ints, Ints]:
         """Joints and angles of each row, (m, 2) or (m, 1), and (m, 0)."""
         m = len(self.joints)
         joints = (self.joints, np.full(m, self.mark)) if self.mark >= 0 else (self.joints,)
         return np.stack(joints, axis=1), np.zeros((m, 0), dtype=np.intp)
 
-    @cached_property
+    @once
     def _keys(self) -> tuple[int, ...]:
         return tuple(self.joints.tolist())
 

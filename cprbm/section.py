@@ -16,10 +16,10 @@ below (3 + √8)^(−2·12), less than round-off.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
+from cprbm.once import once
 from scene import Beam
 from scene.answer import Array
 
@@ -55,24 +55,24 @@ class Section:
         piece = np.clip(np.searchsorted(self.places, s, side="right") - 1, 0, len(self.places) - 2)
         return np.asarray((np.diff(self.thickness) / np.diff(self.places))[piece])
 
-    @cached_property
+    @once
     def level(self) -> bool:
         """Whether the beam is as thick everywhere."""
         return float(self.thickness.min()) == float(self.thickness.max())
 
-    @cached_property
+    @once
     def ridges(self) -> Array:
         """Arc lengths (k,) at which the edges have a corner that stands out."""
         steeper, least = self._steeper
         return np.asarray(self.places[1:-1][steeper < -least])
 
-    @cached_property
+    @once
     def corners(self) -> Array:
         """Arc lengths (k,) at which the edges have a corner, whether that stands out or not."""
         steeper, least = self._steeper
         return np.asarray(self.places[1:-1][np.abs(steeper) > least])
 
-    @cached_property
+    @once
     def _steeper(self) -> tuple[Array, float]:
         """By how much dt/ds steps at the inner places, and what is no step."""
         slopes = np.diff(self.thickness) / np.diff(self.places)
@@ -83,7 +83,7 @@ class Section:
         width = np.interp(s, self.places, self.width)
         return np.asarray(self.modulus * width * self.thickness_at(s) ** 3 / 12.0)
 
-    @cached_property
+    @once
     def even(self) -> bool:
         """Whether the beam is as thick and as wide everywhere."""
         return self.level and float(self.width.min()) == float(self.width.max())

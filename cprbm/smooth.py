@@ -34,13 +34,14 @@ element, κ⁰′h²/8: of fifth order in h.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
+from cprbm.once import once
 from cprbm.polynomial import ComplexArray
 from scene.answer import Array, Ints
 
@@ -150,24 +151,27 @@ class SmoothLine:
     known: dict[tuple[str, str], tuple[Any, ...]] = field(default_factory=dict, init=False, repr=False, compare=False)
     faced: dict[str, tuple[Array, Points, Points]] = field(default_factory=dict, init=False, repr=False, compare=False)
 
-    @cached_property
+    @once
     def sampled(self) -> Points:
         """Points at :func:`halves`."""
-        return self._at(self.chain.halves, self.chain.excess_at_halves)
+        half, off = self.chain.in_halves
+        return self._points(self.chain.halves, half, off, self.arcs.take(half, axis=1), self.chain.excess_at_halves)
 
-    @cached_property
+    @once
     def radii_1(self) -> Array:
         """∂R over δ (N,)."""
         sine, versine = _of_rest(self.chain)
-        return np.asarray(sine * (0.5 * (self.chain.turns + self.turns)) * self.cotangents[1] + versine)
+        found: Array = sine * (0.5 * (self.chain.turns + self.turns)) * self.cotangents[1] + versine
+        return found
 
-    @cached_property
+    @once
     def radii_2(self) -> Array:
         """∂²R over δ (N,)."""
         q = 0.25 * (self.chain.turns + self.turns) ** 2
-        return np.asarray(0.5 * _of_rest(self.chain)[0] * (self.cotangents[1] + 2.0 * q * self.cotangents[2]))
+        found: Array = 0.5 * _of_rest(self.chain)[0] * (self.cotangents[1] + 2.0 * q * self.cotangents[2])
+        return found
 
-    @cached_property
+    @once
     def arcs(self) -> Array:
         """Of every half of an element its border, Θ/h and R, and there x, y and the tangent's cos, sin and angle."""
         chain = self.chain
@@ -182,7 +186,7 @@ class SmoothLine:
         arcs[6:, ::2] = arcs[6:, 1::2] = (chain.turns + self.turns) / chain.sizes, self.radii
         return arcs
 
-    @cached_property
+    @once
     def carried(self) -> Array:
         """Of every half of an element x and y of its link's joint, cos and sin of the tangent at its border, h, Θ, R,
         ∂R and ∂²R over δ, (9, 2N).
@@ -197,16 +201,15 @@ class SmoothLine:
 
     def at(self, s: Array) -> Points:
         """Points at arc lengths ``s`` (k,), units of length; beyond the ends the end itself."""
-        return self._at(np.minimum(np.maximum(s, 0.0), self.chain.s[-1]), None)
-
-    def _at(self, s: Array, excess: ComplexArray | None) -> Points:
-        """Points at arc lengths ``s`` within the beam; where it lies off the arcs by an ``excess`` (3, k), if known."""
         chain = self.chain
+        s = np.minimum(np.maximum(s, 0.0), chain.s[-1])
         half = chain.breaks.searchsorted(s, side="right")
         arcs = self.arcs.take(half, axis=1)
         off = s - arcs[0]
-        if excess is None and chain.excess is not None:
-            excess = chain.excess.seen(half, off)
+        return self._points(s, half, off, arcs, None if chain.excess is None else chain.excess.seen(half, off))
+
+    def _points(self, s: Array, half: Ints, off: Array, arcs: Array, excess: ComplexArray | None) -> Points:
+        """Points at arc lengths ``s`` within the beam, as :func:`placed` says."""
         x, y, tangent, speed, bend, gain = placed(arcs, off, excess)
         return Points(self, half, s, off, x, y, tangent, tangent, speed, bend, gain, speed)
 
@@ -223,7 +226,7 @@ def placed(arcs: Array, off: Array, excess: ComplexArray | None) -> tuple[Array,
     else:
         # stress-free piece and difference of two arcs make one arc, from the border on
         along, across = _arc(off, rate, R)
-        tangent, speed, bend, gain = tangent + rate * off, R, rate, np.zeros(len(off))
+        tangent, speed, bend, gain = tangent + rate * off, R, rate, np.zeros(off.size)
     return x + along * cos - across * sin, y + along * sin + across * cos, tangent, speed, bend, gain
 
 
@@ -256,8 +259,8 @@ def _arc(off: Array, rate: Array, R: Array | float) -> tuple[Array, Array]:
 
 def smooth_line(chain: Chain, unit_length: float, state: State, at: Positions) -> SmoothLine:
     """The smooth line of ``chain`` in a state, the same one each time it is asked for at the same positions."""
-    line = at.known.get(chain.first_link)
-    if not isinstance(line, SmoothLine):
+    line: SmoothLine | None = at.known.get(chain.first_link)
+    if line is None:
         line = at.known[chain.first_link] = _smooth_line(chain, unit_length, state, at)
     return line
 

@@ -85,5 +85,5 @@ def _alone(problem: Problem) -> Ints:
     """u, v, φ of the bodies that no beam is joined to, by their numbers among the unknowns."""
     model = problem.model
     led = {body for chain in model.chains for body in (chain.start.body, chain.end.body if chain.end else -1)}
-    alone = [body for body in range(len(model.free_bodies)) if body not in led]
+    alone = [body for body in range(model.n_bodies) if body not in led]
     return np.array([model.n_links + 3 * body + k for body in alone for k in range(3)], dtype=np.intp)

@@ -59,19 +59,21 @@ def swath(line: SmoothLine, places: Array, origin: Array, turn: float) -> Swath:
     low, high = A.s[np.maximum(nearest - 1, 0)], A.s[np.minimum(nearest + 1, len(A.s) - 1)]
     s = A.s[nearest]
     x, y = (origin + places @ inwards.T).T
+    B = line.at(s)
     for _ in range(STEPS):
-        B = line.at(s)
         rx, ry, c, n = B.x - x, B.y - y, np.cos(B.psi), np.sin(B.psi)
         slope = B.speed * (c * rx + n * ry)
         bent = B.speed**2 * (1.0 + B.bend / B.speed * (c * ry - n * rx))
-        s = np.clip(s - slope / np.where(bent > 0.0, bent, B.speed**2), low, high)
-    B = line.at(s)
+        before, s = s, np.minimum(np.maximum(s - slope / np.where(bent > 0.0, bent, B.speed**2), low), high)
+        B = line.at(s)
+        if np.array_equal(s, before):
+            break
     closest = (np.array((B.x, B.y)).T - origin) @ inwards
     normals = np.array((-np.sin(B.psi), np.cos(B.psi))).T @ inwards
     size = line.chain.size_at(s)
     return Swath(
         course=course,
-        beside=np.clip(A.s.searchsorted(s, side="right") - 1, 0, len(A.s) - 2),
+        beside=np.minimum(np.maximum(A.s.searchsorted(s, side="right") - 1, 0), len(A.s) - 2),
         closest=closest,
         normals=normals,
         s=s,

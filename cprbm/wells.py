@@ -43,12 +43,13 @@ def lowest(D: Array, reach: float) -> Ints:
 def lowest_of_parabola(s: Array, D: Array, samples: Ints) -> Array:
     """How far from ``samples`` (k,) parabolas through D there and beside, at ``s``, are lowest; nought without one."""
     before, behind = samples - 1, samples + 1
-    one, other = s[before] - s[samples], s[behind] - s[samples]
-    with np.errstate(invalid="ignore"):
-        rise, fall = (D[behind] - D[samples]) / other, (D[before] - D[samples]) / one
-        curved = (rise - fall) / (other - one)
-        ahead = -0.5 * (rise - curved * other) / curved
-    return np.where(np.isfinite(ahead) & (ahead > one) & (ahead < other), ahead, 0.0)
+    known = np.isfinite(D[before]) & np.isfinite(D[behind])
+    one, other = np.where(known, (s[before] - s[samples], s[behind] - s[samples]), ((-1.0,), (1.0,)))
+    fall, rise = np.where(known, (D[before] - D[samples], D[behind] - D[samples]), 0.0)
+    rise, fall = rise / other, fall / one
+    curved = (rise - fall) / (other - one)
+    ahead = -0.5 * (rise - curved * other) / np.where(curved == 0.0, np.inf, curved)
+    return np.where((curved != 0.0) & (ahead > one) & (ahead < other), ahead, 0.0)
 
 
 def bottom(
@@ -71,7 +72,7 @@ def bottom(
         return start, np.zeros(0, dtype=bool)
     s, (low, high) = start, within
     beside = np.minimum(np.maximum(start + BORDER, low), high).ravel()
-    D_s, D_ss = (0.5 * (each[: len(start)] + each[len(start) :]) for each in slope(beside))
+    D_s, D_ss = np.array(slope(beside)).reshape(2, 2, -1).sum(axis=1) / 2.0
     step = np.zeros(len(s))
     for iteration in range(ITERATIONS):
         if iteration:

@@ -7,12 +7,12 @@ many these are.  What the pieces say is in :mod:`cprbm.faces`, the corners in :m
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from cprbm.corner import Corner
 from cprbm.faces import SAME, Face, Graph, Seen, Straight
+from cprbm.once import once
 from scene.answer import Array, Flags, Ints
 
 NEAREST = 1e-9  # of ℓ: pieces whose distances differ by less are equally near
@@ -26,12 +26,12 @@ class WholeEdge:
     tips: Array
     corners: tuple[Corner, ...]
 
-    @cached_property
+    @once
     def _bent(self) -> list[int]:
         """Which faces are no straight ones."""
         return [f for f, face in enumerate(self.faces) if not isinstance(face, Straight)]
 
-    @cached_property
+    @once
     def _straight(self) -> tuple[Array, Array, Array, Array, Array]:
         """Origin, τ and n (F, 2), low and high (F,) of the straight faces; noughts for the others."""
         found = np.zeros((len(self.faces), 8))
@@ -74,17 +74,17 @@ class WholeEdge:
         facing[:, behind] |= within & (depth <= least + NEAREST)
         return np.asarray(facing)
 
-    @cached_property
+    @once
     def ahead(self) -> Array:
         """The corners' normals in the middle (C, 2)."""
         return np.array([corner.ahead for corner in self.corners]).reshape(-1, 2)
 
-    @cached_property
+    @once
     def places(self) -> Array:
         """The corners' places (C, 2)."""
         return np.array([corner.place for corner in self.corners]).reshape(-1, 2)
 
-    @cached_property
+    @once
     def chains(self) -> tuple[tuple[Array, Array], ...]:
         """Of each corner the edge from there on, (k, 2) against its course and (j, 2) along it."""
         return tuple(

@@ -16,6 +16,7 @@ what forces at joints do on their way to the pin: there is a zone, however few e
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -44,7 +45,7 @@ def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     chain, rows = pair.a, point.rows
     mine = np.array([name == pair.name for name in rows.contact], dtype=bool)
     arcs, forces, overlaps, reach = rows.arc[mine], point.lam[mine], rows.values[mine], rows.reach[mine]
-    if not np.any(forces > 0.0):
+    if not (forces > 0.0).any():
         return ()
     moments = rows.holds_angles[mine]
     pinned = arcs[moments & (forces > 0.0)]
@@ -58,20 +59,24 @@ def zones_of(pair: Touching, point: Point) -> tuple[Zone, ...]:
     overlaps, reach = np.append(overlaps, np.zeros(len(clamped))), np.append(reach, np.zeros(len(clamped)))
     order = np.argsort(arcs)
     arcs, forces, overlaps, reach = arcs[order], forces[order], overlaps[order], reach[order]
-    pressed = np.flatnonzero(forces > 0.0)
+    pressed = (forces > 0.0).nonzero()[0]
     h = chain.size_at(arcs)
     # one zone goes on where each joint has a row, and the beam arches by no more than unevenness
     uneven = pair.arching * largest * h**3 / chain.section.rigidity_at(arcs)
     arched = -overlaps > uneven
     apart = np.diff(arcs) > CLOSE * np.maximum(h[1:], h[:-1]) + reach[1:] + reach[:-1]
     breaks = np.concatenate(([0], np.cumsum(apart | arched[1:] | arched[:-1])))
-    runs = np.split(arcs[pressed], np.flatnonzero(np.diff(breaks[pressed])) + 1)
+    ends = [0, *(np.diff(breaks[pressed]).nonzero()[0] + 1).tolist(), pressed.size]
+    runs = [arcs[pressed[begin:end]] for begin, end in pairwise(ends)]
     runs = _with_pins(pair, point, runs, pinned, arcs, -overlaps, uneven)
-    runs = [_without_idle_clamp(chain, run, clamped) for run in runs]
+    if clamped.size:
+        runs = [_without_idle_clamp(chain, run, clamped) for run in runs]
     return tuple(
-        _zone(pair, point, chain, run, run[np.isin(run, pinned)])
-        for run in runs
-        if len(run) > 1 or run[0] not in clamped
+        [
+            _zone(pair, point, chain, run, run[np.isin(run, pinned)] if pinned.size else pinned)
+            for run in runs
+            if len(run) > 1 or run[0] not in clamped
+        ]
     )
 
 
@@ -89,6 +94,8 @@ def _with_pins(
     pair: Touching, point: Point, runs: list[Array], pinned: Array, arcs: Array, gaps: Array, uneven: Array
 ) -> list[Array]:
     """The ``runs`` in which those that begin or end at an own pin go on to the next if the beam lies flat between."""
+    if not pinned.size:
+        return runs
     joined = [runs[0]]
     for run in runs[1:]:
         low, high = float(joined[-1][-1]), float(run[0])

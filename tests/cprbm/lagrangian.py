@@ -30,7 +30,7 @@ def check(problem, values, point, random):
         assert gaps == pytest.approx(contact_rows(model, point) @ d, rel=1e-6, abs=1e-7)
         product = (plus - minus) / (2 * STEP)
         product[closure.fixed] = 0.0
-        low = slice(B, len(found.base) - closure.rows)
+        low = slice(B, found.n_base - closure.rows)
         border, corner = found.factors.border, found.factors.corner
         s = -np.linalg.solve(corner[low, low], border[:, low].T @ d[:n] + corner[low, :B] @ d[n:])
         upper = found.factors.tridiagonal.times(d[:n, None])[:, 0] + border[:, :B] @ d[n:] + border[:, low] @ s

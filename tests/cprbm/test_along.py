@@ -54,10 +54,10 @@ def test_of_a_circle(swing):
     circle = {"kind": "beam-circle", "beam": "beam", "body": "wall", "center": [0.4 * LENGTH, 0.0], "radius": 0.004}
     pair, state, at, s = bent(circle, swing)
     before, here, behind = (pair.line(state, at).at(s + step) for step in (-STEP, 0.0, STEP))
-    slope, convexity, _ = pair.course(here)
-    assert slope == pytest.approx((pair.distance(behind) - pair.distance(before)) / (2.0 * STEP), abs=1e-8)
-    bending = (pair.course(behind)[0] - pair.course(before)[0]) / (2.0 * STEP)
-    assert convexity == pytest.approx(bending, rel=1e-6, abs=1e-8)
+    seen = pair.seen(here)
+    assert seen.course == pytest.approx((pair.distance(behind) - pair.distance(before)) / (2.0 * STEP), abs=1e-8)
+    bending = (pair.seen(behind).course - pair.seen(before).course) / (2.0 * STEP)
+    assert seen.convexity == pytest.approx(bending, rel=1e-6, abs=1e-8)
 
 
 @pytest.mark.parametrize("backwards", [False, True])

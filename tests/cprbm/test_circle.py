@@ -294,7 +294,7 @@ def test_derivatives_of_gaps_and_of_the_lagrangian(bent):
         assert gaps == pytest.approx(contact_rows(model, point) @ d, rel=1e-6, abs=1e-7)
         product = (plus - minus) / (2 * STEP)
         product[problem.closure.fixed] = 0.0
-        r = len(found.base) - problem.closure.rows - 3
+        r = found.n_base - problem.closure.rows - 3
         low = slice(3, 3 + r)
         border, corner = found.factors.border, found.factors.corner
         s = -np.linalg.solve(corner[low, low], border[:, low].T @ d[:n] + corner[low, :3] @ d[n:])

@@ -105,8 +105,8 @@ def test_row_sets_that_go_round_end_unless_steady_rows_may_settle_them(monkeypat
     """Reference: the sets do go round, as what is returned soon is no equilibrium; by joints alone there is one."""
     tried = []
 
-    def recorded(problem, values, start, tolerance, iterations, *, settle=False):
-        found = equilibrium(problem, values, start, tolerance, iterations, settle=settle)
+    def recorded(problem, values, start, tolerance, iterations, *, settle=False, same=False):
+        found = equilibrium(problem, values, start, tolerance, iterations, settle=settle, same=same)
         if not (settle or found.converged) and found.iterations < iterations:
             tried.append((problem, values, start, tolerance, iterations))
         return found

@@ -134,7 +134,7 @@ def test_the_newton_system_is_the_derivative_of_the_gradient(bent):
         known = np.concatenate((d[n:], d[anchors]))
         inner = d[:n].copy()
         inner[anchors] = 0.0
-        r, first = len(found.base) - problem.closure.rows - len(known), len(known)
+        r, first = found.n_base - problem.closure.rows - len(known), len(known)
         low = slice(first, first + r)
         border, corner = found.factors.border, found.factors.corner
         s = np.linalg.solve(corner[low, low], -border[:, low].T @ inner - corner[low, :first] @ known)
