@@ -33,22 +33,23 @@ def left_to_go(pair: Pair, point: Point) -> float | None:
 def left_of_side(edge: Edge, point: Point) -> float | None:
     """How far from the nearest end of the beam a corner presses, units of length.
 
-    None where none does, or another place of the beam's side is pressed as well.
+    None where none does, or another place than that end is pressed as well.
     """
     corners, others = _places(edge, point)
-    length = float(edge.a.s[-1])
-    if len(corners) != 1 or any(0.0 < s < length for s in others):
+    if len(corners) != 1:
         return None
-    return min(corners[0], length - corners[0])
+    start, stop = edge.a.s[[0, -1]].tolist()
+    nearest = start if corners[0] - start < stop - corners[0] else stop
+    return abs(corners[0] - nearest) if all(s == nearest for s in others) else None
 
 
 def slipped_off(edge: Edge, before: Point, after: Point) -> bool:
-    """Whether a corner pressed on the beam's side ``before``, and an end alone lies on a piece of the edge ``after``.
+    """Whether a corner alone pressed on the beam's side ``before``, and an end alone lies on a piece of the edge ``after``.
 
     In between that corner pressed on the end's round face, or pushed it off.
     """
-    corners, ends = _places(edge, after)
-    return left_of_side(edge, before) is not None and not corners and len(ends) == 1 and ends[0] in edge.a.s[[0, -1]]
+    (corners, others), (no_more, ends) = _places(edge, before), _places(edge, after)
+    return len(corners) == 1 and not others and not no_more and len(ends) == 1 and ends[0] in edge.a.s[[0, -1]]
 
 
 def _places(edge: Edge, point: Point) -> tuple[list[float], list[float]]:
