@@ -44,7 +44,7 @@ def left_of_side(edge: Edge, point: Point) -> float | None:
 
 
 def slipped_off(edge: Edge, before: Point, after: Point) -> bool:
-    """Whether a corner alone pressed on the beam's side ``before``, and an end alone lies on a piece of the edge ``after``.
+    """Whether a corner alone pressed on the side ``before``, and an end alone lies on a piece of the edge ``after``.
 
     In between that corner pressed on the end's round face, or pushed it off.
     """
