@@ -153,6 +153,7 @@ class March:
                 finer = self._finer(stage.steps, end)
                 if finer is None:
                     break
+                far = abs(end.value - finer.trail[0].value) > FARTHER * self._before(end)
                 again = finer.go(to(stage.steps, finer.values, target), accept)
                 if again.certificate is not None:
                     self.on, self.before = finer, {}
@@ -164,6 +165,9 @@ class March:
                     end = replace(end, uncertainty=doubt)
                     break
                 self.on, end = finer, sharper
+                # the mesh fits there as it stands, or the end is a place of the beam, to which it makes no difference
+                if not far or end.loss is Loss.SLIP:
+                    break
             landed, reached = self._ended(stage, target, end)
             if landed is None or self.on.values[stage.steps] == target:
                 return reached
@@ -183,6 +187,10 @@ class March:
             return end
         return left(on.mechanism, on.settings, on.trail[-1], Way(load, on.values, on.beyond))
 
+    def _before(self, end: BranchEnd) -> float:
+        """How far before an end the branch is looked for on a mesh that fits."""
+        return FURTHER * (abs(self.on.refused - self.on.reached) + abs(end.value - self.on.reached))
+
     def _finer(self, load: str, end: BranchEnd) -> Follower | None:
         """From a little before the end, the same branch on the mesh that was asked, fitted to where contact is then.
 
@@ -190,7 +198,7 @@ class March:
         end of the branch where it has ended before on a mesh that fits: so it is sought from farther and farther back.
         """
         on = self.on
-        least = FURTHER * (abs(on.refused - on.reached) + abs(end.value - on.reached))
+        least = self._before(end)
         for start in reversed(on.trail):
             away = abs(end.value - start.value)
             if away < least:

@@ -31,29 +31,38 @@ def left_to_go(pair: Pair, point: Point) -> float | None:
 
 
 def left_of_side(edge: Edge, point: Point) -> float | None:
-    """How far from the nearest end of the beam a corner presses, units of length; None where no corner does alone."""
-    alone = _alone(edge, point)
-    if alone is None or not edge.on_corner(alone[0]):
+    """How far from the nearest end of the beam a corner presses, units of length.
+
+    None where none does, or another place than that end is pressed as well.
+    """
+    corners, others = _places(edge, point)
+    if len(corners) != 1:
         return None
-    return min(alone[1], float(edge.a.s[-1]) - alone[1])
+    start, stop = edge.a.s[[0, -1]].tolist()
+    nearest = start if corners[0] - start < stop - corners[0] else stop
+    return abs(corners[0] - nearest) if all(s == nearest for s in others) else None
 
 
 def slipped_off(edge: Edge, before: Point, after: Point) -> bool:
-    """Whether a corner pressed on the beam's side ``before``, alone, and an end lies on a piece of the edge ``after``.
+    """Whether a corner alone pressed on the side ``before``, and an end alone lies on a piece of the edge ``after``.
 
     In between that corner pressed on the end's round face, or pushed it off.
     """
-    here, there = _alone(edge, before), _alone(edge, after)
-    if here is None or there is None or not edge.on_corner(here[0]):
-        return False
-    return there[1] in edge.a.s[[0, -1]] and not edge.by_corner(there[0])
+    (corners, others), (no_more, ends) = _places(edge, before), _places(edge, after)
+    return len(corners) == 1 and not others and not no_more and len(ends) == 1 and ends[0] in edge.a.s[[0, -1]]
 
 
-def _alone(edge: Edge, point: Point) -> tuple[int, float] | None:
-    """Key and arc length of the one row that presses in a contact; None where more do, or none."""
-    shares = [(group, lam > 0.0) for group, lam in point.rows.shares(point.lam) if group.contact == edge.name]
-    found = [(group.keys[row], float(group.arc[row])) for group, on in shares for row in np.flatnonzero(on)]
-    return found[0] if len(found) == 1 else None
+def _places(edge: Edge, point: Point) -> tuple[list[float], list[float]]:
+    """Arc lengths at which corners press on the beam's side, and those of what else presses but corners on its ends."""
+    corners, others = [], []
+    for group, lam in point.rows.shares(point.lam):
+        for row in np.flatnonzero(lam > 0.0).tolist() if group.contact == edge.name else ():
+            key, s = group.keys[row], float(group.arc[row])
+            if edge.on_corner(key):
+                corners.append(s)
+            elif not edge.by_corner(key):
+                others.append(s)
+    return corners, others
 
 
 def slipped(pair: Pair, before: Point, after: Point) -> bool:

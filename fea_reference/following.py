@@ -32,7 +32,7 @@ import numpy as np
 
 from fea_reference.advance import advance
 from fea_reference.branch import Branch, Place, onwards, place
-from fea_reference.curvature import softest
+from fea_reference.curvature import Mode, softest
 from fea_reference.energy import potential_energy
 from fea_reference.march import March
 from fea_reference.mass import lumped_mass
@@ -61,7 +61,7 @@ _SHARE = 0.9  # of the way there, at a time
 _SLIPPING = 0.1  # of the span: from how far an end is followed to where it slips off another
 _BACK = 2.0  # times as far as it has come past it, if it has
 _AS_GOOD = 1e-6  # of the span: from where it is as good as there
-_FORESEEN = 1e-3  # of the span: from where it is foreseen, if no step leads nearer
+_FORESEEN = 1e-3  # of the span: from where an end is foreseen, if no step leads nearer
 _DIFFERENCE = 1e-7  # of the span: what rates are seen by
 _RIGID = 1e4  # times as stiff
 _HELD = 1e-2  # of the curvature at the beginning: that of what is held
@@ -230,29 +230,39 @@ def _letting_go(march: March, load: int, target: float, span: float) -> Lost | N
         if left.curvature > 0.0:
             break
         if abs(way) <= _APPROACHED * span:
-            held = softest(march.model, stiffened(march.model, march.system, one, _RIGID))
-            if not held.curvature > 0.0:
-                break
-            value = float(march.values[load] + way)
-            energy = potential_energy(march.model, march.system, march.values)
-            return Lost(
-                value,
-                abs(way),
-                Loss.CONTACT,
-                one.pair.name,
-                held.curvature,
-                left.curvature,
-                energy,
-                march.system,
-                left.direction,
-            )
-        rate = march.rate(load)
+            lost = _let_go(march, load, one, way, left)
+            if lost is not None:
+                return lost
+            break
+        before, rate = march.saved(), march.rate(load)
         size = min(_SHARE * abs(way), _MOST / max(float(np.abs(rate[march.model.moving]).max()), 1e-300))
         trouble = march.step(load, float(march.values[load]) + np.copysign(size, way), march.onward(load, rate, target))
         if trouble is not None or not softest(march.model, march.system).curvature > 0.0:
+            march.restore(before)
+            lost = _let_go(march, load, one, way, left) if abs(way) <= _FORESEEN * span else None
+            if lost is not None:
+                return lost
             break
     march.restore(saved)
     return None
+
+
+def _let_go(march: March, load: int, one: Touch, way: float, left: Mode) -> Lost | None:
+    """The end where one contact lets go, a ``way`` ahead, and what is ``left`` then; None if it does not hold now."""
+    held = softest(march.model, stiffened(march.model, march.system, one, _RIGID))
+    if not held.curvature > 0.0:
+        return None
+    return Lost(
+        float(march.values[load] + way),
+        abs(way),
+        Loss.CONTACT,
+        one.pair.name,
+        held.curvature,
+        left.curvature,
+        potential_energy(march.model, march.system, march.values),
+        march.system,
+        left.direction,
+    )
 
 
 def _slipping_off(march: March, load: int, target: float, span: float) -> Lost | None:

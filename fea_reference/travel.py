@@ -100,7 +100,8 @@ def reach(march: March, course: Course, target: float) -> None:
         if len(march.left) > len(origin.left) and not march.minimum:
             raise StoppedError(Ending.NOT_A_MINIMUM, "")
     except StoppedError as looking:
-        met = met or march.left[len(origin.left) :]
+        # steps that look meet the first end, others may have gone over it
+        met = march.left[len(origin.left) :] or met
         if met:
             raise _first_met(march, origin, met) from None
         if looking.ending is Ending.BRANCH_ENDS:

@@ -115,3 +115,35 @@ def test_loose_penalties_do_not_lead_past_a_fold():
     (lost,) = answer.critical
     assert lost.loss is Loss.FOLD
     assert lost.value == pytest.approx(FOLDS, rel=0.001)
+
+
+# chains of 40, 80 and 160 links let go at 2.62714, 2.59212 and 2.58351 mm, by ratios of 4: at 2.5807 mm in the limit
+LETS_GO = 0.0025807
+
+
+def slender() -> Data:
+    """An arc with a rise of 1/180, of which the plane is let go while all that holds it is stiff."""
+    data = pressed(0.002343, 0.003515)
+    data["materials"]["abs"] = {"youngs_modulus": 2.07e11, "poisson_ratio": 0.29}
+    data["beams"]["beam"] |= {
+        "curve": {"kind": "arc", "direction": "counterclockwise", "start": [0.0, 0.0],
+                  "end": [0.0182938, 0.0222294], "center": [-0.49997700863687505, 0.43010086066206304]},
+        "thickness": 0.000166,
+        "width": 0.0042,
+        "end": {"joint": "weld", "point": "T"},
+    }  # fmt: skip
+    data["bodies"]["tip"] |= {"along": [0.6354, 0.7721], "points": {"T": [0.0182938, 0.0222294]}}
+    data["drives"]["press"]["direction"] = [-0.6354, -0.7721]
+    data["contacts"]["plane"] |= {"point": [0.0112758, 0.0093627], "normal": [-0.7721, 0.6354]}
+    return data
+
+
+def test_a_contact_that_no_step_follows_to_its_end_is_foreseen_to_let_go():
+    # what its penalty leaves folds just before
+    settings = fea_reference.Settings(elements=40, kinematics="bending")
+    answer = fea_reference.answer(scene_from(slender()), settings)
+    assert answer.ending is Ending.BRANCH_ENDS, answer.sentence
+    (lost,) = answer.critical
+    assert (lost.loss, lost.what) == (Loss.CONTACT, "plane")
+    assert lost.value == pytest.approx(LETS_GO, rel=1e-3)
+    assert lost.curvature > 0.0 > lost.left

@@ -142,3 +142,48 @@ def test_an_end_that_slips_in_a_long_step_is_told(solver):
         assert (critical.loss, critical.what) == (Loss.SLIP, "touch")
         ends.append(critical.value)
     assert ends[0] == pytest.approx(ends[1], rel=1e-4)
+
+
+def test_a_corner_that_lifts_off_far_from_the_end_that_presses_slips_off_nothing():
+    # a moment bends a cantilever over a circle: its end comes to lie on an edge, and lifts it off that edge's corner
+    scene = scene_from(
+        {
+            "name": "lifted",
+            "materials": {"titanium": {"youngs_modulus": 114e9, "poisson_ratio": 0.33}},
+            "bodies": {"wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}}},
+            "beams": {
+                "beam": {
+                    "curve": {"kind": "line", "start": [0.0, 0.0], "end": [0.0202147, -0.0411207]},
+                    "thickness": 0.000471,
+                    "width": 0.00727,
+                    "material": "titanium",
+                    "start": {"joint": "weld", "point": "R"},
+                    "end": {"joint": "free"},
+                }
+            },
+            "loads": {"moment": {"kind": "beam_moment", "beam": "beam", "at": 0.45}},
+            "contacts": {
+                "edge": {
+                    "kind": "beam-line",
+                    "beam": "beam",
+                    "body": "wall",
+                    "points": [[0.0022016, -0.0050788], [0.020347, -0.0483042]],
+                    "side": "left",
+                },
+                "circle": {
+                    "kind": "beam-circle",
+                    "beam": "beam",
+                    "body": "wall",
+                    "center": [0.0115869, -0.0299003],
+                    "radius": 0.00102,
+                },
+            },
+            "stages": [{"name": "bend", "steps": "moment", "stations": [-0.05374, -0.1075, -0.1612]}],
+            "probes": [{"of": "scene", "quantity": "potential_energy"}, {"of": "circle", "quantity": "force"}],
+        }
+    )
+    got, reference = (SOLVED[solver](scene) for solver in ("cprbm", "fea"))
+    assert got.completed, got.sentence
+    for mine, other in zip(got.stations, reference.stations, strict=True):
+        for probe in ("scene.potential_energy", "circle.force"):
+            assert mine.values[probe] == pytest.approx(other.values[probe], rel=5e-3)
