@@ -94,7 +94,7 @@ def drawn_turn(rng: Generator) -> float:
     kind = weighted(rng, (("tiny", 0.07), ("moderate", 0.2), ("large", 0.73)))
     if kind == "tiny":
         return spread(rng, 0.003, 0.1)
-    return between(rng, 0.15, 1.0) if kind == "moderate" else between(rng, 1.3, 2.5)
+    return between(rng, 0.15, 1.0) if kind == "moderate" else between(rng, 1.25, 2.0)
 
 
 def led(model: Estimate, state: State, action: Action, turn: float) -> list[State]:

@@ -35,7 +35,7 @@ def put_in_the_way(
     spots: list[Spot] = []
     barriers: list[Barrier] = []
     way, late = list(states), happens(rng, _LATE)
-    for i in range(weighted(rng, ((0, 0.07), (1, 0.45), (2, 0.3), (3, 0.12), (4, 0.06)))):
+    for i in range(weighted(rng, ((0, 0.03), (1, 0.45), (2, 0.34), (3, 0.12), (4, 0.06)))):
         name = f"contact{i + 1}"
         for _ in range(_TRIES):
             before = deepcopy(draft.data)

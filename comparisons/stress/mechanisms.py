@@ -117,5 +117,5 @@ MECHANISMS = (
     (bridge, 0.08),
     (parallel, 0.12),
     (series, 0.12),
-    (linked, 0.10),
+    (linked, 0.13),
 )

@@ -29,7 +29,7 @@ SLACK = 0.08  # of the size: by how much a beam between two held ends is bowed a
 TURNED = 1.15  # rad: a mechanism that has turned by so much meets what is late in its way
 ON = 0.01  # of the size: how far a beam would go on at least from where something is in its way
 _TRIES = 12
-_KINDS = (("circle", 0.3), ("half-plane", 0.16), ("line", 0.22), ("roof", 0.14), ("block", 0.12), ("function", 0.18))
+_KINDS = (("circle", 0.3), ("half-plane", 0.16), ("line", 0.28), ("roof", 0.14), ("block", 0.12), ("function", 0.18))
 
 
 @dataclass(frozen=True, slots=True)

@@ -51,7 +51,7 @@ def rolled(draft: Draft) -> None:
         "thickness": thickness if happens(rng, 0.3) else thin,
         "width": {"at": [0.0, 0.3, 0.9, 1.0], "values": widths},
     }
-    way = np.copysign(between(rng, 6.7, 7.6), drawn or sign(rng)) - drawn
+    way = np.copysign(between(rng, 7.0, 7.6), drawn or sign(rng)) - drawn
     draft.data["drives"] = {"roll": {"kind": "rotation", "body": "tip"}}
     draft.data["contacts"] = {"contact1": {"kind": "beam-self", "beam": "beam1"}}
     draft.data["stages"] = [{"name": "stage1", "steps": "roll", "stations": [rounded(float(way))]}]
@@ -161,7 +161,7 @@ def column(draft: Draft) -> None:
         side = draft.frame.direction((0.0, sign(rng)))
         loads["nudge"] = {"kind": "distributed", "beam": "beam1", "direction": [round(c, 3) for c in side]}
         stages.append({"name": "aside", "steps": "nudge", "stations": [rounded(spread(rng, 0.3, 1.5) * force / size)]})
-    walled = happens(rng, 0.8)
+    walled = happens(rng, 0.9)
     gap = between(rng, NEAREST_WALL if driven else 0.06, 0.3)
     if driven:
         draft.data["drives"] = {"press": {"kind": "displacement", "point": "T", "direction": back}}
@@ -192,7 +192,7 @@ def _walls(draft: Draft, gap: float, start: tuple[float, float], end: tuple[floa
     draft.data["contacts"] = contacts
 
 
-WHOLE = ((rolled, 0.065), (assembled, 0.08), (lying, 0.07), (column, 0.1))
+WHOLE = ((rolled, 0.065), (assembled, 0.06), (lying, 0.07), (column, 0.1))
 
 
 def _weld(point: str) -> Data:
