@@ -64,7 +64,9 @@ def descended(
     onward = float(np.sign(target - lost.value))
     beyond = _ASIDE if lost.loss is Loss.BIFURCATION else _BEYOND
     march.values[load] = lost.value + onward * min(beyond * span, abs(target - lost.value))
-    march.penalties = {pair: Penalty(pair.stiffness) for pair in march.penalties}
+    if lost.loss is not Loss.CONTACT:
+        # what lets go under tight penalties holds on under loose ones
+        march.penalties = {pair: Penalty(pair.stiffness) for pair in march.penalties}
     march.system = lost.system
     march.renew()
     size = float(np.abs(lost.direction[march.model.moving]).max())
