@@ -8,9 +8,9 @@ from tests.fea_reference.pressed_arc import pressed_arc
 
 
 def test_one_of_two_places_lets_go():
-    # reference: the chain, whose places have forces of their own, at 0.0161072, 0.0160716 and 0.0160627 with 80, 160 and
-    # 320 links, of second order.  The force of the one at a quarter of the beam's length goes to zero evenly, with 20.7 N
-    # left on the other; the curvature is 43.5 with it and -57.4 without
+    # reference: the chain, whose places have forces of their own, at 0.0161072, 0.0160716 and 0.0160627 with 80, 160
+    # and 320 links, of second order.  The force of the one at a quarter of the beam's length goes to zero evenly, with
+    # 20.7 N left on the other; the curvature is 43.5 with it and -57.4 without
     scene = pressed_arc(
         (1.37e9, 0.42),
         (1.7412332407491886, -0.9598791991770124),
