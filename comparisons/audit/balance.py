@@ -13,6 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from comparisons.audit.areas import AreaOfBeam
+from comparisons.audit.elements import SHEAR_FACTOR, ElementsOfBeam
 from comparisons.audit.links import Links
 from comparisons.audit.seen import Acting, AnyBeam, Seen
 from scene.statement import BeamContact, BeamMoment, SelfContact, WeldedEnd
@@ -80,8 +81,9 @@ def at_nodes(seen: Seen) -> Iterator[str]:
 def between_nodes(seen: Seen, name: str) -> tuple[float, float]:
     """What loads on a beam do between its nodes, of which an answer says nothing: energy, J, and moment, N·m, at most.
 
-    A force F yields by F h³/(192 E·I) at most where it acts, a moment M turns by M h/(3 E·I).  So much work is done
-    there, and so far from the line drawn here may the force act.
+    A force F yields by F h³/(192 E·I) at most where it acts, by F h/(4 EA) and F h/(4 GA) more in what stretches and
+    shears, and a moment M turns by M h/(3 E·I).  So much work is done there, and so far from the line drawn here may
+    the force act: as far again, as that leans by the mean of elements beside each other, and is as long as they say.
     """
     beam, acting, rest = seen.beams[name], seen.acting[name], seen.rests[name]
     e = beam.inside.borders
@@ -91,7 +93,12 @@ def between_nodes(seen: Seen, name: str) -> tuple[float, float]:
     np.add.at(forces, at, np.abs(acting.forces[loads]))
     np.add.at(moments, at, np.abs(acting.moments[loads]))
     h, EI = np.diff(e), np.minimum(rest.rigidity(e[:-1]), rest.rigidity(e[1:]))
-    given = float(np.sum(forces**2 * h**3 / (192.0 * EI)))
+    give = h**3 / (192.0 * EI)
+    if isinstance(beam, ElementsOfBeam) and beam.kinematics != "bending":
+        EA = 12.0 * EI / np.maximum(rest.thickness(e[:-1]), rest.thickness(e[1:])) ** 2
+        GA = SHEAR_FACTOR * EA / (2.0 * (1.0 + rest.nu)) if beam.kinematics == "shear" else np.inf
+        give = give + 2.0 * h / (4.0 * EA) + 2.0 * h / (4.0 * GA)
+    given = float(np.sum(forces**2 * give))
     return given + float(np.sum(moments**2 * h / (3.0 * EI))), given
 
 

@@ -222,6 +222,22 @@ def test_a_graph_over_y_is_looked_at_from_its_side(side, ahead):
     assert _surface(contact, np.array([0.41 + 0.2j])).distance == pytest.approx([0.11 * ahead])
 
 
+@pytest.mark.parametrize("kinematics", ["stretch", "shear"])
+@pytest.mark.parametrize("elements", [7, 40])
+def test_a_force_within_an_element_that_stretches_and_shears_is_sound(kinematics, elements):
+    data = cantilever_data({}, [])
+    load = {"kind": "beam_force", "beam": "beam", "at": 0.79, "direction": [0.987, 0.16]}
+    data["beams"]["beam"]["thickness"] = 0.08 * LENGTH
+    rigidity = MODULUS * WIDTH * (0.08 * LENGTH) ** 3 / 12.0
+    data["loads"], data["stages"] = {"pull": load}, [{"name": "pull", "steps": "pull", "stations": []}]
+    data["stages"][0]["stations"] = [times * rigidity / LENGTH**2 for times in (2.0, 9.0, 31.0)]
+    scene = scene_from(data)
+    settings = fea_reference.Settings(elements=elements, kinematics=kinematics)
+    found = fea_reference.answer(scene, settings)
+    assert found.completed, found.sentence
+    assert audited(scene, found) == ()
+
+
 @pytest.mark.parametrize("side", ["left", "right"])
 def test_behind_its_ends_a_line_has_sides(side):
     """By hand: what is rigid is half a strip, between -0.2 and 0.5 across, and goes on for ever behind the line."""
