@@ -42,7 +42,7 @@ def least_curvature(state: State) -> float:
     """Least curvature of the energy, without dimension; positive at a minimum.
 
     Raises:
-        LostError: the equations are singular.
+        LostError: the equations are singular, or places along a beam are in no order.
     """
     structure, spacing = _cut(state)
     equations = replace(state.equations, structure=structure)
@@ -52,14 +52,17 @@ def least_curvature(state: State) -> float:
     n = len(z)
     index = [*range(free), *(place for place, _ in found.turnings.values())]
     rows = [*range(n - free, n), *(row for _, row in found.turnings.values())]
-    root = np.sqrt(np.concatenate([np.ones(free), [spacing[key] for key in found.turnings]]))
+    weights = np.concatenate([np.ones(free), [spacing[key] for key in found.turnings]])
+    if not weights.min() >= 0.0:
+        raise LostError  # places have come past each other
+    root = np.sqrt(weights)
     forces = np.zeros((n, len(rows)))
     forces[rows, np.arange(len(rows))] = -root
     try:
         flexibility = root[:, None] * np.linalg.solve(J, forces)[index]
-    except np.linalg.LinAlgError as error:
+        eigenvalues = np.linalg.eigvalsh(0.5 * (flexibility + flexibility.T))
+    except np.linalg.LinAlgError as error:  # of what is all but singular eigenvalues are not found
         raise LostError from error
-    eigenvalues = np.linalg.eigvalsh(0.5 * (flexibility + flexibility.T))
     least, largest = float(eigenvalues[0]), float(eigenvalues[-1])
     return 1.0 / least if least < -_NOISE * abs(largest) else 1.0 / largest
 
