@@ -19,11 +19,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from comparisons.shared import NOTHING, exerted
 from scene import FreeEnd, Scene, StationAnswer
 from scene.answer import Inside
 from scene.statement import RigidContact
-
-NOTHING = 1e-3  # of a contact's largest force: where it hardly presses is no place of its
 
 
 def joint_beside(scene: Scene, stations: Iterable[StationAnswer], name: str) -> str | None:
@@ -35,10 +34,9 @@ def joint_beside(scene: Scene, stations: Iterable[StationAnswer], name: str) -> 
     for station in stations:
         if station.statics is None or not isinstance(inside := station.statics.inside[contact.beam], Inside):
             continue
-        of = station.statics
-        mine = np.array([by == name and on == contact.beam for by, on in zip(of.by, of.on, strict=True)], dtype=bool)
-        size = np.hypot(*of.forces[mine].T)
-        s = of.s[mine][size > NOTHING * size.max(initial=0.0)]
+        mine = exerted(station.statics, {name}, contact.beam)
+        size = np.hypot(*station.statics.forces[mine].T)
+        s = station.statics.s[mine][size > NOTHING * size.max(initial=0.0)]
         if not s.size:
             continue
         for end, near in ((beam.start, s <= inside.borders[1]), (beam.end, s >= inside.borders[-2])):

@@ -95,12 +95,10 @@ SAFETY = 1.25
 SHARE_OF_LARGEST = SAFETY - 1.0
 ROUND_OFF = 1e-12
 EXACT_TO = 1e-9
-_BESIDE_JOINTS = (
-    "force",
-    "centre",
-    "ends",
-)  # what of a contact elements do not resolve that are longer than its way to a joint
 """Share of a probe's scale below which a distance from the exact value says nothing."""
+
+BESIDE_JOINTS: frozenset[Quantity] = frozenset({"force", "centre", "ends"})
+"""What of a contact elements do not resolve that are longer than its way to a joint."""
 
 OPEN_AT_ZERO: frozenset[Quantity] = frozenset({"force", "moment"})
 """Quantities that are exactly zero while a contact is open, or no limit of a stop is reached."""
@@ -384,7 +382,7 @@ def _row(
         return row
     if shared:
         return _of_resultants(scene, runs, replace(row, shared=shared), stations, unsettled)
-    joint = joint_beside(scene, stations.values(), probe.of) if probe.quantity in _BESIDE_JOINTS else None
+    joint = joint_beside(scene, stations.values(), probe.of) if probe.quantity in BESIDE_JOINTS else None
     if joint is not None:
         beside = replace(row, shared=frozenset({joint}))
         if probe.quantity == "force":

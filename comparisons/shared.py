@@ -20,7 +20,7 @@ second condition is not asked, and ends of beams, which two sides of a corner ma
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
 from itertools import permutations
 
 import numpy as np
@@ -29,7 +29,7 @@ from comparisons.audit.gaps import Rigid, faced
 from comparisons.audit.rest import rests_of
 from comparisons.audit.seen import Seen, seen_of
 from scene import Answer, Scene, StationAnswer
-from scene.answer import Array
+from scene.answer import Array, Flags, Statics
 
 SAME = 2e-6  # of the longest beam: what the rounding of a drawing leaves between surfaces at one place
 ALIKE = 0.999  # cosine
@@ -60,9 +60,12 @@ def resultant(station: StationAnswer, contacts: frozenset[str], beam: str) -> Ar
     """Magnitude of the force (1,) with which contacts press a beam together, N; None where nothing says what acts."""
     if station.statics is None:
         return None
-    of = station.statics
-    mine = [by in contacts and on == beam for by, on in zip(of.by, of.on, strict=True)]
-    return np.array([np.hypot(*of.forces[np.array(mine, dtype=bool)].sum(axis=0))])
+    return np.array([np.hypot(*station.statics.forces[exerted(station.statics, contacts, beam)].sum(axis=0))])
+
+
+def exerted(statics: Statics, contacts: Set[str], beam: str) -> Flags:
+    """What of all that acts some ``contacts`` or joints exert on a beam, (k,)."""
+    return np.array([by in contacts and on == beam for by, on in zip(statics.by, statics.on, strict=True)], dtype=bool)
 
 
 def _candidates(scene: Scene) -> list[tuple[str, str]]:

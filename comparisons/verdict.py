@@ -199,8 +199,9 @@ def _with_joint(scene: Scene, row: Row) -> Row:
 
     Where an exact value says whose force is wrong, it does.
     """
-    unresolved = row.beside is not None and not any(each.pressure > 1.0 for each in every(row))
-    return row.beside if unresolved and row.beside is not None and _word(scene, row) is Word.DIFFER else row
+    if row.beside is None or any(each.pressure > 1.0 for each in every(row)):
+        return row
+    return row.beside if _word(scene, row) is Word.DIFFER else row
 
 
 def _word(scene: Scene, row: Row) -> Word | None:

@@ -8,7 +8,7 @@ x(ζ)    place on the neutral line, :mod:`fea_reference.hermite`; ψ its tangent
 ξ*      where the line's arc length from the element's first node is ξ L
 l, α    length and angle of an element's chord; n = (−sin α, cos α), t = (cos α, sin α)
 γ       angle of shear of the place's element, by which its line leans from the sections at both of its ends
-c, c_t   give of the place of a force across an element whose ends are held, and along it
+c, c_t  give of the place of a force across an element whose ends are held, and along it
 φ, σ    12 EI/(GA L²) and 1/(1 + φ), which by the slip c of :mod:`fea_reference.element` is 1 − c₁ − c₂
 m       speed of the place's cubic at both nodes, l (1 + (ψ₂ − ψ₁)²/16)
 W       Σ f_g·(x(ζ_g) − x⁰(ζ_g)), and of a force ½ c (f·n)² + ½ c_t (f·t)²
@@ -55,7 +55,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fea_reference.hermite import Index, NeutralLine, along, shape_slopes, shapes, twice_along
+from fea_reference.hermite import Index, NeutralLine, along, by_chord, shape_slopes, shapes, twice_along
 from fea_reference.leaning import Chain
 from fea_reference.model import BeamLoadPart, BeamMomentPart, Model, OnBeam
 from fea_reference.state import State
@@ -225,17 +225,16 @@ def _speed(line: NeutralLine, e: Index) -> tuple[Array, Array]:
     ends = np.zeros((_LINE, 1))
     ends[2], ends[5] = -1.0, 1.0
     both = stretch[:, None] * ends[None, :]
-    once = l * (1.0 + turned**2 / 16.0) * stretch + (l / 8.0 - L / 24.0) * turned * ends
-    twice = l * (1.0 + turned**2 / 16.0) * turn[:, None] * turn[None, :]
-    twice += l * turned / 8.0 * (both + both.transpose(1, 0, 2)) + (l / 8.0 - L / 24.0) * ends[:, None] * ends[None, :]
-    return once, twice
+    _, by_l, by_turned, by_both, by_turned_twice = by_chord(l, L, turned)
+    twice = by_l * l * turn[:, None] * turn[None, :] + by_both * l * (both + both.transpose(1, 0, 2))
+    return by_l * l * stretch + by_turned * ends, twice + by_turned_twice * ends[:, None] * ends[None, :]
 
 
 def _placed(model: Model, part: BeamLoadPart, z: State) -> _Placed:
     """A distributed load's places need no ξ*: what one half of an element gains the other loses."""
     beam = model.beams[part.beam]
-    e = np.minimum(part.zeta.astype(np.int64), beam.elements.stop - beam.elements.start - 1)
-    xi, local = part.zeta - e, 2 * np.arange(e.size)
+    e, xi = model.line(beam, z).locate(part.zeta)
+    local = 2 * np.arange(e.size)
     line = model.apart_at_nodes(beam, e, z)
     g = np.zeros_like(xi) if part.distributed else xi * (1.0 + xi * (2.0 * xi - 3.0)) / 48.0
     turned = line.angles[local + 1] - line.angles[local]
@@ -247,7 +246,7 @@ def _gives(model: Model, part: BeamLoadPart, placed: _Placed) -> tuple[Array, Ar
     beam, elements, xi = model.beams[part.beam], model.elements, placed.xi
     e = beam.elements.start + placed.e
     L, sigma = elements.length[e], 1.0 - elements.slip[:, e].sum(axis=0)
-    bending = beam.bending(part.zeta / (beam.elements.stop - beam.elements.start))
+    bending = beam.bending(part.zeta / model.line(beam, model.start).n)
     uv = xi * (1.0 - xi)
     across = L**3 * uv * (uv * (1.0 - sigma * (1.0 - 2.0 * xi) ** 2) + 1.0 / sigma - 1.0) / (12.0 * bending)
     return np.asarray(across), np.asarray(elements.compliance[e] * L * uv)

@@ -11,23 +11,14 @@ from __future__ import annotations
 import numpy as np
 
 from fea_reference.zones import Zones
-from scene.answer import Array, Flags, Ints
+from scene.answer import Flags, Ints
 
 _AT_END = 1e-6  # elements
 
 
-def cut_off(zones: Zones, last: int, ends: tuple[int, ...]) -> Flags:
-    """Which ends of intervals (k, 2) are across from those ``ends`` of the second beam, of ``last`` elements."""
-    across = np.zeros(zones.zeta_m.shape, dtype=bool)
-    for end in ends:
-        across |= np.abs(zones.zeta_m - end * last) <= _AT_END
-    return across
-
-
-def numbered(zones: Zones) -> Ints:
-    """The zone that each interval (k,) belongs to; intervals are in order."""
-    intervals = zones.intervals
-    return np.cumsum(np.append(False, intervals[1:, 0] > intervals[:-1, 1]))[: len(intervals)]
+def cut_off(zones: Zones, last: int) -> Flags:
+    """Which ends of intervals (k, 2) are across from an end of the second beam, of ``last`` elements."""
+    return np.minimum(zones.zeta_m, last - zones.zeta_m) <= _AT_END
 
 
 def shared_out(along_first: Zones, along_second: Zones, last: int, ends: tuple[int, ...]) -> tuple[Zones, Zones]:
@@ -37,7 +28,7 @@ def shared_out(along_first: Zones, along_second: Zones, last: int, ends: tuple[i
     end is nearer to the other's side, straight across from that, than the side is straight across from the end: the
     second's own zone is there before the first's.
     """
-    number, number_m = numbered(along_first), numbered(along_second)
+    number, number_m = along_first.numbers, along_second.numbers
     own = np.zeros(along_second.intervals.shape, dtype=bool)
     for end in ends:
         own |= np.abs(along_second.intervals - end * last) <= _AT_END
@@ -47,11 +38,16 @@ def shared_out(along_first: Zones, along_second: Zones, last: int, ends: tuple[i
         places = along_second.intervals[number_m == one]
         shared = (along_first.zeta_m.min(axis=1) <= places.max()) & (along_first.zeta_m.max(axis=1) >= places.min())
         handed |= np.isin(number, number[shared])
-    kept = Zones(along_first.intervals[~handed], along_first.zeta_m[~handed], along_first.least)
-    return kept, Zones(along_second.intervals[taken], along_second.zeta_m[taken], along_second.least)
+    return along_first.chosen(~handed), along_second.chosen(taken)
 
 
-def seen_from_first(along_second: Zones) -> tuple[Array, Array]:
-    """Intervals of the second beam's as those of the first that they face: ζ and ζ_m (k, 2) each."""
-    order = np.argsort(along_second.zeta_m, axis=1)
-    return np.take_along_axis(along_second.zeta_m, order, 1), np.take_along_axis(along_second.intervals, order, 1)
+def joined(along_first: Zones, along_second: Zones) -> tuple[Zones, Ints]:
+    """Zones seen along either beam as the first beam's, in order along it; and which of them (k,) these were."""
+    turn = np.argsort(along_second.zeta_m, axis=1)
+    both = (
+        (along_first.intervals, np.take_along_axis(along_second.zeta_m, turn, 1)),
+        (along_first.zeta_m, np.take_along_axis(along_second.intervals, turn, 1)),
+    )
+    intervals, zeta_m = (np.concatenate(each) for each in both)
+    order = np.argsort(intervals[:, 0])
+    return Zones(intervals[order], zeta_m[order], min(along_first.least, along_second.least)), order

@@ -47,7 +47,7 @@ from typing import Literal
 
 import numpy as np
 
-from fea_reference.carrying import cut_off, numbered, seen_from_first, shared_out
+from fea_reference.carrying import cut_off, joined, shared_out
 from fea_reference.edge import edge_of
 from fea_reference.facing import Borders, Tapers, borders, lean
 from fea_reference.hermite import NeutralLine, along, apart, plane, shape_slopes, shapes, twice_along
@@ -64,6 +64,7 @@ from fea_reference.zones import (
     ends_over,
     gap,
     nodes_apart,
+    none,
     one_side,
     out_of_reach,
     overlap,
@@ -256,31 +257,26 @@ def touch(model: Model, pair: Pair, penalty: Penalty, quadrature: int, z: State,
     distance = pair.distance + penalty.lead
     least = _seen(model, pair, z, distance).least
     level = 0.0 if held is None else least + held
-    first = _overlap(model, pair, z, distance, level)
-    zones_m: Zones | None = None
+    zones, zones_m = _overlap(model, pair, z, distance, level), none(np.inf)
     if pair.carried:
-        line_m = model.line(model.beams[pair.second], z)
-        first, second = shared_out(first, _overlap(model, pair.about(), z, distance, level), line_m.n, pair.carried)
-        if second.intervals.size:
-            zones_m, least = second, min(least, second.least)
-    here = _along(model, pair, distance, quadrature, z, first)
-    missing, lacks = _missing(model, pair, penalty, z, first, here)
-    intervals, zeta_m = first.intervals, first.zeta_m
-    if zones_m is not None:
-        there = _along(model, pair.about(), distance, quadrature, z, zones_m)
-        more, most = _missing(model, pair.about(), penalty, z, zones_m, there)
+        along_second = _overlap(model, pair.about(), z, distance, level)
+        zones, zones_m = shared_out(zones, along_second, model.line(model.beams[pair.second], z).n, pair.carried)
+    here = _along(model, pair, distance, quadrature, z, zones)
+    missing, lacks = _missing(model, pair, penalty, z, zones, here)
+    if zones_m.intervals.size:
+        about = pair.about()
+        there = _along(model, about, distance, quadrature, z, zones_m)
+        more, most = _missing(model, about, penalty, z, zones_m, there)
         missing, lacks = missing + more, max(lacks, most)
-        intervals_m, facing_m = seen_from_first(zones_m)
-        intervals, zeta_m = np.concatenate([intervals, intervals_m]), np.concatenate([zeta_m, facing_m])
-        order = np.argsort(intervals[:, 0])
-        intervals, zeta_m = intervals[order], zeta_m[order]
+        least = min(least, _seen(model, about, z, distance).least)
+        zones, order = joined(zones, zones_m)
         here = here.with_other(there, (order[:, None] * quadrature + np.arange(quadrature)).ravel())
 
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
     alike = together(quadrature, here.e, here.e_m)
     return Touch(
         pair=pair,
-        zones=Zones(intervals, zeta_m, least + penalty.lead),
+        zones=replace(zones, least=least + penalty.lead),
         chain=model.chain(((beam, here.e[::alike]), (beam_m, here.e_m[::alike])), z),
         alike=alike,
         stiffness=penalty.stiffness * here.ds,
@@ -398,14 +394,13 @@ def resting_pressure(model: Model, touch: Touch, pair: Pair, z: State) -> float:
         return 0.0
     beam, beam_m = model.beams[pair.first], model.beams[pair.second]
     line, line_m = model.line(beam, z), model.line(beam_m, z)
-    along = np.argsort(touch.zones.intervals[:, 0])  # laps of one beam follow each other in no order
-    intervals = touch.zones.intervals[along]
-    zone = np.cumsum(np.append(False, intervals[1:, 0] > intervals[:-1, 1]))
+    zones = touch.zones.chosen(np.argsort(touch.zones.intervals[:, 0]))  # laps of a beam follow each other in no order
+    intervals, zone = zones.intervals, zones.numbers
     at_end = np.array([intervals[0, 0] <= _AT_END, intervals[-1, 1] >= line.n - _AT_END])
     widths = [np.ptp(intervals[zone == one]) for one in (zone[[0, -1]][at_end] if at_end.any() else np.unique(zone))]
     if min(widths) < _LYING:
         return 0.0
-    middle, middle_m = intervals.mean(axis=1), touch.zones.zeta_m[along].mean(axis=1)
+    middle, middle_m = intervals.mean(axis=1), zones.zeta_m.mean(axis=1)
     e = line.locate(middle)[0] + beam.elements.start
     e_m = line_m.locate(middle_m)[0] + beam_m.elements.start
     x_m, speed, bent = line_m.at(middle_m)
@@ -428,7 +423,7 @@ def _missing(model: Model, pair: Pair, penalty: Penalty, z: State, zones: Zones,
     if pair.ended:
         return 0.0, 0.0
     first, second = (model.line(model.beams[i], z) for i in (pair.first, pair.second))
-    across = cut_off(zones, second.n, (0, 1))
+    across = cut_off(zones, second.n)
     if not across.any():
         return 0.0, 0.0
     zeta, zeta_m = zones.intervals[across], zones.zeta_m[across]
@@ -442,7 +437,7 @@ def _missing(model: Model, pair: Pair, penalty: Penalty, z: State, zones: Zones,
     g = np.minimum(side * d - pair.apart(zeta, zeta_m) - penalty.lead, 0.0)
     ahead = np.abs((back * there.ahead).real) / first.lengths[there.element]
     left_out = 0.5 * penalty.stiffness * g**2 / np.maximum(ahead, 1e-3)
-    number = numbered(zones)
+    number = zones.numbers
     each = (-penalty.stiffness * found.ds * found.g).reshape(len(number), -1).sum(axis=1)
     pushes = np.abs(np.bincount(number, each))
     missing = np.bincount(number[np.nonzero(across)[0]], left_out, minlength=pushes.size)

@@ -252,12 +252,17 @@ def _let_go(march: March, load: int, one: Touch, way: float, left: Mode) -> Lost
     held = softest(march.model, stiffened(march.model, march.system, one, _RIGID))
     if not held.curvature > 0.0:
         return None
+    return _ahead(march, load, way, Loss.CONTACT, one, held.curvature, left)
+
+
+def _ahead(march: March, load: int, way: float, loss: Loss, one: Touch, held: float, left: Mode) -> Lost:
+    """The end a ``way`` ahead of now at which one contact, with which the curvature is what is ``held``, is lost."""
     return Lost(
         float(march.values[load] + way),
         abs(way),
-        Loss.CONTACT,
+        loss,
         one.pair.name,
-        held.curvature,
+        held,
         left.curvature,
         potential_energy(march.model, march.system, march.values),
         march.system,
@@ -295,17 +300,7 @@ def _slipping_off(march: March, load: int, target: float, span: float) -> Lost |
         if abs(way) > _FORESEEN * span:
             break
         left = softest(march.model, _without(march, one))
-        return Lost(
-            float(march.values[load] + way),
-            abs(way),
-            Loss.SLIP,
-            one.pair.name,
-            march.curvature,
-            left.curvature,
-            potential_energy(march.model, march.system, march.values),
-            march.system,
-            left.direction,
-        )
+        return _ahead(march, load, way, Loss.SLIP, one, march.curvature, left)
     march.restore(saved)
     return None
 

@@ -130,6 +130,15 @@ def apart(first: NeutralLine, at: Around, second: NeutralLine, at_m: Around) -> 
     return np.asarray(nodes + (at.way - at_m.way))
 
 
+def by_chord(l: Array, L: Array, turned: Array) -> tuple[Array, Array, Array, Array, Array]:  # noqa: E741 - the chord's length
+    """By how much l (1 + t²/16), the speed of a chord l that turns by t, is more than L (1 + t²/48) without stretch.
+
+    That (k,), and its derivatives by l, by t, by both, and twice by t.
+    """
+    by_l, rest = 1.0 + turned**2 / 16.0, l / 8.0 - L / 24.0
+    return l * by_l - L * (1.0 + turned**2 / (2.0 * _ARC)), by_l, rest * turned, turned / 8.0, rest
+
+
 def shapes(xi: Array) -> Array:
     """H at ``xi`` (k,), (4, k)."""
     return np.array(

@@ -20,7 +20,7 @@ from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLi
 from fea_reference.acting import Acting
 from fea_reference.curves import length, sample
 from fea_reference.element import ElementForces, Elements, Shear, forces, reference, shear, shear_angle
-from fea_reference.hermite import Index, NeutralLine
+from fea_reference.hermite import Index, NeutralLine, by_chord
 from fea_reference.known import Known
 from fea_reference.leaning import Chain, Span, chain, own_chain, sheared_chain, tangent_angles
 from fea_reference.own_pins import own_pins
@@ -277,7 +277,7 @@ class Model:
     moving: Index
     patterns: Patterns = field(repr=False)
     bends: Known[None, ElementForces] = field(default_factory=Known, repr=False)
-    lines: Known[str, NeutralLine] = field(default_factory=Known, repr=False)
+    lines: Known[str | tuple[str, bytes], NeutralLine] = field(default_factory=Known, repr=False)
     discs: Known[str, tuple[Complex, Array]] = field(default_factory=Known, repr=False)
     distances: Known[Contact, tuple[Complex, Array]] = field(default_factory=Known, repr=False)
     surveys: Known[tuple[Contact, float], Survey] = field(default_factory=Known, repr=False)
@@ -334,13 +334,15 @@ class Model:
         They are the elements 0, 2, ... 2 k − 2 of a line; what lies between says nothing.  In place of an axial force a
         line goes by what its speed l (1 + (ψ₂ − ψ₁)²/16) is more than one without stretch.
         """
+        return self.lines.found(z, (beam.name, e.tobytes()), lambda: self._apart(beam, e, z))
+
+    def _apart(self, beam: BeamPart, e: Index, z: State) -> NeutralLine:
         nodes = np.stack([e, e + 1], axis=1).ravel()
         dofs = self.node_dofs[:, beam.nodes][:, nodes]
         gamma = shear_angle(self.elements, beam.elements, self.element_dofs[:, beam.elements], z)[e]
         angles, lengths = z[dofs[2]] + np.repeat(gamma, 2), np.repeat(self.elements.length[beam.elements][e], 2)[:-1]
         dx, dy = z.difference(dofs[:2, 1:], dofs[:2, :-1])
-        turned = np.diff(angles)
-        more = np.hypot(dx, dy) * (1.0 + turned**2 / 16.0) - lengths * (1.0 + turned**2 / 48.0)
+        more, *_ = by_chord(np.hypot(dx, dy), lengths, np.diff(angles))
         return NeutralLine.through(z[dofs[:2]], angles, lengths, z.rest[dofs[:2]], 1.0 / lengths, more)
 
     def chain_apart(self, beam: BeamPart, e: Index, z: State) -> Chain:

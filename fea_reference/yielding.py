@@ -51,7 +51,7 @@ def in_points(one: Touch) -> bool:
     if not one.closed or _beside_joint(one):
         return False
     first, last = one.zones.intervals.T
-    begins = np.append(True, first[1:] > last[:-1])
+    begins = one.zones.begins
     ends = np.append(begins[1:], True)
     return bool((last[ends] - first[begins]).max() < POINT)
 

@@ -131,6 +131,20 @@ class Zones:
     zeta_m: Array
     least: float
 
+    @property
+    def begins(self) -> NDArray[np.bool_]:
+        """Which intervals (k,) are the first of a zone: those that the one before does not reach."""
+        return np.append(True, self.intervals[1:, 0] > self.intervals[:-1, 1])[: len(self.intervals)]
+
+    @property
+    def numbers(self) -> NDArray[np.int64]:
+        """The zone that each interval belongs to, (k,)."""
+        return np.cumsum(self.begins) - 1
+
+    def chosen(self, which: NDArray[np.bool_] | NDArray[np.int64]) -> Zones:
+        """Some of the intervals only, or in another order."""
+        return Zones(self.intervals[which], self.zeta_m[which], self.least)
+
 
 def gap(
     first: NeutralLine,

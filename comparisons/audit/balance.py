@@ -97,7 +97,7 @@ def between_nodes(seen: Seen, name: str) -> tuple[float, float]:
     if isinstance(beam, ElementsOfBeam) and beam.kinematics != "bending":
         EA = 12.0 * EI / np.maximum(rest.thickness(e[:-1]), rest.thickness(e[1:])) ** 2
         GA = SHEAR_FACTOR * EA / (2.0 * (1.0 + rest.nu)) if beam.kinematics == "shear" else np.inf
-        give = give + 2.0 * h / (4.0 * EA) + 2.0 * h / (4.0 * GA)
+        give = give + h / (2.0 * EA) + h / (2.0 * GA)
     given = float(np.sum(forces**2 * give))
     return given + float(np.sum(moments**2 * h / (3.0 * EI))), given
 
