@@ -93,10 +93,6 @@ class NeutralLine:
         bent = b + last
         return Around(e, xi * (t + xi * bent), t + xi * (bent + bent + last), 2.0 * bent + 4.0 * last)
 
-    def from_node(self, zeta: Array) -> Array:
-        """From the first node of each place's element to the place, (2, k)."""
-        return plane(self.around(zeta).way)
-
     def at(self, zeta: Array) -> tuple[Array, Array, Array]:
         """Position, first and second derivative by ζ, each (2, k)."""
         there = self.around(zeta)
