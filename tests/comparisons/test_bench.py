@@ -119,11 +119,18 @@ def test_one_size_has_no_exponent(bent):
 
 
 def test_runs_are_interleaved_after_one_that_does_not_count(bent):
-    clock = Clock(bent, auto=power(1.0), fea=power(1.0))
-    clock.benchmark(sizes=(40, 80), repeat=2)
-    again = [("auto", 80), ("fea", 80)]
-    once = [("auto", 40), ("fea", 40), *again]
-    assert clock.calls == [("auto", 40), ("auto", 40), ("fea", 40), ("fea", 40), *again, *once]
+    slow = lambda n: (1.0, n / 400.0, 5, "COMPLETED", 0.0)  # noqa: E731
+    clock = Clock(bent, auto=slow, fea=slow)
+    clock.benchmark(sizes=(400, 800), repeat=2, at_most=9.0)
+    again = [("auto", 800), ("fea", 800)]
+    once = [("auto", 400), ("fea", 400), *again]
+    assert clock.calls == [("auto", 400), ("auto", 400), ("fea", 400), ("fea", 400), *again, *once]
+
+
+def test_a_run_of_less_than_a_second_counts_when_it_is_made_a_second_time_in_a_row(bent):
+    times = iter([0.9, 0.7, 0.2, 0.9, 0.3, 0.8, 0.4, 3.0])  # the first warms up; of two each the second counts
+    found = Clock(bent, auto=lambda n: (0.0, next(times), 5, "COMPLETED", 0.0)).benchmark(sizes=(40,), repeat=4)
+    assert found.timings[0].solves == pytest.approx((0.2, 0.3, 0.4, 3.0))
 
 
 def test_median_and_quartiles(bent):
@@ -408,7 +415,7 @@ def test_an_interrupted_bench_keeps_what_was_finished(right, capsys, tmp_path):
 
     def interrupted(scene, choices):
         calls.append(choices.elements)
-        if len(calls) == 3:
+        if len(calls) == 4:  # behind one that warms up and the two of 40
             raise KeyboardInterrupt
         return right.fea(scene, choices)
 
