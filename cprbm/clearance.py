@@ -29,7 +29,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cprbm import circle, edge, nearest
+from cprbm import circle, closest, edge
 from cprbm.faces import Face, faces_of
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
@@ -244,7 +244,7 @@ def clearances_of(scene: Scene, model: Model) -> Clearances:
         bodies[i] = model.marks[name].body if name in model.marks else -1
         if isinstance(contact, BeamContact):
             pairs.append(i)
-            reach[i] = half[i] + nearest.reach(*mine)
+            reach[i] = half[i] + closest.reach(*mine)
         elif isinstance(contact, CircleContact):
             circles.append(i)
             reach[i] = half[i] + circle.reach(mine[0], contact.radius / model.unit_length)

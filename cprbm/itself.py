@@ -29,24 +29,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from cprbm.closest import REACH, SAME, STRAIGHT, held_together, minima, places_along
 from cprbm.contact import Blocks, Group
 from cprbm.crossing import own_crossings
+from cprbm.feet import Lines, feet_near, feet_of_ridges
 from cprbm.gathering import gathered
 from cprbm.kinematics import Positions, State
 from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
-from cprbm.nearest import (
-    ARCHING,
-    REACH,
-    SAME,
-    STRAIGHT,
-    Lines,
-    Pair,
-    feet_near,
-    feet_of_ridges,
-    held_together,
-    minima,
-    places_along,
-)
+from cprbm.nearest import ARCHING, Pair
 from cprbm.pairs import Pressed
 from cprbm.strands import NO_FACES, QUARTER, Faces, Strand, facing_samples, in_coil, sides, strands, turned_enough
 from scene import Scene, SelfContact

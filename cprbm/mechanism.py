@@ -17,13 +17,14 @@ from cprbm.contact import Formulation, Group, Rows
 from cprbm.corner import stands_out
 from cprbm.edge import Edge, edge_of
 from cprbm.energy import dead_loads, end_moments
+from cprbm.feet import distance_along
 from cprbm.hinging import hinges_of
 from cprbm.holding import holds_of
 from cprbm.itself import Itself, itself_of
 from cprbm.kinematics import Positions, State, most_turned, positions_of
 from cprbm.made import Made
 from cprbm.model import EVEN, Fit, Model, build
-from cprbm.nearest import Pair, distance_along, pair_of
+from cprbm.nearest import Pair, pair_of
 from cprbm.overlap import may_be_beyond, never_beyond
 from cprbm.point import Point, Problem
 from cprbm.related import related_joints

@@ -47,11 +47,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cprbm import leaning, smooth, wells
+from cprbm import leaning, smooth
 from cprbm.both import Both, Made, made
 from cprbm.brought import as_drawn
+from cprbm.closest import SAME, Places, closest_places, minima, not_gone_round, sampled_distances
 from cprbm.contact import Group
-from cprbm.crossing import cross
+from cprbm.feet import CLOSE, Lines, distance_along, distance_of, feet_from, feet_of_ridges, seen_from
 from cprbm.gathering import Touches, gathered, single
 from cprbm.kinematics import Positions, State
 from cprbm.kinks import kinked, missed
@@ -62,60 +63,11 @@ from cprbm.pairs import Pressed
 from scene import BeamContact, Scene
 from scene.answer import Array, Flags, Ints
 
-FOOT_ITERATIONS = 8
-CORNER_ITERATIONS = 40  # where edges have corners that stand out, at each of which a step ends
-NO_RIDGES = np.zeros(0)
-CLOSE = 1e-10  # units of length: a step after which a place is known to round-off
-LAST = 0.1  # of that: what the next step would be, shorter by as much again as the last was, where none is taken
-CLOSEST_ITERATIONS = 50
-PATIENCE = 4  # iterations of Newton's method, after which a minimum may be sought where B has ended
-LIPSCHITZ = 1.2  # a way along B's tangent over the arc length of A that makes it, with something to spare
-LEAST_CURVATURE = 1e-3  # of D, 1/ℓ: elements that end elsewhere on either beam leave as much in a zone
-REACH = 0.1  # minima and ends with gaps wider than this part of the longest beam are no constraints yet
 ARCHING = 1.0  # of what the largest force bends one element by: unlike elements of two beams arch by as much
-JOINT_REACH = 2.0  # joints with gaps wider than this many h²·(|ψ_A'| + |ψ_B'| + 1/ℓ) are none
-PARALLEL = 1e-3  # a foot whose perpendicular misses by more (sine) is an end, not a foot
-SAME = 1e-3  # lengths that differ by less than this part are one
-SETTLED = 1e-9  # slope of D at a minimum
-STEEP = 1e-3  # slope of D where there is no minimum within CLOSE
-BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces A leaves its place to that
-
 DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even
-
 STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
-MANY = 27_000  # distances of samples, up to which all are looked at sooner than a tree is made
-STRAIGHT = 0.1  # of an element: by less a line is off the chords between its samples
 GAUSS = np.polynomial.legendre.leggauss(3)
 POINTS, WEIGHTS = 0.5 * (GAUSS[0] + 1.0), 0.25 * GAUSS[1]  # of the mean on either side of a border of B, half of it all
-
-Lines = tuple[smooth.SmoothLine, smooth.SmoothLine]
-
-
-@dataclass(frozen=True, slots=True)
-class Places:
-    """Where rows stand on one beam, and their feet on the other.
-
-    Attributes:
-        s, sigma: arc lengths on the one beam and on the other (k,).
-        keys: of the rows (k,): a joint's number on A, beyond those the ends of B, clamps, and places that are fixed;
-            negative where s moves.
-    """
-
-    s: Array
-    sigma: Array
-    keys: Ints
-
-    def joined(self, more: Places) -> Places:
-        """With others."""
-        return Places(
-            np.concatenate((self.s, more.s)),
-            np.concatenate((self.sigma, more.sigma)),
-            np.concatenate((self.keys, more.keys)),
-        )
-
-    def only(self, these: Flags) -> Places:
-        """Some of the places."""
-        return Places(self.s[these], self.sigma[these], self.keys[these])
 
 
 @dataclass(frozen=True)
@@ -204,7 +156,7 @@ class Pair:
 
     def facing(self, A: smooth.Points, B: smooth.Points) -> smooth.Points:
         """Points of B with the tangents of the edge that faces A."""
-        return leaning.facing(self.b, B, self.side, *_seen_from(B, A)) if self.tapered else B
+        return leaning.facing(self.b, B, self.side, *seen_from(B, A)) if self.tapered else B
 
     def beside(self, A: smooth.Points, B: smooth.Points) -> smooth.Points:
         """Points of A with the tangents of the edge that faces B."""
@@ -307,7 +259,7 @@ class Pair:
         """D along A and at the ends of B, infinite where there is no foot, ``gone`` where that is round an end."""
         known, what = lines[0].known, (self.name, "distances")
         if what not in known:
-            sampled = _sampled(self, lines)
+            sampled = sampled_distances(self, lines)
             ridges = feet_of_ridges(self, lines, *sampled)[0]
             s = np.concatenate((self.a.halves, minima(self, lines, *sampled)[0], ridges))
             ends = self.b.s[[0, -1]]
@@ -344,7 +296,7 @@ class Pair:
         """Points of A at arc lengths ``s`` and their feet on B."""
         lines = self.lines(state, at)
         A = self.on_a(lines, s)
-        return A, self.on_b(lines, _distance_of(self, lines, A)[1])
+        return A, self.on_b(lines, distance_of(self, lines, A)[1])
 
     def groups(self, state: State, at: Positions) -> tuple[Group, ...]:
         """The constraints at a state, with exact derivatives."""
@@ -434,7 +386,7 @@ class Pair:
         A, B = self.on_both(lines, s, sigma)
         if self.tapered:
             B = self.facing(A, B)
-        ratio = (B.pace - B.bend * _seen_from(B, A)[1]) / (np.cos(A.psi - B.psi) * A.speed)  # ds/dσ
+        ratio = (B.pace - B.bend * seen_from(B, A)[1]) / (np.cos(A.psi - B.psi) * A.speed)  # ds/dσ
         borders = self.b.borders
         after = np.minimum(np.maximum(borders.searchsorted(sigma), 1), self.b.n)
         # the length on A in steps, so that it does not change with the state where it is differentiated
@@ -451,7 +403,7 @@ class Pair:
         weights = np.concatenate(((1.0 + share) * WEIGHTS, (1.0 - share) * WEIGHTS), axis=1)
         at_A = s[:, None] + off
         guess = (sigma[:, None] + off / ratio[:, None]).ravel()
-        at_B = _feet_from(self, lines, *self.on_both(lines, at_A.ravel(), guess), CLOSE)[1].reshape(at_A.shape)
+        at_B = feet_from(self, lines, *self.on_both(lines, at_A.ravel(), guess), CLOSE)[1].reshape(at_A.shape)
         # beside an end of B, where it faces no element of B, the joint alone
         alone = (at_B <= 0.0) | (at_B >= self.b.s[-1])
         if alone.any():
@@ -543,321 +495,6 @@ def _between(slopes: Array) -> Array:
 def _beside_any(corners: Array, sigma: Array, size: Array) -> Flags:
     """Which places ``sigma`` (k,) lie within a ``size`` (k,) of one of the ``corners`` (j,)."""
     return np.asarray(np.any(np.abs(sigma[:, None] - corners) <= size[:, None], axis=1))
-
-
-def distance_along(pair: Pair, lines: Lines, s: Array) -> tuple[Array, Array, Flags]:
-    """Signed distance D of A from B at arc lengths ``s``: D, σ (k,), and whether a foot exists (k,)."""
-    return _distance_of(pair, lines, pair.on_a(lines, s))
-
-
-def _distance_of(pair: Pair, lines: Lines, A: smooth.Points) -> tuple[Array, Array, Flags]:
-    """The same of points of A (k,)."""
-    nearest = nearest_samples(lines[1].sampled, A, np.inf)[1]
-    return _feet_from(pair, lines, A, pair.samples(lines)[1].only(nearest), CLOSE)[:3]
-
-
-def past_foot(pair: Pair, lines: Lines, s: Array, sigma: Array) -> Array:
-    """How far beyond their feet σ (k,) points of A at arc lengths ``s`` (k,) lie along B: nothing but at its ends."""
-    A = pair.on_a(lines, s)
-    return _seen_from(pair.foot(lines, A, sigma), A)[0]
-
-
-def feet_near(
-    pair: Pair, lines: Lines, A: smooth.Points, sigma: Array, close: float = CLOSE
-) -> tuple[Array, Array, Flags]:
-    """D, σ and whether there is a foot, by Newton's method on (i) from the guess ``sigma`` to steps as ``close``."""
-    return _feet_from(pair, lines, A, pair.on_b(lines, sigma), close)[:3]
-
-
-def _feet_from(
-    pair: Pair, lines: Lines, A: smooth.Points, B: smooth.Points, close: float
-) -> tuple[Array, Array, Flags, smooth.Points]:
-    """The same from points of B (k,), and the points of B to which D belongs."""
-    sigma, h, end, last = B.s, pair.b.h, pair.b.s[-1], 0.0
-    ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
-    for iteration in range(FOOT_ITERATIONS if not ridges.size else CORNER_ITERATIONS):
-        B = pair.on_b(lines, sigma) if iteration else B
-        B = pair.facing(A, B) if pair.tapered else B
-        along, across = _seen_from(B, A)
-        # along the circle of curvature, where that is round the foot
-        left = along / np.maximum(B.pace - B.bend * across, 0.2)
-        turn = B.bend * left
-        step = left / (1.0 + turn * turn / 3.0)
-        before = sigma
-        sigma = np.minimum(np.maximum(before + np.minimum(np.maximum(step, -h), h), 0.0), end)
-        if ridges.size:
-            sigma = _up_to(ridges, before, sigma)
-        moved = float(np.maximum.reduce(np.abs(sigma - before)))
-        if moved < close or (not ridges.size and moved * moved < LAST * close * last):
-            break
-        last = moved
-    foot = np.abs(along) <= PARALLEL * np.maximum(np.abs(across), pair.b.h)
-    return pair.side * across - (pair.wider(A.s, sigma) if pair.tapered else 0.0), sigma, foot, B
-
-
-def _up_to(ridges: Array, before: Array, after: Array) -> Array:
-    """Places ``after`` (k,), but the first of the ``ridges`` (j,) where one lies between them and those ``before``."""
-    fenced = np.concatenate(([-np.inf], ridges, [np.inf]))
-    low = fenced[np.searchsorted(ridges, before, side="left")]
-    high = fenced[np.searchsorted(ridges, before, side="right") + 1]
-    return np.minimum(np.maximum(after, low), high)
-
-
-def _seen_from(B: smooth.Points, A: smooth.Points) -> tuple[Array, Array]:
-    """t·r and n·r of points of A in the frames of points of B, (k,) each."""
-    rx, ry = A.x - B.x, A.y - B.y
-    cos, sin = np.cos(B.psi), np.sin(B.psi)
-    return cos * rx + sin * ry, cos * ry - sin * rx
-
-
-def closest_places(pair: Pair, lines: Lines) -> tuple[Places, Places]:
-    """Where rows stand on A, and on B with the beams' parts exchanged."""
-    ends = _facing_ends(pair, lines)
-    return places_along(pair, lines, *_sampled(pair, lines), ends.sigma), ends
-
-
-def places_along(pair: Pair, lines: Lines, D: Array, sigma: Array, ends: Array) -> Places:
-    """Where rows stand on A, from D and the feet at its samples (2N+3,), and from where ``ends`` of B face it."""
-    a, b, reach = pair.a, pair.b, pair.offset + REACH
-    if pair.fixed:
-        s = pair.kinks[0].places
-        turned = distance_along(pair, lines, s)[1]
-    else:
-        s, turned = minima(pair, lines, D, sigma)
-
-    near = np.zeros(a.n + 2, dtype=bool)
-    facing = np.isfinite(D[::2]).nonzero()[0]
-    if facing.size:
-        A, B = _faced(pair, lines, D, sigma, facing)
-        bends = np.abs(A.bend) + np.abs(B.bend)
-        near[facing] = D[2 * facing] - pair.offset < JOINT_REACH * a.h**2 * (1.0 + bends)
-    for places, apart in ((s, wells.BESIDE), (ends, BESIDE_END)):
-        if places.size:
-            away = np.abs(a.s[1:-1, None] - places)
-            near[1:-1] &= (away > apart * a.size_at(places)).all(axis=1)
-    for end in (0, -1):
-        near[end] = reach > D[end] and not held_together(a, b, end, float(sigma[end]))
-    joints = near.nonzero()[0]
-    own = a.n + 6 + np.arange(len(s)) if pair.fixed else np.zeros(len(s), dtype=np.intp) - 1
-    keys = np.concatenate((joints, own))
-    found = Places(np.concatenate((a.s[joints], s)), np.concatenate((sigma[2 * joints], turned)), keys)
-    return found.joined(_corners(pair, lines, D, sigma)) if pair.tapered and a.section.ridges.size else found
-
-
-def _corners(pair: Pair, lines: Lines, D: Array, sigma: Array) -> Places:
-    """Where corners of A's edge stand out within reach, unless a joint has a row there, and their feet on B."""
-    a = pair.a
-    s, E, feet, number = feet_of_ridges(pair, lines, D, sigma)
-    near = (pair.offset + REACH > E) & (np.min(np.abs(s[:, None] - a.s), axis=1) > SAME * a.h)
-    # behind the keys of places that are fixed
-    return Places(s[near], feet[near], a.n + 6 + len(pair.kinks[0].places) + number[near])
-
-
-def feet_of_ridges(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array, Array, Ints]:
-    """Corners of A's edge that stand out and face B: s, D, σ and which they are (k,), from D and σ at A's samples."""
-    ridges, known = pair.a.section.ridges if pair.tapered else NO_RIDGES, np.isfinite(D)
-    samples = pair.a.halves
-    behind = np.searchsorted(samples, ridges)
-    number = np.flatnonzero(known[behind - 1] & known[behind])
-    if not number.size:
-        return NO_RIDGES, NO_RIDGES, NO_RIDGES, number
-    s = ridges[number]
-    E, feet, foot = feet_near(pair, lines, pair.on_a(lines, s), np.interp(s, samples[known], sigma[known]))
-    return s[foot], E[foot], feet[foot], number[foot]
-
-
-def _facing_ends(pair: Pair, lines: Lines) -> Places:
-    """The ends of B that face A within reach, and their feet on A; the keys follow A's joints."""
-    a, b, reach = pair.a, pair.b, pair.offset + REACH
-    (A, B), ends = pair.samples(lines), b.s[[0, -1]]
-    away = np.hypot(A.x - B.x[[0, -1], None], A.y - B.y[[0, -1], None])
-    nearest = away.argmin(axis=1)
-    near = (away[[0, 1], nearest] < reach + a.h).nonzero()[0]
-    if near.size and not pair.tapered:
-        # what is beyond an end of A has its foot there
-        beyond = _seen_from(A.only(nearest[near]), B.only(near * (2 * b.n + 2)))[0]
-        first, last = nearest[near] == 0, nearest[near] == len(A.s) - 1
-        near = near[~((first & (beyond <= 0.0)) | (last & (beyond >= 0.0)))]
-    if not near.size:
-        return Places(np.zeros(0), np.zeros(0), near)
-    turned = pair.exchanged()
-    at_B = B.only(near * (2 * b.n + 2))
-    E, foot, facing, _ = _feet_from(turned, lines[::-1], at_B, A.only(nearest[near]), CLOSE)
-    E = not_gone_round(turned, lines[::-1], E, pair.wider(foot, ends[near]))
-    facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
-    for i, end in enumerate(near):
-        facing[i] &= not held_together(b, a, int(-end), float(foot[i]))
-    return Places(ends[near][facing], foot[facing], a.n + 2 + near[facing])
-
-
-def _faced(pair: Pair, lines: Lines, D: Array, sigma: Array, joints: Ints) -> tuple[smooth.Points, smooth.Points]:
-    """Some joints of A, by their numbers (k,), and their feet, ``D`` and ``sigma`` being those of A's samples."""
-    known, what = lines[0].faced, pair.name
-    if what not in known or known[what][0] is not D:
-        known[what] = D, pair.samples(lines)[0].only(2 * joints), pair.on_b(lines, sigma[2 * joints])
-    return known[what][1:]
-
-
-def held_together(one: Chain, other: Chain, end: int, foot: float) -> bool:
-    """Whether an end of ``one`` and what its foot on ``other`` lies on move with one body: their gap is no unknown."""
-    mine = one.start if end == 0 else one.end
-    if mine is None:
-        return False
-    first, last = other.s[1], other.s[-1] - other.s[-2]
-    for its, away, half in ((other.start, foot, first), (other.end, other.s[-1] - foot, last)):
-        if its is None or its.frame != mine.frame:
-            continue
-        # a welded end moves with the body as far as its half element hardly bends
-        if away <= (half if its.welded and mine.welded else SAME * half):
-            return True
-    return False
-
-
-def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array]:
-    """D at the joints of A and half-way between them, infinite where it is out of reach, and σ, (2N+3,) each."""
-    known, what = lines[0].known, (pair.name, "samples")
-    if what not in known:
-        known[what] = _sampled_anew(pair, lines)
-    D, sigma = known[what]
-    return D, sigma
-
-
-def nearest_samples(G: smooth.Points, A: smooth.Points, within: float) -> tuple[Array, Ints]:
-    """Distance from points of ``A`` (k,) to the nearest of ``G`` (m,), infinite beyond ``within``; its number."""
-    return nearest_places((G.x, G.y), (A.x, A.y), within)
-
-
-def nearest_places(G: tuple[Array, Array], A: tuple[Array, Array], within: float) -> tuple[Array, Ints]:
-    """The same of places by their x and y, (m,) and (k,) each."""
-    if G[0].size * A[0].size <= MANY:
-        apart, across = A[0][:, None] - G[0], A[1][:, None] - G[1]
-        apart *= apart
-        across *= across
-        apart += across
-        number = apart.argmin(axis=1)
-        distance = np.sqrt(np.minimum.reduce(apart, axis=1))
-        return np.where(distance < within, distance, np.inf), number
-    from scipy.spatial import cKDTree  # loaded where beams with many links may touch each other
-
-    # places follow each other along lines: a tree that is not levelled is soon made and soon gone through
-    tree = cKDTree(np.array(G).T, balanced_tree=False, compact_nodes=False)
-    distance, number = tree.query(np.array(A).T, distance_upper_bound=within)
-    return np.asarray(distance), np.asarray(number)
-
-
-def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
-    A, G = pair.samples(lines)
-    # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
-    rough, nearest = nearest_samples(G, A, pair.offset + reach(pair.a, pair.b))
-    close = np.isfinite(rough).nonzero()[0]
-    sigma = np.zeros(len(A.s))
-    D = sigma + np.inf
-    if not close.size:
-        return D, sigma
-    at_A, at_B = A.only(close), G.only(nearest[close])
-    distance, sigma[close], foot, at_B = _feet_from(pair, lines, at_A, at_B, CLOSE)
-    D[close[foot]] = distance[foot]
-    D = not_gone_round(pair, lines, D, pair.wider(A.s, sigma))
-    if not pair.tapered:  # else these are points of edges
-        joints = ((close % 2 == 0) & np.isfinite(D[close])).nonzero()[0]
-        lines[0].faced[pair.name] = D, at_A.only(joints), at_B.only(joints)
-    return D, sigma
-
-
-def not_gone_round(pair: Pair, lines: Lines, D: Array, wider: Array | float, gone: float = np.inf) -> Array:
-    """D, but ``gone`` where A lies beyond B and has not come there through it, but round an end."""
-    beyond = D + 2.0 * wider + (pair.offset + STRAIGHT * (pair.a.h + pair.b.h)) < 0.0
-    if not beyond.any():
-        return D
-    A, B = (np.stack((line.sampled.x, line.sampled.y), axis=1) for line in lines)
-    return D if cross(A, B) else np.where(beyond, gone, D)
-
-
-def minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:
-    """(s, σ) of the minima of D within A that have a place of their own, from its samples.
-
-    Newton's method on dD/ds = 0 and on (i), kept between the samples beside the lowest: where the curvature jumps
-    it alone would not settle.
-    """
-    known, what = lines[0].known, (pair.name, "minima" if pair.own_places else "none")
-    if what not in known or known[what][0] is not D:
-        known[what] = D, *_minima_anew(pair, lines, D, sigma)
-    _, s, sigma = known[what]
-    return s, sigma
-
-
-def _minima_anew(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:
-    s, lowest = pair.a.halves, wells.lowest(D, pair.offset + REACH)
-    if not lowest.size:
-        return np.zeros(0), np.zeros(0)
-    # the joints beside a common clamp press together, a place of its own among them would part them
-    first, last = [4 * pair.shared if clamped else 0 for clamped in pair.clamped]
-    lowest = lowest[pair.own_places & (lowest > first) & (lowest < 2 * (pair.a.n + 1) - last)]
-    if not lowest.size:
-        return np.zeros(0), np.zeros(0)
-    parting, near = np.zeros(pair.a.n + 2) + np.inf, np.isfinite(D[::2]).nonzero()[0]
-    parting[near] = pair.parting_at(lines, *_faced(pair, lines, D, sigma, near), D[2 * near])
-    found = wells.wells(pair.a, D - pair.offset, parting, lowest, LEAST_CURVATURE, pair.kinks[0].places)
-    if not found.samples.size:
-        return np.zeros(0), np.zeros(0)
-    before, here, behind = found.samples - 1, found.samples, found.samples + 1
-    low, high = s[before], s[behind]
-    ahead = wells.lowest_of_parabola(s, D, here)
-    beside = np.where(ahead > 0.0, behind, before)
-    share = ahead / (s[beside] - s[here])
-    # where no parabola goes through, the middle one's foot
-    sigma = np.where(ahead == 0.0, sigma[here], sigma[here] + share * (sigma[beside] - sigma[here]))
-    s = s[here] + ahead
-    ridges = pair.b.section.ridges if pair.tapered else NO_RIDGES
-    end, latest = pair.b.s[-1], np.zeros(len(s))
-    for iteration in range(CLOSEST_ITERATIONS):
-        A, B = pair.facing_each_other(*pair.on_both(lines, s, sigma))
-        along, across = _seen_from(B, A)
-        turned = A.psi - B.psi
-        facing, shortened = np.cos(turned), B.pace - B.bend * across
-        # what is left to the foot, and the slope there
-        left = along / shortened
-        slope = pair.side * (np.sin(turned) - facing * B.bend * left)
-        towards = facing * A.pace / shortened  # dσ/ds
-        bends = pair.side * facing * (A.bend - B.bend * towards)
-        convex, falls = bends > LEAST_CURVATURE, slope < 0.0
-        low, high = np.where(falls, s, low), np.where(falls, high, s)
-        ahead = s - slope / np.where(convex, bends, np.inf)
-        newton = convex & (ahead >= low) & (ahead <= high)
-        step = (ahead if newton.all() else np.where(newton, ahead, 0.5 * (low + high))) - s
-        ahead = np.minimum(np.maximum(sigma + left + towards * step, 0.0), end)
-        if ridges.size:
-            ahead = np.where(leaning.at_corner(B), sigma, _up_to(ridges, sigma, ahead))
-        moved = np.maximum(np.abs(step), np.abs(ahead - sigma))
-        s, sigma = s + step, ahead
-        inner = (sigma > 0.0) & (sigma < end)
-        # what Newton's method would leave after one more step is nothing
-        known = newton & inner & (moved * moved < LAST * CLOSE * latest)
-        if known.all():
-            break
-        there = known | ((np.abs(step) < CLOSE) & (np.abs(along) < CLOSE) & (np.abs(slope) < SETTLED))
-        if not ridges.size:  # no slope as steep as that goes through zero in so little
-            there |= (high - low < CLOSE) & (np.abs(slope) > STEEP)
-            if iteration > PATIENCE:
-                there |= _beyond_ends(pair.b, B.s, along, high - low) & (shortened > 0.0)
-        if there.all():
-            break
-        latest = moved
-    held = found.held(pair.side * across - pair.wider(s, sigma) - pair.offset)
-    # beyond an end of B there is no foot: what lies there faces that end, which has a row of its own
-    settled = held & convex & (known | ((np.abs(slope) < SETTLED) & (inner | (np.abs(along) < SETTLED))))
-    return s[settled], sigma[settled]
-
-
-def _beyond_ends(b: Chain, sigma: Array, along: Array, within: Array) -> Flags:
-    """Which places of A lie so far beyond an end of B that no other place ``within`` as much (k,) of A has a foot."""
-    out = np.where(sigma <= 0.0, -along, np.where(sigma >= b.s[-1], along, -np.inf))
-    return np.asarray(out > LIPSCHITZ * within)
-
-
-def reach(one: Chain, other: Chain) -> float:
-    """Gap of two beams beyond which there are no rows, units of length."""
-    return REACH + one.h + other.h
 
 
 def pair_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Pair:

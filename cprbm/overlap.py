@@ -27,17 +27,10 @@ import numpy as np
 
 from cprbm import wells
 from cprbm.circle import Circle
+from cprbm.closest import STRAIGHT, not_gone_round
+from cprbm.feet import PARALLEL, Lines, distance_along, feet_near, nearest_places
 from cprbm.kinematics import Positions, State
-from cprbm.nearest import (
-    PARALLEL,
-    STRAIGHT,
-    Lines,
-    Pair,
-    distance_along,
-    feet_near,
-    nearest_places,
-    not_gone_round,
-)
+from cprbm.nearest import Pair
 from cprbm.pairs import Touching
 from cprbm.smooth import Points
 from scene.answer import Array, Ints

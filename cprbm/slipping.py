@@ -18,7 +18,8 @@ from __future__ import annotations
 import numpy as np
 
 from cprbm.edge import Edge
-from cprbm.nearest import Lines, Pair, distance_along, past_foot
+from cprbm.feet import Lines, distance_along, past_foot
+from cprbm.nearest import Pair
 from cprbm.point import Point
 
 SAME = 1e-6  # of an element: where a row stands that is an end's

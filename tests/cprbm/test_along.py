@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import cprbm
+from cprbm.feet import distance_along
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.mechanism import mechanism_of
-from cprbm.nearest import distance_along
 from scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH, THICKNESS, cantilever_data, force
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 import cprbm
+from cprbm.closest import REACH
 from cprbm.contact import NO_ROWS, Rows
 from cprbm.crossing import own_crossings
 from cprbm.kinematics import State, positions
 from cprbm.local import local_step
-from cprbm.nearest import REACH
 from cprbm.newton import local_system_at, newton_step
 from cprbm.point import contact_gradient, point_at
 from scene import Ending, SceneError

@@ -5,8 +5,9 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 import cprbm
-from cprbm import nearest, wells
+from cprbm import closest, wells
 from cprbm.contact import Rows
+from cprbm.feet import distance_along
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.mechanism import mechanism_of
 from scene.reading import scene_from
@@ -66,15 +67,15 @@ def test_every_minimum_is_found_where_the_curvature_jumps_too(monkeypatch, seed)
     rest = rest_state(model)
     state = State(rest.theta + 0.01 * random.standard_normal(model.n_links), rest.bodies)
     lines = pair.lines(state, positions(model, state))
-    D, sigma = nearest._sampled(pair, lines)
-    places, feet = nearest.minima(pair, lines, D, sigma)
+    D, sigma = closest.sampled_distances(pair, lines)
+    places, feet = closest.minima(pair, lines, D, sigma)
     s = pair.a.halves
     found = 0
     for k in range(1, len(s) - 1):
-        if not (D[k] < min(D[k - 1], D[k + 1]) and D[k] < pair.offset + nearest.REACH):
+        if not (D[k] < min(D[k - 1], D[k + 1]) and D[k] < pair.offset + closest.REACH):
             continue
         best = minimize_scalar(
-            lambda x: float(nearest.distance_along(pair, lines, np.array([x]))[0][0]),
+            lambda x: float(distance_along(pair, lines, np.array([x]))[0][0]),
             bounds=(s[k - 1], s[k + 1]),
             method="bounded",
             options={"xatol": 1e-10},
@@ -83,8 +84,8 @@ def test_every_minimum_is_found_where_the_curvature_jumps_too(monkeypatch, seed)
             continue
         near = np.flatnonzero(np.abs(places - best.x) < 1e-4 * pair.a.h)
         assert near.size == 1
-        assert nearest.distance_along(pair, lines, places[near])[0][0] <= best.fun + 1e-14
-        assert nearest.distance_along(pair, lines, places[near])[1] == pytest.approx(feet[near], abs=1e-12)
+        assert distance_along(pair, lines, places[near])[0][0] <= best.fun + 1e-14
+        assert distance_along(pair, lines, places[near])[1] == pytest.approx(feet[near], abs=1e-12)
         found += 1
     assert found >= 3
 
@@ -129,13 +130,13 @@ def test_beyond_an_end_of_the_second_beam_there_is_no_place(links):
     }
     pair, state, at = pair_at_rest(beams(bowl, line((0.0, 0.0), (0.0613, 0.0))), links)
     lines = pair.lines(state, at)
-    D, sigma = nearest._sampled(pair, lines)
-    assert wells.lowest(D, pair.offset + nearest.REACH).size
-    assert nearest.minima(pair, lines, D, sigma)[0].size == 0
+    D, sigma = closest.sampled_distances(pair, lines)
+    assert wells.lowest(D, pair.offset + closest.REACH).size
+    assert closest.minima(pair, lines, D, sigma)[0].size == 0
     # B as long as A has it
     pair, state, at = pair_at_rest(beams(bowl, line((0.0, 0.0), (0.1, 0.0))), links)
     lines = pair.lines(state, at)
-    assert nearest.minima(pair, lines, *nearest._sampled(pair, lines))[1] * pair.unit_length == pytest.approx(
+    assert closest.minima(pair, lines, *closest.sampled_distances(pair, lines))[1] * pair.unit_length == pytest.approx(
         [0.065], abs=1e-9
     )
 

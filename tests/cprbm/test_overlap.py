@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm import nearest
+from cprbm.feet import distance_along
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.overlap import may_be_beyond, never_beyond, overlap
@@ -28,7 +28,7 @@ def bent(apart, wave):
 def searched(pair, state, at):
     """The same by twenty thousand places, and the other's ends."""
     lines = pair.lines(state, at)
-    D, _, foot = nearest.distance_along(pair, lines, np.linspace(0.0, pair.a.s[-1], 20_001))
+    D, _, foot = distance_along(pair, lines, np.linspace(0.0, pair.a.s[-1], 20_001))
     return max(0.0, pair.offset - float(D[foot].min()))
 
 
@@ -55,7 +55,7 @@ def test_springs_never_deny_that_a_beam_is_beyond(wave):
 @pytest.mark.parametrize("wave", [0.05, -0.05, 0.3, -0.3, -0.5, 1.5])
 def test_joints_never_deny_that_a_joint_is_beyond(wave, allowed):
     pair, state, at = bent(0.004, wave)
-    D, _, foot = nearest.distance_along(pair, pair.lines(state, at), pair.a.s)
+    D, _, foot = distance_along(pair, pair.lines(state, at), pair.a.s)
     if never_beyond(pair, [(state, at)], allowed):
         assert np.all(D[foot] >= -allowed)
 

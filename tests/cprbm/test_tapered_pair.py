@@ -7,9 +7,9 @@ import cprbm
 from cprbm import wells
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import equilibrium
+from cprbm.feet import distance_along
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
-from cprbm.nearest import distance_along
 from cprbm.point import point_at
 from scene import SceneError
 from scene.reading import scene_from

@@ -13,9 +13,9 @@ import cprbm
 import fea_reference
 from comparisons import geometry
 from cprbm.curves import neutral_line
+from cprbm.feet import distance_along
 from cprbm.kinematics import positions, rest_state
 from cprbm.mechanism import mechanism_of
-from cprbm.nearest import distance_along
 from cprbm.stops import stop_of
 from fea_reference import curves
 from fea_reference.model import build
