@@ -5,6 +5,7 @@ Symbols are those of :mod:`cprbm.nearest`.  D is sampled at the joints of A and 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -41,6 +42,9 @@ SETTLED = 1e-9  # slope of D at a minimum
 STEEP = 1e-3  # slope of D where there is no minimum within CLOSE
 BESIDE_END = 0.25  # a joint closer than this many h to where an end of B faces A leaves its place to that
 STRAIGHT = 0.1  # of an element: by less a line is off the chords between its samples
+CLEAR = 0.9  # of both half thicknesses: farther from B's line, on its other side, A lies clear of it
+THIN = 0.01  # of both elements: the same where lines have no thickness
+SURE = 0.25  # of a depth by which a line lies beyond another: chords that are off by less tell whether it crosses it
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +185,8 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     at_A, at_B = A.only(close), G.only(nearest[close])
     distance, sigma[close], foot, at_B = feet_from(pair, lines, at_A, at_B, CLOSE)
     D[close[foot]] = distance[foot]
-    D = not_gone_round(pair, lines, D, pair.wider(A.s, sigma))
+    told = not_gone_round(pair, lines, D, pair.wider(A.s, sigma))
+    D = D if told is D else np.where(_with_neighbours(np.isinf(told), D < 0.0), np.inf, D)
     if not pair.tapered:  # else these are points of edges
         joints = ((close % 2 == 0) & np.isfinite(D[close])).nonzero()[0]
         lines[0].faced[pair.name] = D, at_A.only(joints), at_B.only(joints)
@@ -189,12 +194,51 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
 
 
 def not_gone_round(pair: Pair, lines: Lines, D: Array, wider: Array | float, gone: float = np.inf) -> Array:
-    """D, but ``gone`` where A lies beyond B and has not come there through it, but round an end."""
-    beyond = D + 2.0 * wider + (pair.offset + STRAIGHT * (pair.a.h + pair.b.h)) < 0.0
+    """D, but ``gone`` where A lies clear of B on its other side and has not come there through it, but round an end."""
+    # lines that touch each other may seem to lie beyond by round-off
+    clear = CLEAR * pair.offset if pair.offset else THIN * (pair.a.h + pair.b.h)
+    beyond = D + 2.0 * wider + clear < 0.0
     if not beyond.any():
         return D
-    A, B = (np.stack((line.sampled.x, line.sampled.y), axis=1) for line in lines)
-    return D if cross(A, B) else np.where(beyond, gone, D)
+    depth = -float((D + wider)[beyond].max())
+    return D if _crossing(lines, depth) else np.where(beyond, gone, D)
+
+
+def _with_neighbours(some: Flags, alike: Flags) -> Flags:
+    """``some`` of a row of places, and those beside them and beside these that are ``alike``, (n,) each."""
+    run = np.cumsum(np.append(True, alike[1:] != alike[:-1]))
+    return np.asarray(some | (alike & np.isin(run, run[some & alike])))
+
+
+def _crossing(lines: Lines, depth: float) -> bool:
+    """Whether the lines cross, by chords so short that they are off by a small part of a ``depth``.
+
+    What touches an end seems to cross there by as much: the lines are held against each other without their last bits.
+    """
+    A, B = (line.sampled for line in lines)
+    far, off = sum(line.chain.h for line in lines), SURE * depth
+    finer = math.ceil(math.sqrt(STRAIGHT * far / off))
+    runs = [
+        _near(line, nearest_samples(one, other, far)[0], finer, 2.0 * off)
+        for line, one, other in zip(lines, (B, A), (A, B), strict=True)
+    ]
+    return any(cross(P, Q) for P in runs[0] for Q in runs[1])
+
+
+def _near(line: smooth.SmoothLine, apart: Array, finer: int, cut: float) -> list[Array]:
+    """Parts of a line near another, by how far ``apart`` its samples are from that: places (m, 2) of each, closer
+    together by ``finer``, none of them within a ``cut`` of the line's ends.
+    """
+    near, samples, part = np.isfinite(apart), line.chain.halves, np.arange(finer) / finer
+    pieces = (near[1:] | near[:-1]).nonzero()[0]
+    runs = []
+    for run in np.split(pieces, (np.diff(pieces) > 1).nonzero()[0] + 1):
+        if run.size:
+            first, last = samples[run], samples[run + 1]
+            s = np.append((first[:, None] + (last - first)[:, None] * part).ravel(), last[-1])
+            at = line.at(np.clip(s, cut, max(cut, samples[-1] - cut)))
+            runs.append(np.stack((at.x, at.y), axis=1))
+    return runs
 
 
 def minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:
