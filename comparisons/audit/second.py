@@ -32,7 +32,7 @@ from comparisons.audit.areas import AreaOfBeam
 from comparisons.audit.links import Links
 from comparisons.audit.rest import Complex
 from comparisons.audit.seen import Acting, AnyBeam, Seen
-from scene.answer import Array
+from scene.answer import Array, Flags, Ints
 from scene.statement import (
     BeamContact,
     CircleContact,
@@ -254,15 +254,10 @@ def _contact(seen: Seen, rows: _Rows, name: str, H: Array) -> list[Array]:
     assert not isinstance(contact, SelfContact)
     first = contact.beams[0]
     mine = _of(seen.acting[first], name)
-    if isinstance(contact, BeamContact):
-        other = contact.beams[1]
-        theirs = _of(seen.acting[other], name)
-        if _is_spot(seen, first, mine) and _is_spot(seen, other, theirs):
-            mine, theirs = _spot(seen, first, mine), _spot(seen, other, theirs)
-    elif _is_spot(seen, first, mine):
-        mine = _spot(seen, first, mine)
+    other = contact.beams[1] if isinstance(contact, BeamContact) else None
+    theirs = mine if other is None else _of(seen.acting[other], name)
+    mine, theirs, alone = _in_spots(seen, (first, mine), (first if other is None else other, theirs))
     kept = []
-    alone = len(mine.s) == 1
     for k, s in enumerate(mine.s):
         if mine.forces[k] == 0.0:
             continue
@@ -270,7 +265,7 @@ def _contact(seen: Seen, rows: _Rows, name: str, H: Array) -> list[Array]:
         force, ahead = abs(mine.forces[k]), n * -1j
         moved_a, k_a = _moved(seen, rows, first, s), _leaning(seen, rows, first, s, n)
         place = seen.beams[first].line(np.array([s]))[0][0]
-        if isinstance(contact, BeamContact):
+        if other is not None:
             sigma = float(theirs.s[k])
             at = seen.beams[other].line(np.array([sigma]))[0][0]
             moved_b, k_b = _moved(seen, rows, other, sigma), _leaning(seen, rows, other, sigma, n)
@@ -279,6 +274,7 @@ def _contact(seen: Seen, rows: _Rows, name: str, H: Array) -> list[Array]:
             sense = 1.0 if (_ahead(seen, other, sigma) * np.conj(ahead)).real > 0.0 else -1.0
             k_b = sense * k_b  # by the arc length that goes along ``ahead``
         else:
+            assert not isinstance(contact, BeamContact)
             half = 0.5 * float(seen.rests[first].thickness(np.array([s]))[0]) if contact.thick else 0.0
             moved_b = _carried(seen, rows, contact.body, place - half * n)
             a, D = (-1.0 / contact.radius if isinstance(contact, CircleContact) else 0.0), half
@@ -291,7 +287,7 @@ def _contact(seen: Seen, rows: _Rows, name: str, H: Array) -> list[Array]:
         H += force * (a * np.outer(p, p) + D * np.outer(k_b, k_b) + row + row.T) / Z
         inner = 0.0 < s < seen.rests[first].length
         parting = _bend(seen, first, s, n) - a / Z
-        if alone and inner and parting > 0.0:
+        if alone[k] and inner and parting > 0.0:
             leaning = k_a * (1.0 if (_ahead(seen, first, s) * np.conj(ahead)).real > 0.0 else -1.0)
             across = leaning - (k_b + a * p) / Z
             H += force * np.outer(across, across) / parting
@@ -303,18 +299,47 @@ def _of(acting: Acting, name: str) -> Acting:
     return Acting((), acting.s[mine], acting.places[mine], acting.forces[mine], acting.moments[mine])
 
 
-def _is_spot(seen: Seen, name: str, acting: Acting) -> bool:
-    """Whether what presses is spread over no more than two elements: a place, as finely as it is known."""
-    h = float(np.diff(seen.beams[name].inside.borders).max())
-    return len(acting.s) > 0 and float(np.ptp(acting.s)) <= SPOT * h
+def _in_spots(seen: Seen, one: tuple[str, Acting], other: tuple[str, Acting]) -> tuple[Acting, Acting, Flags]:
+    """What presses on two beams, by their names, with the resultant of what is in one place; and which are such.
+
+    A place, as finely as it is known, is what is spread over no more than two elements, and farther than that from all
+    else that presses.
+    """
+    mine = one[1]
+    order = np.argsort(mine.s, kind="stable")
+    apart = np.diff(mine.s[order]) > SPOT * _element(seen, one[0], mine.s[order][:-1])
+    found, alone = [], []
+    for group in np.split(order, np.flatnonzero(apart) + 1):
+        spot = all(
+            float(np.ptp(acting.s[group])) <= SPOT * float(_element(seen, name, acting.s[group]).max())
+            for name, acting in (one, other)
+        )
+        parts = [group] if spot else list(group[:, None])
+        found += [tuple(_resultant(seen, name, acting, part) for name, acting in (one, other)) for part in parts]
+        alone += [spot] * len(parts)
+    return _together([pair[0] for pair in found]), _together([pair[1] for pair in found]), np.array(alone, dtype=bool)
 
 
-def _spot(seen: Seen, name: str, acting: Acting) -> Acting:
-    """The resultant in one place."""
-    weights = np.abs(acting.forces) / np.abs(acting.forces).sum()
-    s = np.array([weights @ acting.s])
-    force, moment = np.array([acting.forces.sum()]), np.array([0.0])
-    return Acting((), s, seen.beams[name].line(s)[0], force, moment)
+def _element(seen: Seen, name: str, s: Array) -> Array:
+    """The longer of the elements to which places of a beam belong, (k,)."""
+    e = seen.beams[name].inside.borders
+    sizes, close = np.diff(e), 1e-9 * e[-1]
+    sides = [np.clip(np.searchsorted(e, s + shift) - 1, 0, len(sizes) - 1) for shift in (-close, close)]
+    return np.asarray(np.maximum(*(sizes[side] for side in sides)))
+
+
+def _resultant(seen: Seen, name: str, acting: Acting, part: Ints) -> Acting:
+    """That of a ``part`` of what acts, where its middle is."""
+    weights = np.abs(acting.forces[part])
+    s = np.array([weights @ acting.s[part] / weights.sum()])
+    return Acting((), s, seen.beams[name].line(s)[0], np.array([acting.forces[part].sum()]), np.zeros(1))
+
+
+def _together(parts: list[Acting]) -> Acting:
+    s, places, forces, moments = (
+        np.concatenate([getattr(each, what) for each in parts]) for what in ("s", "places", "forces", "moments")
+    )
+    return Acting((), s, places, forces, moments)
 
 
 def _ahead(seen: Seen, name: str, s: float) -> complex:

@@ -1,0 +1,77 @@
+"""The audit's second variation where one contact presses in several places: each of them travels along the beam.
+
+An arch is pressed flat on a wall until it stands there on two places, and bulges off between them.  Were these held on
+the beam, what bulges would fall to one side; as they travel, the beam rolls on them, and it stands.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import cprbm
+import fea_reference
+from comparisons.audit import audit
+from comparisons.audit.rest import rests_of
+from comparisons.audit.second import smallest_curvature
+from comparisons.audit.seen import seen_of
+from scene.reading import scene_from
+
+HEIGHT = 71.5e-3
+BACK = 0.910  # of the centre of the arc, left of its ends; the arch rises by 0.7 mm
+WALL = -13.9e-3
+STATIONS = [6.1e-3, 7.8e-3, *np.linspace(8.0e-3, 10.2e-3, 23).tolist()]
+
+
+def arch():
+    """A clamped arc whose upper end is pressed down, beside a wall at ``x = WALL``."""
+    material = {"youngs_modulus": 1.37e9, "poisson_ratio": 0.42}
+    curve = {"kind": "arc", "center": [BACK, 0.5 * HEIGHT], "start": [0.0, 0.0], "end": [0.0, HEIGHT]}
+    beam = {
+        "curve": {**curve, "direction": "clockwise"},
+        "thickness": {"at": [0.0, 1.0], "values": [0.497e-3, 0.388e-3]},
+        "width": 15.2e-3,
+        "material": "pp",
+        "start": {"joint": "weld", "point": "R"},
+        "end": {"joint": "weld", "point": "T"},
+    }
+    bodies = {
+        "ground": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
+        "tip": {"motion": "slides", "along": [0.0, 1.0], "points": {"T": [0.0, HEIGHT]}},
+    }
+    plane = {"kind": "beam-half-plane", "beam": "arch", "body": "ground", "point": [WALL, 0.0], "normal": [1.0, 0.0]}
+    return scene_from(
+        {
+            "name": "arch-on-a-wall",
+            "materials": {"pp": material},
+            "bodies": bodies,
+            "beams": {"arch": beam},
+            "drives": {"press": {"kind": "displacement", "point": "T", "direction": [0.0, -1.0]}},
+            "contacts": {"wall": plane},
+            "stages": [{"name": "press", "steps": "press", "stations": STATIONS}],
+            "probes": [{"of": "scene", "quantity": "potential_energy"}, {"of": "wall", "quantity": "force"}],
+        }
+    )
+
+
+SOLVERS = {
+    "cprbm": lambda scene: cprbm.answer(scene, cprbm.Settings(links=80)),
+    "fea": lambda scene: fea_reference.answer(scene, fea_reference.Settings(elements=80, kinematics="bending")),
+}
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_places_travel(solver):
+    # reference: the solver's own smallest curvature, from its exact derivatives, in which the places are unknowns; the
+    # audit has a polygon of 48 pieces at most, and takes what parts there from two elements
+    scene = arch()
+    answer = SOLVERS[solver](scene)
+    assert answer.completed, answer.sentence
+    found = audit(scene, answer)
+    assert found.complaints == ()
+    standing = [seen for seen in seen_of(scene, answer, rests_of(scene)) if seen.station.value > 9.25e-3]
+    assert all(len(seen.statics.forces[seen.statics.forces != 0.0]) >= 2 for seen in standing)
+    own = [seen.station.certificate.smallest_curvature for seen in standing]
+    audits = [smallest_curvature(seen) for seen in standing]
+    assert min(own) > 4.0
+    assert audits == pytest.approx(own, rel=0.8)
