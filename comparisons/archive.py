@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from comparisons.documents import Plain, plain
-from scene import Answer, Certificate, Critical, Ending, Event, Loss, Shape, StationAnswer
+from scene import Answer, Certificate, Critical, Ending, Event, GoneOver, Loss, Shape, StationAnswer
 from scene.answer import Area, Array, Inside, Statics, frozen_array
 from scene.frozendict import frozendict
 
@@ -33,7 +33,8 @@ def packed(answer: Answer) -> Plain:
             "seconds": answer.seconds,
             "notes": answer.notes,
             "events": [_fields(event) for event in answer.events],
-            "critical": [{**_fields(critical), "loss": critical.loss.name} for critical in answer.critical],
+            "critical": [_packed_critical(critical) for critical in answer.critical],
+            "gone_over": [{"end": _packed_critical(one.end), "turned": one.turned} for one in answer.gone_over],
             "stations": [
                 {
                     "stage": station.stage,
@@ -50,6 +51,10 @@ def packed(answer: Answer) -> Plain:
         }
     )
     return found
+
+
+def _packed_critical(critical: Critical) -> Plain:
+    return {**_fields(critical), "loss": critical.loss.name}
 
 
 def _packed_statics(statics: Statics) -> Plain:
@@ -75,6 +80,8 @@ def unpacked(data: Plain) -> Answer:
         stations=tuple(_unpacked_station(station) for station in data["stations"]),
         events=tuple(Event(**event) for event in data["events"]),
         critical=tuple(_unpacked_critical(critical) for critical in data["critical"]),
+        # archives of before have none
+        gone_over=tuple(GoneOver(_unpacked_critical(one["end"]), one["turned"]) for one in data.get("gone_over", ())),
         seconds=data["seconds"],
         notes=tuple(data["notes"]),
     )

@@ -9,8 +9,9 @@ state at a fold goes with the square root of the distance from it.
 place       what is at a station
 ==========  ==========================================================================================
 COMPARED    all answers are on one branch, and neither compared one has a critical value near by
-NEAR        all are on one branch, and a compared one has a critical value within the margin
-BETWEEN     some have left a branch and others have not, and all do leave it in this stage
+NEAR        all are on one branch, and a compared one has a critical value within the margin, or both have one or an
+            end that they went on over (:class:`scene.answer.GoneOver`)
+BETWEEN     some have left a branch and others have not, and all do leave it in this stage, or go on over its end
 APART       the two solvers are on different branches, and not because one leaves it a little later
 UNSETTLED   the same of the answers of one solver
 ==========  ==========================================================================================
@@ -25,6 +26,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
+from itertools import accumulate
 
 from comparisons.stations import station_of
 from scene import Answer, Scene, Stage
@@ -81,13 +83,20 @@ def spots_of(scene: Scene, everyone: Mapping[str, Answer], compared: tuple[Answe
     for stage in scene.stages:
         margin = margin_of(scene, stage)
         near = [one.value for answer in compared for one in answer.critical if one.stage == stage.name]
-        for value in stage.stations:
+        ends = [_ends(stage, answer) for answer in compared]
+        gone = {name: gone_over_by(scene, stage, answer) for name, answer in everyone.items()}
+        alike = len({each[-1] for each in gone.values()}) == 1
+        for i, value in enumerate(stage.stations):
             branches = {name: station_of(answer, stage.name, value).branch for name, answer in everyone.items()}
             numbers = set(branches.values())
             branch = numbers.pop() if len(numbers) == 1 else None
             if branch is None:
                 place = _divided(stage, everyone, branches)
-            elif any(abs(value - critical) <= margin for critical in near):
+            elif alike and len({each[i] for each in gone.values()}) > 1:
+                place, branch = Place.BETWEEN, None
+            elif any(abs(value - critical) <= margin for critical in near) or all(
+                any(abs(value - end) <= margin for end in mine) for mine in ends
+            ):
                 place = Place.NEAR
             else:
                 place = Place.COMPARED
@@ -121,9 +130,25 @@ def margin_of(scene: Scene, stage: Stage) -> float:
     return NEAR_TURN if turns(scene, stage) else NEAR_SHARE * span_of(scene, stage)
 
 
+def gone_over_by(scene: Scene, stage: Stage, answer: Answer) -> tuple[int, ...]:
+    """How many ends an answer has gone on over in a stage by each of its stations."""
+    found, before = [], begins_at(scene, stage)
+    for value in stage.stations:
+        least, most = sorted((before, value))
+        found.append(sum(one.end.stage == stage.name and least < one.end.value <= most for one in answer.gone_over))
+        before = value
+    return tuple(accumulate(found))
+
+
 def turns(scene: Scene, stage: Stage) -> bool:
     """Whether a stage steps a rotation."""
     return isinstance(scene.stepped(stage), RotationDrive)
+
+
+def _ends(stage: Stage, answer: Answer) -> list[float]:
+    """Where an answer has an end of a branch in a stage, whether it ends, jumps or is gone on over there."""
+    every = (*answer.critical, *(one.end for one in answer.gone_over))
+    return [end.value for end in every if end.stage == stage.name]
 
 
 def _divided(stage: Stage, everyone: Mapping[str, Answer], branches: Mapping[str, int]) -> Place:

@@ -15,20 +15,22 @@ W       the scene's ``verdict_limit`` as a share of the stage's span
     DIFFER     one of the two has no such critical value, or another mechanism of losing stability, or
                |v_c − v_b| > max(T, U_b)
     UNDECIDED  the runs of one solver do not all have it, or not by one mechanism; or max(U − θ, U_b) > T; or
-               U > max(T, W)
+               U > max(T, W); or some run has gone on over it
     AGREE      otherwise
 
 T is asked of the solvers, within one theory: |v_c − v_f| is then no more than that and θ, which is told beside it and
 which W keeps from excusing much.
 
 The first critical value of a stage is held against the first of the other answers, the second against the second.
+Where a stage asks for none, one answer may end at what another has gone on over to a state beside it: both have it
+then, by one mechanism and no farther apart than above, and what lies beyond nothing tells.
 What a state releases in a jump is told and has no part in it: the rows of the next branch are judged by themselves.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -37,7 +39,8 @@ from comparisons.branches import span_of, turns
 from comparisons.measures import Bounds, bounds_of, load_unit
 from comparisons.order import USUAL
 from comparisons.pairing import Runs
-from scene import Answer, Critical, Scene, Stage
+from scene import Answer, Critical, GoneOver, Scene, Stage
+from scene.frozendict import frozendict
 
 TURN = math.radians(0.3)
 """T of a rotation, rad."""
@@ -59,6 +62,7 @@ class CriticalRow:
         allowed: T.
         largest: W.
         steady: whether the runs of either solver are of one mind: all have it by one mechanism, or none has it.
+        turned: of the runs that have gone on over it how far the state beside it is turned, rad.
         difference: |v_c − v_f|, NaN where one is missing.
         same_theory: |v_c − v_b|, NaN where one is missing.
         bounds: U and U_b; None where a run has no such critical value.
@@ -76,6 +80,7 @@ class CriticalRow:
     difference: float = math.nan
     same_theory: float = math.nan
     bounds: Bounds | None = None
+    turned: Mapping[str, float] = frozendict()
 
     @property
     def same_mechanism(self) -> bool:
@@ -96,7 +101,7 @@ class CriticalRow:
     @property
     def tellable(self) -> bool:
         """Whether what may lie between the values is small enough to have them agree."""
-        if not self.steady or self.bounds is None:
+        if not self.steady or self.bounds is None or self.turned:
             return False
         own = max(self.bounds.total - self.bounds.theory, self.bounds.same_theory)
         return own <= self.allowed and self.bounds.total <= max(self.allowed, self.largest)
@@ -117,7 +122,10 @@ def critical_rows(scene: Scene, runs: Runs) -> tuple[CriticalRow, ...]:
         most = max(len(_of_stage(answer, stage)) for answer in (runs.cprbm[0], runs.reference))
         for place in range(most):
             here = {name: each[place] if len(each) > place else None for name, each in own.items()}
-            found.append(_row(scene, runs, stage, place, here))
+            row = _row(scene, runs, stage, place, here)
+            if not row.steady or row.differs:
+                row = next(_over(scene, runs, stage, row, here), row)
+            found.append(row)
     return tuple(found)
 
 
@@ -133,6 +141,38 @@ def released(critical: Critical) -> float | None:
 
 def _of_stage(answer: Answer, stage: Stage) -> tuple[Critical, ...]:
     return tuple(critical for critical in answer.critical if critical.stage == stage.name)
+
+
+def _over(
+    scene: Scene, runs: Runs, stage: Stage, row: CriticalRow, here: Mapping[str, Critical | None]
+) -> Iterator[CriticalRow]:
+    """The row in which runs that have gone on over what another ends at have it too, if they then do not differ."""
+    for told in (row.cprbm, row.fea):
+        if told is None:
+            continue
+        ends, turned = dict(here), {}
+        for name, answer in runs.everything():
+            mine, gone = here[name], _most_like(answer, told)
+            if gone is None:
+                continue
+            same = mine is not None and _mechanism(mine) == _mechanism(told)
+            if mine is None or not same or _apart(gone.end, told) < _apart(mine, told):
+                ends[name], turned[name] = gone.end, gone.turned
+        if turned:
+            found = replace(_row(scene, runs, stage, row.place, ends), turned=frozendict(turned))
+            if found.steady and not found.differs:
+                yield found
+
+
+def _most_like(answer: Answer, told: Critical) -> GoneOver | None:
+    """What an answer has gone on over that is nearest to an end which another has told, by one mechanism."""
+    how = told.stage, _mechanism(told)
+    alike = (one for one in answer.gone_over if (one.end.stage, _mechanism(one.end)) == how)
+    return min(alike, key=lambda one: _apart(one.end, told), default=None)
+
+
+def _apart(one: Critical, other: Critical) -> float:
+    return abs(one.value - other.value)
 
 
 def _row(scene: Scene, runs: Runs, stage: Stage, place: int, here: Mapping[str, Critical | None]) -> CriticalRow:

@@ -118,6 +118,7 @@ def solver(answer: Answer, audited: Audit | None = None) -> Plain:
             for event in answer.events
         ],
         "critical": [critical(each) for each in answer.critical],
+        "gone_over": [{**critical(each.end), "turned": plain(each.turned)} for each in answer.gone_over],
         "notes": list(answer.notes),
     }
 
@@ -306,6 +307,7 @@ def _critical_row(scene: Scene, row: CriticalRow) -> Plain:
         "loss": {name: None if found is None else found.loss.value for name, found in both.items()},
         "what": {name: None if found is None else found.what or None for name, found in both.items()},
         "released": {name: None if found is None else plain(released(found)) for name, found in both.items()},
+        "gone_over": {name: plain(turned) for name, turned in row.turned.items()},
         "difference": plain(row.difference),
         "difference_same_theory": plain(row.same_theory),
         "uncertainty": {

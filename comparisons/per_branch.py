@@ -83,7 +83,15 @@ def critical_sentence(row: CriticalRow) -> str:
         apart, theory, own, stated, allowed = (distance(size, row.unit) for size in sizes)
         why = f", {apart} apart and {theory} by theory; within one theory {own} against a stated {stated}, "
         why += f"{allowed} allowed"
-    return f"The branch ends in {row.stage} at {said}{why}: {critical_word(row).value}."
+    said = f"The branch ends in {row.stage} at {said}{why}"
+    over = _beyond(row) if row.turned else ""
+    return f"{said}{over}: {critical_word(row).value}."
+
+
+def _beyond(row: CriticalRow) -> str:
+    """What is to be said of an end that some runs have gone on over, and others not."""
+    who, most = ", ".join(row.turned), number(max(row.turned.values()), 3)
+    return f". {who} went on over it, to a state beside it turned by {most} rad, and others ended there; beyond it"
 
 
 def value_and_unit(value: float, unit: str) -> str:

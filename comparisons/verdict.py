@@ -40,6 +40,7 @@ from comparisons.branches import Place
 from comparisons.calibration import FAR, JUDGED, every, held, tally
 from comparisons.criticals import CriticalRow, critical_rows
 from comparisons.formats import number, percent
+from comparisons.gone_over import why_apart
 from comparisons.measures import Bounds, Row, rows_of
 from comparisons.pairing import Runs
 from comparisons.per_branch import BranchVerdict, branch_verdicts, critical_word, told
@@ -129,6 +130,7 @@ def compared(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
     rows = rows_of(within, replace(cut, paper=paper, exact=exact))
     criticals = critical_rows(scene, runs)
     verdict = judged(within, rows, criticals)
+    verdict = replace(verdict, sentences=(*verdict.sentences, *why_apart(within, cut, rows, verdict.words)))
     if reach is not None:
         verdict = _up_to_there(verdict, rows[-1])
     audits = {answer.solver: look(within, answer) for answer in (cut.cprbm[0], cut.reference)}
@@ -153,8 +155,10 @@ def _as_audited(verdict: Verdict, audits: Mapping[str, Audit]) -> Verdict:
 
 def _up_to_there(verdict: Verdict, last: Row) -> Verdict:
     """The verdict on what comes before a branch ends: the stations behind it have no answer to agree on."""
-    word = verdict.word if verdict.word is Word.DIFFER else Word.UNDECIDED
-    said = f"The branch ends before the last station; up to {last.stage} {last.station:g}: {verdict.word.value}."
+    differs = verdict.word is Word.DIFFER
+    there = verdict.word if differs else worst_of(verdict.words) or Word.UNDECIDED
+    word = verdict.word if differs else Word.UNDECIDED
+    said = f"The branch ends before the last station; up to {last.stage} {last.station:g}: {there.value}."
     return replace(verdict, word=word, sentences=(said, *verdict.sentences), completed=False)
 
 

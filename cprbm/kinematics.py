@@ -45,6 +45,12 @@ def most_turned(before: State, after: State) -> float:
     return float(np.abs(after.theta - before.theta).max())
 
 
+def most_changed(before: State, after: State) -> float:
+    """The most that a link or a body turns by between two states, rad: in the limit, a beam's tangent or a body."""
+    bodies = np.abs(after.bodies - before.bodies)[:, 2]
+    return max(most_turned(before, after), float(bodies.max(initial=0.0)))
+
+
 def rest_state(model: Model) -> State:
     """The stress-free state."""
     return State(model.rest.copy(), np.zeros((model.n_bodies, 3)))

@@ -12,7 +12,7 @@ import numpy as np
 
 from cprbm.critical import BranchEnd, Minimum
 from cprbm.following import Way
-from cprbm.kinematics import State, most_turned
+from cprbm.kinematics import State, most_changed, most_turned
 from cprbm.leap import Landed, leap
 from cprbm.mechanism import Mechanism
 from cprbm.point import Point, point_at
@@ -23,7 +23,8 @@ from scene import Loss
 from scene.answer import Array
 
 STEPS = 30  # of a motion that leads to a state beside: one that goes on for longer leads far away, or in circles
-BESIDE = 0.3  # rad: a state in which links are turned by no more is beside another
+BESIDE = 0.3  # rad: a state in which links and bodies are turned by no more is beside another
+ASTRAY = 2.0  # times that: what turns farther on the way there is followed no further
 SAME = 0.1  # of what links turn by: states that are apart by less are one
 NEAR = 1e-3  # of the value beyond: an end that is not known better than that is none
 
@@ -35,8 +36,8 @@ def aside(
 
     None as well where as far to the other side there is another: which of them it comes to nothing says.
     """
-    landed = leap(mechanism, settings, values, start, direction, STEPS, BESIDE)
-    if landed is None or most_turned(start.state, landed.point.state) > BESIDE:
+    landed = leap(mechanism, settings, values, start, direction, STEPS, ASTRAY * BESIDE)
+    if landed is None or most_changed(start.state, landed.point.state) > BESIDE:
         return None
     there, here = landed.point.state, start.state
     opposite = State(2.0 * here.theta - there.theta, 2.0 * here.bodies - there.bodies)
@@ -68,5 +69,5 @@ def left(mechanism: Mechanism, settings: Settings, last: Minimum, way: Way) -> B
     if not strayed(problem.model.lengths, change, ways[0], ways[1], shifted):
         return None
     value = 0.5 * (last.value + way.value(1.0))
-    far = most_turned(last.point.state, landed.point.state) > BESIDE
+    far = most_changed(last.point.state, landed.point.state) > BESIDE
     return BranchEnd(value, width, Loss.FOLD, "", last.curvature, last.curvature, soft.direction, far)

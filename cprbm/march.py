@@ -20,7 +20,7 @@ from cprbm.critical import BranchEnd, Minimum, at_rest, branch_end, told
 from cprbm.equilibrium import Equilibrium, equilibrium
 from cprbm.extrapolating import FITTED, KEPT, alike, continued, led
 from cprbm.following import Follower, Reached, Way, pressing, to
-from cprbm.kinematics import State, most_turned, rest_state
+from cprbm.kinematics import State, most_changed, most_turned, rest_state
 from cprbm.leap import Landed, leap
 from cprbm.leaving import aside, left
 from cprbm.levelling import levelled
@@ -37,7 +37,7 @@ from cprbm.settings import Settings
 from cprbm.statics import statics
 from cprbm.steadied import Turn, steadied
 from cprbm.zones import Zone
-from scene import Certificate, Critical, Ending, Event, Loss, Scene, Stage, StationAnswer
+from scene import Certificate, Critical, Ending, Event, GoneOver, Loss, Scene, Stage, StationAnswer
 from scene.told import station_reached
 
 _SAYS = logging.getLogger(__name__)
@@ -82,8 +82,10 @@ class March:
         # where contacts stood open in this stage, of those that have not closed yet
         self.opened: dict[str, list[Stood]] = {}
         self.critical: list[Critical] = []
-        # ends that nothing was asked of on the way to the next station: how they are told, and where they were met
-        self.left: list[tuple[str, Critical, Follower]] = []
+        # ends that nothing was asked of: those gone on over, and those on the way to the next station with how they
+        # are told and where they were met
+        self.gone_over: list[GoneOver] = []
+        self.left: list[tuple[str, GoneOver, Follower]] = []
         self.remarks = Remarks()
         # what was solved at the last stations, by how often the mesh had been fitted, and to what
         self.before: dict[int, tuple[Fit, list[Stood]]] = {}
@@ -127,11 +129,12 @@ class March:
         closed_at, events = dict(self.closed_at), list(self.events)
         reached = self._led(stage, target)
         if reached.certificate is None and self.left:
-            of, critical, self.on = self.left[0]
-            self.critical[known:] = [critical]
+            of, met, self.on = self.left[0]
+            self.critical[known:] = [replace(met.end, after=None)]
             self.closed_at, self.events = closed_at, events
             return Reached(Ending.BRANCH_ENDS, of, certificate=None)
         self.remarks.passed += [of for of, _, _ in self.left]
+        self.gone_over += [met for _, met, _ in self.left]
         return reached
 
     def _led(self, stage: Stage, target: float) -> Reached:
@@ -254,10 +257,11 @@ class March:
             curvature=end.curvature,
             left=end.left,
             energy=before,
-            after=None if beside else after,
+            after=after,
         )
         if landed is not None and beside:
-            self.left.append((of, critical, on))
+            turned = most_changed(on.point.state, landed.point.state)
+            self.left.append((of, GoneOver(critical, turned), on))
         else:
             self.critical.append(critical)
         return landed, reached

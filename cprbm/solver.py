@@ -44,6 +44,7 @@ class Prepared:
             stations=tuple(march.reached),
             events=tuple(march.events),
             critical=tuple(march.critical),
+            gone_over=tuple(march.gone_over),
             seconds=self.seconds + time.perf_counter() - began,
             notes=tuple(notes),
         )

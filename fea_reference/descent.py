@@ -49,17 +49,17 @@ _SOFTER = 0.9  # of that after one that did not
 _SOON = 12  # iterations in which a step is found, if it is one
 _STEPS = 400
 _FEW = 60  # of them, where it is not to lead far
+_ASTRAY = 2.0  # times as far as what it is to lead to: what goes farther on the way is followed no further
 _CHANGES = 8  # of contacts and stops in one step
 _ROUNDED = 1e-9  # of the energy
 _STRONGEST = 1e12
 
 
-def descended(
-    march: March, load: int, target: float, span: float, lost: Lost, farthest: float = np.inf
-) -> float | None:
+def descended(march: March, load: int, target: float, span: float, lost: Lost, beside: float = np.inf) -> float | None:
     """Let the march fall from the end of a branch; the energy where it comes to rest, without units, or None.
 
-    What moves anything by more than the ``farthest`` is followed no further.
+    None as well where sections or bodies are turned there by more than ``beside``, rad: what goes much farther on the
+    way there is followed no further.
     """
     onward = float(np.sign(target - lost.value))
     beyond = _ASIDE if lost.loss is Loss.BIFURCATION else _BEYOND
@@ -73,7 +73,7 @@ def descended(
     if not size > 0.0:
         return None
     iterations = march.iterations
-    kicks, steps = (_KICKS[:1], _FEW) if np.isfinite(farthest) else (_KICKS, _STEPS)
+    kicks, steps = (_KICKS[:1], _FEW) if np.isfinite(beside) else (_KICKS, _STEPS)
     for kick in kicks:
         ways: list[tuple[float, int, March, float]] = []
         for sense in (1.0, -1.0):
@@ -85,10 +85,12 @@ def descended(
             if drag < _STRONGEST:
                 ways.append((penalised_energy(trial.model, trial.system, trial.values), -len(ways), trial, drag))
         for _, _, trial, drag in sorted(ways, key=lambda way: way[:2]):
-            if _fallen(trial, load, drag, lost.system.z, farthest, steps):
+            if _fallen(trial, load, drag, lost.system.z, _ASTRAY * beside, steps):
                 march.iterations += trial.iterations - iterations
                 march.restore(trial)
                 march.tighten()
+                if march.turned(march.system, lost.system.z) > beside:
+                    return None
                 return potential_energy(march.model, march.system, march.values)
     return None
 
@@ -98,7 +100,7 @@ def _fallen(march: March, load: int, drag: float, first: State, farthest: float,
     march.renew()  # without the drag
     convex = _CONVEX
     for _ in range(steps):
-        if drag > _STRONGEST or march.moved(march.system, first) > farthest:
+        if drag > _STRONGEST or march.turned(march.system, first) > farthest:
             return False
         before, saved = march.system, march.saved()
         energy = penalised_energy(march.model, before, march.values)
@@ -119,7 +121,7 @@ def _fallen(march: March, load: int, drag: float, first: State, farthest: float,
         saved, energy = march.saved(), penalised_energy(march.model, march.system, march.values)
         at_rest = _step(march, load, march.system.z, 0.0, march.system.z)
         if at_rest and not _risen(march, energy) and march.curvature > 0.0:
-            return march.moved(march.system, first) <= farthest
+            return march.turned(march.system, first) <= farthest
         march.restore(saved)
     return False
 

@@ -36,7 +36,7 @@ from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import LACKING, Circle, Contact, Face, Pair, Penalty, Rigid, Touch
 from fea_reference.yielding import FELT, POINT, ROUNDED, felt, in_points
-from scene.answer import Array, Critical, Ending
+from scene.answer import Array, Critical, Ending, GoneOver
 from scene.frozendict import frozendict
 
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
@@ -107,7 +107,7 @@ class Left:
     """An end of a branch that nothing asked for and the march went on over: how it is told, and the record of it."""
 
     sentence: str
-    critical: Critical
+    record: GoneOver
 
 
 @dataclass
@@ -836,6 +836,10 @@ class March:
     def moved(self, system: System, z: State) -> float:
         """The most by which anything differs."""
         return float(np.abs((system.z.values - z.values)[self.model.moving]).max())
+
+    def turned(self, system: System, z: State) -> float:
+        """The most by which a section of a beam, or a body, is turned against the state ``z``, rad."""
+        return float(np.abs((system.z.values - z.values)[self.model.turning]).max())
 
     def shown(self, load: int, value: float) -> str:
         """What is stepped, and a value of it in SI."""

@@ -290,6 +290,12 @@ class Model:
         return (*self.loads, *self.drives, *((MOMENTS, WAY) if self.apart else ()))
 
     @property
+    def turning(self) -> Index:
+        """The angles among the unknowns: of all nodes' sections and of all bodies that move."""
+        bodies = [body.dofs[2:] for body in self.bodies if body.dofs is not None]
+        return np.concatenate([self.node_dofs[2], *bodies])
+
+    @property
     def drawn(self) -> Acting:
         """What acts while the ends that are drawn apart are free."""
         return Acting(None if self.apart else np.zeros((0, 2)), stopping=not self.apart)

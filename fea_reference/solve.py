@@ -80,6 +80,7 @@ class Prepared:
             stations=tuple(stations),
             events=tuple(events),
             critical=tuple(march.critical),
+            gone_over=tuple(end.record for end in march.left),
             seconds=self.seconds + time.perf_counter() - began,
             notes=(*tested, *left),
         )

@@ -31,7 +31,7 @@ from fea_reference.march import Left, March, StoppedError, Trouble
 from fea_reference.model import SharePart
 from fea_reference.released import released
 from fea_reference.touch import Circle, Face, Pair
-from scene.answer import Array, Critical, Ending, Loss
+from scene.answer import Array, Critical, Ending, GoneOver, Loss
 
 _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
 _CUTS = 10  # in a row, each to a quarter
@@ -44,7 +44,7 @@ _ASIDE = 0.15  # of a step's own way: by which it may end aside of the mean of i
 _UNEVEN = 0.6  # of the way by which its rates differ
 _NOWHERE = 1e-6  # rad (and lengths): a way that is none
 _RISES = 10.0  # times what had sunk in: the way of something else
-_BESIDE = 0.3  # rad (and lengths): a state in which nothing has moved by more is beside another
+_BESIDE = 0.3  # rad: a state in which sections and bodies are turned by no more is beside another
 _AGAIN = 1e-5  # of the span: an end that is met again, not another
 _MANY, _CROWDED = 4, 0.01  # ends that follow each other within such a part of the span: they lead on to nothing
 _HALF = 0.5  # of the way to where the curvature is foreseen to vanish
@@ -114,7 +114,8 @@ def reach(march: March, course: Course, target: float) -> None:
 
 def _first_met(march: March, origin: March, met: list[Left]) -> StoppedError:
     """The first of the ends that were gone on over in vain, as what the march ends with."""
-    march.critical, march.left = [*origin.critical, met[0].critical], list(origin.left)
+    first = replace(met[0].record.end, after=None)
+    march.critical, march.left = [*origin.critical, first], list(origin.left)
     return StoppedError(Ending.BRANCH_ENDS, met[0].sentence)
 
 
@@ -336,7 +337,8 @@ def _goes_on(march: March, course: Course, lost: Lost) -> bool:
     the other, nor where it has been before, nor from one end to the next of many.
     """
     unit = march.model.stepped[course.load].unit
-    gone = [left.critical.value / unit for left in march.left if left.critical.stage == course.stage]
+    ends = [left.record.end for left in march.left]
+    gone = [end.value / unit for end in ends if end.stage == course.stage]
     again = len(gone) > 0 and abs(lost.value - gone[-1]) <= _AGAIN * course.span
     again = again or (len(gone) >= _MANY and abs(lost.value - gone[-_MANY]) <= _CROWDED * course.span)
     return lost.loss not in (Loss.SLIP, Loss.BIFURCATION) and not again
@@ -366,8 +368,10 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
         after = descended(march, load, target, course.span, lost)
     elif course.beyond != "stop" and _goes_on(march, course, lost):
         before = march.saved()
-        if descended(march, load, target, course.span, lost, _BESIDE) is not None:
-            march.left.append(Left(sentence, _record(march, course, lost, None)))
+        energy = descended(march, load, target, course.span, lost, _BESIDE)
+        if energy is not None:
+            turned = march.turned(march.system, lost.system.z)
+            march.left.append(Left(sentence, GoneOver(_record(march, course, lost, energy), turned)))
             return
         march.restore(before)
     if course.stage:

@@ -5,7 +5,7 @@ This room states; it never computes mechanics.  Both solvers read the same
 :class:`~scene.answer.Answer`, and share nothing else.
 """
 
-from scene.answer import Answer, Certificate, Critical, Ending, Event, Loss, Shape, StationAnswer
+from scene.answer import Answer, Certificate, Critical, Ending, Event, GoneOver, Loss, Shape, StationAnswer
 from scene.mistakes import Mistake, SceneError
 from scene.offset import OffsetClaim, OffsetQuestion, Spacing
 from scene.reading import Question, read, read_question
@@ -59,6 +59,7 @@ __all__ = [
     "Event",
     "FreeEnd",
     "FunctionContact",
+    "GoneOver",
     "HalfPlaneContact",
     "Line",
     "LineContact",

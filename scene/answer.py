@@ -250,13 +250,27 @@ class Critical:
 
 
 @dataclass(frozen=True, slots=True)
+class GoneOver:
+    """An end of a branch of which nothing was asked, and that was gone on over to a state beside it.
+
+    Attributes:
+        end: where it is and how stability is lost there; its ``after`` is the energy in the state beside.
+        turned: the most by which the tangent of a beam, or a body, is turned in that state against the end, rad.
+    """
+
+    end: Critical
+    turned: float
+
+
+@dataclass(frozen=True, slots=True)
 class Answer:
     """A solver's whole answer to a scene.
 
     ``stations`` are those reached with a certificate that holds, in order; ``sentence`` says more about the
     ending; ``settings`` are the solver's numerical choices as plain values.  ``events`` are contacts that closed
-    between stations, ``critical`` the ends of branches that were met, ``seconds`` what all of it took, and ``notes``
-    what the solver has to say besides.
+    between stations, ``critical`` the ends of branches that were met, ``gone_over`` those that a stage which asks for
+    none was gone on over, and which do not count in the stations' ``branch``; ``seconds`` what all of it took, and
+    ``notes`` what the solver has to say besides.
     """
 
     solver: str
@@ -267,6 +281,7 @@ class Answer:
     stations: tuple[StationAnswer, ...]
     events: tuple[Event, ...] = ()
     critical: tuple[Critical, ...] = ()
+    gone_over: tuple[GoneOver, ...] = ()
     seconds: float = 0.0
     notes: tuple[str, ...] = field(default=())
 

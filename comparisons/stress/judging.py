@@ -69,7 +69,7 @@ class Effort:
 class _Finding:
     """What one size says: a way, why, and the rows on which it rests; whether an audit ``doubts`` an answer; of answers
     that ended, whose they are (``early``), how many stations they reached, and whether in all of them the branch is
-    ``over``; ``apart`` as an outcome has it.
+    ``over``, or was left where it is in others; ``apart`` as an outcome has it.
     """
 
     way: Way
@@ -188,7 +188,8 @@ def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
     else:
         way = Way.AGREE if verdict.word is Word.AGREE else Way.UNDECIDED
     doubts = any(audit.complaints for audit in comparison.audits.values())
-    over = all(ends_at_critical(answer) for _, answer in runs.everything())
+    gone = {name for row in comparison.criticals for name in row.turned}
+    over = all(ends_at_critical(answer) or name in gone for name, answer in runs.everything())
     return _Finding(
         way, sentence, choices, runs, comparison.rows, ending, early=_whose(early), doubts=doubts, over=over
     )
@@ -218,7 +219,7 @@ def _finer(scene: Scene, finding: _Finding, left: int) -> Choices:
 def _worth_while(scene: Scene, finding: _Finding, left: int, *, first: bool) -> bool:
     """Whether so many further sizes may tell what cannot be told; of answers that ended, or are doubted, the next.
 
-    Not where every run says that the branch ends: a finer one would say it again.
+    Not where every run says that the branch ends, or has gone on over that: a finer one would say it again.
     """
     if finding.over:
         return False

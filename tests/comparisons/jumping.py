@@ -13,7 +13,7 @@ import numpy as np
 
 from comparisons.choices import Choices
 from comparisons.geometry import length
-from scene import Answer, Critical, Ending, Loss, PinnedEnd, Scene, Shape, StationAnswer
+from scene import Answer, Critical, Ending, GoneOver, Loss, PinnedEnd, Scene, Shape, StationAnswer
 from scene.answer import frozen_array
 from scene.frozendict import frozendict
 from scene.statement import TurningBody
@@ -30,7 +30,9 @@ FALL = 0.3
 class Jumping:
     """An answer function: ``error`` and ``critical_error`` are C/N² at N = 40 of all values and of the critical ones,
     the first relative and the second in rad; ``late`` is a fault of the second in every run; ``loss`` and ``what``
-    the mechanism; ``jumps`` whether there are any; ``stops`` whether the answer ends at the first."""
+    the mechanism; ``jumps`` whether there are any; ``stops`` whether the answer ends at the first; ``over`` is how far
+    the state beside is turned where it is gone on over instead, rad, and ``lands`` a share by which what it gives from
+    there on is off."""
 
     solver: str
     error: float = 1e-3
@@ -40,6 +42,8 @@ class Jumping:
     what: str = ""
     jumps: bool = True
     stops: bool = False
+    over: float = 0.0
+    lands: float = 0.0
     stiffness: float = 1.0
 
     def __call__(self, scene: Scene, choices: Choices) -> Answer:
@@ -51,18 +55,25 @@ class Jumping:
         base = MadeUp(self.solver, 0.0, contact=False)(scene, choices)
         stations: list[StationAnswer] = []
         critical: list[Critical] = []
+        gone: list[GoneOver] = []
         last = 0.0
         for station in base.stations:
-            at = self._passed(last, station.value, shift, away=len(critical) % 2 == 1)
+            at = self._passed(last, station.value, shift, away=len([*critical, *gone]) % 2 == 1)
             if at is not None:
                 end = Critical(station.stage, at, 1e-6, self.loss, self.what, 1e-7, -0.1, 1.0, 1.0 - FALL)
-                critical.append(replace(end, after=None) if self.stops else end)
+                if self.over:
+                    gone.append(GoneOver(end, self.over))
+                else:
+                    critical.append(replace(end, after=None) if self.stops else end)
                 if self.stops:
                     break
-            stations.append(self._station(scene, station, factor, len(critical)))
+            off = factor * (1.0 + self.lands * len(gone))
+            there = self._station(scene, station, off, len([*critical, *gone]))
+            stations.append(replace(there, branch=len(critical)))
             last = station.value
         ending = Ending.BRANCH_ENDS if len(stations) < len(base.stations) else Ending.COMPLETED
-        return replace(base, stations=tuple(stations), critical=tuple(critical), ending=ending, events=())
+        ends = {"critical": tuple(critical), "gone_over": tuple(gone)}
+        return replace(base, stations=tuple(stations), ending=ending, events=(), **ends)
 
     def _passed(self, last: float, value: float, shift: float, *, away: bool) -> float | None:
         """The critical value between two stations: before the jump the one forwards, after it the one back."""
