@@ -142,7 +142,7 @@ def _solve(
 ) -> tuple[Array, float] | None:
     """K t − f τ = ``right`` and w t₀·t + w τ₀ τ = ``last``, of the direction ``along`` (t₀, τ₀)."""
     way, rate = along
-    matrix = _bordered(system.tangent, -f, branch.weights * way, branch.weight * rate)
+    matrix = bordered(system.tangent, -f, branch.weights * way, branch.weight * rate)
     try:
         solution = splu(matrix).solve(np.append(right, last))
     except RuntimeError:  # exactly singular
@@ -150,7 +150,7 @@ def _solve(
     return (solution[:-1], float(solution[-1])) if np.isfinite(solution).all() else None
 
 
-def _bordered(K: csc_matrix, column: Array, row: Array, corner: float) -> csc_matrix:
+def bordered(K: csc_matrix, column: Array, row: Array, corner: float) -> csc_matrix:
     """K (size, size) with one more ``column`` and ``row`` (size,) each, and what is in the ``corner``."""
     size = column.size
     below, beside = np.flatnonzero(row), np.flatnonzero(column)

@@ -38,6 +38,7 @@ from fea_reference.march import March
 from fea_reference.mass import lumped_mass
 from fea_reference.slipping import left_to_go
 from fea_reference.system import System, assemble, stiffened
+from fea_reference.taut import Turn, beyond
 from fea_reference.touch import Touch
 from scene.answer import Array, Loss
 
@@ -91,8 +92,20 @@ class Lost:
 def followed(march: March, load: int, target: float, span: float) -> Lost | None:
     """Follow the branch towards ``target``; how it is lost, or None where it is not before that.
 
-    Then the march has gone some way along it, or none.
+    Then the march has gone some way along it, or none.  Where it turns back, and is one of minima still, the march has
+    gone on to what begins there, or none.
     """
+    saved = march.saved()
+    end = _along(march, load, target, span)
+    if not isinstance(end, Turn):
+        return end
+    if not beyond(march, end, target):
+        march.restore(saved)
+    return None
+
+
+def _along(march: March, load: int, target: float, span: float) -> Lost | Turn | None:
+    """The same, or where the branch turned back without being lost."""
     march.look()
     if march.loose:
         march.tighten()
@@ -106,31 +119,31 @@ def followed(march: March, load: int, target: float, span: float) -> Lost | None
         return None
     first, least, past = here, here.curvature, 0
     length = _FIRST
-    known = here.curvature, length
+    known, turn = (here.curvature, length), None
     for tried in range(_STEPS):
         if tried % _LOOK == 0 and tried > 0:
             # at this pace it is not lost in all steps
             if here.curvature > (1.0 - _LOOK / _STEPS) * known[0] and length <= known[1]:
-                return None
+                return turn
             known = here.curvature, length
         length = min(length, _MOST / max(float(np.abs(here.way[march.model.moving]).max()), _MOST))
         there = onwards(branch, here, length)
         if there is None or (_cosine(branch, here, there) < _STRAIGHT and length > _SHARP):
             length *= 0.25
             if length < _LEAST:
-                return None
+                return turn
             continue
         if march.least_gap(there.system) < 0.0:
             event = _event(march, branch, here, length)
             if event is None:
-                return None
+                return turn
             lost = _changed(march, load, event)
             if lost is not None:
                 return lost
             branch = _branch(march, load, span)
             again = place(branch, float(march.values[load]), march.system, (event.way, event.rate))
             if again is None or not again.curvature > 0.0:
-                return None
+                return turn
             here = again
             continue
         if there.curvature <= 0.0:
@@ -140,19 +153,21 @@ def followed(march: March, load: int, target: float, span: float) -> Lost | None
             # a step that long leads to another branch
             length *= 0.25
             if length < _LEAST:
-                return None
+                return turn
             continue
         if (there.value - target) * onward >= 0.0:
-            return None
+            return turn
         if march.passed(here.system.z, there.system, "") is not None:
-            return None
+            return turn
         march.values, march.system = branch.at(there.value), there.system
+        if turn is None and here.rate * onward > 0.0 > there.rate * onward:
+            turn = Turn(branch, here, length, there.rate)
         past = past + 1 if there.curvature > _GROWN * least else 0
         least = min(least, there.curvature)
         if past >= _PAST:
-            return None
+            return turn
         here, length = there, 1.5 * length
-    return None
+    return turn
 
 
 def _branch(march: March, load: int, span: float) -> Branch:

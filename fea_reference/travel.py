@@ -227,20 +227,22 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
         tired = crept or tiny or (trouble is not None and cuts >= _TIRED)
         paced = (paced[0], march.iterations) if crept else paced
         if minimum and follow and (close or unstable or tired):
-            lost = None
+            lost, over = None, False
             if tight is not None:
                 # with loose penalties the march may have come past where the branch ends with tight ones
                 march.restore(tight)
                 tight, lost = None, followed(march, load, target, course.span)
-            if lost is None:
+                over = lost is None and abs(target - march.values[load]) < abs(target - value)
+            if lost is None and not over:
                 march.restore(saved)
                 lost = followed(march, load, target, course.span) if march.curvature > 0.0 else None
+                over = lost is None and abs(target - march.values[load]) < abs(target - value)
             if lost is not None:
                 _beyond(march, course, target, lost)
                 stride, cuts, failed, searching = np.inf, 0, 0, False
                 limit = march.iterations + march.settings.iteration_limit
                 paced, looked = (march.values[load], march.iterations), False
-            elif tired:
+            elif tired and not over:
                 looked = looked or tiny
                 march.restore(saved)
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble or reason

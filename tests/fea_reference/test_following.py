@@ -106,6 +106,7 @@ def test_a_turn_sharper_than_a_step_is_not_stepped_over(monkeypatch):
 
     monkeypatch.setattr(following, "_lost", lost)
     march = SimpleNamespace(
+        saved=lambda: None,
         look=lambda: None,
         loose=False,
         values=np.zeros(1),

@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 
 import cprbm
+import fea_reference
 from comparisons.relations.image import Data
-from scene import Ending
+from scene import Answer, Ending, Loss
 from scene.reading import scene_from
 
 LENGTH, THICKNESS, WIDTH, YOUNGS_MODULUS = 0.0973, 0.00117, 0.0083, 2.07e11
@@ -24,6 +25,7 @@ RISE = math.hypot(ASIDE, BELOW) - BELOW
 STIFFNESS = 3.0 * YOUNGS_MODULUS * WIDTH * THICKNESS**3 / 12.0 / LENGTH**3
 NEEDED = STIFFNESS * RISE
 LINKS = 43
+SOLVERS = ("cprbm", "bending", "shear")
 
 
 def lifted(*stations: float) -> Data:
@@ -49,9 +51,17 @@ def lifted(*stations: float) -> Data:
     }  # fmt: skip
 
 
+def _answer(data: Data, solver: str) -> Answer:
+    """By links, or by finite elements in a theory."""
+    if solver == "cprbm":
+        return cprbm.answer(scene_from(data), cprbm.Settings(links=LINKS))
+    return fea_reference.answer(scene_from(data), fea_reference.Settings(elements=20, kinematics=solver))
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
 @pytest.mark.parametrize("stations", [(0.47, 2.3), (2.3,), (0.99, 1.01, 7.9)])
-def test_the_slide_carries_what_the_beam_does_not(stations):
-    answer = cprbm.answer(scene_from(lifted(*stations)), cprbm.Settings(links=LINKS))
+def test_the_slide_carries_what_the_beam_does_not(stations, solver):
+    answer = _answer(lifted(*stations), solver)
     assert answer.completed, answer.sentence
     for part, station in zip(stations, answer.stations, strict=True):
         lift, pull = station.values["T.displacement"][1], station.values["link.reaction"]
@@ -64,8 +74,14 @@ def test_on_the_way_back_a_link_that_would_be_pushed_is_no_minimum():
     # folds then nothing says
     data = lifted(0.47, 2.3)
     data["stages"].append({"name": "back", "steps": "up", "stations": [0.31 * NEEDED]})
-    answer = cprbm.answer(scene_from(data), cprbm.Settings(links=LINKS))
+    answer = _answer(data, "cprbm")
     assert answer.ending is Ending.NOT_A_MINIMUM
     assert len(answer.stations) == 2
     last = float(answer.sentence.rsplit(" ", 1)[1])
     assert last == pytest.approx(NEEDED, rel=1.0 / LINKS**2)
+    answer = _answer(data, "bending")
+    assert answer.ending is Ending.BRANCH_ENDS, answer.sentence
+    assert len(answer.stations) == 2
+    (critical,) = answer.critical
+    assert critical.loss is Loss.BIFURCATION
+    assert critical.value == pytest.approx(NEEDED, rel=1.0 / LINKS**2)
