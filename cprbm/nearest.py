@@ -85,6 +85,8 @@ DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even
 STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
 MANY = 27_000  # distances of samples, up to which all are looked at sooner than a tree is made
 STRAIGHT = 0.1  # of an element: by less a line is off the chords between its samples
+NEAR_END = 4.0  # times as far beyond, by where it leads it is told whether an end has come round another
+OBLIQUE = 0.25  # sine of the angle between lines of which one leads past the other's end, whatever their bend
 GAUSS = np.polynomial.legendre.leggauss(3)
 POINTS, WEIGHTS = 0.5 * (GAUSS[0] + 1.0), 0.25 * GAUSS[1]  # of the mean on either side of a border of B, half of it all
 
@@ -314,11 +316,11 @@ class Pair:
             D, sigma, foot = distance_along(self, lines, s)
             E, feet, facing = distance_along(self.exchanged(), lines[::-1], ends)
             D, E = np.where(foot, D, np.inf), np.where(facing, E, np.inf)
-            known[what] = D, self.wider(s, sigma) + np.zeros_like(D), E, self.wider(feet, ends) + np.zeros_like(E)
-        D, wider, E, wider_at_ends = known[what]
+            known[what] = D, s, sigma, self.wider(s, sigma), E, feet, self.wider(feet, ends)
+        D, s, sigma, wider, E, feet, wider_at_ends = known[what]
         return (
-            not_gone_round(self, lines, D, wider, gone),
-            not_gone_round(self.exchanged(), lines[::-1], E, wider_at_ends, gone),
+            not_gone_round(self, lines, D, s, sigma, wider, gone),
+            not_gone_round(self.exchanged(), lines[::-1], E, self.b.s[[0, -1]], feet, wider_at_ends, gone),
         )
 
     def touching(self, state: State, at: Positions, s: Array) -> Array:
@@ -683,7 +685,7 @@ def _facing_ends(pair: Pair, lines: Lines) -> Places:
     turned = pair.exchanged()
     at_B = B.only(near * (2 * b.n + 2))
     E, foot, facing, _ = _feet_from(turned, lines[::-1], at_B, A.only(nearest[near]), CLOSE)
-    E = not_gone_round(turned, lines[::-1], E, pair.wider(foot, ends[near]))
+    E = not_gone_round(turned, lines[::-1], E, ends[near], foot, pair.wider(foot, ends[near]))
     facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
     for i, end in enumerate(near):
         facing[i] &= not held_together(b, a, int(-end), float(foot[i]))
@@ -757,20 +759,53 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     at_A, at_B = A.only(close), G.only(nearest[close])
     distance, sigma[close], foot, at_B = _feet_from(pair, lines, at_A, at_B, CLOSE)
     D[close[foot]] = distance[foot]
-    D = not_gone_round(pair, lines, D, pair.wider(A.s, sigma))
+    D = not_gone_round(pair, lines, D, A.s, sigma, pair.wider(A.s, sigma))
     if not pair.tapered:  # else these are points of edges
         joints = ((close % 2 == 0) & np.isfinite(D[close])).nonzero()[0]
         lines[0].faced[pair.name] = D, at_A.only(joints), at_B.only(joints)
     return D, sigma
 
 
-def not_gone_round(pair: Pair, lines: Lines, D: Array, wider: Array | float, gone: float = np.inf) -> Array:
-    """D, but ``gone`` where A lies beyond B and has not come there through it, but round an end."""
-    beyond = D + 2.0 * wider + (pair.offset + STRAIGHT * (pair.a.h + pair.b.h)) < 0.0
-    if not beyond.any():
+def not_gone_round(
+    pair: Pair, lines: Lines, D: Array, s: Array, sigma: Array, wider: Array | float, gone: float = np.inf
+) -> Array:
+    """D, but ``gone`` where A lies beyond B and has not come there through it, but round an end.
+
+    What lies beyond by less than lines are off their chords, as where they overlap, has come round an end if it leads
+    past that at an angle.  What goes through B by no more than that beside an end counts as round it: of that the row
+    of the end tells, and chords beside a side that touches an end may cross there.  Of an end of A beside one of B no
+    other row tells: there it counts as through it, but farther beyond if it leads past the end.
+
+    Args:
+        pair, lines: the beams.
+        D: at places of A (k,), infinite where there is no foot.
+        s, sigma: these places and their feet (k,).
+        wider: by how much they are thicker there than where they are thinnest (k,).
+        gone: what D is there.
+    """
+    off, beyond_it = STRAIGHT * (pair.a.h + pair.b.h), -(D + 2.0 * wider + pair.offset)
+    if not (beyond_it > 0.0).any():
         return D
-    A, B = (np.stack((line.sampled.x, line.sampled.y), axis=1) for line in lines)
-    return D if cross(A, B) else np.where(beyond, gone, D)
+    came_round = beyond_it > off
+    if came_round.any():
+        came_round &= not cross(*(_without_ends(line.sampled, off) for line in lines))
+    end, own_end = pair.b.s[-1], (s == 0.0) | (s == pair.a.s[-1])
+    beside = (beyond_it > np.where(own_end, off, 0.0)) & (beyond_it <= np.where(own_end, NEAR_END * off, off))
+    beside &= np.minimum(sigma, end - sigma) < off * (1.0 + 1.0 / OBLIQUE)
+    if beside.any():
+        turned = pair.on_a(lines, s[beside]).psi - pair.on_b(lines, sigma[beside]).psi
+        rise, within = pair.side * np.sin(turned), np.where(own_end[beside], 0.0, off)
+        oblique = np.abs(rise) > OBLIQUE
+        reached = sigma[beside] - D[beside] * np.cos(turned) / np.where(oblique, rise, 1.0)
+        outside = (reached < within) | (reached > end - within)
+        came_round[beside] = np.where(oblique, outside, came_round[beside])
+    return np.where(came_round, gone, D)
+
+
+def _without_ends(sampled: smooth.Points, off: float) -> Array:
+    """Places of a line (k, 2) that begins and ends ``off`` from its ends."""
+    s = np.clip(sampled.s, off, max(off, sampled.s[-1] - off))
+    return np.stack((np.interp(s, sampled.s, sampled.x), np.interp(s, sampled.s, sampled.y)), axis=1)
 
 
 def minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Array]:

@@ -81,7 +81,7 @@ def _of_beams(pair: Pair, state: State, at: Positions) -> float:
     least, end = np.inf, pair.b.s[-1]
     seen = (distance < within) & (np.abs(sigma - 0.5 * end) <= 0.5 * end + PARALLEL * within)
     if seen.any():
-        D = not_gone_round(pair, lines, np.where(seen, d, np.inf), 0.0)
+        D = not_gone_round(pair, lines, np.where(seen, d, np.inf), A.s, np.clip(sigma, 0.0, end), 0.0)
         least, reach = float(D.min()), pair.offset + LOWER * pair.a.h
         if -0.5 * within <= least < reach:
             least = _least_below(pair, lines, D, reach, springs)
@@ -89,8 +89,8 @@ def _of_beams(pair: Pair, state: State, at: Positions) -> float:
     E, _ = _on_circles(pair.across, B.x[ends], B.y[ends], A, _nearest_springs(B.x[ends], B.y[ends], A)[1])
     ends = ends[(-within < E) & (pair.offset + NEARLY * pair.a.h > E)]
     if ends.size:
-        E, _, foot = distance_along(pair.exchanged(), lines[::-1], B.s[ends])
-        E = not_gone_round(pair.exchanged(), lines[::-1], np.where(foot, E, np.inf), 0.0)
+        E, feet, foot = distance_along(pair.exchanged(), lines[::-1], B.s[ends])
+        E = not_gone_round(pair.exchanged(), lines[::-1], np.where(foot, E, np.inf), B.s[ends], feet, 0.0)
         least = min(least, float(E.min()))
     return pair.least_gap(state, at) if least < -0.5 * within else least - pair.offset
 

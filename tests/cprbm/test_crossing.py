@@ -90,6 +90,20 @@ def test_a_tip_slides_along_a_beam_whose_further_part_it_turns_its_back_on():
     assert found[-1]["tip.rotation"][0] < -1.4
 
 
+@pytest.mark.parametrize("links", [20, 37])
+@pytest.mark.parametrize("thick", [False, True])
+@pytest.mark.parametrize("end", [(0.45, -0.6), (0.1, -0.5)])
+def test_a_beam_is_drawn_over_the_root_of_another_that_stands_between_its_arms(end, thick, links):
+    # what hangs on the far side has come there round the root, and touches nothing else
+    pressed = {"kind": "force", "point": "T", "direction": [-0.3, -1.0]}
+    scene = beside_another(
+        ((0.5 if end[0] > 0.4 else 0.45, -0.05), end), pressed, [3.0 * UNIT, 15.0 * UNIT], thick=thick
+    )
+    found = check(scene, links)
+    assert found[-1]["contact.force"][0] > 14.0 * UNIT
+    assert found[-1]["tip.rotation"][0] < -1.4
+
+
 @pytest.mark.parametrize(
     ("begin", "end", "through"), [((1.5, -0.1), (0.5, -0.1), True), ((1.5, -0.1), (1.2, -0.1), False)]
 )
