@@ -104,7 +104,8 @@ def beam_load(model: Model, part: OnBeam, value: float, z: State) -> BeamLoad:
     beam = model.beams[part.beam]
     force = value * part.forces
     placed = _placed(model, part, z)
-    place, start = placed.place, _placed(model, part, model.start).place
+    place = placed.place
+    start = model.loaded.found(model.start, part.name, lambda: _placed(model, part, model.start).place)
     local, twice = placed.along(force)
     done = float((force * (place - start)).sum())
     if not part.distributed:
@@ -121,19 +122,27 @@ def _beam_moment(model: Model, part: BeamMomentPart, value: float, z: State) -> 
     sections = model.line_of_sections(beam, z)
     e, xi = sections.locate(zeta)
     theta, local, twice = _turning(sections, zeta)
-    rest, _, _ = _turning(model.line_of_sections(beam, model.start), zeta)
     bow = 6.0 * xi * (1.0 - xi)
     gamma, leaning = model.sheared(beam, e, z)
-    none_yet, _ = model.sheared(beam, e, model.start)
-    theta, rest = theta - bow * gamma, rest - bow * none_yet
+    theta = theta - bow * gamma
     local[:6] -= bow * leaning.by
     twice[:6, :6] -= bow * leaning.by_twice
-    give = _mutual(model, part, part, sections)
+    rest, give = model.loaded.found(model.start, part.name, lambda: _moment_at_rest(model, part))
     chain = model.chain_of_sections(beam, e)
     local, twice = value * local, value * twice
-    work = value * float(theta[0] - rest[0]) + 0.5 * value**2 * give
+    work = value * float(theta[0] - rest) + 0.5 * value**2 * float(give)
     none, place = np.zeros((2, 1)), model.line(beam, z).at(zeta)[0]
     return BeamLoad(part, value, none, place, work, chain, chain.gradient(local), chain.hessian(twice, local))
+
+
+def _moment_at_rest(model: Model, part: BeamMomentPart) -> Array:
+    """Where the angle begins that a moment of one works on, and by how much that moment turns its own place, (2,)."""
+    beam, zeta = model.beams[part.beam], np.array([part.zeta])
+    sections = model.line_of_sections(beam, model.start)
+    e, xi = sections.locate(zeta)
+    gamma, _ = model.sheared(beam, e, model.start)
+    (theta,) = _turning(sections, zeta)[0] - 6.0 * xi * (1.0 - xi) * gamma
+    return np.array((theta, _mutual(model, part, part, sections)))
 
 
 def shared_work(model: Model, part: BeamMomentPart, other: BeamMomentPart, z: State) -> float:

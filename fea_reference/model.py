@@ -254,7 +254,7 @@ class Model:
     ``lines``, ``discs``, ``distances``, ``surveys``, ``overlaps`` and ``touches`` remember what has been found in a
     state: neutral lines by the name of the beam, discs about these and their distances from edges
     (:mod:`fea_reference.far`), gaps of beams at a distance, the zones of contacts, and what a contact is with a
-    penalty, a quadrature and the depth at which it is held.
+    penalty, a quadrature and the depth at which it is held; where what acts on beams begins to work.
     """
 
     units: Units
@@ -283,6 +283,7 @@ class Model:
     surveys: Known[tuple[Contact, float], Survey] = field(default_factory=Known, repr=False)
     overlaps: Known[Contact, Zones] = field(default_factory=Known, repr=False)
     touches: Known[tuple[Contact, Penalty, int, float | None], Touch] = field(default_factory=Known, repr=False)
+    loaded: Known[str, Array] = field(default_factory=Known, repr=False)
 
     @property
     def stepped(self) -> tuple[LoadPart | OnBeam | DrivePart | SharePart, ...]:
