@@ -150,10 +150,11 @@ def _of_rigid(
     on = np.zeros(len(s), dtype=bool)
     if s.size and not contact.thick and isinstance(contact, LineContact | FunctionContact):
         corners = _standing_out(contact).moved(first, moved, turn)
-        number, beside = corners.standing(places, SUNK * seen.longest)
+        sunk = SUNK * seen.longest
+        number, beside = corners.standing(places, sunk)
         on = beside & corners.allow(forces, number)
         # a part of what presses there may be normal to the edge beside the corner
-        yield from _on_corners(name, A, s, forces, np.where(beside & np.isin(number, number[on]), number, -1))
+        yield from _on_corners(name, A, s, forces, np.where(beside & np.isin(number, number[on]), number, -1), sunk)
     yield from _pressing(seen, name, a, surface(places), None, thick=contact.thick, on_corners=on)
 
 
@@ -170,12 +171,15 @@ def _still(seen: Seen, body: str, places: Complex) -> Complex:
     return np.asarray(first + (places - first - moved) / complex(np.exp(1j * phi)))
 
 
-def _on_corners(name: str, beam: AnyBeam, s: Array, forces: Complex, number: Ints) -> Iterator[str]:
-    """Of forces (k,) on a line those that rub together where a corner presses; ``number`` is −1 for none."""
+def _on_corners(name: str, beam: AnyBeam, s: Array, forces: Complex, number: Ints, sunk: float) -> Iterator[str]:
+    """Of forces (k,) on a line those that rub together where a corner presses; ``number`` is −1 for none.
+
+    What an edge presses within ``sunk`` of an end, m, is pressed at the end, and need not be normal to the line.
+    """
     size = np.abs(forces)
     for corner in np.unique(number[number >= 0]):
         mine = (number == corner) & (size > NOTHING * size.max())
-        at_end = np.isin(s[mine], (0.0, beam.rest.length)).any()
+        at_end = (np.minimum(s[mine], beam.rest.length - s[mine]) <= sunk).any()
         tangents = np.exp(1j * beam.line(s[mine])[1])
         if mine.any() and not at_end and leaning(tangents, forces[mine]) > RUBBING:
             yield f"{name} rubs its beam at {s[mine][0]:.4g} m, where a corner presses"
