@@ -185,8 +185,9 @@ def test_run_times_are_of_solves_and_not_of_what_was_kept(tmp_path, files, monke
         solvers, so_far = counting()
         assert reported(tmp_path / name, solvers, *left_out, asked=files[:1])[0] == 0
         asked.append(so_far())
-    # three methods at two sizes three times, and once before anything counts; three answers for the reference
-    assert asked[0] - asked[1] == 3 * (3 * 2 + 1) + 3
+    # three methods at two sizes three times, twice in a row, and once before anything counts; three answers for the
+    # reference
+    assert asked[0] - asked[1] == 3 * (3 * 2 * 2 + 1) + 3
 
 
 @pytest.mark.usefixtures("undrawn")
