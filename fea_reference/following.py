@@ -54,6 +54,7 @@ _PAST = 5  # steps
 _ROOTS = 60
 _FINE = 1e-8  # of the span
 _SHORT = 1e-4  # of a step
+_FARTHER = 30.0  # times the arc between them: places that are farther apart are on no one branch
 _BETWEEN = 1.0  # elements: between places that are farther apart along the beam there is no contact
 _ALONG = 0.5  # cosine between branch and φ at a fold
 _TURNING = 0.1  # of dλ/ds at the beginning: what is left of it at a fold
@@ -176,6 +177,12 @@ def _branch(march: March, load: int, span: float) -> Branch:
 
 def _cosine(branch: Branch, here: Place, there: Place) -> float:
     return float(here.way @ (branch.weights * there.way)) + branch.weight * here.rate * there.rate
+
+
+def _apart(branch: Branch, one: Place, other: Place) -> float:
+    """How far two places are from each other as the arc length has it."""
+    way = (other.system.z.values - one.system.z.values) + (other.system.z.rest - one.system.z.rest)
+    return float(np.sqrt(way @ (branch.weights * way) + branch.weight * (other.value - one.value) ** 2))
 
 
 def _event(march: March, branch: Branch, here: Place, length: float) -> Place | None:
@@ -418,6 +425,8 @@ def _lost(march: March, branch: Branch, first: Place, here: Place, there: Place,
         (s, before), (t, behind) = low, high
         if abs(behind.value - before.value) <= _FINE * branch.span and t - s <= _SHORT * length:
             break
+        if length > _SHARP and _apart(branch, before, behind) > _FARTHER * (t - s):
+            return None
         # regula falsi, with the weight halved of the end that stays (the Illinois variant)
         above, below = weights[0] * before.curvature, weights[1] * behind.curvature
         share = min(max(above / (above - below), 0.02), 0.98)

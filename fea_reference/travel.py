@@ -170,6 +170,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
     limit = march.settings.iteration_limit
     rate: Array | None = None
     tight: March | None = None
+    firm: float | None = None  # where penalties were tightened lest a step should lead through something
     paced, looked = (march.values[load], march.iterations), False
     leapt, failed = False, 0
     while march.values[load] != target:
@@ -227,13 +228,14 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
         tired = crept or tiny or (trouble is not None and cuts >= _TIRED)
         paced = (paced[0], march.iterations) if crept else paced
         if minimum and follow and (close or unstable or tired):
-            lost, over = None, False
+            lost, over, again = None, False, True
             if tight is not None:
                 # with loose penalties the march may have come past where the branch ends with tight ones
+                again = saved.values[load] != tight.values[load]
                 march.restore(tight)
                 tight, lost = None, followed(march, load, target, course.span)
                 over = lost is None and abs(target - march.values[load]) < abs(target - value)
-            if lost is None and not over:
+            if lost is None and not over and again:
                 march.restore(saved)
                 lost = followed(march, load, target, course.span) if march.curvature > 0.0 else None
                 over = lost is None and abs(target - march.values[load]) < abs(target - value)
@@ -262,13 +264,14 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
         else:
             march.restore(saved)
             rate = None
-            if march.cut() or (trouble[0] is Ending.BEAMS_CROSSED and march.sunk()):
+            crossed = trouble[0] is Ending.BEAMS_CROSSED
+            firmly = firm == march.values[load]
+            if not firmly and (march.cut() or (crossed and march.sunk())):
                 # what presses is not to go through what gives way
                 march.tighten()
-                known, march.behind = [], None
-                crossed = trouble[0] is Ending.BEAMS_CROSSED
+                known, march.behind, firm = [], None, march.values[load]
                 stride, cuts, reason = size if crossed else 0.25 * size, cuts + 1, trouble
-            elif not searching and march.loosen(Circle, Face, Pair):
+            elif not (firmly or searching) and march.loosen(Circle, Face, Pair):
                 if watched and minimum and not march.curvature > 0.0:
                     # what stands by a contact alone does not stand by a loose one, and whatever follows would pass
                     march.restore(saved)

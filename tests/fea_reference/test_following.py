@@ -120,3 +120,21 @@ def test_a_turn_sharper_than_a_step_is_not_stepped_over(monkeypatch):
     assert here.curvature > 0.0 >= there.curvature
     assert here.value == pytest.approx(END, abs=RADIUS)
     assert there.value == pytest.approx(END, abs=RADIUS)
+
+
+def test_places_on_two_branches_are_told_apart_at_once():
+    # by construction: an arc of one motion, and beyond 0.37 another one, as far away however short the arc between
+    seen = []
+
+    def at(s):
+        seen.append(s)
+        values = np.array([s if s < 0.37 else s + 0.2])
+        z = SimpleNamespace(values=values, rest=np.zeros(1))
+        curvature = 1.0 if s < 0.37 else -3.0
+        return Place(values[0], SimpleNamespace(z=z), Mode(curvature, np.ones(1)), np.ones(1), 1.0)
+
+    branch = SimpleNamespace(weights=np.full(1, 0.5), weight=0.5, span=1.0)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(following, "onwards", lambda branch, here, length: at(length))
+        assert following._lost(None, branch, at(0.0), at(0.0), at(0.5), 0.5) is None
+    assert len(seen) < 15

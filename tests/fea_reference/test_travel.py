@@ -117,6 +117,54 @@ def test_where_there_is_no_way_steps_end(monkeypatch):
 
 
 @dataclass
+class Yielding(Ways):
+    """A march in which loose penalties let anything through beyond WALL, and tight ones go 0.0004 at a time there.
+
+    Where penalties are ``tightened``; ``again`` is where they are loosened after that.
+    """
+
+    loose: bool = True
+    tightened: list[float] = field(default_factory=list)
+    again: list[float] = field(default_factory=list)
+
+    def saved(self):
+        return Yielding(values=self.values.copy(), loose=self.loose)
+
+    def step(self, load, value, rate):
+        self.steps += 1
+        self.iterations += 3
+        if value > WALL and self.loose:
+            return Ending.BEAMS_CROSSED, "through"
+        if value > WALL and value - self.values[load] > 0.0004:
+            return Ending.STEP_TOO_SMALL, "no way"
+        self.values[load] = value
+        return None
+
+    def sunk(self):
+        return self.loose
+
+    def tighten(self):
+        self.loose = False
+        self.tightened.append(float(self.values[0]))
+
+    def loosen(self, *kinds):
+        self.loose = True
+        if self.values[0] in self.tightened:
+            self.again.append(float(self.values[0]))
+        return True
+
+
+def test_what_was_tightened_lest_it_goes_through_is_not_loosened_where_it_stands(monkeypatch):
+    # from a place where loose penalties let it through, and tight ones ask for shorter steps, these are to be made
+    monkeypatch.setattr("fea_reference.travel.followed", lambda *asked: None)
+    march = Yielding()
+    _arrive(march, Course(0, 1.0), WALL + 0.002, watched=False)
+    assert march.values[0] == WALL + 0.002
+    assert march.tightened
+    assert not march.again
+
+
+@dataclass
 class Creeping(Ways):
     """A march that comes no farther than to WALL, but a third of the way there with every step that is short enough."""
 
