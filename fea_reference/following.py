@@ -42,6 +42,7 @@ from fea_reference.taut import Turn, beyond
 from fea_reference.touch import Touch
 from scene.answer import Array, Loss
 
+WEAKER = 0.6  # of the curvature when contacts were tight: from there on they are to be so again
 _FIRST = 0.01  # arc length of the first step
 _MOST = 0.03  # rad (and lengths): the most that one may move anything
 _LEAST = 1e-9
@@ -113,12 +114,14 @@ def _along(march: March, load: int, target: float, span: float) -> Lost | Turn |
     lost = _letting_go(march, load, target, span) or _slipping_off(march, load, target, span)
     if lost is not None:
         return lost
+    # a contact that has sunk into its penalty since may be held where a rigid one is not, on another branch
+    march.tighten()
     onward = float(np.sign(target - march.values[load]))
     branch = _branch(march, load, span)
     here = place(branch, float(march.values[load]), march.system, (np.zeros(march.model.size), onward))
     if here is None or not here.curvature > 0.0:
         return None
-    first, least, past = here, here.curvature, 0
+    first, least, past, firm = here, here.curvature, 0, here.curvature
     length = _FIRST
     known, turn = (here.curvature, length), None
     for tried in range(_STEPS):
@@ -161,6 +164,17 @@ def _along(march: March, load: int, target: float, span: float) -> Lost | Turn |
         if march.passed(here.system.z, there.system, "") is not None:
             return turn
         march.values, march.system = branch.at(there.value), there.system
+        if there.curvature < WEAKER * firm:
+            # what stands less firmly goes another way where contacts have sunk into their penalties
+            firm, penalties = there.curvature, dict(march.penalties)
+            march.tighten()
+            if march.penalties != penalties:
+                branch = _branch(march, load, span)
+                again = place(branch, float(march.values[load]), march.system, (there.way, there.rate))
+                if again is None or not again.curvature > 0.0:
+                    return turn
+                here, least, past = again, min(least, again.curvature), 0
+                continue
         if turn is None and here.rate * onward > 0.0 > there.rate * onward:
             turn = Turn(branch, here, length, there.rate)
         past = past + 1 if there.curvature > _GROWN * least else 0

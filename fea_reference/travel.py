@@ -26,7 +26,7 @@ from typing import Literal
 import numpy as np
 
 from fea_reference.descent import descended
-from fea_reference.following import Lost, about_to_go, followed
+from fea_reference.following import WEAKER, Lost, about_to_go, followed
 from fea_reference.march import Left, March, StoppedError, Trouble
 from fea_reference.model import SharePart
 from fea_reference.released import released
@@ -253,6 +253,10 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
                 follow = False
             known, rate, march.behind = [], None, None
         elif trouble is None:
+            if looking and 0.0 < march.curvature < WEAKER * known[-1][1]:
+                # what stands less firmly is as if drawn otherwise where contacts have sunk into their penalties
+                march.tighten()
+                ahead = march.rate(load)
             same = len(march.penalties) == len(saved.penalties) and march.acting is saved.acting
             known = [*known[-1:], (float(march.values[load]), march.curvature)] if same and looking else []
             march.course = (load, *known[-2]) if len(known) == 2 and not march.loose else None
