@@ -12,6 +12,7 @@ v_s         at n in the theory ``stretch``
 p           order of convergence that the error estimate assumes, 2; see :mod:`comparisons.order`
 S           safety factor of the error estimate, 1.25
 w           the CPRBM's value at N + N/7 links, where there is contact or a section has a kink
+w_f         the finite elements' at n + n/7 elements in the chosen theory, where there is contact
 d           v_c − v_f, the difference
 u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (or n), and no less than F times the
             probe's largest in the stage on the same branch; u_b no less than F times u_f
@@ -35,7 +36,10 @@ contact falls between the same nodes, and C has no reason to vanish in both at o
 therefore kept in u_b; u_f is no less than u_b anyway.
 
 Where a contact or a kink falls between joints can make the CPRBM's error uneven in N, and two N may meet by
-accident: what the even law through v and V does not foretell of w, times S, is added to u_c.
+accident: what the even law through v and V does not foretell of w, times S, is added to u_c.  A force within a finite
+element bends it there otherwise than its cubic, which is off by F u³v³/(3 EI h³) and in its slope by
+F u²v²(v − u)/(2 EI h³), with u + v = h: nothing where the place falls on a node, the most half-way and at a quarter.
+With shear the slope jumps there besides.  What the law does not foretell of w_f, times S, is added to u_f likewise.
 
 The formulation ``paper`` holds joints apart and not what lies between them, so that its error depends on where
 a contact falls between joints and no two N tell it. There u_c = |v_c − v_a| + S·4/3·|v_a − V_c|: its distance from the
@@ -470,11 +474,14 @@ def bounds_of(
     if "cprbm beside" in values:
         own += SAFETY * size(unforeseen(even, values["cprbm finer"], values["cprbm beside"], runs.ratio, order))
     bending = factor * size(v_b - values["fea bending finer"])
-    fea = factor * size(v_f - values[f"{chosen} finer"])
+    V_f = values[f"{chosen} finer"]
+    fea = factor * size(v_f - V_f)
+    if f"{chosen} beside" in values:
+        fea += SAFETY * size(unforeseen(v_f, V_f, values[f"{chosen} beside"], runs.fea_ratio, order))
     return Bounds(
         cprbm=own,
         fea=max(fea, bending),
-        bending=max(bending, SHARE_OF_LARGEST * fea),
+        bending=fea if runs.kinematics == "bending" else max(bending, SHARE_OF_LARGEST * fea),
         theory=size(v_b - v_f),
         round_off=allowance,
     )
