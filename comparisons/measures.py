@@ -82,7 +82,7 @@ from itertools import pairwise
 import numpy as np
 
 from comparisons.beside import joint_beside
-from comparisons.branches import Place, Spot, spots_of
+from comparisons.branches import MEASURED, Place, Spot, spots_of
 from comparisons.choices import KINEMATICS
 from comparisons.geometry import length
 from comparisons.order import order_of, richardson
@@ -409,7 +409,7 @@ def _row(
         return norm(probe.quantity, difference[counts])
 
     row = replace(row, difference=size(v_c - v_f), same_theory=size(v_c - v_b))
-    if spot.place is not Place.COMPARED:
+    if spot.place not in MEASURED:
         return row
     open_everywhere = probe.quantity in OPEN_AT_ZERO and not any(found.any() for found in values.values())
     allowance = 0.0 if open_everywhere else unsettled
@@ -449,7 +449,7 @@ def _of_resultants(scene: Scene, runs: Runs, row: Row, stations: Mapping[str, St
         return norm(probe.quantity, difference)
 
     row = replace(row, difference=size(v_c - v_f), same_theory=size(v_c - v_b), together=(v_c, v_f))
-    if row.place is not Place.COMPARED:
+    if row.place not in MEASURED:
         return row
     return replace(row, bounds=bounds_of(runs, values, order_of(scene, probe), size, unsettled))
 
@@ -512,11 +512,12 @@ def unforeseen(v: Array, V: Array, beside: Array, ratio: float, order: int) -> A
 def _none_small_by_accident(rows: tuple[Row, ...]) -> tuple[Row, ...]:
     """The rows with each uncertainty at least F times the largest of its probe in its stage, on its branch.
 
+    What goes with the square root of the distance from an end, near which it is, says nothing of other stations.
     A contact that is open in every run has no force, and no uncertainty of it.
     """
     largest: dict[tuple[str, str, int | None], tuple[float, float, float]] = {}
     for row in rows:
-        if row.bounds is not None:
+        if row.bounds is not None and row.place is Place.COMPARED:
             key = (row.probe.name, row.stage, row.branch)
             cprbm, fea, bending = largest.get(key, (0.0, 0.0, 0.0))
             largest[key] = (
@@ -527,7 +528,8 @@ def _none_small_by_accident(rows: tuple[Row, ...]) -> tuple[Row, ...]:
     found = []
     for row in rows:
         if row.bounds is not None and row.bounds.total > 0.0:
-            cprbm, fea, bending = (SHARE_OF_LARGEST * size for size in largest[row.probe.name, row.stage, row.branch])
+            all_of_it = largest.get((row.probe.name, row.stage, row.branch), (0.0, 0.0, 0.0))
+            cprbm, fea, bending = (SHARE_OF_LARGEST * size for size in all_of_it)
             bounds = replace(
                 row.bounds,
                 cprbm=max(row.bounds.cprbm, cprbm),
