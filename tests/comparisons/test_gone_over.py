@@ -6,7 +6,7 @@ from math import degrees, radians
 
 import pytest
 
-from comparisons import archive, cases, documents
+from comparisons import archive, cases, documents, sheets
 from comparisons.branches import Place
 from comparisons.choices import Choices
 from comparisons.criticals import critical_rows
@@ -147,6 +147,8 @@ def test_what_was_gone_on_over_is_in_the_json_and_the_archive(scene):
     assert data["critical"][0]["gone_over"]["cprbm"] == 0.29
     packed = json.loads(documents.text(archive.packed(runs.cprbm[0])))
     assert archive.unpacked(packed).gone_over == runs.cprbm[0].gone_over
+    (sheet,) = (one for one in sheets.of_answer(scene, runs.cprbm[0]) if one.title.startswith("Critical values"))
+    assert [row[3] for row in sheet.rows] == ["fold, gone on over: turned by 0.290 rad"]
     # an archive of before there was such a record
     del packed["gone_over"]
     assert archive.unpacked(packed).gone_over == ()
