@@ -17,9 +17,9 @@ The second condition makes the first one tight.  By the triangle inequality
 between the theories; within one theory it has only the two discretisations to hide behind.
 
 Of contacts that press a beam at one place the sum of the forces alone is determined (:mod:`comparisons.shared`): a row
-that asks for one of them says DIFFER if the sums do, and UNDECIDED otherwise.  So does one that would differ and asks
-for the force of a contact within an element of its beam's joint (:mod:`comparisons.beside`), by the sum of both; one
-that would and asks where such a contact presses is UNDECIDED.
+that asks for one of them says DIFFER if the sums do, and UNDECIDED otherwise.  So does one that would not agree and
+asks for the force of a contact within an element of its beam's joint (:mod:`comparisons.beside`), by the sum of both;
+one that would not and asks where such a contact presses is UNDECIDED.
 
 Rows at which the answers are not on one branch, or near where one ends, say what their place makes them say
 (:mod:`comparisons.branches`); a critical value says what :mod:`comparisons.criticals` makes of it.
@@ -199,13 +199,13 @@ def _judged_rows(scene: Scene, rows: tuple[Row, ...], words: tuple[Word | None, 
 
 
 def _with_joint(scene: Scene, row: Row) -> Row:
-    """The row that speaks for one: of a force that would differ, and no mesh resolves, the one with the joint beside.
+    """The row that speaks for one: of a force that does not agree, and no mesh resolves, the one with the joint beside.
 
     Where an exact value says whose force is wrong, it does.
     """
     if row.beside is None or any(each.pressure > 1.0 for each in every(row)):
         return row
-    return row.beside if _word(scene, row) is Word.DIFFER else row
+    return row if _word(scene, row) in (Word.AGREE, None) else row.beside
 
 
 def _word(scene: Scene, row: Row) -> Word | None:
