@@ -99,24 +99,25 @@ def _released(critical: Critical | None) -> str:
 
 
 def of_ends(scene: Scene, answer: Answer) -> Sheet:
-    """Where the branches of an answer end."""
+    """Where the branches of an answer end, and what it went on over."""
     units = {stage.name: load_unit(scene, stage) for stage in scene.stages}
+    over = {id(one.end): f", gone on over: turned by {number(one.turned, 3)} rad" for one in answer.gone_over}
     body = tuple(
         (
             each.stage,
             value_and_unit(each.value, units[each.stage]),
             distance(each.uncertainty, units[each.stage]),
-            mechanism(each),
+            f"{mechanism(each)}{over.get(id(each), '')}",
             number(each.curvature),
             number(each.left),
             _released(each),
         )
-        for each in answer.critical
+        for each in (*(one.end for one in answer.gone_over), *answer.critical)
     )
     return Sheet(
         "Critical values: where a branch ends",
         ("stage", "at", "±", "how", "smallest curvature", "left", "releases"),
         body,
         "The smallest curvature of the energy on the feasible directions as the branch comes to its end, and what is "
-        "left of it once something lets go. ±: on this discretisation.",
+        "left of it once something lets go. ±: on this discretisation. Gone on over: to a state so far turned.",
     )

@@ -11,13 +11,15 @@ place       what is at a station
 COMPARED    all answers are on one branch, and neither compared one has a critical value near by
 NEAR        all are on one branch, and a compared one has a critical value within the margin, or both have one or an
             end that they went on over (:class:`scene.answer.GoneOver`)
+DOUBTFUL    one alone of the compared answers has gone on over an end within the margin: the other may have it just
+            behind
 BETWEEN     some have left a branch and others have not, and all do leave it in this stage, or go on over its end
 APART       the two solvers are on different branches, and not because one leaves it a little later
 UNSETTLED   the same of the answers of one solver
 ==========  ==========================================================================================
 
-Only where it is COMPARED a station has a part in AGREE; one where answers are APART says DIFFER, an UNSETTLED one
-UNDECIDED.
+Only where it is COMPARED, or DOUBTFUL, a station has a part in AGREE; one where answers are APART says DIFFER, an
+UNSETTLED one UNDECIDED, and so does a DOUBTFUL one that would differ.
 """
 
 from __future__ import annotations
@@ -44,9 +46,14 @@ class Place(Enum):
 
     COMPARED = "compared"
     NEAR = "near a critical value"
+    DOUBTFUL = "near an end that one alone went on over"
     BETWEEN = "between the critical values"
     APART = "on different branches"
     UNSETTLED = "on different branches of one solver"
+
+
+MEASURED = frozenset({Place.COMPARED, Place.DOUBTFUL})
+"""Places at which it is stated what may lie between answers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,12 +101,10 @@ def spots_of(scene: Scene, everyone: Mapping[str, Answer], compared: tuple[Answe
                 place = _divided(stage, everyone, branches)
             elif alike and len({each[i] for each in gone.values()}) > 1:
                 place, branch = Place.BETWEEN, None
-            elif any(abs(value - critical) <= margin for critical in near) or all(
-                any(abs(value - end) <= margin for end in mine) for mine in ends
-            ):
-                place = Place.NEAR
             else:
-                place = Place.COMPARED
+                ending = any(abs(value - critical) <= margin for critical in near)
+                beside = [any(abs(value - end) <= margin for end in mine) for mine in ends]
+                place = Place.NEAR if ending or all(beside) else Place.DOUBTFUL if any(beside) else Place.COMPARED
             found.append(Spot(stage.name, value, place, branch))
     return tuple(found)
 

@@ -52,10 +52,18 @@ class Choices:
         )
 
     def beside(self) -> Choices:
-        """The same with a seventh more links: joints stand elsewhere, and the error is hardly another."""
-        if isinstance(self.links, int):
-            return replace(self, links=_seventh_more(self.links))
-        return replace(self, links={beam: _seventh_more(number) for beam, number in self.links.items()})
+        """The same with a seventh more links and elements: joints and nodes are elsewhere, and errors hardly other.
+
+        The penetration falls by the power of the elements by which it does in the finer ones.
+        """
+        elements = _seventh_more(self.elements)
+        more = _whole(elements) / _whole(self.elements)
+        return replace(self, links=_seventh_more(self.links), elements=elements, penetration=self.penetration / more**4)
+
+    def ratios_beside(self) -> tuple[float, float]:
+        """The links here over those beside, and the elements."""
+        beside = self.beside()
+        return _whole(self.links) / _whole(beside.links), _whole(self.elements) / _whole(beside.elements)
 
     def within(self, kinematics: Kinematics) -> Choices:
         """The same with another beam theory of the finite elements."""
@@ -82,8 +90,14 @@ def check(choices: Choices, scene: Scene) -> None:
         raise SceneError(mistakes)
 
 
-def _seventh_more(count: int) -> int:
-    return count + max(1, round(count / 7))
+def _seventh_more(count: Count) -> Count:
+    if isinstance(count, int):
+        return count + max(1, round(count / 7))
+    return {beam: number + max(1, round(number / 7)) for beam, number in count.items()}
+
+
+def _whole(count: Count) -> int:
+    return count if isinstance(count, int) else sum(count.values())
 
 
 def _twice(count: Count) -> Count:

@@ -12,6 +12,7 @@ v_s         at n in the theory ``stretch``
 p           order of convergence that the error estimate assumes, 2; see :mod:`comparisons.order`
 S           safety factor of the error estimate, 1.25
 w           the CPRBM's value at N + N/7 links, where there is contact or a section has a kink
+w_f         the finite elements' at n + n/7 elements in the chosen theory, where there is contact
 d           v_c − v_f, the difference
 u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (or n), and no less than F times the
             probe's largest in the stage on the same branch; u_b no less than F times u_f
@@ -35,7 +36,10 @@ contact falls between the same nodes, and C has no reason to vanish in both at o
 therefore kept in u_b; u_f is no less than u_b anyway.
 
 Where a contact or a kink falls between joints can make the CPRBM's error uneven in N, and two N may meet by
-accident: what the even law through v and V does not foretell of w, times S, is added to u_c.
+accident: what the even law through v and V does not foretell of w, times S, is added to u_c.  A force within a finite
+element bends it there otherwise than its cubic, which is off by F u³v³/(3 EI h³) and in its slope by
+F u²v²(v − u)/(2 EI h³), with u + v = h: nothing where the place falls on a node, the most half-way and at a quarter.
+With shear the slope jumps there besides.  What the law does not foretell of w_f, times S, is added to u_f likewise.
 
 The formulation ``paper`` holds joints apart and not what lies between them, so that its error depends on where
 a contact falls between joints and no two N tell it. There u_c = |v_c − v_a| + S·4/3·|v_a − V_c|: its distance from the
@@ -78,7 +82,7 @@ from itertools import pairwise
 import numpy as np
 
 from comparisons.beside import joint_beside
-from comparisons.branches import Place, Spot, spots_of
+from comparisons.branches import MEASURED, Place, Spot, spots_of
 from comparisons.choices import KINEMATICS
 from comparisons.geometry import length
 from comparisons.order import order_of, richardson
@@ -405,7 +409,7 @@ def _row(
         return norm(probe.quantity, difference[counts])
 
     row = replace(row, difference=size(v_c - v_f), same_theory=size(v_c - v_b))
-    if spot.place is not Place.COMPARED:
+    if spot.place not in MEASURED:
         return row
     open_everywhere = probe.quantity in OPEN_AT_ZERO and not any(found.any() for found in values.values())
     allowance = 0.0 if open_everywhere else unsettled
@@ -445,7 +449,7 @@ def _of_resultants(scene: Scene, runs: Runs, row: Row, stations: Mapping[str, St
         return norm(probe.quantity, difference)
 
     row = replace(row, difference=size(v_c - v_f), same_theory=size(v_c - v_b), together=(v_c, v_f))
-    if row.place is not Place.COMPARED:
+    if row.place not in MEASURED:
         return row
     return replace(row, bounds=bounds_of(runs, values, order_of(scene, probe), size, unsettled))
 
@@ -470,11 +474,14 @@ def bounds_of(
     if "cprbm beside" in values:
         own += SAFETY * size(unforeseen(even, values["cprbm finer"], values["cprbm beside"], runs.ratio, order))
     bending = factor * size(v_b - values["fea bending finer"])
-    fea = factor * size(v_f - values[f"{chosen} finer"])
+    V_f = values[f"{chosen} finer"]
+    fea = factor * size(v_f - V_f)
+    if f"{chosen} beside" in values:
+        fea += SAFETY * size(unforeseen(v_f, V_f, values[f"{chosen} beside"], runs.fea_ratio, order))
     return Bounds(
         cprbm=own,
         fea=max(fea, bending),
-        bending=max(bending, SHARE_OF_LARGEST * fea),
+        bending=fea if runs.kinematics == "bending" else max(bending, SHARE_OF_LARGEST * fea),
         theory=size(v_b - v_f),
         round_off=allowance,
     )
@@ -505,11 +512,12 @@ def unforeseen(v: Array, V: Array, beside: Array, ratio: float, order: int) -> A
 def _none_small_by_accident(rows: tuple[Row, ...]) -> tuple[Row, ...]:
     """The rows with each uncertainty at least F times the largest of its probe in its stage, on its branch.
 
+    What goes with the square root of the distance from an end, near which it is, says nothing of other stations.
     A contact that is open in every run has no force, and no uncertainty of it.
     """
     largest: dict[tuple[str, str, int | None], tuple[float, float, float]] = {}
     for row in rows:
-        if row.bounds is not None:
+        if row.bounds is not None and row.place is Place.COMPARED:
             key = (row.probe.name, row.stage, row.branch)
             cprbm, fea, bending = largest.get(key, (0.0, 0.0, 0.0))
             largest[key] = (
@@ -520,7 +528,8 @@ def _none_small_by_accident(rows: tuple[Row, ...]) -> tuple[Row, ...]:
     found = []
     for row in rows:
         if row.bounds is not None and row.bounds.total > 0.0:
-            cprbm, fea, bending = (SHARE_OF_LARGEST * size for size in largest[row.probe.name, row.stage, row.branch])
+            all_of_it = largest.get((row.probe.name, row.stage, row.branch), (0.0, 0.0, 0.0))
+            cprbm, fea, bending = (SHARE_OF_LARGEST * size for size in all_of_it)
             bounds = replace(
                 row.bounds,
                 cprbm=max(row.bounds.cprbm, cprbm),

@@ -222,6 +222,7 @@ class Runs:
             nothing rests on it.
         beside: the CPRBM in ``auto`` at N + N/7 links, if there is contact or a section has a kink; ``ratio`` is N
             over that number.
+        fea_beside, fea_ratio: likewise the finite elements in the chosen theory at n + n/7, if there is contact.
         nearby: the CPRBM at N links, answering :func:`comparisons.nearby.nearby`; nothing rests on it.
         exact: the exact answer in ``bending``, at the stations at which one is known; None if there is no such station.
         solid: the mechanism as a solid, if that was asked for, at n and 2n elements or on as many meshes as a tolerance
@@ -235,6 +236,8 @@ class Runs:
     paper: Answer | None = None
     beside: Answer | None = None
     ratio: float = 1.0
+    fea_beside: Answer | None = None
+    fea_ratio: float = 1.0
     nearby: Answer | None = None
     exact: Answer | None = None
     solid: tuple[Answer, ...] | None = None
@@ -261,6 +264,8 @@ class Runs:
             yield "cprbm auto", self.auto
         if self.beside is not None:
             yield "cprbm beside", self.beside
+        if self.fea_beside is not None:
+            yield f"fea {self.kinematics} beside", self.fea_beside
 
 
 @dataclass(frozen=True, slots=True)
@@ -402,6 +407,8 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
         for level, settings in enumerate(levels):
             places.append((kinematics, level))
             jobs.append((solvers.fea, scene, settings))
+    if scene.contacts:
+        jobs.append((solvers.fea, scene, choices.beside()))
     behind = len(jobs)
     if solvers.exact is not None:
         jobs.append((solvers.exact, scene, choices))
@@ -414,8 +421,9 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
         answers = pending()
         exact = answers[behind] if solvers.exact is not None else None
         fea: dict[Kinematics, tuple[Answer, ...]] = {}
-        for (kinematics, _), answer in zip(places, answers[first:behind], strict=True):
+        for (kinematics, _), answer in zip(places, answers[first : first + len(places)], strict=True):
             fea[kinematics] = (*fea.get(kinematics, ()), answer)
+        ratio, fea_ratio = even.ratios_beside()
         return Runs(
             choices.kinematics,
             (answers[0], answers[1]),
@@ -423,7 +431,9 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
             auto=answers[2] if extra else None,
             paper=None if extra or bare else in_paper(scene, choices, solvers),
             beside=answers[2 + len(extra)] if beside else None,
-            ratio=ratio_beside(even),
+            ratio=ratio,
+            fea_beside=answers[behind - 1] if scene.contacts else None,
+            fea_ratio=fea_ratio,
             nearby=answers[first - 1] if round_each else None,
             exact=exact if exact is not None and exact.stations else None,
             solid=(answers[third], answers[third + 1]) if solvers.solid is not None else None,
@@ -447,15 +457,6 @@ def known_exactly(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew) 
 def may_be_uneven(scene: Scene) -> bool:
     """Whether the CPRBM's error may depend on where joints fall: at a contact, or at a kink of a section."""
     return bool(scene.contacts) or any(len(beam.knots) > 2 for beam in scene.beams.values())
-
-
-def ratio_beside(choices: Choices) -> float:
-    """N over the number of links that :meth:`comparisons.choices.Choices.beside` makes of it."""
-    return _links(choices) / _links(choices.beside())
-
-
-def _links(choices: Choices) -> int:
-    return choices.links if isinstance(choices.links, int) else sum(choices.links.values())
 
 
 def in_paper(scene: Scene, choices: Choices, solvers: Solvers) -> Answer | None:

@@ -61,7 +61,7 @@ def told(rows: Sequence[Row], branches: Sequence[BranchVerdict], criticals: Sequ
         for each in branches
     )
     sentences = [f"Branch by branch: {said}."] if branches else []
-    for place in (Place.BETWEEN, Place.NEAR):
+    for place in (Place.BETWEEN, Place.NEAR, Place.DOUBTFUL):
         stations = dict.fromkeys(f"{row.stage} {row.station:g}" for row in rows if row.place is place)
         if stations:
             sentences.append(f"Listed as {place.value}: {', '.join(stations)}.")

@@ -56,6 +56,7 @@ def up_to(scene: Scene, runs: Runs, count: int) -> tuple[Scene, Runs]:
         fea=frozendict({theory: tuple(map(cut, answers)) for theory, answers in runs.fea.items()}),
         auto=maybe(runs.auto),
         beside=maybe(runs.beside),
+        fea_beside=maybe(runs.fea_beside),
         paper=None,
     )
 

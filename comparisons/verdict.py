@@ -17,9 +17,9 @@ The second condition makes the first one tight.  By the triangle inequality
 between the theories; within one theory it has only the two discretisations to hide behind.
 
 Of contacts that press a beam at one place the sum of the forces alone is determined (:mod:`comparisons.shared`): a row
-that asks for one of them says DIFFER if the sums do, and UNDECIDED otherwise.  So does one that would differ and asks
-for the force of a contact within an element of its beam's joint (:mod:`comparisons.beside`), by the sum of both; one
-that would and asks where such a contact presses is UNDECIDED.
+that asks for one of them says DIFFER if the sums do, and UNDECIDED otherwise.  So does one that would not agree and
+asks for the force of a contact within an element of its beam's joint (:mod:`comparisons.beside`), by the sum of both;
+one that would not and asks where such a contact presses is UNDECIDED.
 
 Rows at which the answers are not on one branch, or near where one ends, say what their place makes them say
 (:mod:`comparisons.branches`); a critical value says what :mod:`comparisons.criticals` makes of it.
@@ -199,13 +199,13 @@ def _judged_rows(scene: Scene, rows: tuple[Row, ...], words: tuple[Word | None, 
 
 
 def _with_joint(scene: Scene, row: Row) -> Row:
-    """The row that speaks for one: of a force that would differ, and no mesh resolves, the one with the joint beside.
+    """The row that speaks for one: of a force that does not agree, and no mesh resolves, the one with the joint beside.
 
     Where an exact value says whose force is wrong, it does.
     """
     if row.beside is None or any(each.pressure > 1.0 for each in every(row)):
         return row
-    return row.beside if _word(scene, row) is Word.DIFFER else row
+    return row if _word(scene, row) in (Word.AGREE, None) else row.beside
 
 
 def _word(scene: Scene, row: Row) -> Word | None:
@@ -215,11 +215,16 @@ def _word(scene: Scene, row: Row) -> Word | None:
         return Word.UNDECIDED
     if row.bounds is None:
         return None
-    within = row.difference <= row.bounds.total and row.same_theory <= row.bounds.same_theory
-    if not within or any(each.pressure > 1.0 for each in every(row)):
-        return Word.DIFFER
+    if _contradicted(row, row.bounds):
+        return Word.UNDECIDED if row.place is Place.DOUBTFUL else Word.DIFFER
     tellable = max(row.bounds.total, row.bounds.same_theory) <= scene.limit(row.probe) * row.scale and not row.shared
     return Word.AGREE if tellable else Word.UNDECIDED
+
+
+def _contradicted(row: Row, bounds: Bounds) -> bool:
+    """Whether values are farther from each other, or from an exact one, than may be."""
+    within = row.difference <= bounds.total and row.same_theory <= bounds.same_theory
+    return not within or any(each.pressure > 1.0 for each in every(row))
 
 
 _OF_PLACE: Mapping[Place, Word | None] = {
@@ -255,6 +260,8 @@ def _pressure(scene: Scene, row: Row, word: Word) -> float:
     """How hard a row presses towards a word: a difference on its sum, or a sum on its limit."""
     if row.bounds is None or (word is Word.UNDECIDED and (_lacking(row) or row.shared)):
         return float("inf")
+    if word is Word.UNDECIDED and _contradicted(row, row.bounds):
+        return float("inf")
     if word is Word.UNDECIDED:
         return _share(max(row.bounds.total, row.bounds.same_theory), scene.limit(row.probe) * row.scale)
     return max(*_between(row), *(each.pressure for each in every(row)))
@@ -278,6 +285,8 @@ def _sentence(scene: Scene, row: Row, word: Word, count: int, rows: int) -> str:
         return f"{count} of {rows} rows cannot be told, first of all {place}: {_of_shared(scene, row)}"
     if row.bounds is None or (word is Word.UNDECIDED and _lacking(row)):
         return f"{place} has no value in one of the runs, and no force of that contact is asked."
+    if word is Word.UNDECIDED and _contradicted(row, row.bounds):
+        return f"{count} of {rows} rows cannot be told, first of all {place}: {_DOUBTFUL}."
     chosen, within = _between(row)
     off = max(every(row), key=lambda each: each.pressure, default=None)
     if word is Word.DIFFER and off is not None and off.pressure > max(chosen, within):
@@ -302,6 +311,9 @@ def _sentence(scene: Scene, row: Row, word: Word, count: int, rows: int) -> str:
             )
         case Word.AGREE:
             return f"All {rows} rows agree; the closest call is {place}: {said}."
+
+
+_DOUBTFUL = "one solver alone went on over an end of the branch near by, which the other may have behind it"
 
 
 def _of_shared(scene: Scene, row: Row) -> str:

@@ -15,7 +15,7 @@ from comparisons.choices import Choices, Kinematics
 from comparisons.measures import Row, rows_of
 from comparisons.memory import Remembering
 from comparisons.order import order_of
-from comparisons.pairing import Runs, Solver, may_be_uneven, ratio_beside
+from comparisons.pairing import Runs, Solver, may_be_uneven
 from comparisons.soundness import complaints
 from comparisons.tolerances.extrapolation import Sizes, settled, uneven
 from comparisons.tolerances.search import FIRST, Estimate, Stated
@@ -89,11 +89,11 @@ class SceneLevels:
         (beside,) = self._answers([chosen.beside()])
         if complaints(self.scene, beside):
             return beside
-        return uneven(self.scene, self._three(theory, n), beside, ratio_beside(chosen), pair, probes)
+        return uneven(self.scene, self._three(theory, n), beside, chosen.ratios_beside()[0], pair, probes)
 
     def ratio(self, n: int) -> float:
         """n over the links beside them."""
-        return ratio_beside(self.choices("bending", n))
+        return self.choices("bending", n).ratios_beside()[0]
 
     @property
     def _uneven(self) -> bool:
@@ -118,7 +118,7 @@ class SceneLevels:
                 runs,
                 auto=None if each[0] == each[1] else mine[1],
                 beside=mine[3] if beside else None,
-                ratio=ratio_beside(each[1]),
+                ratio=each[1].ratios_beside()[0],
             )
             found.append(stated(self.scene, runs, theory))
         return _joined(found)

@@ -119,7 +119,9 @@ def _both_within(
         ), told
     elements = fea.levels.choices(choices.kinematics, fea.found.n)
     runs = paired(scene, replace(elements, links=cprbm.found.n, formulation=choices.formulation), solvers, memory)
-    return (replace(runs, fea=_families(fea, choices.kinematics)) if fea.found.settled else runs), told
+    if fea.found.settled:
+        runs = replace(runs, fea=_families(fea, choices.kinematics), fea_beside=None)
+    return runs, told
 
 
 def _reached(

@@ -6,7 +6,7 @@ from math import degrees, radians
 
 import pytest
 
-from comparisons import archive, cases, documents
+from comparisons import archive, cases, documents, sheets
 from comparisons.branches import Place
 from comparisons.choices import Choices
 from comparisons.criticals import critical_rows
@@ -120,6 +120,22 @@ def test_where_one_alone_goes_on_and_they_differ_from_there_it_is_said(scene):
     assert "went on over" not in told(scene, replace(OVER, stiffness=1.02), OVER).verdict.sentence
 
 
+def test_near_an_end_that_one_alone_goes_on_over_what_would_differ_is_undecided(scene):
+    """The last station is 71 degrees: the one has gone on at 70.4, and the other may just behind."""
+    stations = (*(value for value in scene.stages[0].stations if value < radians(69.0)), radians(71.0))
+    short = scene.model_copy(update={"stages": (scene.stages[0].model_copy(update={"stations": stations}),)})
+    alone = replace(OVER, solver="fea", over=0.0, jumps=False)
+    found = told(short, OVER, alone)
+    assert found.verdict.word is Word.UNDECIDED
+    assert {row.place for row in found.rows if row.station == stations[-1]} == {Place.DOUBTFUL}
+    assert "one solver alone went on over an end of the branch near by" in found.verdict.because
+    # before it, they agree
+    said = dict.fromkeys(zip((row.station for row in found.rows), found.verdict.words, strict=True))
+    assert {word for station, word in said if station != stations[-1]} <= {Word.AGREE, None}
+    # and an end that neither has is none
+    assert told(short, replace(alone, solver="cprbm"), alone).verdict.word is Word.AGREE
+
+
 def test_what_was_gone_on_over_is_in_the_json_and_the_archive(scene):
     runs = pairs(scene, OVER, ENDS)
     data = documents.comparison(compared(scene, runs))
@@ -131,6 +147,8 @@ def test_what_was_gone_on_over_is_in_the_json_and_the_archive(scene):
     assert data["critical"][0]["gone_over"]["cprbm"] == 0.29
     packed = json.loads(documents.text(archive.packed(runs.cprbm[0])))
     assert archive.unpacked(packed).gone_over == runs.cprbm[0].gone_over
+    (sheet,) = (one for one in sheets.of_answer(scene, runs.cprbm[0]) if one.title.startswith("Critical values"))
+    assert [row[3] for row in sheet.rows] == ["fold, gone on over: turned by 0.290 rad"]
     # an archive of before there was such a record
     del packed["gone_over"]
     assert archive.unpacked(packed).gone_over == ()

@@ -98,6 +98,29 @@ def test_an_error_that_is_uneven_in_n_is_stated_though_two_n_meet_by_accident(hi
     assert row.bounds.cprbm == pytest.approx(1.25 * apart * (46 / 40) ** 2, rel=1e-9)
 
 
+def test_finite_elements_whose_two_meshes_meet_by_accident_are_found_out_by_a_third(hinge):
+    """At 40 and at 80 elements one value, at 46 another, in the chosen theory."""
+
+    def uneven(scene, choices):
+        return MadeUp("fea", 0.0, stiffness=1.0 if choices.elements in (40, 80) else 1.01)(scene, choices)
+
+    solvers = Solvers(MadeUp("cprbm", 0.0), uneven)
+    row = rows_by_name(hinge, paired(hinge, Choices(elements=40, kinematics="bending"), solvers))["BD.rotation"]
+    assert row.bounds is not None
+    apart = 0.8 * 0.67 * (1.0 - 1.0 / 1.01)  # as above
+    assert row.bounds.fea == pytest.approx(1.25 * apart * (46 / 40) ** 2, rel=1e-9)
+    assert row.bounds.bending == row.bounds.fea
+
+
+def test_an_even_error_is_foretold_at_the_elements_beside(hinge, right):
+    runs = paired(hinge, Choices(), right)
+    assert runs.fea_beside is not None
+    assert runs.fea_ratio == pytest.approx(80 / 91)
+    for with_it, without in zip(rows_of(hinge, runs), rows_of(hinge, replace(runs, fea_beside=None)), strict=True):
+        if with_it.bounds is not None and without.bounds is not None:
+            assert with_it.bounds.fea == pytest.approx(without.bounds.fea, rel=0.02, abs=1e-12 * with_it.scale)
+
+
 def test_an_even_error_is_foretold_at_the_links_beside(hinge, right):
     runs = paired(hinge, Choices(), right)
     assert runs.beside is not None
@@ -110,6 +133,8 @@ def test_an_even_error_is_foretold_at_the_links_beside(hinge, right):
 def test_a_scene_without_contact_has_no_run_beside(hinge, right):
     probes = tuple(probe for probe in hinge.probes if probe.of != "contact")
     assert paired(hinge.model_copy(update={"contacts": {}, "probes": probes}), Choices(), right).beside is None
+    without = paired(hinge.model_copy(update={"contacts": {}, "probes": probes}), Choices(), right)
+    assert without.fea_beside is None
 
 
 def test_the_fea_is_never_taken_for_better_than_in_the_cprbms_own_theory(hinge):

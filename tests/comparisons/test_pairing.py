@@ -37,6 +37,7 @@ def test_every_run_is_asked_for_once(hinge, right):
         ("stretch", 80, 1e-4),
         ("shear", 80, 1e-4),
         ("shear", 160, 6.25e-6),
+        ("shear", 91, pytest.approx(1e-4 * (80 / 91) ** 4)),
     ]
 
 

@@ -35,7 +35,7 @@ def test_the_folder_holds_everything(written):
     data = json.loads((written / "hinge" / "comparison.json").read_text("utf-8"))
     assert data["cases"][0]["case"] == "hinge"
     answers = json.loads((written / "hinge" / "answers.json").read_text("utf-8"))
-    assert len(answers) == 9
+    assert len(answers) == 10
     assert "cprbm paper" in answers
 
 

@@ -28,7 +28,7 @@ def remembered(runs: Runs) -> Solvers:
         )
 
     def by_fea(scene: Scene, choices: Choices) -> Answer:
-        answers = runs.fea[choices.kinematics]
+        answers = (*runs.fea[choices.kinematics], *(() if runs.fea_beside is None else (runs.fea_beside,)))
         return next(answer for answer in answers if answer.settings["elements"] == choices.elements)
 
     return Solvers(by_cprbm, by_fea)
