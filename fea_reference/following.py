@@ -29,6 +29,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import brentq
 
 from fea_reference.advance import advance
 from fea_reference.branch import Branch, Place, onwards, place
@@ -46,6 +47,7 @@ WEAKER = 0.6  # of the curvature when contacts were tight: from there on they ar
 _FIRST = 0.01  # arc length of the first step
 _MOST = 0.03  # rad (and lengths): the most that one may move anything
 _LEAST = 1e-9
+_ROUNDED = 4.0 * float(np.finfo(float).eps)
 _STEPS = 400
 _LOOK = 30  # of them after which it is seen whether they lead on
 _STRAIGHT = 0.9  # cosine between the directions at both ends of a step
@@ -200,21 +202,25 @@ def _apart(branch: Branch, one: Place, other: Place) -> float:
 
 
 def _event(march: March, branch: Branch, here: Place, length: float) -> Place | None:
-    """The place, before ``length``, at which a contact or stop changes."""
-    low, high = 0.0, length
-    found = here
-    for _ in range(_ROOTS):
-        middle = 0.5 * (low + high)
-        there = onwards(branch, here, middle)
+    """The place, before ``length``, at which a contact or stop changes: just behind it."""
+    behind: list[tuple[float, Place]] = []
+
+    def gap(way: float) -> float:
+        there = onwards(branch, here, way) if way > 0.0 else here
         if there is None:
-            return None
-        if march.least_gap(there.system) < 0.0:
-            high, found = middle, there
-        else:
-            low = middle
-        if high - low <= _LEAST * length:
-            break
-    return found
+            raise ArithmeticError
+        least = march.least_gap(there.system)
+        if least < 0.0:
+            behind.append((way, there))
+        return least if way > 0.0 else max(least, np.finfo(float).tiny)
+
+    try:
+        root = brentq(gap, 0.0, length, xtol=_LEAST * length, rtol=_ROUNDED)
+        if min(way for way, _ in behind) > root + 2.0 * _LEAST * length:
+            gap(root + 2.0 * _LEAST * length)
+    except ArithmeticError:
+        return None
+    return min(behind, key=lambda one: one[0])[1]
 
 
 def _changed(march: March, load: int, event: Place) -> Lost | None:
