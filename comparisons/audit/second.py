@@ -306,6 +306,8 @@ def _in_spots(seen: Seen, one: tuple[str, Acting], other: tuple[str, Acting]) ->
     else that presses.
     """
     mine = one[1]
+    if not mine.s.size:
+        return mine, other[1], np.zeros(0, dtype=bool)
     order = np.argsort(mine.s, kind="stable")
     apart = np.diff(mine.s[order]) > SPOT * _element(seen, one[0], mine.s[order][:-1])
     found, alone = [], []
