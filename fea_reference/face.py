@@ -189,6 +189,13 @@ def beside(model: Model, face: Face, z: State, zeta: Array) -> Near:
     return Near(near.distance, seen.turned(near.normal), near.bend, near.corner)
 
 
+def corners_of(model: Model, face: Face, z: State) -> Complex:
+    """Where the corners of the edge are in state ``z``, (c,) as complex numbers."""
+    body, points = model.bodies[face.body], face.outline.corners.points
+    X, Y, phi = model.body_state(body, z)
+    return np.asarray(complex(*body.centre) + complex(X, Y) + np.exp(1j * phi) * (points[0] + 1j * points[1]))
+
+
 def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State) -> Touch:
     """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[face.first], model.bodies[face.body]

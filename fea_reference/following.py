@@ -37,6 +37,7 @@ from fea_reference.curvature import Mode, softest
 from fea_reference.energy import potential_energy
 from fea_reference.march import March
 from fea_reference.mass import lumped_mass
+from fea_reference.off_a_corner import Stretch, cut_short, left_a_corner, slips
 from fea_reference.slipping import left_to_go
 from fea_reference.system import System, assemble, stiffened
 from fea_reference.taut import Turn, beyond
@@ -51,12 +52,14 @@ _ROUNDED = 4.0 * float(np.finfo(float).eps)
 _STEPS = 400
 _LOOK = 30  # of them after which it is seen whether they lead on
 _STRAIGHT = 0.9  # cosine between the directions at both ends of a step
+_LONGER = 2.0  # times as far away as a step is long: a place that is farther is on another branch
 _SHARP = 1e-6  # arc length below which a turn is one
 _GROWN = 1.2  # of the least curvature on the way: it has come past
 _PAST = 5  # steps
 _ROOTS = 60
 _FINE = 1e-8  # of the span
 _SHORT = 1e-4  # of a step
+_KEPT = 20  # stretches
 _FARTHER = 30.0  # times the arc between them: places that are farther apart are on no one branch
 _BETWEEN = 1.0  # elements: between places that are farther apart along the beam there is no contact
 _ALONG = 0.5  # cosine between branch and φ at a fold
@@ -93,6 +96,11 @@ class Lost:
     direction: Array
 
 
+@dataclass(frozen=True, slots=True)
+class CutShort:
+    """That a zone beside an end is cut short by that."""
+
+
 def followed(march: March, load: int, target: float, span: float) -> Lost | None:
     """Follow the branch towards ``target``; how it is lost, or None where it is not before that.
 
@@ -100,16 +108,22 @@ def followed(march: March, load: int, target: float, span: float) -> Lost | None
     gone on to what begins there, or none.
     """
     saved = march.saved()
-    end = _along(march, load, target, span)
-    if not isinstance(end, Turn):
-        return end
-    if not beyond(march, end, target):
+    end = _along(march, load, target, span, tight=False)
+    if isinstance(end, CutShort):
+        # what sinks into the penalties of a way slips elsewhere
         march.restore(saved)
-    return None
+        march.tighten()
+        end = _along(march, load, target, span, tight=True)
+    if isinstance(end, Turn) and not beyond(march, end, target):
+        march.restore(saved)
+    return end if isinstance(end, Lost) else None
 
 
-def _along(march: March, load: int, target: float, span: float) -> Lost | Turn | None:
-    """The same, or where the branch turned back without being lost."""
+def _along(march: March, load: int, target: float, span: float, *, tight: bool) -> Lost | Turn | CutShort | None:
+    """The same, or where the branch turned back without being lost.
+
+    Where a zone is cut short that penalties that are not ``tight`` make wider, it goes no farther.
+    """
     march.look()
     if march.loose:
         march.tighten()
@@ -121,11 +135,14 @@ def _along(march: March, load: int, target: float, span: float) -> Lost | Turn |
     onward = float(np.sign(target - march.values[load]))
     branch = _branch(march, load, span)
     here = place(branch, float(march.values[load]), march.system, (np.zeros(march.model.size), onward))
+    if not tight and cut_short(march.model, march.system):
+        return CutShort()
     if here is None or not here.curvature > 0.0:
         return None
     first, least, past, firm = here, here.curvature, 0, here.curvature
     length = _FIRST
     known, turn = (here.curvature, length), None
+    gone: list[Stretch] = []
     for tried in range(_STEPS):
         if tried % _LOOK == 0 and tried > 0:
             # at this pace it is not lost in all steps
@@ -134,10 +151,12 @@ def _along(march: March, load: int, target: float, span: float) -> Lost | Turn |
             known = here.curvature, length
         length = min(length, _MOST / max(float(np.abs(here.way[march.model.moving]).max()), _MOST))
         there = onwards(branch, here, length)
-        if there is None or (_cosine(branch, here, there) < _STRAIGHT and length > _SHARP):
+        elsewhere = there is not None and length > _SHARP and not _goes_on_to(branch, here, there, length)
+        if there is None or elsewhere or left_a_corner(march.model, here.system, there.system):
             length *= 0.25
             if length < _LEAST:
-                return turn
+                gone = [*gone, Stretch(branch, here, 0.0)]
+                return _slipped(march, load, gone, here) or turn
             continue
         if march.least_gap(there.system) < 0.0:
             event = _event(march, branch, here, length)
@@ -150,17 +169,21 @@ def _along(march: March, load: int, target: float, span: float) -> Lost | Turn |
             again = place(branch, float(march.values[load]), march.system, (event.way, event.rate))
             if again is None or not again.curvature > 0.0:
                 return turn
-            here = again
+            here, gone = again, []
             continue
         if there.curvature <= 0.0:
+            if not tight and cut_short(march.model, there.system):
+                return CutShort()
             lost = _lost(march, branch, first, here, there, length)
             if lost is not None:
-                return lost
+                return _slipped(march, load, [*gone, Stretch(branch, here, length)], lost) or lost
             # a step that long leads to another branch
             length *= 0.25
             if length < _LEAST:
                 return turn
             continue
+        if not tight and cut_short(march.model, there.system):
+            return CutShort()
         if (there.value - target) * onward >= 0.0:
             return turn
         if march.passed(here.system.z, there.system, "") is not None:
@@ -183,8 +206,22 @@ def _along(march: March, load: int, target: float, span: float) -> Lost | Turn |
         least = min(least, there.curvature)
         if past >= _PAST:
             return turn
+        gone = [*gone[-_KEPT:], Stretch(branch, here, length)]
         here, length = there, 1.5 * length
     return turn
+
+
+def _slipped(march: March, load: int, gone: list[Stretch], end: Lost | Place) -> Lost | None:
+    """An end that slips off a corner, where a branch that has ``gone`` so far is lost to the penalty before that, or
+    leads on no more.
+    """
+    slip = slips(march.model, gone, end.system)
+    if slip is None:
+        return None
+    march.values, march.system = gone[-1].branch.at(slip.place.value), slip.place.system
+    left = softest(march.model, _without(march, slip.one))
+    found = _ahead(march, load, slip.value - slip.place.value, Loss.SLIP, slip.one, slip.place.curvature, left)
+    return replace(found, uncertainty=float(abs(slip.value - end.value)))
 
 
 def _branch(march: March, load: int, span: float) -> Branch:
@@ -193,6 +230,11 @@ def _branch(march: March, load: int, span: float) -> Branch:
 
 def _cosine(branch: Branch, here: Place, there: Place) -> float:
     return float(here.way @ (branch.weights * there.way)) + branch.weight * here.rate * there.rate
+
+
+def _goes_on_to(branch: Branch, here: Place, there: Place, length: float) -> bool:
+    """Whether the branch goes from one place to another, and that by a ``length`` of arc."""
+    return _cosine(branch, here, there) >= _STRAIGHT and _apart(branch, here, there) <= _LONGER * length
 
 
 def _apart(branch: Branch, one: Place, other: Place) -> float:

@@ -27,6 +27,7 @@ from fea_reference.curvature import positive, smallest_curvature
 from fea_reference.face import cut
 from fea_reference.model import Model
 from fea_reference.newton import equilibrium
+from fea_reference.off_a_corner import slipped_off
 from fea_reference.onward import Onward, onward
 from fea_reference.settings import Settings
 from fea_reference.sinking import Depth, known_depths, sunk
@@ -376,8 +377,10 @@ class March:
         return None
 
     def _slipped(self, system: System, where: str) -> Trouble | None:
-        """Whether an end that presses on another beam has come past the end of that on the way to a system."""
+        """Whether an end that presses has come past that of another beam, or past a corner, on the way to a system."""
         for one in self.system.touches:
+            if slipped_off(self.model, one, self.system.z, system.z):
+                return Ending.STEP_TOO_SMALL, f"{where} an end slips off a corner in {one.pair.name}"
             here = left_to_go(self.model, one, self.system.z)
             there = None if here is None else left_to_go(self.model, one, system.z)
             if here is not None and there is not None and here > 0.0 > there:
@@ -565,7 +568,7 @@ class March:
     def loosen(self, *kinds: type[Contact]) -> bool:
         """Go back to the loosest penalties: the ends of a zone move by a layer's width per iteration.
 
-        Returns whether it could be done: not where that sinks in too far, or lets something overlap that is open.
+        Returns whether it could be done: not where that sinks in too far, slips or lets something overlap that is open.
         Most pairs of beams touch in a point, whose zone is found all the same.
         """
         return any(self._loosened(kinds, share) for share in _LOOSER)
@@ -586,7 +589,8 @@ class March:
         self.iterations += solved.iterations
         if not solved.converged or _too_deep(self.model, solved.system) or self._closes_more(solved.system):
             return False
-        if self.moved(solved.system, self.system.z) <= _CORRECTED and not self._gone_through(solved.system):
+        there = self._gone_through(solved.system) or self._slipped(solved.system, "") is not None
+        if self.moved(solved.system, self.system.z) <= _CORRECTED and not there:
             self.system, self.penalties, self.loose = solved.system, looser, True
             self.change_places()
             return True

@@ -40,13 +40,13 @@ def left_to_go(model: Model, one: Touch, z: State) -> float | None:
     if pair.distance > 0.0 and float(inwards @ one.normal.mean(axis=1)) < 0.0:
         return None
     x = first.points[:, near]
-    zeta_m = project(second, x, np.array([float(np.median(one.zeta_m))]))[0]
-    s_m, total = _arc(second, x, zeta_m), float(second.lengths.sum())
+    s_m, total = along_line(second, x, float(np.median(one.zeta_m))), float(second.lengths.sum())
     return min(s_m, total - s_m)
 
 
-def _arc(line: NeutralLine, x: Array, zeta: Array) -> float:
-    """s_m of a point ``x`` (2, 1) whose closest place is ``zeta`` (1,)."""
+def along_line(line: NeutralLine, x: Array, near: float) -> float:
+    """s_m of a point ``x`` (2, 1) on a neutral line, whose closest place is sought from the place ``near`` it."""
+    zeta = project(line, x, np.array([near]))[0]
     arcs = np.append(0.0, np.cumsum(line.lengths))
     there, ahead, _ = line.at(zeta)
     along = float(((x - there) * ahead).sum() / np.hypot(*ahead[:, 0]))

@@ -341,6 +341,18 @@ def _record(march: March, course: Course, lost: Lost, after: float | None) -> Cr
     )
 
 
+def _leads_on(march: March, load: int, target: float, lost: Lost) -> bool:
+    """Whether a way down may lead on from an end at which the march stands.
+
+    What has slipped off another beam's end lies between where it was and where its gap is seen.  A corner is seen from
+    all sides; but where it is slipped off behind the ``target``, the penalty alone ends the branch before.
+    """
+    if lost.loss is not Loss.SLIP:
+        return True
+    corner = any(one.pair.name == lost.what and isinstance(one.pair, Face) for one in lost.system.touches)
+    return corner and abs(lost.value - march.values[load]) < abs(target - march.values[load])
+
+
 def _goes_on(march: March, course: Course, lost: Lost) -> bool:
     """Whether the march may go on over an end: not where another branch goes off, either of whose sides is as good as
     the other, nor where it has been before, nor from one end to the next of many.
@@ -350,7 +362,7 @@ def _goes_on(march: March, course: Course, lost: Lost) -> bool:
     gone = [end.value / unit for end in ends if end.stage == course.stage]
     again = len(gone) > 0 and abs(lost.value - gone[-1]) <= _AGAIN * course.span
     again = again or (len(gone) >= _MANY and abs(lost.value - gone[-_MANY]) <= _CROWDED * course.span)
-    return lost.loss not in (Loss.SLIP, Loss.BIFURCATION) and not again
+    return lost.loss is not Loss.BIFURCATION and not again
 
 
 def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
@@ -365,17 +377,17 @@ def _beyond(march: March, course: Course, target: float, lost: Lost) -> None:
         Loss.BIFURCATION: "another one branches off",
         Loss.CONTACT: f"the contact {lost.what} lets go",
         Loss.STOP: f"the stop {lost.what} lets go",
-        Loss.SLIP: f"an end slips off the other in {lost.what}",
+        Loss.SLIP: f"an end slips off in {lost.what}",
     }[lost.loss]
     sentence = (
         f"at {march.shown(load, lost.value)} the branch of minima ends, {why}: the smallest curvature comes to "
         f"{lost.curvature:.3g} there, and what is left has {lost.left:.3g}"
     )
     after = None
-    # what has slipped off lies between where it was and where its gap is seen: no way down leads from there yet
-    if course.beyond == "jump" and lost.loss is not Loss.SLIP:
+    leads_on = _leads_on(march, load, target, lost)
+    if course.beyond == "jump" and leads_on:
         after = descended(march, load, target, course.span, lost)
-    elif course.beyond != "stop" and _goes_on(march, course, lost):
+    elif course.beyond not in ("stop", "jump") and leads_on and _goes_on(march, course, lost):
         before = march.saved()
         energy = descended(march, load, target, course.span, lost, _BESIDE)
         if energy is not None:

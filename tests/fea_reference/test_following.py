@@ -82,7 +82,9 @@ class Sharp:
 
     @staticmethod
     def place(value, curvature, way, rate, s):
-        return Place(float(value), SimpleNamespace(z=None, s=s), Mode(curvature, np.ones(1)), np.array([way]), rate)
+        return Place(
+            float(value), SimpleNamespace(z=None, s=s, touches=()), Mode(curvature, np.ones(1)), np.array([way]), rate
+        )
 
     def onwards(self, branch, here, length):
         there = self.at(here.system.s + length)
@@ -99,6 +101,7 @@ def test_a_turn_sharper_than_a_step_is_not_stepped_over(monkeypatch):
     monkeypatch.setattr(following, "_branch", lambda march, load, span: unit)
     monkeypatch.setattr(following, "place", lambda branch, value, system, before: sharp.at(0.0))
     monkeypatch.setattr(following, "onwards", sharp.onwards)
+    monkeypatch.setattr(following, "_apart", lambda branch, one, other: 0.0)
 
     def lost(march, branch, first, here, there, length):
         ends.append((here, there))
@@ -111,7 +114,7 @@ def test_a_turn_sharper_than_a_step_is_not_stepped_over(monkeypatch):
         loose=False,
         tighten=lambda: None,
         values=np.zeros(1),
-        system=SimpleNamespace(z=None),
+        system=SimpleNamespace(z=None, touches=()),
         model=SimpleNamespace(size=1, moving=np.array([True])),
         least_gap=lambda system: np.inf,
         passed=lambda before, system, what: None,
