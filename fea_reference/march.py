@@ -58,8 +58,6 @@ _THROUGH = 0.5  # of the thickness: a way on which nothing passes through it uns
 _AT_LIMIT = 1e-10  # rad: by which an angle may be beyond its limit before its stop closes
 _SHARP = 1e-3  # of the unbalanced force accepted: what is left at a station, where that is more than round-off
 _SHARPENINGS = 3
-_BEARABLE = 2e-7  # of the largest force: a penalty whose round-off leaves more unbalanced is too stiff, if it
-# is stiffer than elements can follow
 _PULLS = 1e-9  # of the largest force or of EI/length: with which a stop may pull before it lets go
 _INSIDE = 0.01  # of these: how far within what counts as closed its place is sought
 _SWITCHED = 1e-8  # rad, or of these: how near to its change a stop is found
@@ -645,7 +643,7 @@ class March:
         deep would open them, or make of the overlap a force thousands of times their own.
         """
         self.loose = False
-        most, floor = _TIGHTEN, self.system.floor
+        most = _TIGHTEN
         falls: dict[Contact, float] = {}
         for tries in range(_TIGHTENINGS):
             allowed = self.allowed()
@@ -677,11 +675,6 @@ class March:
             solved = equilibrium(self.model, self.settings, tighter, self.values, z, self.acting, held, pushes)
             self.iterations += solved.iterations
             near = solved.converged and self.moved(solved.system, self.system.z) <= _CORRECTED
-            stiffer = any(
-                penalty.stiffness > max((1.0 + _EVEN) * pair.stiffest, self.penalties[pair].stiffness)
-                for pair, penalty in tighter.items()
-            )
-            near = near and not (stiffer and solved.system.floor > max(_BEARABLE * solved.system.scale, 10.0 * floor))
             if near and not self._gone_through(solved.system):
                 falls = self._falls(solved.system, tighter)
                 self.system, self.penalties = solved.system, tighter
