@@ -131,7 +131,8 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
     if lost is not None:
         return lost
     # a contact that has sunk into its penalty since may be held where a rigid one is not, on another branch
-    march.tighten()
+    if march.soft():
+        march.tighten()
     onward = float(np.sign(target - march.values[load]))
     branch = _branch(march, load, span)
     here = place(branch, float(march.values[load]), march.system, (np.zeros(march.model.size), onward))
@@ -189,17 +190,15 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
         if march.passed(here.system.z, there.system, "") is not None:
             return turn
         march.values, march.system = branch.at(there.value), there.system
-        if there.curvature < WEAKER * firm:
+        if there.curvature < WEAKER * firm and march.soft():
             # what stands less firmly goes another way where contacts have sunk into their penalties
-            firm, penalties = there.curvature, dict(march.penalties)
             march.tighten()
-            if march.penalties != penalties:
-                branch = _branch(march, load, span)
-                again = place(branch, float(march.values[load]), march.system, (there.way, there.rate))
-                if again is None or not again.curvature > 0.0:
-                    return turn
-                here, least, past = again, min(least, again.curvature), 0
-                continue
+            branch, firm = _branch(march, load, span), there.curvature
+            again = place(branch, float(march.values[load]), march.system, (there.way, there.rate))
+            if again is None or not again.curvature > 0.0:
+                return turn
+            here, least, past = again, min(least, again.curvature), 0
+            continue
         if turn is None and here.rate * onward > 0.0 > there.rate * onward:
             turn = Turn(branch, here, length, there.rate)
         past = past + 1 if there.curvature > _GROWN * least else 0

@@ -58,6 +58,7 @@ _THROUGH = 0.5  # of the thickness: a way on which nothing passes through it uns
 _AT_LIMIT = 1e-10  # rad: by which an angle may be beyond its limit before its stop closes
 _SHARP = 1e-3  # of the unbalanced force accepted: what is left at a station, where that is more than round-off
 _SHARPENINGS = 3
+_SOFT = 0.1  # of what the elements can follow
 _PULLS = 1e-9  # of the largest force or of EI/length: with which a stop may pull before it lets go
 _INSIDE = 0.01  # of these: how far within what counts as closed its place is sought
 _SWITCHED = 1e-8  # rad, or of these: how near to its change a stop is found
@@ -684,6 +685,12 @@ class March:
                     return  # the next try would be this one again
                 tried = max(max(factor, 1.0 / factor) for factor in factors.values())
                 most = max(min(most, tried) ** 0.4, _GENTLEST)
+
+    def soft(self) -> bool:
+        """Whether something presses by a penalty far from as stiff as the elements can follow."""
+        return any(
+            one.closed and self.penalties[one.pair].stiffness < _SOFT * one.pair.stiffest for one in self.system.touches
+        )
 
     def sunk(self) -> bool:
         """Whether beams have sunk so far into the penalties of a way that a further step might bring them through."""

@@ -253,7 +253,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
                 follow = False
             known, rate, march.behind = [], None, None
         elif trouble is None:
-            if looking and 0.0 < march.curvature < WEAKER * known[-1][1]:
+            if looking and 0.0 < march.curvature < WEAKER * known[-1][1] and march.soft():
                 # what stands less firmly is as if drawn otherwise where contacts have sunk into their penalties
                 march.tighten()
                 ahead = march.rate(load)

@@ -112,7 +112,7 @@ def test_a_turn_sharper_than_a_step_is_not_stepped_over(monkeypatch):
         saved=lambda: None,
         look=lambda: None,
         loose=False,
-        tighten=lambda: None,
+        soft=lambda: False,
         values=np.zeros(1),
         system=SimpleNamespace(z=None, touches=()),
         model=SimpleNamespace(size=1, moving=np.array([True])),
