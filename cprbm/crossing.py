@@ -15,12 +15,22 @@ import numpy as np
 
 from scene.answer import Array, Flags, Ints
 
+A_TIME = 64  # pieces of one line that are held against those of another
 AT_ONCE = 512  # pieces of a line that are held against the others together: a table of all pairs has no room
 
 
 def cross(P: Array, Q: Array) -> bool:
     """Whether the lines through the points P and Q cross, straight between the points."""
-    return bool(np.any(_parted(P, Q) & _parted(Q, P).T))
+    low, high = np.minimum(Q[:-1], Q[1:]), np.maximum(Q[:-1], Q[1:])
+    for first in range(0, len(P) - 1, A_TIME):
+        some = P[first : first + A_TIME + 1]
+        # of Q what the box round these pieces meets
+        near = ((low <= some.max(axis=0)) & (high >= some.min(axis=0))).all(axis=1).nonzero()[0]
+        if near.size:
+            others = Q[near[0] : near[-1] + 2]
+            if np.any(_parted(some, others) & _parted(others, some).T):
+                return True
+    return False
 
 
 def own_crossings(P: Array) -> tuple[Ints, Ints, Array]:

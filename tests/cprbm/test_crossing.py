@@ -21,6 +21,19 @@ def line(*points):
     return np.array(points, dtype=float)
 
 
+@pytest.mark.parametrize("piece", [0, 63, 64, 150, 198])
+def test_a_crossing_is_found_in_whichever_piece_of_long_lines_it_is(piece):
+    """By construction: a straight line of 199 pieces, and a cut across the middle of one of them."""
+    x = np.linspace(0.0, 1.0, 200)
+    line = np.stack((x, np.zeros(200)), axis=1)
+    across = np.stack((np.full(200, 0.5 * (x[piece] + x[piece + 1])), np.linspace(-0.31, 0.47, 200)), axis=1)
+    assert cross(line, across)
+    assert cross(across, line)
+    short = across[across[:, 1] > 0.0]
+    assert not cross(line, short)
+    assert not cross(short, line)
+
+
 def test_lines_cross_where_a_piece_of_each_has_the_others_ends_on_both_sides():
     # references: by sight
     bent = line((0.0, 0.0), (1.0, 0.1), (2.0, -0.3), (3.0, 0.0))
