@@ -21,7 +21,7 @@ from cprbm.feet import distance_along
 from cprbm.hinging import hinges_of
 from cprbm.holding import holds_of
 from cprbm.itself import Itself, itself_of
-from cprbm.kinematics import Positions, State, most_turned, positions_of
+from cprbm.kinematics import Positions, State, most_changed, most_turned, positions_of
 from cprbm.made import Made
 from cprbm.model import EVEN, Fit, Model, build
 from cprbm.nearest import Pair, pair_of
@@ -153,7 +153,7 @@ class Mechanism:
     def _overlapped_between(self, circle: Circle, before: Point, after: Point, way: Way) -> bool:
         """Whether the beam lay deep in the circle on the way from one state to another."""
         # the real way differs by the square of the step
-        allowed = 0.5 * circle.offset + SHALLOW * circle.radius + WAY * _turned(before.state, after.state) ** 2
+        allowed = 0.5 * circle.offset + SHALLOW * circle.radius + WAY * most_changed(before.state, after.state) ** 2
         for state, at in way():
             here = circle.placed(at)
             if here.no_closer(state, at) - circle.offset < -allowed:
@@ -176,7 +176,7 @@ class Mechanism:
     def _allowed(self, pair: Pair | Edge, before: Point, after: Point, uneven: float) -> float:
         """By how much a beam may seem to lie across on a way that is known by ``uneven`` times the turn's square."""
         slack = max(pair.offset, DIP) if isinstance(pair, Edge) else pair.offset
-        return slack + self._sag(pair, after.state) + uneven * _turned(before.state, after.state) ** 2
+        return slack + self._sag(pair, after.state) + uneven * most_changed(before.state, after.state) ** 2
 
     def _sag(self, pair: Pair | Edge, state: State) -> float:
         """By how much beams may sag between their joints, which are all that ``paper`` holds; units of length."""
@@ -223,12 +223,6 @@ def swept_between(mechanism: Mechanism, point: Point, other: Mechanism, carried:
         if isinstance(pair, Circle | Edge) and isinstance(its, Circle | Edge) and _swept(pair, before, (), its, after):
             return True
     return False
-
-
-def _turned(before: State, after: State) -> float:
-    """The most that a link or a body turns by between two states, rad."""
-    bodies = np.max(np.abs(after.bodies[:, 2] - before.bodies[:, 2]), initial=0.0)
-    return max(most_turned(before, after), float(bodies))
 
 
 def _between(before: State, after: State, rates: Rates | None) -> list[State]:

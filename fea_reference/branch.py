@@ -19,10 +19,11 @@ Applications of Bifurcation Theory, 1977, p. 359).
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
@@ -37,6 +38,8 @@ from fea_reference.touch import Contact, Penalty
 from scene.answer import Array
 
 _ITERATIONS = 20
+_NEAR = 1e-9  # of a way along which a place is sought: how near it is known
+_ROUNDED = 4.0 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +138,32 @@ def onwards(branch: Branch, start: Place, length: float) -> Place | None:
         z = sunk(model, branch.penalties, settings.quadrature, system, advance(model, z, step), foreseen, known)
         value += change
     return None
+
+
+def sought(branch: Branch, start: Place, length: float, size: Callable[[Place], float]) -> Place | None:
+    """The place just behind where a ``size`` goes from positive to negative, within a ``length`` of arc from ``start``.
+
+    None where Newton's method finds no place on the way there.
+    """
+    behind: list[tuple[float, Place]] = []
+
+    def sized(way: float) -> float:
+        there = onwards(branch, start, way) if way > 0.0 else start
+        if there is None:
+            raise ArithmeticError
+        found = size(there)
+        if found < 0.0:
+            behind.append((way, there))
+        return found if way > 0.0 else max(found, np.finfo(float).tiny)
+
+    near = _NEAR * length
+    try:
+        root = brentq(sized, 0.0, length, xtol=near, rtol=_ROUNDED)
+        if min(way for way, _ in behind) > root + 2.0 * near:
+            sized(root + 2.0 * near)
+    except ArithmeticError:
+        return None
+    return min(behind, key=lambda one: one[0])[1]
 
 
 def _solve(

@@ -29,10 +29,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from fea_reference.advance import advance
-from fea_reference.branch import Branch, Place, onwards, place
+from fea_reference.branch import Branch, Place, onwards, place, sought
 from fea_reference.curvature import Mode, softest
 from fea_reference.energy import potential_energy
 from fea_reference.march import March
@@ -48,7 +47,6 @@ WEAKER = 0.6  # of the curvature when contacts were tight: from there on they ar
 _FIRST = 0.01  # arc length of the first step
 _MOST = 0.03  # rad (and lengths): the most that one may move anything
 _LEAST = 1e-9
-_ROUNDED = 4.0 * float(np.finfo(float).eps)
 _STEPS = 400
 _LOOK = 30  # of them after which it is seen whether they lead on
 _STRAIGHT = 0.9  # cosine between the directions at both ends of a step
@@ -200,7 +198,7 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
             here, least, past = again, min(least, again.curvature), 0
             continue
         if turn is None and here.rate * onward > 0.0 > there.rate * onward:
-            turn = Turn(branch, here, length, there.rate)
+            turn = Turn(branch, here, length)
         past = past + 1 if there.curvature > _GROWN * least else 0
         least = min(least, there.curvature)
         if past >= _PAST:
@@ -244,24 +242,7 @@ def _apart(branch: Branch, one: Place, other: Place) -> float:
 
 def _event(march: March, branch: Branch, here: Place, length: float) -> Place | None:
     """The place, before ``length``, at which a contact or stop changes: just behind it."""
-    behind: list[tuple[float, Place]] = []
-
-    def gap(way: float) -> float:
-        there = onwards(branch, here, way) if way > 0.0 else here
-        if there is None:
-            raise ArithmeticError
-        least = march.least_gap(there.system)
-        if least < 0.0:
-            behind.append((way, there))
-        return least if way > 0.0 else max(least, np.finfo(float).tiny)
-
-    try:
-        root = brentq(gap, 0.0, length, xtol=_LEAST * length, rtol=_ROUNDED)
-        if min(way for way, _ in behind) > root + 2.0 * _LEAST * length:
-            gap(root + 2.0 * _LEAST * length)
-    except ArithmeticError:
-        return None
-    return min(behind, key=lambda one: one[0])[1]
+    return sought(branch, here, length, lambda there: march.least_gap(there.system))
 
 
 def _changed(march: March, load: int, event: Place) -> Lost | None:

@@ -24,27 +24,24 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.linalg import splu
 
-from fea_reference.branch import Branch, Place, bordered, onwards
+from fea_reference.branch import Branch, Place, bordered, sought
 from fea_reference.march import March
 from fea_reference.system import load_direction
 from scene.answer import Array
 
 _PREDICTED = 0.1  # rad (and lengths): the most that the step beyond may be predicted to move anything
 _CUTS = 6  # each to a quarter
-_TRIES = 20
-_TURNED = 1e-9  # of the rate before: what is none
 
 
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """A branch turns back without ceasing to be one of minima: the last place ``before``, and the next one after a
-    ``length`` of arc, whose ``rate`` has the other sign.
+    """A branch turns back without ceasing to be one of minima: the last place ``before``, and a ``length`` of arc
+    after which τ has the other sign.
     """
 
     branch: Branch
     before: Place
     length: float
-    rate: float
 
 
 def beyond(march: March, turn: Turn, target: float) -> bool:
@@ -70,19 +67,9 @@ def beyond(march: March, turn: Turn, target: float) -> bool:
 
 
 def _turned(turn: Turn) -> Place | None:
-    """The place at which τ is as good as zero, by regula falsi with the Illinois variant's weights."""
-    low, high = (0.0, turn.before.rate), (turn.length, turn.rate)
-    for _ in range(_TRIES):
-        share = low[1] / (low[1] - high[1])
-        s = low[0] + share * (high[0] - low[0])
-        there = onwards(turn.branch, turn.before, s)
-        if there is None or abs(there.rate) <= _TURNED * abs(turn.before.rate):
-            return there
-        if there.rate * low[1] > 0.0:
-            low, high = (s, there.rate), (high[0], 0.5 * high[1])
-        else:
-            low, high = (low[0], 0.5 * low[1]), (s, there.rate)
-    return there
+    """The place at which τ is as good as zero."""
+    sense = np.sign(turn.before.rate)
+    return sought(turn.branch, turn.before, turn.length, lambda there: float(sense * there.rate))
 
 
 def _rate(branch: Branch, there: Place) -> Array | None:
