@@ -65,7 +65,8 @@ force does) that the solver has left open.  It hardly depends on the load, so th
 counts at each.  Where a contact presses is no force: at a load that nearly vanishes a residual of any share of it
 may move the place along the whole beam, and says nothing of other stations. Of places each station's own counts.
 It is at least 1e-12 of the family's natural scale, for what round-off does to the numbers
-themselves.  A contact that is open in every run has no force, and nothing is left open there.
+themselves, and ten times the share by which certificates say that joints and loops are open: levers make
+more of a gap.  A contact that is open in every run has no force, and nothing is left open there.
 
 Of contacts that press a beam at one place the sum of their forces is measured in place of each
 (:mod:`comparisons.shared`).  Of one that presses within an element of its beam's joint the sum of both is measured as
@@ -97,6 +98,9 @@ from scene.statement import STRESSES, Quantity
 
 SAFETY = 1.25
 SHARE_OF_LARGEST = SAFETY - 1.0
+LEVERS = 10.0
+"""What a mechanism makes of a gap in one of its joints at the most, in multiples of it."""
+
 ROUND_OFF = 1e-12
 EXACT_TO = 1e-9
 """Share of a probe's scale below which a distance from the exact value says nothing."""
@@ -315,11 +319,13 @@ def round_offs(
     """
     own = {}
     for stage in scene.stages:
-        least = ROUND_OFF * natural_scale(scene, probe.quantity, stage, contact=probe.of)
+        natural = natural_scale(scene, probe.quantity, stage, contact=probe.of)
         for value in stage.stations:
             stations = [station_of(answer, stage.name, value) for answer in everyone]
             floor = max(max(s.certificate.residual, s.certificate.residual_floor) for s in stations)
-            own[stage.name, value] = max(least, floor * _family_size(scene, probe, stage, value, compared))
+            apart = max(ROUND_OFF, *(LEVERS * s.certificate.violation for s in stations))
+            size = _family_size(scene, probe, stage, value, compared)
+            own[stage.name, value] = max(apart * natural, floor * size)
     if probe.quantity in PLACES:
         return own
     return dict.fromkeys(own, max(own.values(), default=0.0))

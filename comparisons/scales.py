@@ -7,8 +7,8 @@ form a *family* with a scale of its own, and no probe's scale is less than a tho
 =====================================  ==============================================================
 quantity                               the family's scale in a stage
 =====================================  ==============================================================
-displacement                           largest displacement of any point, driven ones too, or rotation times length
-rotation                               largest rotation of any body, driven ones too, or displacement over length
+displacement                           largest displacement asked for or of any beam's places, or rotation times length
+rotation                               largest rotation asked for, or displacement over length
 angle                                  largest angle of any stop
 force, reaction                        largest of them, of the force loads' resultants, of the moments over length, and
                                        of what a drive is resisted with
@@ -18,6 +18,9 @@ potential_energy                       largest energy
 closing_load                           largest value that the stage steps to
 centre, ends                           length of the contact's first beam, which is also the probe's scale
 =====================================  ==============================================================
+
+What is stepped counts as if it were asked for.  The places are nine of each beam's neutral line: where all that is
+asked for is a point that does not move, as one that a body turns about, beams bend nevertheless.
 
 A moment at a support depends on the point about which it is taken: it is what is left of the loads' and the
 other supports' moments, and may be small by accident of that point.  Its scale is therefore the largest
@@ -43,9 +46,9 @@ from typing import Literal
 
 import numpy as np
 
-from comparisons.geometry import length
+from comparisons.geometry import length, points
 from scene import Answer, Beam, Probe, Scene, Stage
-from scene.answer import Array
+from scene.answer import Array, Shape
 from scene.statement import STRESSES, DistributedLoad, Quantity
 
 SMALLEST_SHARE = 1e-3
@@ -59,6 +62,9 @@ VANISHING = 1e-2
 
 Kind = Literal["moment", "force", "beam_force", "beam_moment", "displacement", "rotation"]
 """Of a load or drive."""
+
+_PLACES = 9
+"""Places of each beam whose way is looked at."""
 
 _OWN_NORM = frozenset({"displacement", "rotation", "potential_energy", "closing_load"})
 """Quantities whose differences are stated as shares of the reference itself."""
@@ -126,14 +132,18 @@ def family_size(scene: Scene, quantity: Quantity, stage: Stage, answers: tuple[A
         probes = tuple(probe for probe in scene.probes if probe.quantity in kinds)
         return _largest(probes, stage, answers)
 
+    def moved() -> float:
+        return max(largest("displacement"), _stepped(scene, stage, "displacement"), _bent(scene, stage, answers))
+
+    def turned() -> float:
+        return max(largest("rotation"), _stepped(scene, stage, "rotation"))
+
     lever = _lever(scene)
     match quantity:
         case "displacement":
-            moved = max(largest("displacement"), _stepped(scene, stage, "displacement"))
-            return max(moved, lever * largest("rotation"), lever * _stepped(scene, stage, "rotation"))
+            return max(moved(), lever * turned())
         case "rotation":
-            turned = max(largest("rotation"), _stepped(scene, stage, "rotation"))
-            return max(turned, largest("displacement") / lever, _stepped(scene, stage, "displacement") / lever)
+            return max(turned(), moved() / lever)
         case "force" | "reaction":
             return max(
                 largest("force", "reaction"),
@@ -188,6 +198,25 @@ def _norms(probes: tuple[Probe, ...], stage: Stage, answers: tuple[Answer, ...])
                 values = station.values.get(probe.name)
                 if values is not None and bool(np.all(np.isfinite(values))):
                     yield norm(probe.quantity, values)
+
+
+def _bent(scene: Scene, stage: Stage, answers: tuple[Answer, ...]) -> float:
+    """The farthest, m, that one of nine places of a beam is from where it is drawn, at any of the stage's stations."""
+    ways = (
+        _way(scene.beams[name], shape)
+        for answer in answers
+        for station in answer.stations
+        if station.stage == stage.name
+        for name, shape in station.shapes.items()
+    )
+    return max((way for way in ways if np.isfinite(way)), default=0.0)
+
+
+def _way(beam: Beam, shape: Shape) -> float:
+    """The farthest, m, that one of nine places of a beam is from where it is drawn."""
+    some = np.linspace(0, len(shape.s) - 1, _PLACES).astype(int)
+    drawn = points(beam.curve, shape.s[some])
+    return float(np.max(np.hypot(shape.x[some] - drawn[:, 0], shape.y[some] - drawn[:, 1])))
 
 
 def _stepped_force(scene: Scene, stage: Stage) -> float:

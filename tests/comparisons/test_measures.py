@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from comparisons.choices import Choices
-from comparisons.measures import rows_of
+from comparisons.geometry import points
+from comparisons.measures import round_offs, rows_of
 from comparisons.pairing import Runs, Solvers, paired
 from comparisons.scales import SMALLEST_SHARE, probe_scale
 from comparisons.spots import clear_of_spots
@@ -278,6 +279,44 @@ def test_a_probe_that_vanishes_by_symmetry_is_measured_by_its_family(hinge, righ
     probe = Probe(of="A", quantity="reaction")
     scale = probe_scale(hinge, probe, hinge.stages[0], answers)
     assert scale == pytest.approx(SMALLEST_SHARE * 0.67 / (math.pi * 0.025))
+
+
+def _only(probe, hinge, answer, value, **certificate):
+    """The hinge and an answer to it with ``value`` for the ``probe`` at every station, and nothing else asked."""
+    stations = tuple(
+        replace(
+            station,
+            values=frozendict({probe.name: frozen_array(value)}),
+            certificate=replace(station.certificate, **certificate),
+        )
+        for station in answer.stations
+    )
+    return hinge.model_copy(update={"probes": (probe,)}), replace(answer, stations=stations)
+
+
+def test_a_point_that_does_not_move_is_measured_by_how_far_beams_come(hinge, right):
+    """The made-up hinge turns its beams about their starts; nothing else is asked for than a point with 1e-24 m."""
+    answer = paired(hinge, Choices(), right).reference
+    ways = []
+    for station in answer.stations:
+        for name, shape in station.shapes.items():
+            drawn = points(hinge.beams[name].curve, shape.s)
+            ways.append(np.max(np.hypot(shape.x - drawn[:, 0], shape.y - drawn[:, 1])))
+    asked, found = _only(Probe(of="C", quantity="displacement"), hinge, answer, [1e-24, 0.0])
+    assert probe_scale(asked, asked.probes[0], hinge.stages[0], (found,)) == pytest.approx(SMALLEST_SHARE * max(ways))
+    assert max(ways) > 1e-3
+
+
+def test_what_a_joint_is_open_by_is_left_open_of_what_moves(hinge, right):
+    """A gap of 4e-12 of the longest beam, π·25 mm, moves a point by as much, and by more on a lever."""
+    answer = paired(hinge, Choices(), right).reference
+    probe = Probe(of="C", quantity="displacement")
+    left = []
+    for violation in (0.0, 4e-12):
+        asked, found = _only(probe, hinge, answer, [1e-24, 0.0], violation=violation)
+        left.append(max(round_offs(asked, probe, (found,), (found,)).values()))
+    assert left[1] == pytest.approx(10.0 * 4e-12 * math.pi * 0.025)
+    assert left[0] < 0.1 * left[1]
 
 
 def test_a_force_beside_a_drive_is_measured_by_what_the_drive_is_resisted_with(right):
