@@ -74,10 +74,11 @@ class Places:
         return Places(self.s[these], self.sigma[these], self.keys[these])
 
 
-def closest_places(pair: Pair, lines: Lines) -> tuple[Places, Places]:
-    """Where rows stand on A, and on B with the beams' parts exchanged."""
-    ends = _facing_ends(pair, lines)
-    return places_along(pair, lines, *sampled_distances(pair, lines), ends.sigma), ends
+def closest_places(pair: Pair, lines: Lines) -> tuple[Places, Places, bool]:
+    """Where rows stand on A, and on B with the beams' parts exchanged; and whether a part has come round an end."""
+    ends, its_gone = _facing_ends(pair, lines)
+    D, sigma, gone = _sampled(pair, lines)
+    return places_along(pair, lines, D, sigma, ends.sigma), ends, gone or its_gone
 
 
 def places_along(pair: Pair, lines: Lines, D: Array, sigma: Array, ends: Array) -> Places:
@@ -117,8 +118,11 @@ def _corners(pair: Pair, lines: Lines, D: Array, sigma: Array) -> Places:
     return Places(s[near], feet[near], a.n + 6 + len(pair.kinks[0].places) + number[near])
 
 
-def _facing_ends(pair: Pair, lines: Lines) -> Places:
-    """The ends of B that face A within reach, and their feet on A; the keys follow A's joints."""
+def _facing_ends(pair: Pair, lines: Lines) -> tuple[Places, bool]:
+    """The ends of B that face A within reach, and their feet on A; the keys follow A's joints.
+
+    And whether another one has come round an end of A.
+    """
     a, b, reach = pair.a, pair.b, pair.offset + REACH
     (A, B), ends = pair.samples(lines), b.s[[0, -1]]
     away = np.hypot(A.x - B.x[[0, -1], None], A.y - B.y[[0, -1], None])
@@ -130,20 +134,22 @@ def _facing_ends(pair: Pair, lines: Lines) -> Places:
         first, last = nearest[near] == 0, nearest[near] == len(A.s) - 1
         near = near[~((first & (beyond <= 0.0)) | (last & (beyond >= 0.0)))]
     if not near.size:
-        return Places(np.zeros(0), np.zeros(0), near)
+        return Places(np.zeros(0), np.zeros(0), near), False
     turned = pair.exchanged()
     at_B = B.only(near * (2 * b.n + 2))
     E, foot, facing, _ = feet_from(turned, lines[::-1], at_B, A.only(nearest[near]), CLOSE)
-    E = not_gone_round(turned, lines[::-1], E, pair.wider(foot, ends[near]))
-    facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h) & (reach > E)
+    told = not_gone_round(turned, lines[::-1], E, pair.wider(foot, ends[near]))
+    facing &= (foot > SAME * a.h) & (foot < a.s[-1] - SAME * a.h)
+    gone = bool(np.any(facing & np.isinf(told)))
+    facing &= reach > told
     for i, end in enumerate(near):
         facing[i] &= not held_together(b, a, int(-end), float(foot[i]))
-    return Places(ends[near][facing], foot[facing], a.n + 2 + near[facing])
+    return Places(ends[near][facing], foot[facing], a.n + 2 + near[facing]), gone
 
 
 def faced(pair: Pair, lines: Lines, D: Array, sigma: Array, joints: Ints) -> tuple[smooth.Points, smooth.Points]:
     """Some joints of A, by their numbers (k,), and their feet, ``D`` and ``sigma`` being those of A's samples."""
-    known, what = lines[0].faced, pair.name
+    known, what = lines[0].faced, pair.known_as
     if what not in known or known[what][0] is not D:
         known[what] = D, pair.samples(lines)[0].only(2 * joints), pair.on_b(lines, sigma[2 * joints])
     return known[what][1:]
@@ -166,14 +172,20 @@ def held_together(one: Chain, other: Chain, end: int, foot: float) -> bool:
 
 def sampled_distances(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     """D at the joints of A and half-way between them, infinite where it is out of reach, and σ, (2N+3,) each."""
-    known, what = lines[0].known, (pair.name, "samples")
-    if what not in known:
-        known[what] = _sampled_anew(pair, lines)
-    D, sigma = known[what]
+    D, sigma, _ = _sampled(pair, lines)
     return D, sigma
 
 
-def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
+def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array, bool]:
+    """The same, and whether any of them has come round an end to the other side."""
+    known, what = lines[0].known, (pair.known_as, "samples")
+    if what not in known:
+        known[what] = _sampled_anew(pair, lines)
+    D, sigma, gone = known[what]
+    return D, sigma, gone
+
+
+def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array, bool]:
     A, G = pair.samples(lines)
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
     rough, nearest = nearest_samples(G, A, pair.offset + reach(pair.a, pair.b))
@@ -181,27 +193,34 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     sigma = np.zeros(len(A.s))
     D = sigma + np.inf
     if not close.size:
-        return D, sigma
+        return D, sigma, False
     at_A, at_B = A.only(close), G.only(nearest[close])
     distance, sigma[close], foot, at_B = feet_from(pair, lines, at_A, at_B, CLOSE)
     D[close[foot]] = distance[foot]
     told = not_gone_round(pair, lines, D, pair.wider(A.s, sigma))
-    D = D if told is D else np.where(_with_neighbours(np.isinf(told), D < 0.0), np.inf, D)
+    gone = told is not D
+    D = np.where(_with_neighbours(np.isinf(told), D < 0.0), np.inf, D) if gone else D
     if not pair.tapered:  # else these are points of edges
         joints = ((close % 2 == 0) & np.isfinite(D[close])).nonzero()[0]
-        lines[0].faced[pair.name] = D, at_A.only(joints), at_B.only(joints)
-    return D, sigma
+        lines[0].faced[pair.known_as] = D, at_A.only(joints), at_B.only(joints)
+    return D, sigma, gone
 
 
 def not_gone_round(pair: Pair, lines: Lines, D: Array, wider: Array | float, gone: float = np.inf) -> Array:
     """D, but ``gone`` where A lies clear of B on its other side and has not come there through it, but round an end."""
-    # lines that touch each other may seem to lie beyond by round-off
-    clear = CLEAR * pair.offset if pair.offset else THIN * (pair.a.h + pair.b.h)
-    beyond = D + 2.0 * wider + clear < 0.0
+    beyond = clear_beyond(pair, D, wider)
     if not beyond.any():
         return D
-    depth = -float((D + wider)[beyond].max())
-    return D if _crossing(lines, depth) else np.where(beyond, gone, D)
+    # what is behind is asked for only where something has come there round an end
+    through = not pair.behind and crossing(lines, -float((D + wider)[beyond].max()))
+    return D if through else np.where(beyond, gone, D)
+
+
+def clear_beyond(pair: Pair, D: Array, wider: Array | float) -> Flags:
+    """Where A lies clear of B on its other side."""
+    # lines that touch each other may seem to lie beyond by round-off
+    clear = CLEAR * pair.offset if pair.offset else THIN * (pair.a.h + pair.b.h)
+    return np.asarray(D + 2.0 * wider + clear < 0.0)
 
 
 def _with_neighbours(some: Flags, alike: Flags) -> Flags:
@@ -210,7 +229,7 @@ def _with_neighbours(some: Flags, alike: Flags) -> Flags:
     return np.asarray(some | (alike & np.isin(run, run[some & alike])))
 
 
-def _crossing(lines: Lines, depth: float) -> bool:
+def crossing(lines: Lines, depth: float) -> bool:
     """Whether the lines cross, by chords so short that they are off by a small part of a ``depth``.
 
     What touches an end seems to cross there by as much: the lines are held against each other without their last bits.
@@ -247,7 +266,7 @@ def minima(pair: Pair, lines: Lines, D: Array, sigma: Array) -> tuple[Array, Arr
     Newton's method on dD/ds = 0 and on (i), kept between the samples beside the lowest: where the curvature jumps
     it alone would not settle.
     """
-    known, what = lines[0].known, (pair.name, "minima" if pair.own_places else "none")
+    known, what = lines[0].known, (pair.known_as, "minima" if pair.own_places else "none")
     if what not in known or known[what][0] is not D:
         known[what] = D, *_minima_anew(pair, lines, D, sigma)
     _, s, sigma = known[what]

@@ -141,6 +141,9 @@ class Mechanism:
                 # without having been there a beam comes to lie beyond another by its end or through it
                 gone = may_be_beyond(pair, *end) and pair.gone_round(*end)
                 across = gone and self._crossed_between(pair, before, after, way, WAY)
+                if not gone and may_be_beyond(pair, *start) and pair.gone_round(*start):
+                    # nor does it come back
+                    across = any(pair.crossed(state, at) for state, at in way())
                 if not across and most_turned(before.state, after.state) > PASSING:
                     # or aside of where it would be beyond
                     allowed = self._allowed(pair, before, after, WAY)

@@ -26,6 +26,10 @@ edge of B leans, and ψ_A by that of A, all of the above holds as it stands.  D 
 there than where both beams are thinnest.  Where an edge has a corner that stands out, a row stands too, and the feet of
 what faces such a corner stay there.
 
+What has come round an end of B to its other side may touch that: where parts lie clear beyond and the lines do not
+cross, rows of the same kind stand with the other ``side``, and of what faces the ends with the other ``across``, as
+each of them says by itself.  Lines without thickness do not tell their sides apart where they touch, and have one.
+
 Beams that lie on each other over a length share any pressure among A's joints.  A is the beam with the longer
 elements: rows at the joints of both would ask one element for two curvatures.  At a joint stands the mean gap
 over the length of one element of B, and so the force is spread over it: the curvature of B, even over each
@@ -50,7 +54,16 @@ import numpy as np
 from cprbm import leaning, smooth
 from cprbm.both import Both, Made, made
 from cprbm.brought import as_drawn
-from cprbm.closest import SAME, Places, closest_places, minima, not_gone_round, sampled_distances
+from cprbm.closest import (
+    SAME,
+    Places,
+    clear_beyond,
+    closest_places,
+    crossing,
+    minima,
+    not_gone_round,
+    sampled_distances,
+)
 from cprbm.contact import Group
 from cprbm.feet import CLOSE, Lines, distance_along, distance_of, feet_from, feet_of_ridges, seen_from
 from cprbm.gathering import Touches, gathered, single
@@ -66,6 +79,8 @@ from scene.answer import Array, Flags, Ints
 ARCHING = 1.0  # of what the largest force bends one element by: unlike elements of two beams arch by as much
 DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even
 STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
+DEEP = 0.125  # of both half thicknesses
+BEHIND = 1 << 40  # between the keys of rows of the one side and of the other
 GAUSS = np.polynomial.legendre.leggauss(3)
 POINTS, WEIGHTS = 0.5 * (GAUSS[0] + 1.0), 0.25 * GAUSS[1]  # of the mean on either side of a border of B, half of it all
 
@@ -87,6 +102,7 @@ class Pair:
         own_places: whether minima of D have rows of their own.
         kinks: of A and of B where the contact is in points.
         fixed: whether rows stand there, and no minimum has one of its own.
+        behind: whether these are the other sides of both, which only what has come round an end can touch.
     """
 
     name: str
@@ -102,6 +118,12 @@ class Pair:
     own_places: bool = True
     kinks: tuple[Kinks, ...] = (NO_KINKS, NO_KINKS)
     fixed: bool = False
+    behind: bool = False
+
+    @once
+    def known_as(self) -> str:
+        """What is found along lines is kept by that name."""
+        return f"{self.name} from behind" if self.behind else self.name
 
     @once
     def made(self) -> Made | None:
@@ -192,6 +214,14 @@ class Pair:
             kinks=self.kinks[::-1],
         )
 
+    @once
+    def other_sides(self) -> Pair:
+        """The contact of what has come round an end to the other side."""
+        nowhere = ((False, False), (False, False))
+        return replace(
+            self, side=-self.side, across=-self.across, clamps=nowhere, at_home=nowhere, behind=not self.behind
+        )
+
     def brought_to(self, state: State) -> Pair:
         """The same with the bodies that drives lead as good as the ground, if all are where they are drawn."""
         if not as_drawn((self.a.start, self.a.end, self.b.start, self.b.end), state.bodies):
@@ -217,7 +247,11 @@ class Pair:
         """Curvature D″ with which A parts from B, at arc lengths ``s``."""
         lines = self.lines(state, at)
         D, sigma, _ = distance_along(self, lines, s)
-        return self.parting_at(lines, self.on_a(lines, s), self.on_b(lines, sigma), D)
+        A, B, wider = self.on_a(lines, s), self.on_b(lines, sigma), self.wider(s, sigma)
+        found, behind = self.parting_at(lines, A, B, D), self.offset > 0.0 and clear_beyond(self, D, wider)
+        if np.any(behind):
+            found = np.where(behind, self.other_sides.parting_at(lines, A, B, -D - 2.0 * wider), found)
+        return found
 
     def parting_at(self, lines: Lines, A: smooth.Points, B: smooth.Points, D: Array) -> Array:
         """D″ at points of A and the feet of B that face them; between springs the curvature goes evenly."""
@@ -248,16 +282,23 @@ class Pair:
 
     def least_gap(self, state: State, at: Positions) -> float:
         """Least gap of the two beams along A and at the ends of B, units of length; infinite where nothing faces A."""
-        D, E = self._distances(self.lines(state, at))
-        return float(np.min(np.append(D, E), initial=np.inf)) - self.offset
+        lines = self.lines(state, at)
+        least = min(float(np.min(each, initial=np.inf)) for each in self._distances(lines))
+        if self.offset > 0.0 and self.gone_round(state, at):
+            least = min(least, *(float(np.min(each, initial=np.inf)) for each in self.other_sides._distances(lines)))
+        return least - self.offset
 
     def gone_round(self, state: State, at: Positions) -> bool:
         """Whether a part of a beam lies beyond the other and has come there round an end."""
         return any(np.any(np.isneginf(distances)) for distances in self._distances(self.lines(state, at), gone=-np.inf))
 
+    def crossed(self, state: State, at: Positions) -> bool:
+        """Whether the neutral lines cross, by more than an eighth of both half thicknesses."""
+        return crossing(self.lines(state, at), DEEP * self.offset)
+
     def _distances(self, lines: Lines, gone: float = np.inf) -> tuple[Array, Array]:
         """D along A and at the ends of B, infinite where there is no foot, ``gone`` where that is round an end."""
-        known, what = lines[0].known, (self.name, "distances")
+        known, what = lines[0].known, (self.known_as, "distances")
         if what not in known:
             sampled = sampled_distances(self, lines)
             ridges = feet_of_ridges(self, lines, *sampled)[0]
@@ -306,12 +347,21 @@ class Pair:
         lines = self.lines(state, at)
         if self.a.h < self.b.h * (1.0 - SAME):
             turned = self.exchanged()
-            return tuple(replace(rows, arc=other) for rows, other in turned._rows(lines[::-1], at))
-        return tuple(rows for rows, _ in self._rows(lines, at))
+            return tuple(replace(rows, arc=other) for rows, other in turned._both_sides(lines[::-1], at))
+        return tuple(rows for rows, _ in self._both_sides(lines, at))
 
-    def _rows(self, lines: Lines, at: Positions) -> list[tuple[Group, Array]]:
+    def _both_sides(self, lines: Lines, at: Positions) -> list[tuple[Group, Array]]:
+        """Rows on the sides on which the beams lie at rest, and of what has come round an end."""
+        along, across, gone = closest_places(self, lines)
+        found = self._rows(lines, at, along, across)
+        if gone and self.offset > 0.0:
+            other = self.other_sides
+            behind = other._rows(lines, at, *closest_places(other, lines)[:2])
+            found += [(replace(rows, keys=_behind(rows.keys)), places) for rows, places in behind]
+        return found
+
+    def _rows(self, lines: Lines, at: Positions, along: Places, across: Places) -> list[tuple[Group, Array]]:
         """Rows at A's joints, at minima along A and at both beams' ends; with each group the places on B."""
-        along, across = closest_places(self, lines)
         found = self.rows_along(lines, at, along)
         if across.s.size:
             rows = self.exchanged().rows_at(lines[::-1], at, across)
@@ -484,6 +534,11 @@ class Pair:
         second[:, k:] -= n_s[m:, :, None] * sigma_z[:, None, :]
         # γ leaves a part of its own size uneven
         return np.asarray(-self.side * 0.5 * (second + second.transpose(0, 2, 1)))
+
+
+def _behind(keys: tuple[int, ...]) -> tuple[int, ...]:
+    """Other keys of rows, again negative where a place moves."""
+    return tuple([key + BEHIND if key >= 0 else key - 1 for key in keys])
 
 
 def _between(slopes: Array) -> Array:

@@ -74,7 +74,10 @@ def _of_beams(pair: Pair, state: State, at: Positions) -> float:
     least, end = np.inf, pair.b.s[-1]
     seen = (distance < within) & (np.abs(sigma - 0.5 * end) <= 0.5 * end + PARALLEL * within)
     if seen.any():
-        D = not_gone_round(pair, lines, np.where(seen, d, np.inf), 0.0)
+        D = np.where(seen, d, np.inf)
+        told = not_gone_round(pair, lines, D, 0.0)
+        if told is not D:
+            return pair.least_gap(state, at)
         least, reach = float(D.min()), pair.offset + LOWER * pair.a.h
         if -0.5 * within <= least < reach:
             least = _least_below(pair, lines, D, reach, springs)
@@ -138,7 +141,7 @@ def never_beyond(pair: Pair, way: Sequence[tuple[State, Positions]], allowed: fl
 
 def _from_springs(pair: Pair, lines: Lines) -> tuple[Array, Array, Array, Array]:
     """Of A's samples (k,) the distance to the nearest spring or end of B, where that is on B, ±d and σ."""
-    known, what = lines[0].known, (pair.name, "springs")
+    known, what = lines[0].known, (pair.known_as, "springs")
     if what not in known:
         A, B = lines[0].sampled, lines[1].sampled
         distance, nearest = _nearest_springs(A.x, A.y, B)

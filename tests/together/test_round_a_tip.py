@@ -1,18 +1,27 @@
 """A long arc that is wound down round the tip of another beam, until its own end is on the other's far side."""
 
+import numpy as np
 import pytest
 
 import cprbm
 import fea_reference
+from cprbm.contact import NO_ROWS
+from cprbm.kinematics import State
+from cprbm.march import March
+from cprbm.nearest import BEHIND
+from cprbm.point import point_at
 from scene import Ending
 from scene.reading import scene_from
+from tests.cprbm.lagrangian import check
 
 THICK, THIN = 9.58e-05, 7.75e-05
-BEHIND = 2.304e-05
-"""From here on the arc's end presses the other from behind (finite elements)."""
+"""Of the arc and of the other, m.
+
+From a moment of 2.304e-5 N·m on the arc's end presses the other from behind (finite elements).
+"""
 
 
-def wound(*moments):
+def wound(*moments, thin=THIN):
     material, tip = {"material": "m"}, [0.0154861, -0.0032692]
     return scene_from(
         {
@@ -37,7 +46,7 @@ def wound(*moments):
                 "tip": {
                     **material,
                     "curve": {"kind": "spline", "points": [tip, [0.0112901, 0.0046755], [0.0075953, 0.0098835]]},
-                    "thickness": THIN,
+                    "thickness": thin,
                     "width": 0.00247,
                     "start": {"joint": "weld", "point": "S"},
                     "end": {"joint": "free"},
@@ -67,9 +76,35 @@ def test_what_has_come_round_a_tip_does_not_lie_across_it():
             assert limit == pytest.approx(value, rel=2e-3), probe
 
 
-def test_what_presses_from_behind_is_not_certified():
-    """The chain's contacts have one side: beyond the value at which the other would press it ends by name."""
-    got = cprbm.answer(wound(2.2e-05, 2.5e-05), cprbm.Settings(links=40))
-    assert got.ending is Ending.BEAMS_CROSSED
-    assert float(got.sentence.split()[-1]) == pytest.approx(-BEHIND, rel=2e-3)
-    assert len(got.stations) == 1
+def test_what_presses_from_behind_is_pressed_there_and_goes_the_same_way_back():
+    """Reference: the finite elements; errors of the chain fall with the square of the link."""
+    scene = wound(2.2e-05, 2.4e-05, 2.8e-05, 2.40001e-05, 2.20001e-05)
+    true = fea_reference.answer(scene, fea_reference.Settings(elements=40, kinematics="bending"))
+    coarse, fine = (cprbm.answer(scene, cprbm.Settings(links=n)) for n in (40, 80))
+    assert {one.ending for one in (true, coarse, fine)} == {Ending.COMPLETED}
+    for a, b, known in zip(coarse.stations, fine.stations, true.stations, strict=True):
+        for probe, value in known.values.items():
+            limit = (4.0 * b.values[probe] - a.values[probe]) / 3.0
+            assert limit == pytest.approx(value, rel=1e-4), probe
+    for there, back in ((1, 3), (0, 4)):
+        one, other = fine.stations[there], fine.stations[back]
+        assert other.value == pytest.approx(one.value, rel=1e-5)
+        assert other.values["touch.force"] == pytest.approx(one.values["touch.force"], rel=1e-4)
+
+
+@pytest.mark.parametrize("thin", [THIN, {"at": [0.0, 1.0], "values": [THIN, 0.9 * THIN]}], ids=["even", "tapered"])
+@pytest.mark.parametrize("links", [{"arc": 23, "tip": 31}, {"arc": 31, "tip": 23}], ids=["rows on arc", "rows on tip"])
+def test_derivatives_of_gaps_from_behind_and_of_the_lagrangian(thin, links):
+    """Reference: central differences, beside a state in which the arc's end presses from behind."""
+    asked = cprbm.Settings(links=links)
+    march = March(wound(2.2e-05, 2.4e-05, thin=thin), (asked,))
+    assert march.run()[0] is Ending.COMPLETED
+    problem, found = march.on.mechanism.problem, march.on.point
+    assert any(key >= BEHIND or key < -1 for key in (key for _, key in found.rows.pressed(found.lam)))
+    values, random = {"M": -2.4e-05}, np.random.default_rng(99)
+    state = State(found.state.theta + 1e-5 * random.standard_normal(problem.model.n_links), found.state.bodies)
+    mu = random.standard_normal(problem.closure.rows)
+    moved = point_at(problem, values, state, mu, np.zeros(0), NO_ROWS)
+    check(
+        problem, values, point_at(problem, values, state, mu, 0.5 + random.random(moved.rows.size), moved.rows), random
+    )
