@@ -45,7 +45,7 @@ def test_the_constraint_stands_at_the_smallest_distance_and_not_at_a_sample(seed
             theta[chain.links] += 0.03 * random.standard_normal(2) @ (np.sin(x), np.sin(2.0 * x))
         state = State(theta, bent.bodies)
         at = positions(model, state)
-        places, ends = closest.closest_places(pair, pair.lines(state, at))
+        places, ends, _ = closest.closest_places(pair, pair.lines(state, at))
         moving = places.keys < 0
         (s,), (sigma,) = places.s[moving], places.sigma[moving]
         assert not ends.s.size
