@@ -218,9 +218,13 @@ def not_gone_round(pair: Pair, lines: Lines, D: Array, wider: Array | float, gon
 
 def clear_beyond(pair: Pair, D: Array, wider: Array | float) -> Flags:
     """Where A lies clear of B on its other side."""
+    return np.asarray(D + 2.0 * wider + clear(pair) < 0.0)
+
+
+def clear(pair: Pair) -> float:
+    """How far from B's line, on its other side, A lies clear of it, units of length."""
     # lines that touch each other may seem to lie beyond by round-off
-    clear = CLEAR * pair.offset if pair.offset else THIN * (pair.a.h + pair.b.h)
-    return np.asarray(D + 2.0 * wider + clear < 0.0)
+    return CLEAR * pair.offset if pair.offset else THIN * (pair.a.h + pair.b.h)
 
 
 def _with_neighbours(some: Flags, alike: Flags) -> Flags:

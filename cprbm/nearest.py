@@ -57,6 +57,7 @@ from cprbm.brought import as_drawn
 from cprbm.closest import (
     SAME,
     Places,
+    clear,
     clear_beyond,
     closest_places,
     crossing,
@@ -79,7 +80,7 @@ from scene.answer import Array, Flags, Ints
 ARCHING = 1.0  # of what the largest force bends one element by: unlike elements of two beams arch by as much
 DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even
 STRETCH = 1e-3  # steps in which the length of A that faces one element of B is known
-DEEP = 0.125  # of both half thicknesses
+DEEP = 0.125  # of what lies clear: chords that are off by less tell whether lines cross
 BEHIND = 1 << 40  # between the keys of rows of the one side and of the other
 GAUSS = np.polynomial.legendre.leggauss(3)
 POINTS, WEIGHTS = 0.5 * (GAUSS[0] + 1.0), 0.25 * GAUSS[1]  # of the mean on either side of a border of B, half of it all
@@ -293,8 +294,8 @@ class Pair:
         return any(np.any(np.isneginf(distances)) for distances in self._distances(self.lines(state, at), gone=-np.inf))
 
     def crossed(self, state: State, at: Positions) -> bool:
-        """Whether the neutral lines cross, by more than an eighth of both half thicknesses."""
-        return crossing(self.lines(state, at), DEEP * self.offset)
+        """Whether the neutral lines cross, by more than an eighth of what A lies clear by on the other side."""
+        return crossing(self.lines(state, at), DEEP * clear(self))
 
     def _distances(self, lines: Lines, gone: float = np.inf) -> tuple[Array, Array]:
         """D along A and at the ends of B, infinite where there is no foot, ``gone`` where that is round an end."""
