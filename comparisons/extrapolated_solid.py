@@ -32,7 +32,8 @@ from functools import cache
 
 import numpy as np
 
-from comparisons.measures import SAFETY, Row
+from comparisons.measures import Row
+from comparisons.order import SAFETY
 from comparisons.scales import norm
 from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of

@@ -86,7 +86,8 @@ from comparisons.beside import joint_beside
 from comparisons.branches import MEASURED, Place, Spot, spots_of
 from comparisons.choices import KINEMATICS
 from comparisons.geometry import length
-from comparisons.order import order_of, richardson
+from comparisons.hardly_open import hardly_open
+from comparisons.order import SAFETY, order_of, richardson, uncertainty
 from comparisons.pairing import Runs
 from comparisons.scales import denominator, family_size, natural_scale, norm, probe_scale
 from comparisons.shared import resultant, sharing
@@ -96,7 +97,6 @@ from scene import Answer, Probe, Scene, Stage, StationAnswer
 from scene.answer import Array
 from scene.statement import STRESSES, Quantity
 
-SAFETY = 1.25
 SHARE_OF_LARGEST = SAFETY - 1.0
 LEVERS = 10.0
 """What a mechanism makes of a gap in one of its joints at the most, in multiples of it."""
@@ -225,6 +225,9 @@ class Row:
     ``beside`` is the same row where some answer has the contact press within an element of a joint
     (:mod:`comparisons.beside`), which it then names as ``shared``: of a force measured by the sum of both.
 
+    ``hardly_open`` are contacts that press in some answer, and that all of one solver's leave open by less than these
+    tell (:mod:`comparisons.hardly_open`): what they do no ``bounds`` hold.
+
     ``branch`` is the number of the branch that all answers are on at the station, None where there is no such one, and
     ``place`` what that makes of it (:mod:`comparisons.branches`).  Only where it is compared there are ``bounds``; near
     a critical value there are differences alone, and elsewhere the values.
@@ -252,6 +255,7 @@ class Row:
     shared: frozenset[str] = frozenset()
     together: tuple[Array, Array] | None = None
     beside: Row | None = None
+    hardly_open: frozenset[str] = frozenset()
 
     def fraction(self, value: float) -> float | None:
         """``value`` as a fraction of the denominator; None where that says nothing."""
@@ -276,6 +280,7 @@ def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
     unsettled = {probe.name: round_offs(scene, probe, tuple(everyone.values()), compared) for probe in scene.probes}
     stages = {stage.name: stage for stage in scene.stages}
     one_place = sharing(scene, everyone.values())
+    unsure = hardly_open(scene, runs)
     return _none_small_by_accident(
         tuple(
             _row(
@@ -287,6 +292,7 @@ def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
                 unsettled[probe.name][spot.stage, spot.value],
                 scales[spot.stage, probe.name],
                 one_place.get((spot.stage, spot.value), {}),
+                unsure.get((spot.stage, spot.value), frozenset()),
             )
             for spot in spots_of(scene, everyone, compared)
             for probe in scene.probes
@@ -377,6 +383,7 @@ def _row(
     unsettled: float,
     scale: float,
     one_place: Mapping[str, frozenset[str]],
+    unsure: frozenset[str],
 ) -> Row:
     compared = (runs.cprbm[0], runs.reference)
     value = spot.value
@@ -387,7 +394,8 @@ def _row(
     v_c, v_f, v_b = values["cprbm"], values[chosen], values["fea bending"]
     is_stress = probe.quantity in STRESSES
     exact = _exact_station(runs, stage.name, spot)
-    row = replace(bare_row(scene, compared, probe, stage, value, scale), place=spot.place, branch=spot.branch)
+    row = bare_row(scene, compared, probe, stage, value, scale)
+    row = replace(row, place=spot.place, branch=spot.branch, hardly_open=unsure)
     if spot.branch is None:
         return row
     if shared:
@@ -474,16 +482,11 @@ def bounds_of(
     """
     chosen = f"fea {runs.kinematics}"
     v_c, v_f, v_b = values["cprbm"], values[chosen], values["fea bending"]
-    factor = SAFETY * richardson(order)
     even = values.get("cprbm auto", v_c)
-    own = size(v_c - even) + factor * size(even - values["cprbm finer"])
-    if "cprbm beside" in values:
-        own += SAFETY * size(unforeseen(even, values["cprbm finer"], values["cprbm beside"], runs.ratio, order))
-    bending = factor * size(v_b - values["fea bending finer"])
-    V_f = values[f"{chosen} finer"]
-    fea = factor * size(v_f - V_f)
-    if f"{chosen} beside" in values:
-        fea += SAFETY * size(unforeseen(v_f, V_f, values[f"{chosen} beside"], runs.fea_ratio, order))
+    own = size(v_c - even)
+    own += uncertainty(even, values["cprbm finer"], values.get("cprbm beside"), runs.ratio, order, size)
+    bending = SAFETY * richardson(order) * size(v_b - values["fea bending finer"])
+    fea = uncertainty(v_f, values[f"{chosen} finer"], values.get(f"{chosen} beside"), runs.fea_ratio, order, size)
     return Bounds(
         cprbm=own,
         fea=max(fea, bending),
@@ -502,17 +505,6 @@ def _exact_station(runs: Runs, stage: str, spot: Spot) -> StationAnswer | None:
     except KeyError:
         return None
     return found if found.branch == spot.branch else None
-
-
-def foretold(v: Array, V: Array, ratio: float, order: int) -> Array:
-    """What the even law through v and V foretells of the value at N over ``ratio``."""
-    error = richardson(order) * (v - V)
-    return np.asarray(v - error + error * ratio**order)
-
-
-def unforeseen(v: Array, V: Array, beside: Array, ratio: float, order: int) -> Array:
-    """What it does not foretell of the value beside, as at N links."""
-    return np.asarray((beside - foretold(v, V, ratio, order)) / ratio**order)
 
 
 def _none_small_by_accident(rows: tuple[Row, ...]) -> tuple[Row, ...]:

@@ -21,8 +21,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.formats import percent
-from comparisons.measures import SAFETY, SHARE_OF_LARGEST
+from comparisons.measures import SHARE_OF_LARGEST
 from comparisons.offset_exact import ordinates
+from comparisons.order import SAFETY
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
 from comparisons.verdict import Verdict
 from comparisons.words import Word

@@ -1,4 +1,4 @@
-"""The order of convergence that an error estimate may assume, probe by probe.
+"""The order of convergence that an error estimate may assume, probe by probe, and the estimate.
 
 Two for all but one thing: where a beam lies on a circle, or on another beam clamped beside it, up to a held end, the
 pressure on the first elements and the shear of the support can be told apart to one element and no better, unless a
@@ -15,12 +15,16 @@ polynomials of degree k = 3 and energies of second derivatives, m = 2).
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Literal
 
+import numpy as np
+
 from scene import Probe, RigidContact, Scene
+from scene.answer import Array
 from scene.statement import FreeEnd, SelfContact
 
+SAFETY = 1.25  # S, of an error estimate
 USUAL, BESIDE_A_HELD_END = 2, 1
 OWN: Mapping[Literal["cprbm", "fea"], int] = {"cprbm": 2, "fea": 4}
 BESIDE = 2.0  # mean thicknesses between the held ends of two beams that are clamped beside each other
@@ -64,3 +68,25 @@ def _held(scene: Scene, beam: str) -> dict[str, tuple[float, float]]:
 def richardson(order: int) -> float:
     """2^p/(2^p − 1): the error at N over its change from N to 2N."""
     return 2.0**order / (2.0**order - 1.0)
+
+
+def uncertainty(
+    v: Array, V: Array, beside: Array | None, ratio: float, order: int, size: Callable[[Array], float]
+) -> float:
+    """u of the values v (k,) at N, with V at 2N and, where there are some, those ``beside`` at N over ``ratio``.
+
+    ``size`` is the norm of a difference (k,).
+    """
+    own = SAFETY * richardson(order) * size(v - V)
+    return own if beside is None else own + SAFETY * size(unforeseen(v, V, beside, ratio, order))
+
+
+def foretold(v: Array, V: Array, ratio: float, order: int) -> Array:
+    """What the even law through v and V foretells of the value at N over ``ratio``."""
+    error = richardson(order) * (v - V)
+    return np.asarray(v - error + error * ratio**order)
+
+
+def unforeseen(v: Array, V: Array, beside: Array, ratio: float, order: int) -> Array:
+    """What it does not foretell of the value beside, as at N links."""
+    return np.asarray((beside - foretold(v, V, ratio, order)) / ratio**order)

@@ -216,7 +216,7 @@ def _word(scene: Scene, row: Row) -> Word | None:
     if row.bounds is None:
         return None
     if _contradicted(row, row.bounds):
-        return Word.UNDECIDED if row.place is Place.DOUBTFUL else Word.DIFFER
+        return Word.UNDECIDED if row.place is Place.DOUBTFUL or row.hardly_open else Word.DIFFER
     tellable = max(row.bounds.total, row.bounds.same_theory) <= scene.limit(row.probe) * row.scale and not row.shared
     return Word.AGREE if tellable else Word.UNDECIDED
 
@@ -286,7 +286,7 @@ def _sentence(scene: Scene, row: Row, word: Word, count: int, rows: int) -> str:
     if row.bounds is None or (word is Word.UNDECIDED and _lacking(row)):
         return f"{place} has no value in one of the runs, and no force of that contact is asked."
     if word is Word.UNDECIDED and _contradicted(row, row.bounds):
-        return f"{count} of {rows} rows cannot be told, first of all {place}: {_DOUBTFUL}."
+        return f"{count} of {rows} rows cannot be told, first of all {place}: {_doubt(row)}."
     chosen, within = _between(row)
     off = max(every(row), key=lambda each: each.pressure, default=None)
     if word is Word.DIFFER and off is not None and off.pressure > max(chosen, within):
@@ -313,7 +313,12 @@ def _sentence(scene: Scene, row: Row, word: Word, count: int, rows: int) -> str:
             return f"All {rows} rows agree; the closest call is {place}: {said}."
 
 
-_DOUBTFUL = "one solver alone went on over an end of the branch near by, which the other may have behind it"
+def _doubt(row: Row) -> str:
+    """Why what would differ is not told."""
+    if row.hardly_open:
+        names = " and ".join(sorted(row.hardly_open))
+        return f"{names} presses in one solver, and is open in the other by less than its meshes tell"
+    return "one solver alone went on over an end of the branch near by, which the other may have behind it"
 
 
 def _of_shared(scene: Scene, row: Row) -> str:

@@ -10,7 +10,7 @@ from cprbm.equilibrium import Equilibrium
 from cprbm.forces import balances
 from cprbm.mechanism import Mechanism
 from cprbm.model import Model
-from cprbm.overlap import overlap
+from cprbm.overlap import overlap as largest_overlap
 from cprbm.point import Point
 from cprbm.settings import Settings
 from cprbm.stability import smallest_curvature
@@ -23,6 +23,7 @@ COMPLEMENTARITY = 1e-8  # gap times force, over the largest generalised force
 # Of the mean thickness. Where rows stand nothing overlaps (the violation says so); between the joints of a zone
 # the line dips by a part of h², which is an error of the discretisation and not a failure.
 OVERLAP_AUTO = 0.05
+OVERLAP_OPEN = 1e-3  # the same where nothing presses: there is no zone then, and each minimum of a gap has a row
 BEYOND = 0.5  # elements behind the fitted boundary's ends: it is continued there
 OVERLAP_PAPER = 0.5  # joints of 'paper' may dip between each other; beyond this the beams have crossed
 
@@ -46,11 +47,16 @@ def certify(mechanism: Mechanism, settings: Settings, found: Equilibrium) -> tup
         said = f"one element turns by {bend:.2f} rad, more than {LARGEST_BEND:.1f}: use more links"
         failures.append((Ending.TURNED_TOO_FAR, said))
     near = mechanism.near(point.state, point.at)
-    penetration = penetration_of(mechanism, found)
+    overlaps = overlaps_of(mechanism, found)
+    penetration = max(overlaps.values(), default=0.0)
     limit = OVERLAP_PAPER if mechanism.boundaries else OVERLAP_AUTO
     if not penetration <= limit:
         said = f"the beams of a contact overlap by {penetration:.1e} of the mean thickness, allowed {limit:.0e}"
         failures.append((Ending.BEAMS_CROSSED, said))
+    for name, overlap in () if mechanism.boundaries else overlaps.items():
+        if overlap > OVERLAP_OPEN and _open(mechanism, name, point):
+            said = f"in contact '{name}' nothing presses, and overlaps by {overlap:.1e} of the mean thickness"
+            failures.append((Ending.BEAMS_CROSSED, said))
     for name, pair in mechanism.alone.items():
         if pair.crosses(point.state, point.at):
             failures.append((Ending.BEAMS_CROSSED, f"in contact '{name}' the beam passes through itself"))
@@ -112,11 +118,16 @@ def _left(model: Model, boundary: FittedBoundary, point: Point, beyond: Array) -
     )
 
 
-def penetration_of(mechanism: Mechanism, found: Equilibrium) -> float:
-    """Largest overlap of the smooth beams of all contacts, over the mean thickness (the longest beam for lines)."""
-    deepest = 0.0
-    state, at = found.point.state, found.point.at
+def _open(mechanism: Mechanism, name: str, point: Point) -> bool:
+    """Whether a contact is open all along: an end that is clamped in touch may press by its clamp alone."""
+    clamped = mechanism.seen(name, point.rows).brought_to(point.state).clamped
+    return not any(clamped) and name not in point.rows.pressing(point.lam)
+
+
+def overlaps_of(mechanism: Mechanism, found: Equilibrium) -> dict[str, float]:
+    """By contact the largest overlap of its smooth beams over the mean thickness (the longest beam for lines)."""
+    deepest, state, at = {}, found.point.state, found.point.at
     for name in mechanism.near(state, at):
         pair = mechanism.seen(name, found.point.rows)
-        deepest = max(deepest, overlap(pair, state, at) / pair.thickness)
+        deepest[name] = largest_overlap(pair, state, at) / pair.thickness
     return deepest

@@ -853,7 +853,9 @@ def edge_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Edge:
         turning=model.n_links + 3 * body + 2,
         pieces=pieces,
         faces=(*pieces, *sides),
-        whole=WholeEdge((*pieces, *sides), _tips((*pieces, *sides)), _corners(pieces, sides, pinned, offset)),
+        whole=WholeEdge(
+            (*pieces, *sides), len(pieces), _tips((*pieces, *sides)), _corners(pieces, sides, pinned, offset)
+        ),
         offset=offset,
         unit_length=model.unit_length,
         drawn=(float(x), float(y)),

@@ -56,12 +56,17 @@ class Equilibrium:
     converged: bool
 
 
+def largest_moment(point: Point) -> float:
+    """The largest generalised force that balances at a point, S; nought where there is no load."""
+    terms = np.abs(point.gradient) + np.abs(point.held) + np.abs(point.pressed)
+    largest = max(float(_most(terms)), float(_most(np.abs(point.moments))))
+    return largest if largest > NOTHING else 0.0
+
+
 def measure(problem: Problem, point: Point) -> Measure:
     """Residuals of the optimality conditions over the largest terms in them; over S where there is no load."""
     model, c = problem.model, point.rows.values
-    terms = np.abs(point.gradient) + np.abs(point.held) + np.abs(point.pressed)
-    scale = max(float(_most(terms)), float(_most(np.abs(point.moments))))
-    scale = scale if scale > NOTHING else 1.0
+    scale = largest_moment(point) or 1.0
     # an angle is known to eps·|θ|, a spring's moment to the stiffness times that
     turned = max(1.0, float(_most(np.abs(point.state.theta))))
     floor = 4.0 * EPS * model.stiffest * turned + 4.0 * EPS * sqrt(model.n_links) * scale

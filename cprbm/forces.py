@@ -15,7 +15,7 @@ from typing import Literal
 import numpy as np
 
 from cprbm.closure import closure_forces
-from cprbm.equilibrium import NOTHING
+from cprbm.equilibrium import largest_moment
 from cprbm.holding import Held, held
 from cprbm.kinematics import place
 from cprbm.model import Chain
@@ -155,8 +155,9 @@ def balances(problem: Problem, point: Point) -> tuple[float, float]:
     """ΣF and ΣM about the origin of supports, slides, drives, loads and contacts, without units.
 
     Each over its largest part; where forces are small beside moments over ℓ, ΣF is measured by these, and the
-    other way round; where there is no load, by S.  A beam's own ΣF vanishes by construction, for the force at its
-    start is what balances it: ΣF says whether the free bodies are in equilibrium, ΣM whether the beams are too.
+    other way round; where there is no load, by S, as the residual is.  A beam's own ΣF vanishes by construction, for
+    the force at its start is what balances it: ΣF says whether the free bodies are in equilibrium, ΣM whether the
+    beams are too.
     """
     model, at = problem.model, point.at
     contact = contact_forces(problem, point)
@@ -184,8 +185,8 @@ def balances(problem: Problem, point: Point) -> tuple[float, float]:
     parts += [(fx, fy, moment) for fx, fy, moment in exerted.T.tolist()]
     fx, fy, moments = zip(*parts, strict=True)
     largest_force = max(map(abs, fx + fy))
-    largest_moment = max(*map(abs, moments), largest_force)
-    scale = largest_moment if largest_moment > NOTHING else 1.0
+    # round-off of the springs' moments may be a force, over a link's length
+    scale = max(*map(abs, moments), largest_force) if largest_moment(point) > 0.0 else 1.0
     return hypot(sum(fx), sum(fy)) / scale, abs(sum(moments)) / scale
 
 

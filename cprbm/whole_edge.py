@@ -20,9 +20,13 @@ NEAREST = 1e-9  # of ℓ: pieces whose distances differ by less are equally near
 
 @dataclass(frozen=True, eq=False)
 class WholeEdge:
-    """The faces of an edge, where these begin and end (t, 2), and its corners."""
+    """The faces of an edge, where these begin and end (t, 2), and its corners.
+
+    The first ``own`` faces are its own pieces, the others the sides of what is rigid behind these.
+    """
 
     faces: tuple[Face, ...]
+    own: int
     tips: Array
     corners: tuple[Corner, ...]
 
@@ -61,7 +65,11 @@ class WholeEdge:
         return Seen(distance, normal, bend, within)
 
     def facing(self, q: Array, seen: Seen) -> Flags:
-        """Which places ``q`` (k, 2) face which pieces (F, k): before it, or behind it and none nearer."""
+        """Which places ``q`` (k, 2) face which pieces (F, k): before it, or behind it and none nearer.
+
+        Sides that do not meet go on for ever, and those of a sharp wedge pass behind what is before the edge: behind a
+        side is only what is behind the edge's own pieces, too, by the nearest of them.
+        """
         facing = seen.within & (seen.distance >= 0.0)
         behind = np.flatnonzero((seen.within & ~facing).any(axis=0))
         if not behind.size:
@@ -71,8 +79,24 @@ class WholeEdge:
         # beside a tip, above all one where the beam is pinned, a place is by round-off alone beside a piece, or none
         for tip in self.tips:
             least = np.minimum(least, np.hypot(*(q[behind] - tip).T))
-        facing[:, behind] |= within & (depth <= least + NEAREST)
+        sunk = within & (depth <= least + NEAREST)
+        if sunk[self.own :].any():
+            sunk[self.own :] &= ~self._before(q[behind], seen.distance[:, behind], within)
+        facing[:, behind] |= sunk
         return np.asarray(facing)
+
+    def _before(self, q: Array, distance: Array, within: Flags) -> Flags:
+        """Which places ``q`` (k, 2) are before the nearest of the edge's own pieces, seen at D and if it is the piece.
+
+        Where that is a corner that stands out, before one of its pieces, continued.
+        """
+        away = np.abs(distance[: self.own])
+        for face, row, beside in zip(self.faces, away, within[: self.own], strict=False):
+            ends = [np.hypot(*(q - end).T) for end in face.ends if end is not None]
+            if ends:
+                row[~beside] = np.minimum.reduce(ends)[~beside]
+        nearest = away <= away.min(axis=0) + NEAREST
+        return np.asarray((nearest & (distance[: self.own] > NEAREST)).any(axis=0))
 
     @once
     def ahead(self) -> Array:

@@ -51,6 +51,20 @@ class Feet:
     at_end: Flags
 
 
+@dataclass(frozen=True)
+class Space:
+    """Between one beam and what it may touch: their names, gaps at arc lengths ``s`` (k,), those that count (k,).
+
+    ``allowed`` is the depth to which they may overlap there.
+    """
+
+    between: str
+    s: Array
+    gap: Array
+    counted: Flags
+    allowed: float
+
+
 def contacts(seen: Seen) -> Iterator[str]:
     """Everything that is wrong with gaps and contact forces."""
     for name, contact in seen.scene.contacts.items():
@@ -68,6 +82,19 @@ def contacts(seen: Seen) -> Iterator[str]:
                 yield f"{one} and {other} of {name} cross at {_told(at)}, by {depth:.2g} m"
 
 
+def spaces(seen: Seen, name: str) -> Iterator[Space]:
+    """What lies between the beams of a contact, or one and what is rigid; of areas nothing."""
+    contact = seen.scene.contacts[name]
+    if isinstance(contact, BeamContact):
+        one, other = contact.between
+        for a, b in ((one, other), (other, one)):
+            yield _between_beams(seen, name, contact, a, b)
+    elif isinstance(contact, SelfContact):
+        yield _beside_itself(seen, contact)
+    else:
+        yield _off_rigid(seen, name, contact)
+
+
 def strangers(seen: Seen) -> Iterator[str]:
     """Beams that cross though no contact names them, and did not at rest: the scene lets them."""
     for (one, first), (other, second) in combinations(seen.beams.items(), 2):
@@ -83,7 +110,7 @@ def _of_areas(seen: Seen, name: str, contact: BeamContact | Rigid) -> Iterator[s
         for a, b, s, _, depth in edges.overlaps(seen):
             if {a, b} == set(contact.between):
                 allowed = edges.DEEP * 0.5 * (seen.rests[a].beam.thickest + seen.rests[b].beam.thickest)
-                yield from _deepest(f"{a} and {b} of {name}", s, -depth, np.ones(len(s), dtype=bool), allowed)
+                yield from _deepest(Space(f"{a} and {b} of {name}", s, -depth, np.ones(len(s), dtype=bool), allowed))
         return
     A = edges.areas(seen)[contact.beam]
     t = A.rest.thickness(A.fine)
@@ -93,7 +120,8 @@ def _of_areas(seen: Seen, name: str, contact: BeamContact | Rigid) -> Iterator[s
         overlapping = rest.distance < -1e-12 * seen.longest
         counted = ~feet.at_end & ~_spread(A.fine, overlapping, float(t.max())) & ~_round_an_end(contact, places, feet)
         allowed = edges.DEEP * float(t.mean())
-        yield from _deepest(f"{contact.beam} and what is rigid in {name}", A.fine, feet.distance, counted, allowed)
+        what = f"{contact.beam} and what is rigid in {name}"
+        yield from _deepest(Space(what, A.fine, feet.distance, counted, allowed))
     for on, s, places, forces in edges.pressing(seen, name):
         feet = _surface(contact, _still(seen, contact.body, places))
         off = np.abs(feet.distance) - edges.APART * A.rest.thickness(s)
@@ -106,46 +134,59 @@ def _of_areas(seen: Seen, name: str, contact: BeamContact | Rigid) -> Iterator[s
 def _of_beams(seen: Seen, name: str, contact: BeamContact) -> Iterator[str]:
     one, other = contact.between
     for a, b in ((one, other), (other, one)):
-        A, B = seen.beams[a], seen.beams[b]
-        s = A.fine
-        feet = _feet(A.line(s)[0], B)
+        B = seen.beams[b]
         if contact.thick:
-            T = 0.5 * (A.rest.thickness(s) + B.rest.thickness(feet.s))
-            counted = ~feet.at_end & ~_beside_joint(seen, a, b, s) & ~_near_at_rest(seen, a, b, s)
-            yield from _deepest(f"{a} and {b} of {name}", s, feet.distance - T, counted, DEEP * float(T.mean()))
+            yield from _deepest(_between_beams(seen, name, contact, a, b))
         yield from _pressing(seen, name, a, _feet(_pressed(seen, name, a)[1], B), B, thick=contact.thick)
+
+
+def _between_beams(seen: Seen, name: str, contact: BeamContact, a: str, b: str) -> Space:
+    """From places of a to b; of lines distances without a side."""
+    A, B = seen.beams[a], seen.beams[b]
+    s = A.fine
+    feet = _feet(A.line(s)[0], B)
+    T = 0.5 * (A.rest.thickness(s) + B.rest.thickness(feet.s)) if contact.thick else np.zeros(len(s))
+    counted = ~feet.at_end & ~_beside_joint(seen, a, b, s)
+    if contact.thick:
+        counted &= ~_near_at_rest(seen, a, b, s)
+    return Space(f"{a} and {b} of {name}", s, feet.distance - T, counted, DEEP * float(T.mean()))
+
+
+def _beside_itself(seen: Seen, contact: SelfContact) -> Space:
+    A = seen.beams[contact.beam]
+    s = A.fine
+    feet = _own_feet(A, s)
+    T = 0.5 * (A.rest.thickness(s) + A.rest.thickness(feet.s)) if contact.thick else np.zeros(len(s))
+    counted = ~feet.at_end & np.isfinite(feet.distance)
+    return Space(f"{contact.beam} beside itself", s, feet.distance - T, counted, DEEP * float(T.mean()))
 
 
 def _of_itself(seen: Seen, name: str, contact: SelfContact) -> Iterator[str]:
     A = seen.beams[contact.beam]
-    s, (at, _, _) = A.fine, _pressed(seen, name, contact.beam)
+    at, _, _ = _pressed(seen, name, contact.beam)
     if contact.thick:
-        feet = _own_feet(A, s)
-        T = 0.5 * (A.rest.thickness(s) + A.rest.thickness(feet.s))
-        counted = ~feet.at_end & np.isfinite(feet.distance)
-        yield from _deepest(f"{contact.beam} beside itself", s, feet.distance - T, counted, DEEP * float(T.mean()))
+        yield from _deepest(_beside_itself(seen, contact))
     if at.size:
         yield from _pressing(seen, name, contact.beam, _own_feet(A, at), A, thick=contact.thick)
 
 
-def _of_rigid(
-    seen: Seen, name: str, contact: CircleContact | LineContact | HalfPlaneContact | FunctionContact
-) -> Iterator[str]:
+def _off_rigid(seen: Seen, name: str, contact: Rigid) -> Space:
     A, a = seen.beams[contact.beam], contact.beam
-    first, moved, phi = seen.motion(contact.body)
-    turn = complex(np.exp(1j * phi))
-
-    def surface(places: Complex) -> Feet:
-        return faced(seen, contact, places)
-
     s = A.fine
-    feet, rest = surface(A.line(s)[0]), _surface(contact, A.rest.places(s))
+    feet, rest = faced(seen, contact, A.line(s)[0]), _surface(contact, A.rest.places(s))
     half = 0.5 * A.rest.thickness(s) if contact.thick else np.zeros(len(s))
     overlapping = rest.distance < half * (1.0 - 1e-9) - 1e-12 * seen.longest
     counted = ~feet.at_end & ~_spread(s, overlapping, BESIDE * float(A.rest.thickness(s).max()))
     counted &= ~_round_an_end(contact, _still(seen, contact.body, A.line(s)[0]), feet)
     allowed = DEEP * 2.0 * float(half.mean()) if contact.thick else SUNK * seen.longest
-    yield from _deepest(f"{a} and what is rigid in {name}", s, feet.distance - half, counted, allowed)
+    return Space(f"{a} and what is rigid in {name}", s, feet.distance - half, counted, allowed)
+
+
+def _of_rigid(seen: Seen, name: str, contact: Rigid) -> Iterator[str]:
+    A, a = seen.beams[contact.beam], contact.beam
+    first, moved, phi = seen.motion(contact.body)
+    turn = complex(np.exp(1j * phi))
+    yield from _deepest(_off_rigid(seen, name, contact))
     s, places, forces = _pressed(seen, name, a)
     on = np.zeros(len(s), dtype=bool)
     if s.size and not contact.thick and isinstance(contact, LineContact | FunctionContact):
@@ -155,7 +196,7 @@ def _of_rigid(
         on = beside & corners.allow(forces, number)
         # a part of what presses there may be normal to the edge beside the corner
         yield from _on_corners(name, A, s, forces, np.where(beside & np.isin(number, number[on]), number, -1), sunk)
-    yield from _pressing(seen, name, a, surface(places), None, thick=contact.thick, on_corners=on)
+    yield from _pressing(seen, name, a, faced(seen, contact, places), None, thick=contact.thick, on_corners=on)
 
 
 def faced(seen: Seen, contact: Rigid, places: Complex) -> Feet:
@@ -231,11 +272,11 @@ def _pressing(
         yield f"{name} {how} {beam} at {s[worst]:.4g} m: {said}"
 
 
-def _deepest(what: str, s: Array, gap: Array, counted: Flags, allowed: float) -> Iterator[str]:
-    gap = np.where(counted, gap, np.inf)
+def _deepest(space: Space) -> Iterator[str]:
+    gap = np.where(space.counted, space.gap, np.inf)
     worst = int(np.argmin(gap))
-    if gap[worst] < -allowed:
-        yield f"{what} overlap by {-gap[worst]:.2g} m at {s[worst]:.4g} m"
+    if gap[worst] < -space.allowed:
+        yield f"{space.between} overlap by {-gap[worst]:.2g} m at {space.s[worst]:.4g} m"
 
 
 def _feet(places: Complex, beam: AnyBeam) -> Feet:

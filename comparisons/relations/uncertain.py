@@ -17,8 +17,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from comparisons.choices import Choices
-from comparisons.measures import SAFETY, SHARE_OF_LARGEST, arc_lengths, probe_scales
-from comparisons.order import USUAL, order_of, richardson
+from comparisons.measures import SHARE_OF_LARGEST, arc_lengths, probe_scales
+from comparisons.order import SAFETY, USUAL, order_of, richardson
 from comparisons.pairing import Solver
 from comparisons.scales import norm
 from comparisons.spots import clear_of_spots

@@ -291,9 +291,10 @@ def _from_refinement(row: Row, finer: Runs) -> Iterator[tuple[str, float, float]
     """By solver the distance of a row's value from the finest of the finer runs, and what it may be.
 
     Of stresses, whose places next to contacts do not count, of forces that contacts share in a way that nothing tells,
-    or with a joint in one that no mesh does, and of rows that are not compared nothing is said.
+    or with a joint in one that no mesh does, of what hangs on a contact that is open by less than meshes tell, and of
+    rows that are not compared nothing is said.
     """
-    if row.bounds is None or row.arc_length is not None or row.shared or row.beside is not None:
+    if row.bounds is None or row.arc_length is not None or row.shared or row.hardly_open or row.beside is not None:
         return
     for solver, mine, answer, own in (
         ("cprbm", row.cprbm, finer.cprbm[1], row.bounds.cprbm),

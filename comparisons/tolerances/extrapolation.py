@@ -38,8 +38,7 @@ from dataclasses import replace
 import numpy as np
 
 from comparisons.converging.limits import limit
-from comparisons.measures import foretold, unforeseen
-from comparisons.order import order_of, richardson
+from comparisons.order import foretold, order_of, richardson, unforeseen
 from comparisons.scales import norm
 from comparisons.stations import station_of
 from scene import Answer, Probe, Scene, StationAnswer

@@ -8,7 +8,7 @@ import pytest
 import cprbm
 from cprbm.closure import closure_values
 from cprbm.contact import NO_ROWS
-from cprbm.equilibrium import equilibrium
+from cprbm.equilibrium import equilibrium, measure
 from cprbm.forces import balances
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of
@@ -56,6 +56,22 @@ def test_a_load_on_a_beam_that_begins_on_a_body_is_carried_to_the_ground():
     load = 1.7 * RIGIDITY / LENGTH**3
     problem, point = solved(two_in_a_row(), {"P": load})
     assert max(balances(problem, point)) < 1e-10
+
+
+def test_what_round_off_leaves_in_multipliers_is_no_load():
+    # two straight beams in one line, joined by a body: statics lets them pull each other by any force.  By as little as
+    # round-off of 80 springs leaves open they may also pull unlike
+    data = cantilever_data(force(0.0, 1.0), [1.0])
+    data["bodies"]["wall"]["points"]["F"] = [2.0 * LENGTH, 0.0]
+    curve = {"kind": "line", "start": [2.0 * LENGTH, 0.0], "end": [LENGTH, 0.0]}
+    data["beams"]["further"] = {**data["beams"]["beam"], "curve": curve, "start": {"joint": "weld", "point": "F"}}
+    problem = mechanism_of(scene_from(data), cprbm.Settings(links=80)).problem
+    mu = np.zeros(problem.closure.rows)
+    mu[[0, 2]] = 1.3e-12, -0.97 * 1.3e-12
+    rest = point_at(problem, {}, rest_state(problem.model), mu, np.zeros(0), NO_ROWS)
+    left = measure(problem, rest)
+    assert left.residual <= left.floor
+    assert max(balances(problem, rest)) <= left.floor
 
 
 def test_what_is_given_is_what_the_closures_are_less():

@@ -13,15 +13,16 @@ from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import point_at
 from scene import Ending
-from tests.cprbm.scenes import hinge
+from scene.reading import scene_from
+from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force, hinge
 
 MOMENT = 0.67
 SETTINGS = cprbm.Settings(links=37)
 
 
-def solved(problem):
+def solved(problem, load="M", value=MOMENT):
     rest = point_at(problem, {}, rest_state(problem.model), np.zeros(problem.closure.rows), np.zeros(0), NO_ROWS)
-    found = equilibrium(problem, {"M": MOMENT}, rest, SETTINGS.tolerance, SETTINGS.iterations)
+    found = equilibrium(problem, {load: value}, rest, SETTINGS.tolerance, SETTINGS.iterations)
     assert found.converged
     return found
 
@@ -80,6 +81,23 @@ def test_beams_that_nothing_holds_apart(mechanism):
     failures, ending = judged(mechanism, solved(mechanism.without("contact")))
     assert "overlap by" in failures
     assert ending is Ending.BEAMS_CROSSED
+
+
+@pytest.mark.parametrize(("overlap", "ending"), [(0.01, Ending.BEAMS_CROSSED), (-0.01, Ending.COMPLETED)])
+def test_what_is_open_does_not_overlap_by_a_hundredth_of_a_thickness(overlap, ending):
+    # closed form: the force F at its end bends a cantilever by F x²(3L − x)/6EI, here 0.3 % of its length
+    load, at, radius = 0.01 * RIGIDITY / LENGTH**2, 0.79 * LENGTH, 0.27 * LENGTH
+    down = load * at**2 * (3.0 * LENGTH - at) / (6.0 * RIGIDITY)
+    data = cantilever_data(force(0.0, -1.0), [load])
+    center = [at, -(radius + 0.5 * THICKNESS + down - overlap * THICKNESS)]
+    circle = {"kind": "beam-circle", "beam": "beam", "body": "wall", "center": center, "radius": radius}
+    data["contacts"] = {"circle": circle}
+    whole = mechanism_of(scene_from(data), SETTINGS)
+    # its row is missing
+    mechanism = replace(whole, problem=whole.without("circle"))
+    certificate, how = certify(mechanism, SETTINGS, solved(mechanism.problem, "P", load))
+    assert certificate.penetration == pytest.approx(max(overlap, 0.0), abs=2e-3)
+    assert how is ending
 
 
 def test_an_element_bent_too_far(mechanism, good):
