@@ -186,6 +186,22 @@ def _sampled(pair: Pair, lines: Lines) -> tuple[Array, Array, bool]:
 
 
 def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array, bool]:
+    D, sigma = on_either_side(pair, lines)
+    told = not_gone_round(pair, lines, D, pair.wider(pair.a.halves, sigma))
+    gone = told is not D
+    return np.where(_with_neighbours(np.isinf(told), D < 0.0), np.inf, D) if gone else D, sigma, gone
+
+
+def on_either_side(pair: Pair, lines: Lines) -> tuple[Array, Array]:
+    """D and σ at the same places, also where A has come round an end."""
+    known, what = lines[0].known, (pair.known_as, "either side")
+    if what not in known:
+        known[what] = _on_either_side_anew(pair, lines)
+    D, sigma = known[what]
+    return D, sigma
+
+
+def _on_either_side_anew(pair: Pair, lines: Lines) -> tuple[Array, Array]:
     A, G = pair.samples(lines)
     # far parts are left out by their distance from B's samples, which no foot can undercut by more than h
     rough, nearest = nearest_samples(G, A, pair.offset + reach(pair.a, pair.b))
@@ -193,17 +209,14 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array, bool]:
     sigma = np.zeros(len(A.s))
     D = sigma + np.inf
     if not close.size:
-        return D, sigma, False
+        return D, sigma
     at_A, at_B = A.only(close), G.only(nearest[close])
     distance, sigma[close], foot, at_B = feet_from(pair, lines, at_A, at_B, CLOSE)
     D[close[foot]] = distance[foot]
-    told = not_gone_round(pair, lines, D, pair.wider(A.s, sigma))
-    gone = told is not D
-    D = np.where(_with_neighbours(np.isinf(told), D < 0.0), np.inf, D) if gone else D
     if not pair.tapered:  # else these are points of edges
         joints = ((close % 2 == 0) & np.isfinite(D[close])).nonzero()[0]
         lines[0].faced[pair.known_as] = D, at_A.only(joints), at_B.only(joints)
-    return D, sigma, gone
+    return D, sigma
 
 
 def not_gone_round(pair: Pair, lines: Lines, D: Array, wider: Array | float, gone: float = np.inf) -> Array:
@@ -212,8 +225,22 @@ def not_gone_round(pair: Pair, lines: Lines, D: Array, wider: Array | float, gon
     if not beyond.any():
         return D
     # what is behind is asked for only where something has come there round an end
-    through = not pair.behind and crossing(lines, -float((D + wider)[beyond].max()))
+    through = not pair.behind and (
+        crossing(lines, -float((D + wider)[beyond].max()))
+        or (not pair.offset and (_touched(pair, lines) or _touched(pair.exchanged(), lines[::-1])))
+    )
     return D if through else np.where(beyond, gone, D)
+
+
+def _touched(pair: Pair, lines: Lines) -> bool:
+    """Whether a part of A with feet on B lies beyond it in one place and touches it, away from its ends, in another.
+
+    Of lines without thickness that may be where they cross: one that has turned about its end, through the other.
+    """
+    D, sigma = on_either_side(pair, lines)
+    beyond, faces, end = clear_beyond(pair, D, 0.0), np.isfinite(D), pair.b.s[-1]
+    touching = faces & ~beyond & (np.abs(sigma - 0.5 * end) < 0.5 * end - pair.b.h)
+    return bool(np.any(_with_neighbours(touching, faces) & beyond))
 
 
 def clear_beyond(pair: Pair, D: Array, wider: Array | float) -> Flags:

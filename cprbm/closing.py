@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from cprbm.contact import NO_ROWS
+from cprbm.contact import Rows
 from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import most_turned
 from cprbm.mechanism import Mechanism, mechanism_of
@@ -86,7 +86,7 @@ class Closings:
         """Of a mechanism with the contact, whose state near ``value`` is about known."""
         without = replace(mechanism, problem=mechanism.without(contact))
         values = {**self.values, self.load: value}
-        guess = point_at(without.problem, values, point.state, point.mu, np.zeros(0), NO_ROWS)
+        guess = point_at(without.problem, values, point.state, point.mu, np.zeros(0), Rows((), sides=point.rows.sides))
         return Gap(without, contact, self.values, self.load, self.settings, guess)
 
     def _fitted(self, gap: Gap, closing: float, way: float) -> float:

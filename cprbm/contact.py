@@ -22,6 +22,9 @@ from cprbm.strands import Faces
 from scene.answer import Array, Flags, Ints
 from scene.frozendict import frozendict
 
+Sides = tuple[float, float]
+"""That of B on which A lies, and of A on which B does, :mod:`cprbm.sighting`."""
+
 REAL = 1e-13  # of the largest curvature of a group; what is below it is round-off
 
 
@@ -211,11 +214,13 @@ class Group:
 class Rows:
     """All constraints at one state, group behind group.
 
-    ``faces`` are the sides by which beams face themselves, by contact; they go from state to state.
+    ``faces`` are the sides by which beams face themselves, by contact, and ``sides`` those of each other on which beams
+    were seen; they go from state to state.
     """
 
     groups: tuple[Group, ...]
     faces: Mapping[str, Faces] = frozendict()
+    sides: Mapping[str, Sides] = frozendict()
 
     @once
     def values(self) -> Array:

@@ -73,8 +73,11 @@ def leap(
         farthest: rad; where a link has turned by more, the motion is followed no further.
     """
     nudge = NUDGE * direction / max(float(np.max(np.abs(direction))), 1e-300)
+    nudged = [_nudged(mechanism, values, start, way) for way in (nudge, -nudge)]
     tried = [
-        _step(mechanism, settings, values, _nudged(mechanism, values, start, way), FIRST) for way in (nudge, -nudge)
+        # a nudge is longer than thin beams are thick
+        _step(mechanism, settings, values, one, FIRST) if not mechanism.passed(start, one) else None
+        for one in nudged
     ]
     begun = [one for one in tried if one is not None]
     point = min(begun, key=lambda one: potential_energy(mechanism.problem, one)) if begun else start

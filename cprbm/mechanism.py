@@ -31,6 +31,7 @@ from cprbm.related import related_joints
 from cprbm.rigid import RigidCircle, rigid_circle
 from cprbm.rigid_edge import RigidEdge, rigid_edge
 from cprbm.settings import Settings
+from cprbm.sighting import UNSEEN, sight
 from cprbm.stops import AngleStop, stop_of
 from cprbm.strands import NO_FACES
 from cprbm.sweeping import swath, swept
@@ -99,8 +100,10 @@ class Mechanism:
         return self.clearances.near(state, at)
 
     def seen(self, contact: str, rows: Rows) -> AnyPair:
-        """The geometry of a contact, with what ``rows`` know of the sides by which a beam faces itself."""
+        """The geometry of a contact, with what ``rows`` know of the sides by which a beam faces itself, or another."""
         pair = self.pairs[contact]
+        if isinstance(pair, Pair):
+            return pair.sighted(rows.sides.get(contact, UNSEEN))
         return pair.seen(rows.faces.get(contact, NO_FACES)) if isinstance(pair, Itself) else pair
 
     def overlap(self, contact: str, point: Point) -> float:
@@ -293,8 +296,15 @@ def _formulation(
     idle: frozenset[str],
 ) -> Formulation:
     def rows(state: State, at: Positions, before: Rows) -> Rows:
-        near = [name for name in clearances.near(state, at) if name not in idle and name not in watched]
-        groups = [group for name in near for group in _groups(name, pairs, boundaries)(state, at)]
+        near = [name for name in clearances.near(state, at) if name not in watched]
+        groups, sides = list[Group](), before.sides
+        for name in near:
+            pair = pairs[name]
+            if not boundaries and isinstance(pair, Pair) and not all(pair.seen):
+                sides = {**sides, name: sight(pair, state, at, sides.get(name, UNSEEN))}
+                pair = pair.sighted(sides[name])
+            if name not in idle:
+                groups += _groups(name, {name: pair}, boundaries)(state, at)
         groups += [group for stop in stops.values() for group in stop.groups(state, at)]
         faces = {}
         for name, pair in watched.items():
@@ -302,7 +312,7 @@ def _formulation(
             faces[name] = pair.met(facing)
             if name not in idle:
                 groups += pair.rows(facing, at)
-        return Rows(tuple(groups), faces)
+        return Rows(tuple(groups), faces, sides)
 
     return rows
 

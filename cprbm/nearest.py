@@ -65,7 +65,7 @@ from cprbm.closest import (
     not_gone_round,
     sampled_distances,
 )
-from cprbm.contact import Group
+from cprbm.contact import Group, Sides
 from cprbm.feet import CLOSE, Lines, distance_along, distance_of, feet_from, feet_of_ridges, seen_from
 from cprbm.gathering import Touches, gathered, single
 from cprbm.kinematics import Positions, State
@@ -103,6 +103,7 @@ class Pair:
         own_places: whether minima of D have rows of their own.
         kinks: of A and of B where the contact is in points.
         fixed: whether rows stand there, and no minimum has one of its own.
+        seen: whether A lies where that tells ``side`` at rest, and B; else that is a guess, :mod:`cprbm.sighting`.
         behind: whether these are the other sides of both, which only what has come round an end can touch.
     """
 
@@ -119,12 +120,13 @@ class Pair:
     own_places: bool = True
     kinks: tuple[Kinks, ...] = (NO_KINKS, NO_KINKS)
     fixed: bool = False
+    seen: tuple[bool, bool] = (True, True)
     behind: bool = False
 
     @once
     def known_as(self) -> str:
         """What is found along lines is kept by that name."""
-        return f"{self.name} from behind" if self.behind else self.name
+        return f"{self.name} {self.side:+.0f}{self.across:+.0f}{' from behind' * self.behind}"
 
     @once
     def made(self) -> Made | None:
@@ -213,7 +215,18 @@ class Pair:
             clamps=self.clamps[::-1],
             at_home=self.at_home[::-1],
             kinks=self.kinks[::-1],
+            seen=self.seen[::-1],
         )
+
+    def sighted(self, sides: Sides) -> Pair:
+        """The same with those ``sides`` that have been seen."""
+        flipped = [theirs == -mine for mine, theirs in zip((self.side, self.across), sides, strict=True)]
+        return self._flipped[2 * flipped[0] + flipped[1]] if any(flipped) else self
+
+    @once
+    def _flipped(self) -> tuple[Pair, ...]:
+        """The contact, that with the other ``across``, with the other ``side``, and with both."""
+        return tuple(replace(self, side=a * self.side, across=b * self.across) for a in (1, -1) for b in (1, -1))
 
     @once
     def other_sides(self) -> Pair:
@@ -573,4 +586,5 @@ def pair_of(scene: Scene, model: Model, name: str, fit: Fit = EVEN) -> Pair:
         at_home=standing.clamps if (a.at_home, b.at_home) == (a, b) else model.outset.at_home[name].clamps,
         kinks=fit.kinks.get(name, (NO_KINKS, NO_KINKS)),
         fixed=name in fit.fixed,
+        seen=standing.seen,
     )

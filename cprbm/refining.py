@@ -295,7 +295,7 @@ def carried_over(
     """A state of one mesh on another, with its forces: a guess; all its zones may be ``known``."""
     old, new = before.problem.model, after.problem.model
     state = carried_state(old, point.state, new)
-    bare = point_at(after.problem, values, state, point.mu, np.zeros(0), Rows((), point.rows.faces))
+    bare = point_at(after.problem, values, state, point.mu, np.zeros(0), Rows((), point.rows.faces, point.rows.sides))
     rows = bare.rows
     lam = np.zeros(rows.size)
     zones = long_ones(all_zones(before, point) if known is None else known)

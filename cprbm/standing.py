@@ -85,11 +85,13 @@ class Standing:
         across: +1 where B lies on the left of A, −1 on the right.
         clamps: for the start and the end of A and of B, whether it is clamped together with an end of the other,
             touching and parallel.
+        seen: whether any place of A has a foot on B, which tells ``side``, and of B on A; else it is a guess.
     """
 
     side: float
     across: float
     clamps: tuple[tuple[bool, bool], tuple[bool, bool]]
+    seen: tuple[bool, bool] = (True, True)
 
 
 def standing(one: Side, other: Side, unit_length: float, *, thick: bool) -> Standing:
@@ -100,23 +102,28 @@ def standing(one: Side, other: Side, unit_length: float, *, thick: bool) -> Stan
     x, y = A.x + (one.line.x0 - other.line.x0), A.y + (one.line.y0 - other.line.y0)
     squares = (x[:, None] - B.x) ** 2 + (y[:, None] - B.y) ** 2
     back_x, back_y = B.x + (other.line.x0 - one.line.x0), B.y + (other.line.y0 - one.line.y0)
-    side = _side(x, y, other.line, B, squares.argmin(axis=1), unit_length)
-    across = _side(back_x, back_y, one.line, A, squares.argmin(axis=0), unit_length)
+    side, seen = _side(x, y, other.line, B, squares.argmin(axis=1), unit_length)
+    across, its_seen = _side(back_x, back_y, one.line, A, squares.argmin(axis=0), unit_length)
     mine, its = _ends(one, A, unit_length, thick=thick), _ends(other, B, unit_length, thick=thick)
-    return Standing(side, across, (_clamped(mine, its, side), _clamped(its, mine, across)))
+    return Standing(side, across, (_clamped(mine, its, side), _clamped(its, mine, across)), (seen, its_seen))
 
 
-def _side(x: Array, y: Array, line: NeutralLine, sampled: Places, nearest: Ints, unit_length: float) -> float:
+def _side(
+    x: Array, y: Array, line: NeutralLine, sampled: Places, nearest: Ints, unit_length: float
+) -> tuple[float, bool]:
     """+1 where places ``x``, ``y`` (k,) lie on the left of B where they are closest to it, else −1.
 
-    Of B some places are ``sampled``, of which those ``nearest`` (k,) to the others are known.
+    And whether one of them has a foot on B.  Of B some places are ``sampled``, of which those ``nearest`` (k,) to the
+    others are known.
     """
     step, close = line.length / (PLACES - 1), CLOSE * unit_length
     B, sigma = sampled.only(nearest), step * nearest
     along, across = _seen(x, y, B)
     k = int((along * along + across * across).argmin())
     if step < abs(across[k]) > abs(along[k]) and 0 < nearest[k] < PLACES - 1:
-        return math.copysign(1.0, across[k])  # so far off that a foot beside the nearest place sees it no otherwise
+        return math.copysign(
+            1.0, across[k]
+        ), True  # so far off that a foot beside the nearest place sees it no otherwise
     for _ in range(ITERATIONS):
         left = along / np.maximum(1.0 - B.curvature * across, LEAST)
         left /= 1.0 + (B.curvature * left) ** 2 / 3.0
@@ -130,9 +137,9 @@ def _side(x: Array, y: Array, line: NeutralLine, sampled: Places, nearest: Ints,
     if foot.any():
         size[~foot] = np.inf
     if size.min() > ON_IT * unit_length:
-        return 1.0 if across[size.argmin()] >= 0.0 else -1.0
+        return 1.0 if across[size.argmin()] >= 0.0 else -1.0, bool(foot.any())
     # lines that touch show their side elsewhere: where they do it is a matter of round-off
-    return 1.0 if across[np.isfinite(size)].sum() >= 0.0 else -1.0
+    return 1.0 if across[np.isfinite(size)].sum() >= 0.0 else -1.0, bool(foot.any())
 
 
 def _seen(x: Array, y: Array, B: Places) -> tuple[Array, Array]:
