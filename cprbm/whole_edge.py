@@ -88,15 +88,20 @@ class WholeEdge:
     def _before(self, q: Array, distance: Array, within: Flags) -> Flags:
         """Which places ``q`` (k, 2) are before the nearest of the edge's own pieces, seen at D and if it is the piece.
 
-        Where that is a corner that stands out, before one of its pieces, continued.
+        Where that is a corner that stands out, before one of its pieces, continued; where it is an end of the edge,
+        before the side that goes back from there, too.
         """
         away = np.abs(distance[: self.own])
         for face, row, beside in zip(self.faces, away, within[: self.own], strict=False):
             ends = [np.hypot(*(q - end).T) for end in face.ends if end is not None]
             if ends:
                 row[~beside] = np.minimum.reduce(ends)[~beside]
-        nearest = away <= away.min(axis=0) + NEAREST
-        return np.asarray((nearest & (distance[: self.own] > NEAREST)).any(axis=0))
+        least = away.min(axis=0) + NEAREST
+        before = ((away <= least) & (distance[: self.own] > NEAREST)).any(axis=0)
+        for side, D in zip(self.faces[self.own :], distance[self.own :], strict=True):
+            assert isinstance(side, Straight)
+            before |= (D > NEAREST) & (np.hypot(*(q - np.array(side.origin)).T) <= least)
+        return np.asarray(before)
 
     @once
     def ahead(self) -> Array:

@@ -15,7 +15,7 @@ from scene.reading import scene_from
 H = np.sqrt(0.4985**2 - 0.065**2)  # of the bowl's ends below its centre
 
 
-def beams(first, second, thickness=1e-3):
+def beams(first, second, thickness=1e-3, **contact):
     """Two beams of given curves, their starts welded to the ground, their ends free, the first loaded by nothing."""
     welds = {"A": "P", "B": "Q"}
     return scene_from(
@@ -37,7 +37,7 @@ def beams(first, second, thickness=1e-3):
                 }
                 for name, curve in (("A", first), ("B", second))
             },
-            "contacts": {"c": {"kind": "beam-beam", "between": ["A", "B"]}},
+            "contacts": {"c": {"kind": "beam-beam", "between": ["A", "B"], **contact}},
             "loads": {"P1": {"kind": "force", "point": "T", "direction": [0.0, -1.0]}},
             "stages": [{"name": "load", "steps": "P1", "stations": [1e-3]}],
             "probes": [{"of": "c", "quantity": "force"}],
@@ -88,6 +88,25 @@ def test_every_minimum_is_found_where_the_curvature_jumps_too(monkeypatch, seed)
         assert distance_along(pair, lines, places[near])[1] == pytest.approx(feet[near], abs=1e-12)
         found += 1
     assert found >= 3
+
+
+@pytest.mark.parametrize("order", [["A", "B"], ["B", "A"]])
+@pytest.mark.parametrize("links", [7, 12])
+def test_a_line_that_has_turned_about_its_end_through_another_lies_across_it(order, links):
+    # A stands on B with its start, aslant, both without thickness, and is turned about it until it lies below:
+    # nothing crosses but there, where they touch; reference: a straight line's end
+    scene = beams(line((0.03, 0.0), (0.08, 0.02)), line((0.0, 0.0), (0.1, 0.0)), between=order, thick=False)
+    pair, state, at = pair_at_rest(scene, links)
+    assert pair.least_gap(state, at) == pytest.approx(0.0, abs=1e-15)
+    turning = pair.a if order[0] == "A" else pair.b
+    model = mechanism_of(scene, cprbm.Settings(links=links)).problem.model
+    theta = state.theta.copy()
+    theta[turning.links] -= 2.0 * np.arctan2(0.02, 0.05)
+    turned = State(theta, state.bodies)
+    at = positions(model, turned)
+    assert not pair.gone_round(turned, at)
+    assert pair.least_gap(turned, at) == pytest.approx(-0.2, rel=0.1)  # bent beside the weld
+    assert np.max(Rows(pair.groups(turned, at)).values) == pytest.approx(0.2, rel=0.1)
 
 
 @pytest.mark.parametrize("links", [5, 8])

@@ -119,3 +119,12 @@ def test_a_further_mesh_is_made_of_what_the_first_was():
     for name in ("lengths", "rest", "couplings"):
         np.testing.assert_array_equal(getattr(ours, name), getattr(others, name))
     assert again.pairs["contact"].side == anew.pairs["contact"].side
+
+
+def test_what_lies_beyond_the_other_beams_ends_has_not_been_seen():
+    # B goes up from beyond the end of A; A's end has its foot on B
+    level, upright = straight((0.0, 0.0), (1.0, 0.0)), straight((1.2, -0.5), (1.2, 0.7))
+    assert standing(level, upright, 1.2, thick=True).seen == (True, False)
+    assert standing(upright, level, 1.2, thick=True).seen == (False, True)
+    # two in one line do not see each other
+    assert standing(level, straight((1.2, 0.0), (2.0, 0.0)), 1.0, thick=True).seen == (False, False)
