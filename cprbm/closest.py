@@ -189,7 +189,25 @@ def _sampled_anew(pair: Pair, lines: Lines) -> tuple[Array, Array, bool]:
     D, sigma = on_either_side(pair, lines)
     told = not_gone_round(pair, lines, D, pair.wider(pair.a.halves, sigma))
     gone = told is not D
-    return np.where(_with_neighbours(np.isinf(told), D < 0.0), np.inf, D) if gone else D, sigma, gone
+    if gone:
+        D = np.where(_with_neighbours(np.isinf(told), D < 0.0), np.inf, D)
+    return D if pair.offset else _not_beside_a_tip(pair, lines, D, sigma), sigma, gone
+
+
+def _not_beside_a_tip(pair: Pair, lines: Lines, D: Array, sigma: Array) -> Array:
+    """D of lines without thickness, but infinite where A comes round an end of B that presses it, or nearly.
+
+    Beyond the end there is no foot, and the first places behind it are no farther from B than round-off.
+    """
+    below, (first, last) = D < 0.0, pair.b.s[[0, -1]]
+    for end, its in ((0, first), (-1, last)):
+        off = np.isinf(D) & (sigma == its)
+        beside = below & (np.append(off[1:], False) | np.append(False, off[:-1]))
+        if beside.any():
+            (E,), _, (facing,) = distance_along(pair.exchanged(), lines[::-1], pair.b.s[[end]])
+            if facing and -clear(pair) < E:
+                D = np.where(_with_neighbours(beside, below), np.inf, D)
+    return D
 
 
 def on_either_side(pair: Pair, lines: Lines) -> tuple[Array, Array]:

@@ -12,6 +12,7 @@ import numpy as np
 from cprbm.boundary import FittedBoundary, fitted_boundary
 from cprbm.circle import Circle, circle_of
 from cprbm.clearance import Clearances, clearances_of
+from cprbm.closest import clear
 from cprbm.closure import closure_of
 from cprbm.contact import Formulation, Group, Rows
 from cprbm.corner import stands_out
@@ -181,7 +182,7 @@ class Mechanism:
 
     def _allowed(self, pair: Pair | Edge, before: Point, after: Point, uneven: float) -> float:
         """By how much a beam may seem to lie across on a way that is known by ``uneven`` times the turn's square."""
-        slack = max(pair.offset, DIP) if isinstance(pair, Edge) else pair.offset
+        slack = max(pair.offset, DIP) if isinstance(pair, Edge) else pair.offset or clear(pair)
         return slack + self._sag(pair, after.state) + uneven * most_changed(before.state, after.state) ** 2
 
     def _sag(self, pair: Pair | Edge, state: State) -> float:

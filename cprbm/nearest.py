@@ -63,6 +63,7 @@ from cprbm.closest import (
     crossing,
     minima,
     not_gone_round,
+    on_either_side,
     sampled_distances,
 )
 from cprbm.contact import Group, Sides
@@ -320,6 +321,9 @@ class Pair:
             ends = self.b.s[[0, -1]]
             D, sigma, foot = distance_along(self, lines, s)
             E, feet, facing = distance_along(self.exchanged(), lines[::-1], ends)
+            if not self.offset:  # where a line comes round an end its samples say so
+                raw = on_either_side(self, lines)[0]
+                foot[: len(raw)] &= ~(np.isinf(sampled[0]) & np.isfinite(raw) & (raw > -clear(self)))
             D, E = np.where(foot, D, np.inf), np.where(facing, E, np.inf)
             known[what] = D, self.wider(s, sigma) + np.zeros_like(D), E, self.wider(feet, ends) + np.zeros_like(E)
         D, wider, E, wider_at_ends = known[what]

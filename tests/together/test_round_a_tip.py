@@ -1,5 +1,7 @@
 """A long arc that is wound down round the tip of another beam, until its own end is on the other's far side."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -11,9 +13,10 @@ from cprbm.march import March
 from cprbm.nearest import BEHIND
 from cprbm.point import point_at
 from scene import Ending
-from scene.reading import scene_from
+from scene.reading import read, scene_from
 from tests.cprbm.lagrangian import check
 
+SCENES = Path(__file__).parent / "scenes"
 THICK, THIN = 9.58e-05, 7.75e-05
 """Of the arc and of the other, m.
 
@@ -21,7 +24,7 @@ From a moment of 2.304e-5 N·m on the arc's end presses the other from behind (f
 """
 
 
-def wound(*moments, thin=THIN):
+def wound(*moments, thin=THIN, thick=True):
     material, tip = {"material": "m"}, [0.0154861, -0.0032692]
     return scene_from(
         {
@@ -53,20 +56,21 @@ def wound(*moments, thin=THIN):
                 },
             },
             "loads": {"M": {"kind": "beam_moment", "beam": "arc", "at": 0.55}},
-            "contacts": {"touch": {"kind": "beam-beam", "between": ["arc", "tip"]}},
+            "contacts": {"touch": {"kind": "beam-beam", "between": ["arc", "tip"], "thick": thick}},
             "stages": [{"name": "wind", "steps": "M", "stations": [-one for one in moments]}],
             "probes": [{"of": "touch", "quantity": "force"}, {"of": "scene", "quantity": "potential_energy"}],
         }
     )
 
 
-def test_what_has_come_round_a_tip_does_not_lie_across_it():
+@pytest.mark.parametrize("thick", [True, False])
+def test_what_has_come_round_a_tip_does_not_lie_across_it(thick):
     """Reference: the finite elements; errors of the chain fall with the square of the link.
 
     The arc goes past the tip at half of both thicknesses, aslant: places of it that face the tip's side from behind
     are as near, and a link is twenty times as long.
     """
-    scene = wound(2.04e-05, 2.2e-05, 2.29e-05)
+    scene = wound(2.04e-05, 2.2e-05, 2.29e-05, thick=thick)
     true = fea_reference.answer(scene, fea_reference.Settings(elements=40, kinematics="bending"))
     coarse, fine = (cprbm.answer(scene, cprbm.Settings(links=n)) for n in (40, 80))
     assert {one.ending for one in (true, coarse, fine)} == {Ending.COMPLETED}
@@ -74,6 +78,17 @@ def test_what_has_come_round_a_tip_does_not_lie_across_it():
         for probe, value in known.values.items():
             limit = (4.0 * b.values[probe] - a.values[probe]) / 3.0
             assert limit == pytest.approx(value, rel=2e-3), probe
+
+
+@pytest.mark.parametrize("links", [37, 80])
+def test_a_line_that_is_pressed_on_an_end_comes_round_it(links):
+    """Reference: the finite elements.  Behind the end the line is no farther from the other than round-off at first."""
+    scene = read(SCENES / "round-a-root.toml")
+    true = fea_reference.answer(scene, fea_reference.Settings(elements=40, kinematics="bending"))
+    got = cprbm.answer(scene, cprbm.Settings(links=links))
+    assert {true.ending, got.ending} == {Ending.COMPLETED}
+    for probe, value in true.stations[-1].values.items():
+        assert np.linalg.norm(got.stations[-1].values[probe] - value) < 25.0 / links**2 * np.linalg.norm(value), probe
 
 
 def test_what_presses_from_behind_is_pressed_there_and_goes_the_same_way_back():

@@ -83,7 +83,7 @@ def test_the_chain_meets_it_too(truth):
 def folded_up(*moments):
     """A leg and a shin, which a moment folds up under a strip above: the knee comes to stand on the strip from below.
 
-    The strip lies beyond the shin's upper end at rest, in part on the one side of the shin's line, in part on the other.
+    The strip lies beyond the shin's upper end at rest, in part on one side of the shin's line, in part on the other.
     """
     knee, foot, root = [0.288751, 0.22035], [0.44062, -0.046291], [0.563142, 0.390112]
     steel = {"material": "steel"}
