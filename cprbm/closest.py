@@ -19,6 +19,7 @@ from cprbm.feet import (
     NO_RIDGES,
     Lines,
     distance_along,
+    distance_of,
     feet_from,
     feet_of_ridges,
     nearest_samples,
@@ -199,15 +200,24 @@ def _not_beside_a_tip(pair: Pair, lines: Lines, D: Array, sigma: Array) -> Array
 
     Beyond the end there is no foot, and the first places behind it are no farther from B than round-off.
     """
-    below, (first, last) = D < 0.0, pair.b.s[[0, -1]]
-    for end, its in ((0, first), (-1, last)):
-        off = np.isinf(D) & (sigma == its)
+    below, ends = D < 0.0, pair.b.s[[0, -1]]
+    for end in (0, 1):
+        off = np.isinf(D) & (sigma == ends[end])
         beside = below & (np.append(off[1:], False) | np.append(False, off[:-1]))
-        if beside.any():
-            (E,), _, (facing,) = distance_along(pair.exchanged(), lines[::-1], pair.b.s[[end]])
-            if facing and -clear(pair) < E:
-                D = np.where(_with_neighbours(beside, below), np.inf, D)
+        beside[[0, -1]] = False  # an end of A that presses B itself
+        if beside.any() and _stands_on(pair, lines, end):
+            D = np.where(_with_neighbours(beside, below), np.inf, D)
     return D
+
+
+def _stands_on(pair: Pair, lines: Lines, end: int) -> bool:
+    """Whether B stands with an end, its first or its last, on the side of A on which it lies, or nearly."""
+    tip = pair.on_b(lines, pair.b.s[[-end]])
+    (E,), foot, (facing,) = distance_of(pair.exchanged(), lines[::-1], tip)
+    turned = float((tip.psi - pair.on_a(lines, foot).psi)[0])
+    # from the end on, which way B goes
+    inwards = pair.across * math.sin(turned) * (1.0 if end == 0 else -1.0)
+    return bool(facing) and abs(E) < clear(pair) and inwards > 0.0
 
 
 def on_either_side(pair: Pair, lines: Lines) -> tuple[Array, Array]:
