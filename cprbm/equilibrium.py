@@ -97,7 +97,32 @@ def equilibrium(
     it; otherwise that is the end, as it is where these are no others or lead nowhere either.  Where ``farthest`` says
     (rad) by what a link turns at most, so it is beyond that, and where steps grow and grow: they lead away from a state
     that is no minimum.  The ``start`` may itself be the equilibrium if its rows were found under the ``same`` values.
+
+    What joints alone hold at the start they hold on, if they may settle it, where a place among them leads away.
     """
+    met: set[int] = set()
+    found = _by_newton(problem, values, start, tolerance, iterations, met, settle=settle, farthest=farthest, same=same)
+    held = [key for _, key in _held(start)]
+    if found.converged or not settle or not held or min(held) < 0 or min(met, default=0) >= 0:
+        return found
+    steady = replace(problem, formulation=problem.steady)
+    again = _by_newton(steady, values, start, tolerance, iterations, met, settle=False, farthest=farthest, same=False)
+    return replace(again, iterations=found.iterations + again.iterations) if again.converged else found
+
+
+def _by_newton(
+    problem: Problem,
+    values: dict[str, float],
+    start: Point,
+    tolerance: float,
+    iterations: int,
+    met: set[int],
+    *,
+    settle: bool,
+    farthest: float,
+    same: bool,
+) -> Equilibrium:
+    """The same with no second way; the keys of all rows that have pressed are ``met``."""
     model = problem.model
     point = point_under(problem, values, start)
     now = measure(problem, point)
@@ -123,6 +148,7 @@ def equilibrium(
             return Equilibrium(point, now, iteration, converged=False)
         left = _left(now, tolerance)
         here = left, _held(point)
+        met |= {key for _, key in here[1]}
         returns = _returns(seen, here)
         part = 0.5 * part if returns else min(1.0, 2.0 * part)
         circles += returns
