@@ -10,6 +10,8 @@ from scipy.optimize import brentq
 
 from fea_reference.acting import Acting
 from fea_reference.advance import advance, bend, way_to
+from fea_reference.carrying import at_ends
+from fea_reference.contact import least_at_ends
 from fea_reference.contacts import (
     CLOSED,
     against,
@@ -240,6 +242,9 @@ class March:
             if not stiffer:
                 break
             self.penalties.update(stiffer)
+            system = self.solve(load, value, predicted)
+        if system is not None and self._sees_more_ends(system):
+            self.renew()
             system = self.solve(load, value, predicted)
         if system is None:
             return (
@@ -600,11 +605,17 @@ class March:
     def change_places(self) -> None:
         """Let the beams of a pair change places where an end of the second presses: only ends of the first are seen.
 
-        Where ends of the first press as well, each beam is to carry the zones at its own ends.
+        Where ends of the first press as well, each beam is to carry the zones at its own ends, and only as long as both
+        press: an end that comes to stand upright on the other beam is one of which that lies on both sides.
         """
         for one in self.system.touches:
             pair, lacks = one.pair, one.lacks
             if not isinstance(pair, Pair) or pair.roles is not None:
+                continue
+            if pair.carried and one.closed and lacks <= LACKING and (alone := self._alone(one, pair)) is not None:
+                solved = self._instead(pair, alone)
+                if solved is not None and all(found.lacks <= LACKING for found in solved[0].touches):
+                    self.system, self.penalties = solved
                 continue
             about = pair.about()
             for other in (about, replace(pair, carried=pair.ends_m), replace(about, carried=about.ends_m)):
@@ -614,6 +625,30 @@ class March:
                     less = next((found.lacks for found in solved[0].touches if found.pair == other), 0.0)
                     if less < lacks:
                         (self.system, self.penalties), pair, lacks = solved, other, less
+
+    def _sees_more_ends(self, system: System) -> bool:
+        """Let closed pairs see what in a system overlaps of ends that their view leaves out; whether any did.
+
+        Along the other beam such an end is met at an angle, later and deeper than it meets that one's side.
+        """
+        more: dict[Contact, Contact] = {}
+        for one in system.touches:
+            pair, z = one.pair, system.z
+            if not isinstance(pair, Pair) or pair.roles is not None or pair.carried or not one.closed:
+                continue
+            last, last_m = (self.model.line(self.model.beams[i], z).n for i in (pair.first, pair.second))
+            if at_ends(one.zones.zeta_m, last_m) or least_at_ends(self.model, pair, z) >= -CLOSED * pair.scale:
+                continue
+            more[pair] = replace(pair, carried=pair.ends_m) if at_ends(one.zones.intervals, last) else pair.about()
+        self.penalties = {more.get(pair, pair): penalty for pair, penalty in self.penalties.items()}
+        return bool(more)
+
+    def _alone(self, one: Touch, pair: Pair) -> Pair | None:
+        """A pair as that beam alone sees it whose ends press; None where ends of both do."""
+        last, last_m = (self.model.line(self.model.beams[i], self.system.z).n for i in (pair.first, pair.second))
+        if not at_ends(one.zones.intervals, last):
+            return pair.about()
+        return None if at_ends(one.zones.zeta_m, last_m) else replace(pair, carried=())
 
     def _instead(self, pair: Pair, other: Pair) -> tuple[System, dict[Contact, Penalty]] | None:
         """The equilibrium with a pair that is seen in an ``other`` way, and its penalties, if it is the same."""
