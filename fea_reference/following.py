@@ -37,7 +37,7 @@ from fea_reference.energy import potential_energy
 from fea_reference.march import March
 from fea_reference.mass import lumped_mass
 from fea_reference.off_a_corner import Stretch, cut_short, left_a_corner, slips
-from fea_reference.slipping import left_to_go
+from fea_reference.slipping import gone_past, left_to_go
 from fea_reference.system import System, assemble, stiffened
 from fea_reference.taut import Turn, beyond
 from fea_reference.touch import Touch
@@ -158,6 +158,12 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
             if length < _LEAST:
                 gone = [*gone, Stretch(branch, here, 0.0)]
                 return _slipped(march, load, gone, here) or _back_at(march, wide) or turn
+            continue
+        if any(gone_past(march.model, one, here.system.z, there.system.z) for one in here.system.touches):
+            lost = _slipping_off(march, load, target, span)
+            length *= 0.25
+            if lost is not None or length < _LEAST:
+                return lost or _back_at(march, wide) or turn
             continue
         if march.least_gap(there.system) < 0.0:
             event = _event(march, branch, here, length)

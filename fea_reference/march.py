@@ -33,7 +33,7 @@ from fea_reference.off_a_corner import slipped_off
 from fea_reference.onward import Onward, onward
 from fea_reference.settings import Settings
 from fea_reference.sinking import Depth, known_depths, sunk
-from fea_reference.slipping import left_to_go
+from fea_reference.slipping import gone_past
 from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
@@ -238,7 +238,7 @@ class March:
         predicted, begun = self._begun(onward, penalties, predicted, value - start)
         system = self.solve(load, value, predicted, begun)
         for _ in range(_STIFFENINGS):
-            stiffer = self._stiffer(system) if system is not None else {}
+            stiffer = self.stiffer(system) if system is not None else {}
             if not stiffer:
                 break
             self.penalties.update(stiffer)
@@ -330,7 +330,7 @@ class March:
         second, third = bend(self.model, before.system.z, self.system.z, (rate, ahead), by)
         return Behind(load, by, second, third, before.acting, frozenset(before.penalties))
 
-    def _stiffer(self, system: System) -> dict[Contact, Penalty]:
+    def stiffer(self, system: System) -> dict[Contact, Penalty]:
         """Stiffer penalties for what is too deep under those of now; none where all is as stiff as it may be.
 
         A circle's penalty is never stiffer than at a station, where it is as stiff as the depth asks in a point.
@@ -387,9 +387,7 @@ class March:
         for one in self.system.touches:
             if slipped_off(self.model, one, self.system.z, system.z):
                 return Ending.STEP_TOO_SMALL, f"{where} an end slips off a corner in {one.pair.name}"
-            here = left_to_go(self.model, one, self.system.z)
-            there = None if here is None else left_to_go(self.model, one, system.z)
-            if here is not None and there is not None and here > 0.0 > there:
+            if gone_past(self.model, one, self.system.z, system.z):
                 return Ending.STEP_TOO_SMALL, f"{where} an end slips off the other in {one.pair.name}"
         return None
 
