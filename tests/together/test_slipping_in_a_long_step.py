@@ -16,7 +16,8 @@ SCENE = Path(__file__).parent / "scenes" / "slips-in-a-long-step.toml"
 SLIPS = 29.6154 + (29.6154 - 29.5746) / 3.0
 
 
-@pytest.mark.parametrize("elements", [40, 80])
+# on 20 elements the way over the fold at 7.08 N leads through the other beam, but for a stiffer penalty
+@pytest.mark.parametrize("elements", [20, 40, 80])
 def test_what_is_followed_does_not_go_past_an_end(elements):
     found = answer(read(SCENE), Settings(elements=elements, kinematics="bending"))
     assert found.ending is Ending.BRANCH_ENDS, found.sentence
