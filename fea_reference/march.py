@@ -51,6 +51,7 @@ _NARROW = 2.0  # the power of that for a contact in a point, whose depth can be 
 _GENTLEST = 1.03  # the factor that is tried at last
 _TIGHTENINGS = 40
 _FELT = 5.0  # times the penetration asked: what may be felt of it elsewhere, as a share of pushes and motions
+_HELD = 100.0  # times the penetration allowed: what is deeper, as penalties cannot be tightened, is not held
 _SETTLINGS = 8
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
 _NEARBY = (1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0)  # of a step: where to look for a closing under tighter penalties
@@ -166,6 +167,12 @@ class March:
         if self.known is None or self.known[0] is not self.system:
             return positive(self.model, self.system)
         return self.known[1] > 0.0
+
+    @property
+    def held(self) -> bool:
+        """Whether what presses is nowhere far deeper than it may be: where penalties could be tightened."""
+        allowed = self.allowed()
+        return all(one.penetration <= _HELD * allowed.get(one.pair, np.inf) for one in self.system.touches)
 
     def saved(self) -> March:
         """A copy to come back to."""
