@@ -31,6 +31,7 @@ from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.off_a_corner import slipped_off
 from fea_reference.onward import Onward, onward
+from fea_reference.poised import poised
 from fea_reference.settings import Settings
 from fea_reference.sinking import Depth, known_depths, sunk
 from fea_reference.slipping import gone_past
@@ -789,14 +790,22 @@ class March:
         """
         settings = replace(self.settings, residual=_SHARP * self.settings.residual, newton_limit=_SHARPENINGS)
         system = self.system
-        if float(np.abs(system.residual).max()) <= max(settings.residual * system.scale, system.floor):
-            return
-        solved = equilibrium(
-            self.model, settings, self.penalties, self.values, system.z, self.acting, self.depths(), self.pushes()
-        )
-        self.iterations += solved.iterations
-        if solved.converged and self.moved(solved.system, system.z) <= _SHARP:
-            self.system = solved.system
+        if float(np.abs(system.residual).max()) > max(settings.residual * system.scale, system.floor):
+            solved = equilibrium(
+                self.model, settings, self.penalties, self.values, system.z, self.acting, self.depths(), self.pushes()
+            )
+            self.iterations += solved.iterations
+            if solved.converged and self.moved(solved.system, system.z) <= _SHARP:
+                self.system = solved.system
+
+    def poise(self) -> None:
+        """Take what gaps are rounded to, times a stiff penalty, out of the unbalanced force where it is felt.
+
+        Where it is all there is, it is left to be told.
+        """
+        accepted = self.settings.residual * self.system.scale
+        if self.system.told and float(np.abs(self.system.residual).max()) > accepted:
+            self.system = poised(self.model, self.values, self.system, accepted)
 
     def allowed(self) -> dict[Contact, float]:
         """How deep contacts in points may be: by the penetration asked, or less where that is felt.
