@@ -11,9 +11,14 @@ from __future__ import annotations
 import numpy as np
 
 from fea_reference.zones import Zones
-from scene.answer import Flags, Ints
+from scene.answer import Array, Flags, Ints
 
 _AT_END = 1e-6  # elements
+
+
+def at_ends(places: Array, last: int) -> bool:
+    """Whether one of some places on a beam of ``last`` elements is an end of it."""
+    return bool((np.minimum(places, last - places) <= _AT_END).any())
 
 
 def cut_off(zones: Zones, last: int) -> Flags:

@@ -33,6 +33,7 @@ def certify(march: March) -> Certificate:
     """
     model, settings = march.model, march.settings
     march.renew()  # the loop that came here foresaw pushes
+    march.poise()
     system = march.system
     free = np.ones(model.size, dtype=bool)
     free[model.multipliers] = False

@@ -102,6 +102,10 @@ def _fallen(march: March, load: int, drag: float, first: State, farthest: float,
     for _ in range(steps):
         if drag > _STRONGEST or march.turned(march.system, first) > farthest:
             return False
+        if stiffer := march.stiffer(march.system):
+            # on coarse elements a penalty may begin so soft that what presses would go through
+            march.penalties.update(stiffer)
+            march.renew()
         before, saved = march.system, march.saved()
         energy = penalised_energy(march.model, before, march.values)
         drag = max(drag, -convex * march.curvature)

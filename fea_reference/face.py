@@ -69,6 +69,7 @@ _AT_END = 1e-6  # elements
 _BLUNT = 0.5  # sine of half the angle of a tip on which loose penalties hold a beam
 _SHARPEST = 1e5
 _LOOKED = 4  # Gauss points, to see where a zone presses to
+_ALONG = 0.5  # of a way: what goes less than that across a beam goes along it
 _PARTS = 4  # of a way on which a beam must not have passed through
 
 
@@ -145,10 +146,25 @@ def passed(model: Model, face: Face, before: State, after: State) -> bool:
         new_side = along[0] * (new[1] - a[1]) - along[1] * (new[0] - a[0])
         way = new - old
         from_a, from_b = (way[0] * (at[1] - old[1]) - way[1] * (at[0] - old[0]) for at in (a, b))
-        through = (old_side > 0.0) & (new_side < 0.0) & (from_a * from_b < 0.0)
-        if (through & apart & ~inside).any():
+        through = (old_side > 0.0) & (new_side < 0.0) & (from_a * from_b < 0.0) & apart & ~inside
+        if through.any() and not _slid_along(seen[0], seen[1], even[through], way[:, through]).all():
             return True
     return _gone_over_a_tip(face, *seen)
+
+
+def _slid_along(before: _Seen, after: _Seen, zeta: Array, way: Array) -> Flags:
+    """Whether places ``zeta`` (k,) of a beam have gone along it, on ways (2, k) in the body's frame, over a tip on
+    which it presses before and after: sunk in as far as that, they go in on one side and come out of the other.
+    """
+    tips = [one.tips() for one in (before, after)]
+    there = [swept.beside(one.line, at) for one, (at, _) in zip((before, after), tips, strict=True)]
+    pressed = there[0].found & before.pressed_at(there[0], tips[0][1])
+    pressed &= there[1].found & after.pressed_at(there[1], tips[1][1])
+    low, high = (choose(there[0].zeta, there[1].zeta) for choose in (np.minimum, np.maximum))
+    near = (zeta[:, None] > low - 1.0) & (zeta[:, None] < high + 1.0) & pressed
+    ahead = after.back.conjugate() * (way[0] + 1j * way[1])
+    across = np.abs((there[1].n.conj() * ahead[:, None]).real)
+    return np.asarray((near & (across < _ALONG * np.abs(ahead)[:, None])).any(axis=1))
 
 
 def _gone_over_a_tip(face: Face, before: _Seen, after: _Seen) -> bool:

@@ -37,7 +37,7 @@ from fea_reference.energy import potential_energy
 from fea_reference.march import March
 from fea_reference.mass import lumped_mass
 from fea_reference.off_a_corner import Stretch, cut_short, left_a_corner, slips
-from fea_reference.slipping import left_to_go
+from fea_reference.slipping import gone_past, left_to_go
 from fea_reference.system import System, assemble, stiffened
 from fea_reference.taut import Turn, beyond
 from fea_reference.touch import Touch
@@ -57,6 +57,7 @@ _PAST = 5  # steps
 _ROOTS = 60
 _FINE = 1e-8  # of the span
 _SHORT = 1e-4  # of a step
+_WIDE = 1e-4  # of the span: an end that is not known better may be none, passed beside by shorter steps
 _KEPT = 20  # stretches
 _FARTHER = 30.0  # times the arc between them: places that are farther apart are on no one branch
 _BETWEEN = 1.0  # elements: between places that are farther apart along the beam there is no contact
@@ -142,6 +143,7 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
     length = _FIRST
     known, turn = (here.curvature, length), None
     gone: list[Stretch] = []
+    wide: tuple[Lost, March] | None = None
     for tried in range(_STEPS):
         if tried % _LOOK == 0 and tried > 0:
             # at this pace it is not lost in all steps
@@ -155,7 +157,13 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
             length *= 0.25
             if length < _LEAST:
                 gone = [*gone, Stretch(branch, here, 0.0)]
-                return _slipped(march, load, gone, here) or turn
+                return _slipped(march, load, gone, here) or _back_at(march, wide) or turn
+            continue
+        if any(gone_past(march.model, one, here.system.z, there.system.z) for one in here.system.touches):
+            lost = _slipping_off(march, load, target, span)
+            length *= 0.25
+            if lost is not None or length < _LEAST:
+                return lost or _back_at(march, wide) or turn
             continue
         if march.least_gap(there.system) < 0.0:
             event = _event(march, branch, here, length)
@@ -174,12 +182,15 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
             if not tight and cut_short(march.model, there.system):
                 return CutShort()
             lost = _lost(march, branch, first, here, there, length)
-            if lost is not None:
-                return _slipped(march, load, [*gone, Stretch(branch, here, length)], lost) or lost
-            # a step that long leads to another branch
+            slipped = lost and _slipped(march, load, [*gone, Stretch(branch, here, length)], lost)
+            if lost is not None and (slipped is not None or lost.uncertainty <= _WIDE * span):
+                return slipped or lost
+            # a step that long leads to another branch, or past where two nearly meet
+            wide = wide if lost is None else (lost, march.saved())
+            march.values, march.system = branch.at(here.value), here.system
             length *= 0.25
             if length < _LEAST:
-                return turn
+                return _back_at(march, wide) or turn
             continue
         if not tight and cut_short(march.model, there.system):
             return CutShort()
@@ -206,6 +217,14 @@ def _along(march: March, load: int, target: float, span: float, *, tight: bool) 
         gone = [*gone[-_KEPT:], Stretch(branch, here, length)]
         here, length = there, 1.5 * length
     return turn
+
+
+def _back_at(march: March, wide: tuple[Lost, March] | None) -> Lost | None:
+    """An end that is not known well, where no shorter step leads on; the march stands there again."""
+    if wide is None:
+        return None
+    march.restore(wide[1])
+    return wide[0]
 
 
 def _slipped(march: March, load: int, gone: list[Stretch], end: Lost | Place) -> Lost | None:

@@ -10,6 +10,8 @@ from scipy.optimize import brentq
 
 from fea_reference.acting import Acting
 from fea_reference.advance import advance, bend, way_to
+from fea_reference.carrying import at_ends
+from fea_reference.contact import least_at_ends
 from fea_reference.contacts import (
     CLOSED,
     against,
@@ -29,9 +31,10 @@ from fea_reference.model import Model
 from fea_reference.newton import equilibrium
 from fea_reference.off_a_corner import slipped_off
 from fea_reference.onward import Onward, onward
+from fea_reference.poised import poised
 from fea_reference.settings import Settings
 from fea_reference.sinking import Depth, known_depths, sunk
-from fea_reference.slipping import left_to_go
+from fea_reference.slipping import gone_past
 from fea_reference.state import State
 from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
@@ -49,6 +52,7 @@ _NARROW = 2.0  # the power of that for a contact in a point, whose depth can be 
 _GENTLEST = 1.03  # the factor that is tried at last
 _TIGHTENINGS = 40
 _FELT = 5.0  # times the penetration asked: what may be felt of it elsewhere, as a share of pushes and motions
+_HELD = 100.0  # times the penetration allowed: what is deeper, as penalties cannot be tightened, is not held
 _SETTLINGS = 8
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
 _NEARBY = (1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0)  # of a step: where to look for a closing under tighter penalties
@@ -165,6 +169,12 @@ class March:
             return positive(self.model, self.system)
         return self.known[1] > 0.0
 
+    @property
+    def held(self) -> bool:
+        """Whether what presses is nowhere far deeper than it may be: where penalties could be tightened."""
+        allowed = self.allowed()
+        return all(one.penetration <= _HELD * allowed.get(one.pair, np.inf) for one in self.system.touches)
+
     def saved(self) -> March:
         """A copy to come back to."""
         return replace(
@@ -236,10 +246,13 @@ class March:
         predicted, begun = self._begun(onward, penalties, predicted, value - start)
         system = self.solve(load, value, predicted, begun)
         for _ in range(_STIFFENINGS):
-            stiffer = self._stiffer(system) if system is not None else {}
+            stiffer = self.stiffer(system) if system is not None else {}
             if not stiffer:
                 break
             self.penalties.update(stiffer)
+            system = self.solve(load, value, predicted)
+        if system is not None and self._sees_more_ends(system):
+            self.renew()
             system = self.solve(load, value, predicted)
         if system is None:
             return (
@@ -325,7 +338,7 @@ class March:
         second, third = bend(self.model, before.system.z, self.system.z, (rate, ahead), by)
         return Behind(load, by, second, third, before.acting, frozenset(before.penalties))
 
-    def _stiffer(self, system: System) -> dict[Contact, Penalty]:
+    def stiffer(self, system: System) -> dict[Contact, Penalty]:
         """Stiffer penalties for what is too deep under those of now; none where all is as stiff as it may be.
 
         A circle's penalty is never stiffer than at a station, where it is as stiff as the depth asks in a point.
@@ -382,9 +395,7 @@ class March:
         for one in self.system.touches:
             if slipped_off(self.model, one, self.system.z, system.z):
                 return Ending.STEP_TOO_SMALL, f"{where} an end slips off a corner in {one.pair.name}"
-            here = left_to_go(self.model, one, self.system.z)
-            there = None if here is None else left_to_go(self.model, one, system.z)
-            if here is not None and there is not None and here > 0.0 > there:
+            if gone_past(self.model, one, self.system.z, system.z):
                 return Ending.STEP_TOO_SMALL, f"{where} an end slips off the other in {one.pair.name}"
         return None
 
@@ -600,11 +611,17 @@ class March:
     def change_places(self) -> None:
         """Let the beams of a pair change places where an end of the second presses: only ends of the first are seen.
 
-        Where ends of the first press as well, each beam is to carry the zones at its own ends.
+        Where ends of the first press as well, each beam is to carry the zones at its own ends, and only as long as both
+        press: an end that comes to stand upright on the other beam is one of which that lies on both sides.
         """
         for one in self.system.touches:
             pair, lacks = one.pair, one.lacks
             if not isinstance(pair, Pair) or pair.roles is not None:
+                continue
+            if pair.carried and one.closed and lacks <= LACKING and (alone := self._alone(one, pair)) is not None:
+                solved = self._instead(pair, alone)
+                if solved is not None and all(found.lacks <= LACKING for found in solved[0].touches):
+                    self.system, self.penalties = solved
                 continue
             about = pair.about()
             for other in (about, replace(pair, carried=pair.ends_m), replace(about, carried=about.ends_m)):
@@ -614,6 +631,30 @@ class March:
                     less = next((found.lacks for found in solved[0].touches if found.pair == other), 0.0)
                     if less < lacks:
                         (self.system, self.penalties), pair, lacks = solved, other, less
+
+    def _sees_more_ends(self, system: System) -> bool:
+        """Let closed pairs see what in a system overlaps of ends that their view leaves out; whether any did.
+
+        Along the other beam such an end is met at an angle, later and deeper than it meets that one's side.
+        """
+        more: dict[Contact, Contact] = {}
+        for one in system.touches:
+            pair, z = one.pair, system.z
+            if not isinstance(pair, Pair) or pair.roles is not None or pair.carried or not one.closed:
+                continue
+            last, last_m = (self.model.line(self.model.beams[i], z).n for i in (pair.first, pair.second))
+            if at_ends(one.zones.zeta_m, last_m) or least_at_ends(self.model, pair, z) >= -CLOSED * pair.scale:
+                continue
+            more[pair] = replace(pair, carried=pair.ends_m) if at_ends(one.zones.intervals, last) else pair.about()
+        self.penalties = {more.get(pair, pair): penalty for pair, penalty in self.penalties.items()}
+        return bool(more)
+
+    def _alone(self, one: Touch, pair: Pair) -> Pair | None:
+        """A pair as that beam alone sees it whose ends press; None where ends of both do."""
+        last, last_m = (self.model.line(self.model.beams[i], self.system.z).n for i in (pair.first, pair.second))
+        if not at_ends(one.zones.intervals, last):
+            return pair.about()
+        return None if at_ends(one.zones.zeta_m, last_m) else replace(pair, carried=())
 
     def _instead(self, pair: Pair, other: Pair) -> tuple[System, dict[Contact, Penalty]] | None:
         """The equilibrium with a pair that is seen in an ``other`` way, and its penalties, if it is the same."""
@@ -749,14 +790,22 @@ class March:
         """
         settings = replace(self.settings, residual=_SHARP * self.settings.residual, newton_limit=_SHARPENINGS)
         system = self.system
-        if float(np.abs(system.residual).max()) <= max(settings.residual * system.scale, system.floor):
-            return
-        solved = equilibrium(
-            self.model, settings, self.penalties, self.values, system.z, self.acting, self.depths(), self.pushes()
-        )
-        self.iterations += solved.iterations
-        if solved.converged and self.moved(solved.system, system.z) <= _SHARP:
-            self.system = solved.system
+        if float(np.abs(system.residual).max()) > max(settings.residual * system.scale, system.floor):
+            solved = equilibrium(
+                self.model, settings, self.penalties, self.values, system.z, self.acting, self.depths(), self.pushes()
+            )
+            self.iterations += solved.iterations
+            if solved.converged and self.moved(solved.system, system.z) <= _SHARP:
+                self.system = solved.system
+
+    def poise(self) -> None:
+        """Take what gaps are rounded to, times a stiff penalty, out of the unbalanced force where it is felt.
+
+        Where it is all there is, it is left to be told.
+        """
+        accepted = self.settings.residual * self.system.scale
+        if self.system.told and float(np.abs(self.system.residual).max()) > accepted:
+            self.system = poised(self.model, self.values, self.system, accepted)
 
     def allowed(self) -> dict[Contact, float]:
         """How deep contacts in points may be: by the penetration asked, or less where that is felt.

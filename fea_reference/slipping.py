@@ -44,6 +44,13 @@ def left_to_go(model: Model, one: Touch, z: State) -> float | None:
     return min(s_m, total - s_m)
 
 
+def gone_past(model: Model, one: Touch, before: State, after: State) -> bool:
+    """Whether an end that presses has come past that of the other beam between two states."""
+    here = left_to_go(model, one, before)
+    there = None if here is None else left_to_go(model, one, after)
+    return here is not None and there is not None and here > 0.0 > there
+
+
 def along_line(line: NeutralLine, x: Array, near: float) -> float:
     """s_m of a point ``x`` (2, 1) on a neutral line, whose closest place is sought from the place ``near`` it."""
     zeta = project(line, x, np.array([near]))[0]

@@ -114,8 +114,35 @@ def assemble(
             push with, see :mod:`fea_reference.newton`.
         drag: what resists motions besides.
     """
-    elements = model.bend(z)
     touches = tuple(touch(model, pair, penalty, quadrature, z, held.get(pair)) for pair, penalty in penalties.items())
+    rounded = sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
+    return _summed(model, touches, rounded, values, z, acting, foreseen, drag)
+
+
+def pushed(model: Model, system: System, values: Array, z: State, pushes: Mapping[Contact, Array]) -> System:
+    """A system's contacts with ``pushes`` (k,) that are given, in a state ``z`` so near that they see no difference.
+
+    What their gaps are rounded to is in none of the forces then.
+    """
+    touches = tuple(
+        replace(one, gap=-pushes[one.pair] / np.where(one.stiffness > 0.0, one.stiffness, 1.0)) if one.closed else one
+        for one in system.touches
+    )
+    return _summed(model, touches, 0.0, values, z, system.acting, _NOTHING_FORESEEN, None)
+
+
+def _summed(
+    model: Model,
+    touches: tuple[Touch, ...],
+    rounded: float,
+    values: Array,
+    z: State,
+    acting: Acting,
+    foreseen: Mapping[Contact, Array],
+    drag: Drag | None,
+) -> System:
+    """The sum of what contacts do, whose forces are ``rounded`` to so much, and of all else."""
+    elements = model.bend(z)
     residual, rigid = _rigid(model, values, z, acting)
     parts = [(model.element_dofs, elements.gradient)]
     entries: list[Block | Single] = [rigid, Block(model.element_dofs, elements.hessian)]
@@ -144,7 +171,7 @@ def assemble(
     largest = float(max(balanced))
     angle = max(1.0, float(np.abs(z[model.node_dofs[2]]).max()))
     floor = _ROUND_OFF * model.stiffest * float(np.spacing(angle))
-    floor += sum(_ROUND_OFF * _round_off(model, one, penalties[one.pair].stiffness) for one in touches)
+    floor += rounded
     told = largest > NOTHING * floor
     return System(z, acting, residual, tangent, elements, touches, loads, largest if told else 1.0, floor, told)
 

@@ -49,6 +49,7 @@ _AGAIN = 1e-5  # of the span: an end that is met again, not another
 _MANY, _CROWDED = 4, 0.01  # ends that follow each other within such a part of the span: they lead on to nothing
 _HALF = 0.5  # of the way to where the curvature is foreseen to vanish
 _NEAR = 1e-2  # of the span: a step shorter than this is left to following the branch
+_FOLLOWINGS = 8  # one after the other, where penalties are to stay tight
 _TIRED = 3  # cuts in a row after which that is tried
 _WARY = 3  # cuts in all after which the curvature is looked at where steps look for no end
 
@@ -131,11 +132,11 @@ def _reach(march: March, course: Course, target: float) -> bool:
     leapt = _arrive(march, course, target, watched=course.beyond is not None)
     march.settle(load)
     same = len(march.critical) == len(origin.critical) and march.values[load] != origin.values[load]
-    if same and not march.minimum:
+    if same and not (march.minimum and march.held):
         # with the penalties of the way it was a minimum: the branch ends before, with those of its beginning
-        there = march.saved()
+        there, held = march.saved(), march.held
         march.restore(origin)
-        lost = followed(march, load, target, course.span)
+        lost = followed(march, load, target, course.span) if held else _held_on(march, course, target)
         if lost is None:
             # no end: a long step has left the branch for another, on which short ones may stay
             march.restore(origin)
@@ -153,6 +154,16 @@ def _reach(march: March, course: Course, target: float) -> bool:
     after = march.zones()
     march.far = march.far and any(np.abs(after[one] - before[one]).max() > _FAR for one in before if one in after)
     return leapt
+
+
+def _held_on(march: March, course: Course, target: float) -> Lost | None:
+    """How the branch is lost that is followed with tight penalties for as long as it leads on; None if it is not."""
+    for _ in range(_FOLLOWINGS):
+        before = march.values[course.load]
+        lost = followed(march, course.load, target, course.span)
+        if lost is not None or abs(target - march.values[course.load]) >= abs(target - before):
+            return lost
+    return None
 
 
 def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bool:

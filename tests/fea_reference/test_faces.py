@@ -393,3 +393,24 @@ def test_what_goes_through_an_edge_is_seen():
     assert passed(model, face, model.start, lowered(0.3))
     beside = cantilever_over({"kind": "beam-line", "points": ((1.3, -0.1), (1.6, -0.1)), "side": "left"})
     assert not passed(model, faces(beside, model, 1e-4)[0], model.start, lowered(0.3))
+
+
+def test_what_slides_over_a_tip_that_it_has_sunk_onto_goes_through_nothing():
+    # by construction: a straight beam moved along itself, some of whose places go in on one side of the tip and come
+    # out of the other; and moved as far, from before a tip that it is far below, through that
+    def moved(place, height, by):
+        points = ((place - 0.1, height - 0.1), (place, height), (place + 0.1, height - 0.1))
+        scene = cantilever_over({"kind": "beam-line", "points": points, "side": "left", "thick": False})
+        model = build(scene, Settings(elements=20))
+        face = faces(scene, model, 1e-4)[0]
+        states = []
+        for way in by:
+            z = model.start.values.copy()
+            z[model.node_dofs[0]] += way
+            states.append(State.of(z))
+        return passed(model, face, *states)
+
+    assert not moved(0.5, 1e-4, (-3e-4, 3e-4))
+    assert not moved(0.5, 1e-4, (3e-4, -3e-4))
+    assert not moved(0.5, 1e-4, (-0.11, 0.13))  # some elements farther
+    assert moved(1.1, 0.05, (0.0, 0.4))

@@ -11,6 +11,7 @@ import pytest
 import cprbm
 import fea_reference
 from comparisons import cases
+from comparisons.audit import audited
 
 WAYS = {
     "first": [("alpha1", [20.0]), ("alpha2", [30.0, 50.0, 70.0])],
@@ -83,3 +84,14 @@ def test_both_solvers_have_one_limit():
             np.array([station.values[probe][0] for station in each]) for each in (coarse, fine, reference)
         )
         assert (4.0 * four - two) / 3.0 == pytest.approx(true, abs=5e-4 * np.max(np.abs(true)))
+
+
+def test_forces_balance_where_a_penalty_is_so_stiff_that_gaps_are_rounded_to_a_force():
+    # the audit sums an answer up anew.  At 50° link1 presses beside its joint, with a penalty of 2e13: what the gap is
+    # rounded to left 8e-7 of the largest force unbalanced
+    scene = on_the_way([("alpha1", [20.0]), ("alpha2", [45.0, 50.0])])
+    answer = fea_reference.answer(scene, fea_reference.Settings(elements=80))
+    assert answer.completed, answer.sentence
+    assert audited(scene, answer) == ()
+    for station in answer.stations:
+        assert station.certificate.residual < 1e-10
