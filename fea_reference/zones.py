@@ -104,8 +104,8 @@ class Survey:
             share = _parabola(zeta, g, there.slope, there.curvature, ends)
             where, guess = _roots(gap_at, zeta, g, zeta_m, ends, share)
             new = np.array([where, np.zeros_like(where), guess])
-            zeta, g, zeta_m = np.insert(np.array([zeta, g, zeta_m]), ends + 1, new, axis=1)
-            neighbours = np.insert(neighbours, ends, True)
+            zeta, g, zeta_m = _behind(np.array([zeta, g, zeta_m]), ends, new)
+            neighbours = _parted(neighbours, ends)
         inside = np.flatnonzero(neighbours & (g[:-1] <= 0.0) & (g[1:] <= 0.0) & (g[:-1] + g[1:] < 0.0))
         # What follows on within one element is one interval: the gap is smooth there.
         parted = zeta[inside] == np.floor(zeta[inside])
@@ -331,10 +331,26 @@ def _with(
     zeta: Array, there: Gap, neighbours: NDArray[np.bool_], left: NDArray[np.int64], where: Array, more: Gap
 ) -> tuple[Array, Gap, NDArray[np.bool_]]:
     """The same with further places ``where``, each behind the one ``left`` of it."""
-    rows = np.insert(np.array([zeta, *there.rows]), left + 1, np.array([where, *more.rows]), axis=1)
-    zeta, g, slope, curvature, zeta_m = rows
-    found = np.insert(there.found, left + 1, more.found)
-    return zeta, Gap(g, slope, curvature, zeta_m, found), np.insert(neighbours, left, True)
+    rows = _behind(np.array([zeta, *there.rows, there.found]), left, np.array([where, *more.rows, more.found]))
+    zeta, g, slope, curvature, zeta_m, found = rows
+    return zeta, Gap(g, slope, curvature, zeta_m, found != 0.0), _parted(neighbours, left)
+
+
+def _behind(rows: Array, left: NDArray[np.int64], new: Array) -> Array:
+    """``rows`` (r, k) with columns ``new`` (r, m) behind those ``left`` (m,) of them, (r, k+m)."""
+    old = np.ones(rows.shape[1] + left.size, dtype=bool)
+    at = left + np.arange(1, left.size + 1)
+    old[at] = False
+    both = np.empty((len(rows), old.size))
+    both[:, old], both[:, at] = rows, new
+    return both
+
+
+def _parted(neighbours: NDArray[np.bool_], left: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether places follow each other (k+m−1,), new ones being behind those ``left`` (m,), which others followed."""
+    times = np.ones(neighbours.size, dtype=np.int64)
+    times[left] = 2
+    return np.repeat(neighbours, times)
 
 
 def _with_bends(
