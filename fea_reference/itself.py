@@ -119,7 +119,8 @@ def _elements_near(line: NeutralLine, x: Array, reach: float) -> tuple[Ints, Int
         return i[j < line.n], j[j < line.n]
     away_x, away_y = (np.subtract.outer(one, its) for one, its in zip(x, line.points, strict=True))
     near = away_x * away_x + away_y * away_y <= reach**2
-    return np.nonzero(near[:, :-1] | near[:, 1:])
+    i, j = np.nonzero(near[:, :-1] | near[:, 1:])
+    return i, j
 
 
 def _partners(
