@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from scene.answer import Array, Flags, Ints
+from scene.answer import Array, Ints
 
 A_TIME = 64  # pieces of one line that are held against those of another
 AT_ONCE = 512  # pieces of a line that are held against the others together: a table of all pairs has no room
@@ -26,10 +26,8 @@ def cross(P: Array, Q: Array) -> bool:
         some = P[first : first + A_TIME + 1]
         # of Q what the box round these pieces meets
         near = ((low <= some.max(axis=0)) & (high >= some.min(axis=0))).all(axis=1).nonzero()[0]
-        if near.size:
-            others = Q[near[0] : near[-1] + 2]
-            if np.any(_parted(some, others) & _parted(others, some).T):
-                return True
+        if near.size and _crossing(some, Q[near[0] : near[-1] + 2])[0].size:
+            return True
     return False
 
 
@@ -41,9 +39,8 @@ def own_crossings(P: Array) -> tuple[Ints, Ints, Array]:
     """
     pieces: list[tuple[Ints, Ints]] = []
     for first in range(0, len(P) - 1, AT_ONCE):
-        some, onwards = P[first : first + AT_ONCE + 1], P[first:]
-        of, to = np.nonzero(np.triu(_parted(some, onwards) & _parted(onwards, some).T))
-        pieces.append((first + of, first + to))
+        of, to = _crossing(P[first : first + AT_ONCE + 1], P[first:])
+        pieces.append((first + of[of <= to], first + to[of <= to]))
     here, there = (np.concatenate(each) for each in zip(*pieces, strict=True))
     if not here.size:
         return here, there, np.zeros(0)
@@ -61,9 +58,14 @@ def own_crossings(P: Array) -> tuple[Ints, Ints, Array]:
     return here, there, np.abs(across) / (length[here] * length[there]) * way
 
 
-def _parted(P: Array, Q: Array) -> Flags:
-    """Whether the ends of each piece of Q lie on both sides of each piece of P, continued, (m − 1, n − 1) of bool."""
-    along = np.diff(P, axis=0)[:, None]
-    away = Q[None] - P[:-1, None]
-    side = along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0]
-    return np.asarray(side[:, 1:] * side[:, :-1] < 0.0)
+def _crossing(P: Array, Q: Array) -> tuple[Ints, Ints]:
+    """Numbers of pieces of P (k,), in order, and of those of Q (k,) that they cross."""
+    (x, y), (u, v) = P.T, Q.T
+    side = np.diff(x)[:, None] * (v - y[:-1, None]) - np.diff(y)[:, None] * (u - x[:-1, None])
+    # few pieces of Q have their ends on both sides of one of P, continued: only these are seen the other way
+    of, to = np.nonzero(side[:, 1:] * side[:, :-1] < 0.0)
+    along_x, along_y = u[to + 1] - u[to], v[to + 1] - v[to]
+    before = along_x * (y[of] - v[to]) - along_y * (x[of] - u[to])
+    behind = along_x * (y[of + 1] - v[to]) - along_y * (x[of + 1] - u[to])
+    both = before * behind < 0.0
+    return of[both], to[both]

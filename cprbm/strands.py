@@ -22,6 +22,7 @@ may a be either, as the next lap lies inside or outside of the last: there it is
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -123,7 +124,7 @@ def facing_samples(x: Array, y: Array) -> tuple[Ints, Ints]:
     for first in range(0, last - 1, AT_ONCE):
         i = np.arange(first, min(first + AT_ONCE, last - 1))[:, None]
         # from the first of them on; what lies before is no part of the answer
-        d = np.hypot(x[i] - x[first:], y[i] - y[first:])
+        d = (x[i] - x[first:]) ** 2 + (y[i] - y[first:]) ** 2
         low = np.zeros(d.shape, dtype=bool)
         low[:, 1:-1] = (d[:, 1:-1] <= d[:, :-2]) & (d[:, 1:-1] < d[:, 2:])
         if first == 0:
@@ -147,16 +148,17 @@ def strands(s: Array, here: Ints, sigma: Array, distance: Array, turn: Array, si
     found: list[list[int]] = []
     open_: list[list[int]] = []
     place = np.interp(sigma, s, np.arange(samples))
-    for i in range(samples):
+    begins = np.searchsorted(here, np.arange(samples + 1)).tolist()
+    for first, last in pairwise(begins):
         going = []
-        for k in np.flatnonzero(here == i):
+        for k in range(first, last):
             away = [abs(place[strand[-1]] - place[k]) if side[strand[-1]] == side[k] else np.inf for strand in open_]
             nearest = int(np.argmin(away)) if away else -1
             if away and away[nearest] <= LINKED:
                 strand = open_.pop(nearest)
-                strand.append(int(k))
+                strand.append(k)
             else:
-                strand = [int(k)]
+                strand = [k]
                 found.append(strand)
             going.append(strand)
         open_ = going

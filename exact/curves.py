@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -29,6 +29,7 @@ from scene.statement import Arc, Curve, Line, Polynomial, Spline
 
 _PANELS, _NODES = 64, 16
 _INVERSIONS = 8
+_KEPT = 512  # sets of arc lengths: the same places are asked for the angle, κ and its slopes, iteration after iteration
 
 
 class NeutralLine(Protocol):
@@ -159,6 +160,7 @@ class Graph:
         x, w = np.polynomial.legendre.leggauss(_NODES)
         self._x, self._w = 0.5 * (x + 1.0), 0.5 * w
         self._sums = np.concatenate(([0.0], np.cumsum(self._arc(self._ends[:-1], self._ends[1:]))))
+        self._found = lru_cache(maxsize=_KEPT)(self._sought)
 
     @property
     def length(self) -> float:
@@ -174,6 +176,10 @@ class Graph:
 
     def _variable(self, s: Array) -> Array:
         s = np.asarray(s, dtype=float)
+        return self._found(s.tobytes(), s.shape)
+
+    def _sought(self, places: bytes, shape: tuple[int, ...]) -> Array:
+        s = np.frombuffer(places).reshape(shape)
         # beyond the ends, where Newton's method may look for a place, the graph goes on
         panel = np.clip(np.searchsorted(self._sums, s, side="right") - 1, 0, _PANELS - 1)
         begin, rest = self._ends[panel], s - self._sums[panel]
@@ -184,7 +190,9 @@ class Graph:
             u = u + self._sense * step
             if np.max(np.abs(step), initial=0.0) < 1e-15 * self.length:
                 break
-        return np.asarray(u)
+        found = np.asarray(u)
+        found.setflags(write=False)
+        return found
 
     def angle(self, s: Array) -> Array:
         """θ."""

@@ -88,7 +88,7 @@ def circles(scene: Scene, model: Model, penetration: float) -> tuple[Circle, ...
 
 def zones_of(model: Model, circle: Circle, z: State) -> Zones:
     """Where the beam overlaps the circle in state ``z``."""
-    return _find(_seen(model, circle, z), circle, 0.0)
+    return model.leads.found(z, (circle, 0.0), lambda: (_find(_seen(model, circle, z), circle, 0.0), {}))[0]
 
 
 def room(model: Model, circle: Circle, z: State) -> float:
@@ -134,7 +134,7 @@ def touch(model: Model, circle: Circle, penalty: Penalty, quadrature: int, z: St
     beam, body = model.beams[circle.first], model.bodies[circle.body]
     seen, c = _seen(model, circle, z), centre(model, circle, z)
     line = seen.line
-    ahead = _find(seen, circle, penalty.lead)
+    ahead, _ = model.leads.found(z, (circle, penalty.lead), lambda: (_find(seen, circle, penalty.lead), {}))
     zones = replace(ahead, least=ahead.least + penalty.lead)
 
     points, weights = gauss(quadrature)
@@ -273,6 +273,6 @@ def _find(seen: _Seen, circle: Circle, lead: float) -> Zones:
         curvature = (n.conj() * there.bent).real + ahead.imag**2 / r
         return Gap(g - lead, slope, curvature, none, np.ones(zeta.shape, dtype=bool))
 
-    zeta, neighbours = stepped(seen.near(circle, lead), circle.edge.knots)
+    zeta, neighbours = stepped(seen.near(circle, lead), circle.edge.inner)
     floor = float(np.finfo(float).eps) * line.longest
-    return negative(at, zeta, at(zeta, np.zeros_like(zeta)), neighbours, circle.edge.knots, floor=floor)
+    return negative(at, zeta, at(zeta, np.zeros_like(zeta)), neighbours, circle.edge.inner, floor=floor)

@@ -29,16 +29,21 @@ class Edge:
     half: tuple[float, ...]
 
     @property
+    def inner(self) -> tuple[float, ...]:
+        """The knots between the first and the last."""
+        return self.knots[1:-1]
+
+    @cached_property
     def nearest(self) -> float:
         """The least T."""
         return min(self.half)
 
-    @property
+    @cached_property
     def farthest(self) -> float:
         """The largest T."""
         return max(self.half)
 
-    @property
+    @cached_property
     def varies(self) -> bool:
         """Whether T does."""
         return self.nearest < self.farthest
@@ -52,11 +57,15 @@ class Edge:
 
     def at(self, zeta: Array) -> Array:
         """T at places ``zeta`` (k,)."""
+        if not self.varies:
+            return np.full(zeta.shape, self.nearest)
         places, half, _ = self._table
         return np.asarray(np.interp(zeta, places, half))
 
     def slope(self, zeta: Array) -> Array:
         """∂T/∂ζ at places ``zeta`` (k,); at a knot what follows."""
+        if not self.varies:
+            return np.zeros(zeta.shape)
         places, _, slopes = self._table
         return np.asarray(slopes[np.searchsorted(places[1:-1], zeta, side="right")])
 

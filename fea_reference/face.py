@@ -125,7 +125,7 @@ def sharpness(outline: Outline) -> float:
 
 def zones_of(model: Model, face: Face, z: State) -> Zones:
     """Where the beam overlaps the face in state ``z``."""
-    return _Seen(model, face, z).zones()[0]
+    return model.leads.found(z, (face, 0.0), lambda: _Seen(model, face, z).zones())[0]
 
 
 def passed(model: Model, face: Face, before: State, after: State) -> bool:
@@ -216,7 +216,7 @@ def touch(model: Model, face: Face, penalty: Penalty, quadrature: int, z: State)
     """The penalty's energy derivatives in state ``z``, with ``quadrature`` Gauss points per interval."""
     beam, body = model.beams[face.first], model.bodies[face.body]
     seen = _Seen(model, face, z)
-    ahead, kinks = seen.zones(penalty.lead)
+    ahead, kinks = model.leads.found(z, (face, penalty.lead), lambda: seen.zones(penalty.lead))
     zones = replace(ahead, least=ahead.least + penalty.lead)
     line = seen.line
 
@@ -378,10 +378,12 @@ class _Seen:
             there = self._at(zeta, none_m)
             return replace(there, g=there.g - lead) if lead else there
 
-        even = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
-        borders, kinks = self._borders(even)
-        zeta = np.unique(np.concatenate([even, face.edge.knots, borders, face.within]))
-        zeta = zeta[(zeta >= face.within[0]) & (zeta <= face.within[1])]
+        zeta = np.arange(SAMPLES_PER_ELEMENT * line.n + 1) / SAMPLES_PER_ELEMENT
+        borders, kinks = self._borders(zeta)
+        others = (*face.edge.inner, *borders.tolist())
+        if others or face.within != (0.0, line.n):
+            zeta = np.unique(np.concatenate([zeta, others, face.within]))
+            zeta = zeta[(zeta >= face.within[0]) & (zeta <= face.within[1])]
         there = at(zeta, np.zeros_like(zeta))
         own = tuple(end for end in face.own if end in face.within)
         for end in own:
@@ -396,9 +398,8 @@ class _Seen:
             neighbours = np.diff(np.flatnonzero(keep)) == 1
             zeta = zeta[keep]
             there = Gap(there.g[keep], there.slope[keep], there.curvature[keep], there.zeta_m[keep], keep[keep])
-        splits = (*face.edge.knots, *borders.tolist())
         floor = float(np.finfo(float).eps) * line.longest
-        return negative(at, zeta, there, neighbours, splits, own, floor), kinks
+        return negative(at, zeta, there, neighbours, others, own, floor), kinks
 
     def _at(self, zeta: Array, none_m: Array) -> Gap:
         face = self.face

@@ -160,7 +160,7 @@ def borders(second: NeutralLine, edge: Edge | None, side: float) -> Borders:
     """Of the nodes of a beam, and of the corners of its ``edge``, seen from a ``side``."""
     nodes = np.arange(second.n + 1.0)
     if edge is None or not edge.varies:
-        return Borders(nodes, second.nodes, second.tangents[0] + 1j * second.tangents[1])
+        return Borders(nodes, second.nodes, second.aheads)
     corners, before, behind = edge.corners
     nodes = np.setdiff1d(nodes, corners)
     at_node, at_corner = second.around(nodes), second.around(corners)

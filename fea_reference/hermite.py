@@ -35,8 +35,9 @@ class NeutralLine:
 
     ``points`` (2, n+1) and what their rounding left, ``rest`` (2, n+1); ``angles`` (n+1,); the elements'
     undeformed ``lengths`` (n,), their ``speeds`` m, what these ``give`` by N and, ``arching``, change by θ₂ (n,);
-    ``tangents`` and ``normals`` (2, n+1); and the coefficients ``cubic`` (3, n) of ξ, ξ², ξ³ of every element,
-    from its first node, as complex numbers x + i y, as ``nodes`` and ``rests`` (n+1,) are the points and their rests.
+    ``tangents`` (2, n+1), and as complex numbers ``aheads`` (n+1,); and the coefficients ``cubic`` (3, n) of ξ, ξ², ξ³
+    of every element, from its first node, as complex numbers x + i y, as ``nodes`` and ``rests`` (n+1,) are the points
+    and their rests.
     ``longest`` is the largest of the lengths.
     """
 
@@ -48,7 +49,7 @@ class NeutralLine:
     give: Array
     arching: Array
     tangents: Array
-    normals: Array
+    aheads: Complex
     cubic: Complex
     nodes: Complex
     rests: Complex
@@ -69,11 +70,8 @@ class NeutralLine:
         t1, t2 = speeds * ahead[:-1], speeds * ahead[1:]
         cubic = np.array([t1, 3.0 * step - 2.0 * t1 - t2, t1 + t2 - 2.0 * step])
         arching = lengths * turned / _ARC
-        tangents, normals = np.array([cos, sin]), np.array([-sin, cos])
-        longest = float(lengths.max())
-        return cls(
-            points, rest, angles, lengths, speeds, give, arching, tangents, normals, cubic, nodes, rests, longest
-        )
+        tangents, longest = np.array([cos, sin]), float(lengths.max())
+        return cls(points, rest, angles, lengths, speeds, give, arching, tangents, ahead, cubic, nodes, rests, longest)
 
     @property
     def n(self) -> int:
@@ -89,9 +87,12 @@ class NeutralLine:
         """What there is at places (k,)."""
         e, xi = self.locate(zeta)
         t, b, a = self.cubic.take(e, axis=1)
+        xi = xi.astype(np.complex128)  # once, and not at every product
         last = xi * a
         bent = b + last
-        return Around(e, xi * (t + xi * bent), t + xi * (bent + bent + last), 2.0 * bent + 4.0 * last)
+        twice = bent + last
+        half = twice + last
+        return Around(e, xi * (t + xi * bent), t + xi * (bent + twice), half + half)
 
     def at(self, zeta: Array) -> tuple[Array, Array, Array]:
         """Position, first and second derivative by ζ, each (2, k)."""
@@ -153,12 +154,18 @@ def shape_slopes(xi: Array) -> Array:
     return np.array([-bump, (1.0 - xi) * (1.0 - 3.0 * xi), bump, xi * (3.0 * xi - 2.0)])
 
 
+def _turned_by(v: Array, H: Array, line: NeutralLine, e: Index) -> tuple[Complex, Complex]:
+    """H₂ (v·t₁ + i v·n₁) and H₄ (v·t₂ + i v·n₂) of fixed vectors ``v`` (2, k), (k,) each."""
+    fixed, backs = v[0] + 1j * v[1], line.aheads.conj()
+    return H[1] * (fixed * backs[e]), H[3] * (fixed * backs[e + 1])
+
+
 def along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
     """Derivative of v·x by (x₁, y₁, θ₁, x₂, y₂, θ₂, N) for fixed vectors ``v`` (2, k): (7, k)."""
-    first = H[1] * (v * line.normals[:, e]).sum(axis=0)
-    second = H[3] * (v * line.normals[:, e + 1]).sum(axis=0)
-    ahead = H[1] * (v * line.tangents[:, e]).sum(axis=0) + H[3] * (v * line.tangents[:, e + 1]).sum(axis=0)
+    before, behind = _turned_by(v, H, line, e)
+    ahead = before.real + behind.real
     m, turn = line.speeds[e], line.arching[e] * ahead
+    first, second = before.imag, behind.imag
     return np.array(
         [H[0] * v[0], H[0] * v[1], m * first - turn, H[2] * v[0], H[2] * v[1], m * second + turn, line.give[e] * ahead]
     )
@@ -166,10 +173,8 @@ def along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
 
 def twice_along(v: Array, H: Array, line: NeutralLine, e: Index) -> Array:
     """Second derivatives of v·x by the same, (7, 7, k): of m (H₂ t₁ + H₄ t₂) by θ₁, θ₂ and N, a product."""
-    first = H[1] * (v * line.normals[:, e]).sum(axis=0)
-    second = H[3] * (v * line.normals[:, e + 1]).sum(axis=0)
-    before = H[1] * (v * line.tangents[:, e]).sum(axis=0)
-    behind = H[3] * (v * line.tangents[:, e + 1]).sum(axis=0)
+    at_first, at_second = _turned_by(v, H, line, e)
+    (before, first), (behind, second) = (at_first.real, at_first.imag), (at_second.real, at_second.imag)
     m, arching, give = line.speeds[e], line.arching[e], line.give[e]
     bow = line.lengths[e] / _ARC * (before + behind)
     both = np.zeros((7, 7, v.shape[1]))

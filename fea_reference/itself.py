@@ -45,6 +45,7 @@ from scene.answer import Array, Ints
 _ALIKE = 0.5  # of the way between two places along the beam, by which they may differ from those whose side is known
 _FOLLOWS = 2.0  # elements: by which partners of places that follow each other differ at most
 _ITERATIONS = 60
+_TABLE = 80_000  # points and nodes: so many are held against each other faster one and all than by a tree
 _NOTHING = 1e-9  # of an element's length, squared
 
 
@@ -97,12 +98,9 @@ def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None
     knots = () if tapers is None else tapers.first.knots
     zeta = np.union1d(_samples(line, tapers, reach), np.array(knots))
     x = line.at(zeta)[0]
-    near = KDTree(x.T).sparse_distance_matrix(KDTree(line.points.T), reach, output_type="ndarray")
-    pairs = np.concatenate([near["i"] * (line.n + 1) + near["j"], near["i"] * (line.n + 1) + near["j"] - 1])
-    i, j = np.divmod(np.unique(pairs), line.n + 1)
-    inside = j < line.n
+    i, j = _elements_near(line, x, reach)
     steepest = 0.0 if tapers is None else _steepest(tapers.first, line)
-    places, partners, i = _partners(line, zeta, i[inside], j[inside], steepest, roles)
+    places, partners, i = _partners(line, zeta, i, j, steepest, roles)
     there = at(places, partners)
     usable = there.found & (np.abs(there.g + T) < reach)
     places, there, i = places[usable], there.chosen(usable), i[usable]
@@ -110,6 +108,19 @@ def seen_itself(line: NeutralLine, roles: Roles, T: float, tapers: Tapers | None
         return Survey(at, places, there, np.empty(0, dtype=bool), (), reach - T)
     order, follows = _sequences(i, there.zeta_m)
     return survey(at, places[order], there.chosen(order), follows, knots, floor=rounded(line, line, T))
+
+
+def _elements_near(line: NeutralLine, x: Array, reach: float) -> tuple[Ints, Ints]:
+    """Numbers of the points ``x`` (2, k) and, in order, of the elements that have a node in ``reach`` of each."""
+    if x.shape[1] * (line.n + 1) > _TABLE:
+        near = KDTree(x.T).sparse_distance_matrix(KDTree(line.points.T), reach, output_type="ndarray")
+        pairs = np.concatenate([near["i"] * (line.n + 1) + near["j"], near["i"] * (line.n + 1) + near["j"] - 1])
+        i, j = np.divmod(np.unique(pairs), line.n + 1)
+        return i[j < line.n], j[j < line.n]
+    away_x, away_y = (np.subtract.outer(one, its) for one, its in zip(x, line.points, strict=True))
+    near = away_x * away_x + away_y * away_y <= reach**2
+    i, j = np.nonzero(near[:, :-1] | near[:, 1:])
+    return i, j
 
 
 def _partners(

@@ -251,10 +251,11 @@ class Model:
 
     ``guides`` are rows like a drive's whose value stays zero; ``apart`` are the ends to be assembled; ``stiffest`` is
     the largest of the elements' 12 EI/h²; ``moving`` are the motions among the unknowns: of all nodes and bodies.
-    ``lines``, ``discs``, ``distances``, ``surveys``, ``overlaps`` and ``touches`` remember what has been found in a
-    state: neutral lines by the name of the beam, discs about these and their distances from edges
-    (:mod:`fea_reference.far`), gaps of beams at a distance, the zones of contacts, and what a contact is with a
-    penalty, a quadrature and the depth at which it is held; where what acts on beams begins to work.
+    ``lines``, ``discs``, ``distances``, ``surveys``, ``overlaps``, ``leads`` and ``touches`` remember what has been
+    found in a state: neutral lines by the name of the beam, discs about these and their distances from edges
+    (:mod:`fea_reference.far`), gaps of beams at a distance, the zones of contacts, those of what is rigid with a lead
+    and the corners between them, and what a contact is with a penalty, a quadrature and the depth at which it is held;
+    ``loaded`` where what acts on beams begins to work.
     """
 
     units: Units
@@ -282,6 +283,7 @@ class Model:
     distances: Known[Contact, tuple[Complex, Array]] = field(default_factory=Known, repr=False)
     surveys: Known[tuple[Contact, float], Survey] = field(default_factory=Known, repr=False)
     overlaps: Known[Contact, Zones] = field(default_factory=Known, repr=False)
+    leads: Known[tuple[Contact, float], tuple[Zones, dict[float, np.int64]]] = field(default_factory=Known, repr=False)
     touches: Known[tuple[Contact, Penalty, int, float | None], Touch] = field(default_factory=Known, repr=False)
     loaded: Known[str, Array] = field(default_factory=Known, repr=False)
 

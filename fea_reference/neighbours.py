@@ -17,9 +17,11 @@ def nearest(points: Complex, nodes: Complex) -> tuple[Array, Index]:
     if points.size * nodes.size > _TABLE:
         distance, which = KDTree(nodes.view(float).reshape(-1, 2)).query(points.view(float).reshape(-1, 2))
         return distance, which
-    every = np.abs(points[:, None] - nodes)
-    which = every.argmin(axis=1)
-    return every[np.arange(points.size), which], which
+    # of |x − y|² what tells the nodes apart, all in one product; the distance itself by its difference
+    x, y = nodes.real, nodes.imag
+    apart = np.array([points.real, points.imag, np.ones(points.size)]).T @ np.array([x, y, -0.5 * (x * x + y * y)])
+    which = apart.argmax(axis=1)
+    return np.abs(points - nodes[which]), which
 
 
 def near_each_other(first: Complex, second: Complex, reach: float) -> tuple[Index, Index]:

@@ -170,7 +170,9 @@ class Broken:
         side = normals.take(nearest, axis=1)
         before = t <= low[nearest]
         corner = before | (t >= high[nearest])
-        d = (side * away).sum(axis=0)
+        d = side[0] * away[0] + side[1] * away[1]
+        if not corner.any():
+            return Near(d, side, np.zeros(d.size), corner)
         # at a corner both of its sides say on which of them a place is
         neighbour = np.where(before, nearest - 1, nearest + 1)
         round_it = self.closed or self._round_behind
@@ -204,7 +206,7 @@ class Broken:
         t = r[0] * tangents[0][:, None] + r[1] * tangents[1][:, None]
         t = np.minimum(np.maximum(t, low[:, None]), high[:, None])
         away = r - t * tangents[:, :, None]
-        nearest = np.hypot(away[0], away[1]).argmin(axis=0)
+        nearest = (away[0] ** 2 + away[1] ** 2).argmin(axis=0)
         every = np.arange(y.shape[1])
         return nearest, t[nearest, every], away[:, nearest, every]
 
@@ -348,8 +350,8 @@ class Graph:
         """Where along the axis that place of the edge is, (k,), which is nearest to places (2, k)."""
         low, high = self.span
         v, w = y[::-1] if self.across else y
-        samples, along, across, away = self._samples
-        at = samples[(np.multiply.outer(v, along) + np.multiply.outer(w, across) + away).argmax(axis=1)]
+        samples, away = self._samples
+        at = samples[(np.array([v, w, np.ones_like(v)]).T @ away).argmax(axis=1)]
         for _ in range(_NEWTON_STEPS):
             f, slope, second = self._f(at)
             rest = f - w
@@ -364,11 +366,11 @@ class Graph:
         return np.asarray(at)
 
     @cached_property
-    def _samples(self) -> tuple[Array, Array, Array, Array]:
+    def _samples(self) -> tuple[Array, Array]:
         """Places along the axis (n,), and what makes of (y, 1) the part of −|s − y|² that tells the points s apart."""
         v = np.linspace(*self.span, _SAMPLES)
         f, _, _ = self._f(v)
-        return v, 2.0 * v, 2.0 * f, -(v**2 + f**2)
+        return v, np.array([2.0 * v, 2.0 * f, -(v**2 + f**2)])
 
     def _f(self, v: Array) -> tuple[Array, Array, Array]:
         """f and its first two derivatives at ``v`` (k,), (k,) each, by Horner's scheme."""

@@ -42,6 +42,8 @@ _END_ITERATIONS = 15
 _INSIDE = 1e-6  # elements
 _ON_RAY = 1e-6  # elements
 _ARRIVED = 1e-8  # elements
+_BENT = 0.5  # of what is under the root in a parabola's zero: what is less is no small change of a step
+_SHORT = 1e-4  # elements: steps whose cubes are less than that times what is to be left
 _TURNS = 1e-4  # elements: where a gap is least it changes by the square of what is left, and what a step leaves is less
 _WITHIN = 1e-9  # of the way between two places: zones far narrower than that way begin at a gap that is least
 _EVEN = 3.0  # times its mean: a derivative below that at both ends keeps a cubic rising
@@ -93,17 +95,17 @@ class Survey:
         zeta, neighbours, there = self.zeta, self.neighbours, self.there
         g, zeta_m = there.g - level, there.zeta_m
 
-        def gap_at(where: Array, guess: Array) -> tuple[Array, Array, Array]:
+        def gap_at(where: Array, guess: Array) -> tuple[Array, Array, Array, Array]:
             one = self.at(where, guess)
-            return one.g - level, one.slope, one.zeta_m
+            return one.g - level, one.slope, one.curvature, one.zeta_m
 
         ends = np.flatnonzero(neighbours & (g[:-1] * g[1:] < 0.0))
         if ends.size:
             share = _parabola(zeta, g, there.slope, there.curvature, ends)
             where, guess = _roots(gap_at, zeta, g, zeta_m, ends, share)
             new = np.array([where, np.zeros_like(where), guess])
-            zeta, g, zeta_m = np.insert(np.array([zeta, g, zeta_m]), ends + 1, new, axis=1)
-            neighbours = np.insert(neighbours, ends, True)
+            zeta, g, zeta_m = _behind(np.array([zeta, g, zeta_m]), ends, new)
+            neighbours = _parted(neighbours, ends)
         inside = np.flatnonzero(neighbours & (g[:-1] <= 0.0) & (g[1:] <= 0.0) & (g[:-1] + g[1:] < 0.0))
         # What follows on within one element is one interval: the gap is smooth there.
         parted = zeta[inside] == np.floor(zeta[inside])
@@ -308,9 +310,9 @@ def survey(
     zeta, there, neighbours = _with_bends(at, zeta, there, neighbours)
     slope, zeta_m = there.slope, there.zeta_m
 
-    def slope_at(where: Array, guess: Array) -> tuple[Array, Array, Array]:
+    def slope_at(where: Array, guess: Array) -> tuple[Array, Array, None, Array]:
         one = at(where, guess)
-        return one.slope, one.curvature, one.zeta_m
+        return one.slope, one.curvature, None, one.zeta_m
 
     # a largest value parts what is below zero on both sides of it, and tells nothing anywhere else
     parts = (slope[:-1] < 0.0) | ((there.g[:-1] <= 0.0) & (there.g[1:] <= 0.0))
@@ -329,10 +331,26 @@ def _with(
     zeta: Array, there: Gap, neighbours: NDArray[np.bool_], left: NDArray[np.int64], where: Array, more: Gap
 ) -> tuple[Array, Gap, NDArray[np.bool_]]:
     """The same with further places ``where``, each behind the one ``left`` of it."""
-    rows = np.insert(np.array([zeta, *there.rows]), left + 1, np.array([where, *more.rows]), axis=1)
-    zeta, g, slope, curvature, zeta_m = rows
-    found = np.insert(there.found, left + 1, more.found)
-    return zeta, Gap(g, slope, curvature, zeta_m, found), np.insert(neighbours, left, True)
+    rows = _behind(np.array([zeta, *there.rows, there.found]), left, np.array([where, *more.rows, more.found]))
+    zeta, g, slope, curvature, zeta_m, found = rows
+    return zeta, Gap(g, slope, curvature, zeta_m, found != 0.0), _parted(neighbours, left)
+
+
+def _behind(rows: Array, left: NDArray[np.int64], new: Array) -> Array:
+    """``rows`` (r, k) with columns ``new`` (r, m) behind those ``left`` (m,) of them, (r, k+m)."""
+    old = np.ones(rows.shape[1] + left.size, dtype=bool)
+    at = left + np.arange(1, left.size + 1)
+    old[at] = False
+    both = np.empty((len(rows), old.size))
+    both[:, old], both[:, at] = rows, new
+    return both
+
+
+def _parted(neighbours: NDArray[np.bool_], left: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether places follow each other (k+m−1,), new ones being behind those ``left`` (m,), which others followed."""
+    times = np.ones(neighbours.size, dtype=np.int64)
+    times[left] = 2
+    return np.repeat(neighbours, times)
 
 
 def _with_bends(
@@ -425,7 +443,7 @@ def none(least: float) -> Zones:
 
 
 def _roots(
-    function: Callable[[Array, Array], tuple[Array, Array, Array]],
+    function: Callable[[Array, Array], tuple[Array, Array, Array | None, Array]],
     zeta: Array,
     values: Array,
     zeta_m: Array,
@@ -440,6 +458,9 @@ def _roots(
     more than the ``floor``, what it is the slope of does not change any more, and any place will do: beams that lie on
     something have slopes that are nothing but round-off, and no root to be found.  A step of Newton's method that is
     shorter than ``arrived`` (elements) is the last, and one of halving that is no more than round-off.
+
+    Where ``function`` knows its second derivative, a step goes to where the parabola through all three is zero, and is
+    the last where it differs by as little from the straight one: what is left is less by as much as it is short.
     """
     low, high = zeta[left], zeta[left + 1]
     x = low + share * (high - low)
@@ -449,18 +470,26 @@ def _roots(
     places, closest_there = x.copy(), guess.copy()
     sought = np.arange(x.size)
     for _ in range(_ITERATIONS):
-        f, df, guess = function(x, guess)
+        f, df, bend, guess = function(x, guess)
         below = f * rising < 0.0
         low, high = np.where(below, x, low), np.where(below, high, x)
         flat = df == 0.0
-        newton = x - f / np.where(flat, 1.0, df)
+        way = -f / np.where(flat, 1.0, df)
+        newton = x + way
+        if bend is not None:
+            more = _to_parabola(way, df, bend)
+            newton += more
         # A step that rounding takes out of the bracket has arrived; halving would begin again from afar.
         good = (newton > low - _ARRIVED) & (newton < high + _ARRIVED) & ~flat
         moved = np.where(good, np.minimum(np.maximum(newton, low), high), 0.5 * (low + high))
         nothing = np.abs(f) * (high - low) <= floor
         step = np.where(nothing, 0.0, moved - x)
         x, guess = x + step, guess + pace * step
-        going = np.abs(step) >= np.where(good, arrived, _ARRIVED)  # the last step's error is of second order
+        size = np.abs(step)
+        if bend is not None:
+            size = np.where(good & (size < _SHORT) & (more != 0.0), np.minimum(size, np.abs(more)), size)
+        # the last step's error is of second order, or of third
+        going = size >= np.where(good, arrived, _ARRIVED)
         places[sought], closest_there[sought] = x, guess
         if not going.any():
             break
@@ -470,8 +499,17 @@ def _roots(
     return places, closest_there
 
 
+def _to_parabola(way: Array, slope: Array, bend: Array) -> Array:
+    """How much farther it is to the nearer zero of a parabola than the ``way`` (k,) to that of its tangent.
+
+    Zero where that is no small part of the way.
+    """
+    under = 1.0 + 2.0 * way * bend / np.where(slope == 0.0, np.inf, slope)
+    return np.asarray(np.where(under > _BENT, way * (2.0 / (1.0 + np.sqrt(np.maximum(under, _BENT))) - 1.0), 0.0))
+
+
 def _at_kinks(
-    slope_at: Callable[[Array, Array], tuple[Array, Array, Array]],
+    slope_at: Callable[[Array, Array], tuple[Array, Array, Array | None, Array]],
     zeta: Array,
     slope: Array,
     zeta_m: Array,
@@ -488,7 +526,7 @@ def _at_kinks(
     for end, other, inwards in ((left, right, _ARRIVED), (right, left, -_ARRIVED)):
         beside = np.flatnonzero(wide & np.isin(zeta[end], kinks))
         if beside.size:
-            there, _, _ = slope_at(zeta[end[beside]] + inwards, zeta_m[end[beside]])
+            there, _, _, _ = slope_at(zeta[end[beside]] + inwards, zeta_m[end[beside]])
             at_kink[beside] |= there * slope[other[beside]] > 0.0
     return at_kink
 

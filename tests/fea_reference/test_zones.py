@@ -5,7 +5,7 @@ import pytest
 from numpy.polynomial import Polynomial
 
 from fea_reference.hermite import NeutralLine
-from fea_reference.zones import Gap, negative, seen
+from fea_reference.zones import Gap, Survey, negative, seen
 
 
 def gap_of(f):
@@ -51,6 +51,24 @@ def test_a_zone_is_as_narrow_as_it_is_and_found_at_once(width):
         [centre - width, centre + width], abs=1e-3 * width
     )
     assert len(asked) < 9
+
+
+@pytest.mark.parametrize("width", [0.11, 3e-3])
+def test_ends_of_a_zone_are_found_by_what_the_gap_bends_by(width):
+    # g = ((ζ − c)² − w²)(1 + ζ), whose third derivative leaves parabolas off: two looks at both ends are enough
+    centre, asked = 0.1371, []
+    gap = Polynomial([centre**2 - width**2, -2.0 * centre, 1.0]) * Polynomial([1.0, 1.0])
+    at, places = gap_of(gap), np.array([0.0, centre, 0.25])
+
+    def counted(zeta, guess):
+        asked.append(zeta.size)
+        return at(zeta, guess)
+
+    there = at(places, np.zeros(3))
+    seen_so_far = Survey(counted, places, there, np.array([True, True]), (), float(there.g.min()))
+    intervals = seen_so_far.below(0.0).intervals
+    assert [intervals[0, 0], intervals[-1, 1]] == pytest.approx([centre - width, centre + width], abs=1e-13)
+    assert len(asked) <= 2
 
 
 def test_a_zone_that_a_largest_value_parts_is_two():
