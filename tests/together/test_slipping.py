@@ -89,6 +89,20 @@ def test_the_branch_ends_where_an_end_slips_off_another(solver, order):
     assert critical.energy == pytest.approx(1.5 * EI * PRESSED**2 / L**3, rel=3e-3)
 
 
+@pytest.mark.parametrize("order", [["slender", "arm"], ["arm", "slender"]])
+def test_the_chain_jumps_from_an_end_to_what_is_left(order):
+    # closed form: nothing touches any more, and what nothing presses stands straight, without energy
+    asked = drawn_past_the_end(order)
+    jumps = tuple(stage.model_copy(update={"beyond": "jump"}) for stage in asked.stages)
+    got = SOLVED["cprbm"](asked.model_copy(update={"stages": jumps}))
+    assert got.completed, got.sentence
+    (critical,) = got.critical
+    assert (critical.loss, critical.what) == (Loss.SLIP, "touch")
+    assert critical.value == pytest.approx(SLIPS, abs=0.02 * SHORTER)
+    assert critical.after == pytest.approx(0.0, abs=1e-12 * critical.energy)
+    assert got.stations[-1].values["touch.force"] == pytest.approx([0.0], abs=0.0)
+
+
 def bent_past_an_end(moments):
     """A cantilever bent by a moment M (N m) across a curved one, both thick, until an end passes the other."""
     curved = [[-0.021601, 0.0240269], [0.0068393, -0.0220891], [0.0094681, -0.0636223]]
