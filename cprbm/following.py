@@ -222,6 +222,11 @@ class Follower:
                 ending = ending if found.converged else Ending.STEP_TOO_SMALL
                 return Reached(ending, sentence, certificate=None)
 
+    def stand(self, point: Point, values: Mapping[str, float], certificate: Certificate, load: str) -> None:
+        """Go on from a minimum found elsewhere, under the ``values`` (SI) of all loads and drives."""
+        self.point, self.values, self.reached = point, dict(values), values.get(load, 0.0)
+        self.trail = [*self.trail[-TRAIL:], Minimum(self.reached, point.bare, certificate)]
+
     def _starts(self, before: Equilibrium | None, ahead: Point | None, values: dict[str, float]) -> Iterator[Point]:
         """Where Newton's method begins, until it finds what is sought: first where the last minima lead, if known.
 

@@ -47,8 +47,11 @@ def aside(
     return landed if apart <= SAME * most_turned(here, there) else None
 
 
-def left(mechanism: Mechanism, settings: Settings, last: Minimum, way: Way) -> BranchEnd | None:
+def left(mechanism: Mechanism, settings: Settings, last: Minimum, way: Way) -> BranchEnd | Landed | None:
     """The fold between the ``last`` minimum, where a ``way`` begins, and where that leads to; None where none is told.
+
+    Where the motion comes to rest no farther than a step may lead, and other rows press there than before, that is the
+    state that Newton's method did not find.
 
     Args:
         mechanism, settings: what was followed.
@@ -67,7 +70,8 @@ def left(mechanism: Mechanism, settings: Settings, last: Minimum, way: Way) -> B
     ways = [rate(problem, point, way.change) for point in (last.point, landed.point)]
     shifted = carried_by_others(problem.model, last.point, landed.point)
     if not strayed(problem.model.lengths, change, ways[0], ways[1], shifted):
-        return None
+        held = [point.rows.pressed(point.lam) for point in (last.point, landed.point)]
+        return landed if held[0] != held[1] else None
     value = 0.5 * (last.value + way.value(1.0))
     far = most_changed(last.point.state, landed.point.state) > BESIDE
     return BranchEnd(value, width, Loss.FOLD, "", last.curvature, last.curvature, soft.direction, far)

@@ -150,7 +150,11 @@ class March:
         for _ in range(ENDS):
             reached = self.on.go(to(stage.steps, self.on.values, target), accept)
             end = self._end(reached, stage.steps)
-            if end is None:
+            if isinstance(end, Landed) and not self.on.careful:
+                self.on.stand(end.point, self.on.beyond, end.certificate, stage.steps)
+                accept(self.on.point, self.on.values)
+                continue
+            if not isinstance(end, BranchEnd):
                 return reached
             for _ in range(REFITTED):
                 finer = self._finer(stage.steps, end)
@@ -162,7 +166,7 @@ class March:
                     self.on, self.before = finer, {}
                     return again
                 sharper = self._told(finer, stage.steps)
-                if sharper is None:
+                if not isinstance(sharper, BranchEnd):
                     # as far as the branch was followed on the mesh that fits it may end anywhere beyond
                     doubt = max(end.uncertainty, abs(end.value - finer.reached))
                     end = replace(end, uncertainty=doubt)
@@ -176,15 +180,18 @@ class March:
                 return reached
         return Reached(Ending.STEP_TOO_SMALL, f"{ENDS} branches ended one after the other", certificate=None)
 
-    def _end(self, reached: Reached, load: str) -> BranchEnd | None:
-        """Where the branch ends, if that is why a way has no certificate at its end."""
+    def _end(self, reached: Reached, load: str) -> BranchEnd | Landed | None:
+        """Where the branch ends, if that is why a way has no certificate at its end, or else how it goes on."""
         on = self.on
         if on.locked is not None:
             return at_rest(on.mechanism, on.point, on.reached) if on.locked.buckles else None
         return self._told(on, load) if reached.certificate is None else None
 
-    def _told(self, on: Follower, load: str) -> BranchEnd | None:
-        """Where the branch ends by what goes to zero there, or by where the energy's decrease leads just beyond."""
+    def _told(self, on: Follower, load: str) -> BranchEnd | Landed | None:
+        """Where the branch ends by what goes to zero there, or by where the energy's decrease leads just beyond.
+
+        That itself, where it leads to no other branch.
+        """
         end = branch_end(on.mechanism, on.trail, on.refused)
         if end is not None or not on.trail:
             return end
@@ -289,8 +296,9 @@ class March:
             reached = on.go(Way("", part.begin, part.target), _unseen)
             if reached.certificate is None:
                 end = self._end(reached, "")
-                ending = reached.ending if end is None else Ending.BRANCH_ENDS
-                sentence = reached.sentence if end is None else told(end.loss, end.what)
+                ends = isinstance(end, BranchEnd)
+                ending = Ending.BRANCH_ENDS if ends else reached.ending
+                sentence = told(end.loss, end.what) if isinstance(end, BranchEnd) else reached.sentence
                 return ending, f"{ending.value}: as {part.sentence}, {sentence}"
         on.mechanism, on.values = self.whole, {}
         self.closed_at |= {name: 0.0 for name in self.asked_events if name in pressing(on.point)}
