@@ -124,7 +124,7 @@ def _reach(march: March, course: Course, target: float) -> bool:
     """The same, and whether steps look for ends is the course's; whether one has released energy on the way."""
     load = course.load
     march.iterations = 0
-    march.switched = {}
+    march.switched, march.firm = {}, {}
     march.watch_what_touches(load)
     origin, before = march.saved(), march.zones()
     if march.far and march.values[load] != target:
@@ -251,7 +251,8 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
                 lost = followed(march, load, target, course.span) if march.curvature > 0.0 else None
                 over = lost is None and abs(target - march.values[load]) < abs(target - value)
             if lost is not None:
-                _beyond(march, course, target, lost)
+                if not _held_firmer(march, load, target, lost):
+                    _beyond(march, course, target, lost)
                 stride, cuts, failed, searching = np.inf, 0, 0, False
                 limit = march.iterations + march.settings.iteration_limit
                 paced, looked = (march.values[load], march.iterations), False
@@ -362,6 +363,12 @@ def _leads_on(march: March, load: int, target: float, lost: Lost) -> bool:
         return True
     corner = any(one.pair.name == lost.what and isinstance(one.pair, Face) for one in lost.system.touches)
     return corner and abs(lost.value - march.values[load]) < abs(target - march.values[load])
+
+
+def _held_firmer(march: March, load: int, target: float, lost: Lost) -> bool:
+    """Whether an end that is lost only behind the ``target``, but for a penalty, is now held as far as that."""
+    behind = (lost.value - target) * np.sign(target - march.values[load]) > 0.0
+    return lost.loss is Loss.SLIP and bool(behind) and march.firmer(lost.what)
 
 
 def _goes_on(march: March, course: Course, lost: Lost) -> bool:
