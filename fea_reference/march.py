@@ -178,6 +178,11 @@ class March:
         allowed = self.allowed()
         return all(one.penetration <= _HELD * allowed.get(one.pair, np.inf) for one in self.system.touches)
 
+    @property
+    def pull(self) -> float:
+        """The largest axial force."""
+        return float(np.abs(self.system.z[self.model.element_dofs[6]]).max())
+
     def saved(self) -> March:
         """A copy to come back to."""
         return replace(
