@@ -52,7 +52,7 @@ _NARROW = 2.0  # the power of that for a contact in a point, whose depth can be 
 _GENTLEST = 1.03  # the factor that is tried at last
 _TIGHTENINGS = 40
 _FELT = 5.0  # times the penetration asked: what may be felt of it elsewhere, as a share of pushes and motions
-_HELD = 100.0  # times the penetration allowed: what is deeper, as penalties cannot be tightened, is not held
+_HELD = 200.0  # times the penetration allowed: what is deeper, as penalties cannot be tightened, is not held
 _SETTLINGS = 8
 _LED = 1e-5  # of a known pressure, that may be another than the one led with
 _NEARBY = (1e-3, 1e-2, 0.1, 0.3, 1.0, 3.0)  # of a step: where to look for a closing under tighter penalties
@@ -69,6 +69,7 @@ _SWITCHED = 1e-8  # rad, or of these: how near to its change a stop is found
 _AIM = 0.84  # of the penetration asked: what the penalty of two beams leaves, so that its error follows a law
 _STIFFEST = 1e9  # times what the elements can follow: the most that a penalty is raised to, for a penetration of
 _STANDARD = 1e-4  # of elements that are as long as thick; at a tip that goes with the square of what it may be deep
+_FIRMER, _FIRMEST = 1e3, 1e9  # times at once, and what the elements can follow: where a penalty ends a branch early
 _EVEN = 0.03  # by which a penalty may differ from the one wanted
 _SAME = 1e-9  # by which the one of a circle may
 _POLISHINGS = 8  # tries after which a penetration below the one asked will do
@@ -128,7 +129,8 @@ class March:
     tight penalties and have not come nearer since, so that the way to the next one begins with loose ones on what is
     rigid; ``loose`` whether penalties were loosened since they were tightened; ``course`` are the load, value and
     curvature of the step before, where ends of branches are looked for and penalties are tight; ``known`` is the last
-    system whose smallest curvature was asked for, with that; ``behind`` is the last step, if it went along a branch.
+    system whose smallest curvature was asked for, with that; ``behind`` is the last step, if it went along a branch;
+    ``firm`` the least penalties of contacts that have to be stiffer to this station than their depth asks.
     """
 
     model: Model
@@ -148,6 +150,7 @@ class March:
     known: tuple[System, float] | None = None
     behind: Behind | None = None
     course: tuple[int, float, float] | None = None
+    firm: dict[str, float] = field(default_factory=dict)
 
     def foregone(self, load: int) -> list[tuple[float, float]]:
         """Value and curvature one step before, if that was one of the same ``load``."""
@@ -174,6 +177,11 @@ class March:
         """Whether what presses is nowhere far deeper than it may be: where penalties could be tightened."""
         allowed = self.allowed()
         return all(one.penetration <= _HELD * allowed.get(one.pair, np.inf) for one in self.system.touches)
+
+    @property
+    def pull(self) -> float:
+        """The largest axial force."""
+        return float(np.abs(self.system.z[self.model.element_dofs[6]]).max())
 
     def saved(self) -> March:
         """A copy to come back to."""
@@ -727,6 +735,16 @@ class March:
                 tried = max(max(factor, 1.0 / factor) for factor in factors.values())
                 most = max(min(most, tried) ** 0.4, _GENTLEST)
 
+    def firmer(self, name: str) -> bool:
+        """Hold a contact by a far stiffer penalty as far as the station; whether that could be done."""
+        pair = next(pair for pair in self.penalties if pair.name == name)
+        stiffness = _FIRMER * self.penalties[pair].stiffness
+        if stiffness > _FIRMEST * pair.stiffest:
+            return False
+        self.firm[name] = stiffness
+        self.tighten()
+        return self.penalties[pair].stiffness >= (1.0 - _EVEN) * stiffness
+
     def soft(self) -> bool:
         """Whether something presses by a penalty far from as stiff as the elements can follow."""
         return any(
@@ -835,7 +853,7 @@ class March:
         −1 in an area.  On what is rigid and not sharp a penalty stiffer than the elements can follow spoils more than
         the overlap that it leaves: its penalty is always the same.
         """
-        least = one.pair.stiffest / self.penalties[one.pair].stiffness
+        least = max(one.pair.stiffest, self.firm.get(one.pair.name, 0.0)) / self.penalties[one.pair].stiffness
         if not one.closed:
             return 1.0
         if allowed is None:

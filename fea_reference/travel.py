@@ -26,6 +26,7 @@ from typing import Literal
 import numpy as np
 
 from fea_reference.descent import descended
+from fea_reference.drawn import taut_at
 from fea_reference.following import WEAKER, Lost, about_to_go, followed
 from fea_reference.march import Left, March, StoppedError, Trouble
 from fea_reference.model import SharePart
@@ -124,7 +125,7 @@ def _reach(march: March, course: Course, target: float) -> bool:
     """The same, and whether steps look for ends is the course's; whether one has released energy on the way."""
     load = course.load
     march.iterations = 0
-    march.switched = {}
+    march.switched, march.firm = {}, {}
     march.watch_what_touches(load)
     origin, before = march.saved(), march.zones()
     if march.far and march.values[load] != target:
@@ -184,12 +185,17 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
     firm: float | None = None  # where penalties were tightened lest a step should lead through something
     paced, looked = (march.values[load], march.iterations), False
     leapt, failed = False, 0
+    pulls: list[tuple[float, float]] = []
     while march.values[load] != target:
+        if not pulls or march.values[load] != pulls[-1][0]:
+            # none of what was gone back over
+            pulls = [one for one in pulls if (march.values[load] - one[0]) * (target - one[0]) > 0.0]
+            pulls.append((float(march.values[load]), march.pull))
         looking = watched or failed >= _WARY
         if abs(march.values[load] - paced[0]) >= _PACE * course.span:
             paced, looked = (march.values[load], march.iterations), False
         if cuts > _CUTS:
-            raise StoppedError(*reason)
+            raise _drawn_taut(march, load, pulls) or StoppedError(*reason)
         if march.iterations > limit:
             raise StoppedError(
                 Ending.STEP_TOO_SMALL,
@@ -209,7 +215,7 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
         size = min(size, foreseen)
         value = target if size >= abs(way) else march.values[load] + np.copysign(size, way)
         if value == march.values[load]:
-            raise StoppedError(*reason)
+            raise _drawn_taut(march, load, pulls) or StoppedError(*reason)
         close = close or (stable and follow and about_to_go(march, load, float(value)))
         saved, spent = march.saved(), march.iterations
         trouble: Trouble | None = None
@@ -235,9 +241,11 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
         # some of ever shorter steps may succeed, and lead nowhere together: what has no other end ends there
         tiny = trouble is not None and size < _SHORTEST * course.span and size * speed < _NOWHERE
         if tiny and looked and trouble is not None:
-            raise StoppedError(*trouble)
+            raise _drawn_taut(march, load, pulls) or StoppedError(*trouble)
         tired = crept or tiny or (trouble is not None and cuts >= _TIRED)
         paced = (paced[0], march.iterations) if crept else paced
+        if (unstable or tired) and (taut := _drawn_taut(saved, load, pulls)) is not None:
+            raise taut
         if minimum and follow and (close or unstable or tired):
             lost, over, again = None, False, True
             if tight is not None:
@@ -251,7 +259,8 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
                 lost = followed(march, load, target, course.span) if march.curvature > 0.0 else None
                 over = lost is None and abs(target - march.values[load]) < abs(target - value)
             if lost is not None:
-                _beyond(march, course, target, lost)
+                if not _held_firmer(march, load, target, lost):
+                    _beyond(march, course, target, lost)
                 stride, cuts, failed, searching = np.inf, 0, 0, False
                 limit = march.iterations + march.settings.iteration_limit
                 paced, looked = (march.values[load], march.iterations), False
@@ -297,6 +306,15 @@ def _arrive(march: March, course: Course, target: float, *, watched: bool) -> bo
                 looked = looked or tiny
                 stride, cuts, reason = 0.25 * size, cuts + 1, trouble
     return leapt
+
+
+def _drawn_taut(march: March, load: int, pulls: list[tuple[float, float]]) -> StoppedError | None:
+    """What the march ends with where what bends alone has been drawn taut, by its ``pulls`` on the way; None if not."""
+    value = taut_at(pulls) if march.settings.kinematics == "bending" and march.held else None
+    if value is None:
+        return None
+    told = f"forces grow without limit as {march.shown(load, value)} is neared, where beams would have to become longer"
+    return StoppedError(Ending.STEP_TOO_SMALL, told)
 
 
 def _vanishing(known: list[tuple[float, float]]) -> float:
@@ -362,6 +380,12 @@ def _leads_on(march: March, load: int, target: float, lost: Lost) -> bool:
         return True
     corner = any(one.pair.name == lost.what and isinstance(one.pair, Face) for one in lost.system.touches)
     return corner and abs(lost.value - march.values[load]) < abs(target - march.values[load])
+
+
+def _held_firmer(march: March, load: int, target: float, lost: Lost) -> bool:
+    """Whether an end that is lost only behind the ``target``, but for a penalty, is now held as far as that."""
+    behind = (lost.value - target) * np.sign(target - march.values[load]) > 0.0
+    return lost.loss is Loss.SLIP and bool(behind) and march.firmer(lost.what)
 
 
 def _goes_on(march: March, course: Course, lost: Lost) -> bool:

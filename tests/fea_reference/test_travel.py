@@ -44,7 +44,10 @@ class Ways:
     course: None = None
     curvature: float = -1.0
     model = MODEL
-    settings: SimpleNamespace = field(default_factory=lambda: SimpleNamespace(iteration_limit=100000))
+    settings: SimpleNamespace = field(
+        default_factory=lambda: SimpleNamespace(iteration_limit=100000, kinematics="shear")
+    )
+    pull: float = 0.0
 
     def foregone(self, load):
         return []
