@@ -40,6 +40,7 @@ class System:
     """A state ``z`` and what follows from it.
 
     Attributes:
+        loads: those on beams that have a value.
         residual: unbalanced generalised forces and violations of rows, (size,).
         tangent: its derivative, sparse (size, size).
         scale: the largest generalised force that balances; where there is none but round-off, EI/length².
@@ -126,7 +127,7 @@ def assemble(
     loads = tuple(
         beam_load(model, part, float(value), z)
         for part, value in zip(model.loads, values[: len(model.loads)], strict=True)
-        if isinstance(part, OnBeam)
+        if isinstance(part, OnBeam) and value != 0.0  # those of later stages do not act yet
     )
     for load in loads:
         parts.append((load.dofs, -load.gradient))
