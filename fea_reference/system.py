@@ -70,9 +70,18 @@ class System:
     @cached_property
     def _factors(self) -> SuperLU | None:
         try:
-            return splu(self.tangent)
+            return factors(self.tangent)
         except RuntimeError:  # exactly singular
             return None
+
+
+def factors(matrix: csc_matrix) -> SuperLU:
+    """Factors of a matrix (m, m), its columns one by one: those of beams are too few alike to be taken together.
+
+    Raises:
+        RuntimeError: it is exactly singular.
+    """
+    return splu(matrix, relax=1, panel_size=1)
 
 
 @dataclass(frozen=True, slots=True)
