@@ -25,7 +25,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
 
 from fea_reference.acting import Acting
 from fea_reference.advance import advance
@@ -33,7 +32,7 @@ from fea_reference.curvature import Mode, softest
 from fea_reference.model import Model
 from fea_reference.settings import Settings
 from fea_reference.sinking import known_depths, sunk
-from fea_reference.system import System, assemble, load_direction
+from fea_reference.system import System, assemble, factors, load_direction
 from fea_reference.touch import Contact, Penalty
 from scene.answer import Array
 
@@ -173,7 +172,7 @@ def _solve(
     way, rate = along
     matrix = bordered(system.tangent, -f, branch.weights * way, branch.weight * rate)
     try:
-        solution = splu(matrix).solve(np.append(right, last))
+        solution = factors(matrix).solve(np.append(right, last))
     except RuntimeError:  # exactly singular
         return None
     return (solution[:-1], float(solution[-1])) if np.isfinite(solution).all() else None

@@ -28,7 +28,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-from fea_reference.state import multiplied, summed
+from fea_reference.state import Complex, multiplied, summed
 from scene.answer import Array, Ints
 from scene.statement import EdgeContact, FunctionContact, HalfPlaneContact, LineContact
 
@@ -202,13 +202,21 @@ class Broken:
     def _foot(self, y: Array) -> tuple[Ints, Array, Array]:
         """The side (k,) that is nearest to places (2, k), how far along it that is (k,), and the way from there."""
         tangents, first, low, high = self._sides
-        r = y[:, None, :] - first[:, :, None]
-        t = r[0] * tangents[0][:, None] + r[1] * tangents[1][:, None]
-        t = np.minimum(np.maximum(t, low[:, None]), high[:, None])
-        away = r - t * tangents[:, :, None]
-        nearest = (away[0] ** 2 + away[1] ** 2).argmin(axis=0)
-        every = np.arange(y.shape[1])
-        return nearest, t[nearest, every], away[:, nearest, every]
+        begins, back = self._complex
+        # along and across each side, from where it begins
+        w = ((y[0] + 1j * y[1]) - begins) * back
+        on_line = w.real
+        t = np.minimum(np.maximum(on_line, low[:, None]), high[:, None])
+        beyond, across = on_line - t, w.imag
+        nearest = (beyond * beyond + across * across).argmin(axis=0)
+        t = t[nearest, np.arange(y.shape[1])]
+        return nearest, t, y - first.take(nearest, axis=1) - t * tangents.take(nearest, axis=1)
+
+    @cached_property
+    def _complex(self) -> tuple[Complex, Complex]:
+        """First points and conjugate tangents of the sides, (m+2, 1) each, as complex numbers."""
+        tangents, first, _, _ = self._sides
+        return (first[0] + 1j * first[1])[:, None], (tangents[0] - 1j * tangents[1])[:, None]
 
     @cached_property
     def _sides(self) -> tuple[Array, Array, Array, Array]:

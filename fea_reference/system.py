@@ -40,6 +40,7 @@ class System:
     """A state ``z`` and what follows from it.
 
     Attributes:
+        loads: those on beams that have a value.
         residual: unbalanced generalised forces and violations of rows, (size,).
         tangent: its derivative, sparse (size, size).
         scale: the largest generalised force that balances; where there is none but round-off, EI/length².
@@ -69,9 +70,18 @@ class System:
     @cached_property
     def _factors(self) -> SuperLU | None:
         try:
-            return splu(self.tangent)
+            return factors(self.tangent)
         except RuntimeError:  # exactly singular
             return None
+
+
+def factors(matrix: csc_matrix) -> SuperLU:
+    """Factors of a matrix (m, m), its columns one by one: those of beams are too few alike to be taken together.
+
+    Raises:
+        RuntimeError: it is exactly singular.
+    """
+    return splu(matrix, relax=1, panel_size=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +163,7 @@ def _summed(
     loads = tuple(
         beam_load(model, part, float(value), z)
         for part, value in zip(model.loads, values[: len(model.loads)], strict=True)
-        if isinstance(part, OnBeam)
+        if isinstance(part, OnBeam) and value != 0.0  # those of later stages do not act yet
     )
     for load in loads:
         parts.append((load.dofs, -load.gradient))

@@ -34,6 +34,21 @@ def test_the_whole_tangent(kinematics, bowed):
         assert tangent[:, i] == pytest.approx(slope, abs=1e-6 * np.abs(tangent).max())
 
 
+def test_loads_without_a_value_are_not_looked_at():
+    # those of the stages that are yet to come; an empty list of loads on beams is what a scene without any has
+    model = build(scene_from(acting(LOADS)), Settings(elements=4))
+    values = np.array([0.0, 5.0, 0.0, 0.0, 4.0])
+    z = State.of(bent(model))
+    found = assemble(model, {}, 6, values, z, model.drawn)
+    assert [load.value for load in found.loads] == [5.0, 4.0]
+    alone = sum(
+        (np.bincount(load.dofs.ravel(), load.gradient.ravel(), model.size) for load in found.loads),
+        np.zeros(model.size),
+    )
+    without = assemble(model, {}, 6, 0.0 * values, z, model.drawn)
+    assert found.residual + alone == pytest.approx(without.residual, abs=1e-12 * found.scale)
+
+
 @pytest.mark.parametrize("bowed", [False, True])
 def test_forces_are_derivatives_of_the_work(bowed):
     model = build(scene_from(acting(LOADS, bowed=bowed)), Settings(elements=5, kinematics="shear"))
