@@ -364,7 +364,7 @@ def _surface(contact: CircleContact | LineContact | HalfPlaneContact | FunctionC
     normal = np.where(
         lying | ~corner & (size < 1e-9), side[piece], sign * away / np.maximum(size, np.finfo(float).tiny)
     )
-    distance, ended = sign * size, ended & ~closed
+    distance, ended = sign * size, ended & (not closed)
     # behind an end what is rigid has a side, square to the last piece
     first = (piece == 0) & (share < 0.0)
     end, beyond = np.where(first, corners[0], corners[-1]), np.where(first, -steps[0], steps[-1])

@@ -4,11 +4,17 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from comparisons.audit.gaps import spaces
+from comparisons.audit.rest import rests_of
+from comparisons.audit.seen import seen_of
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
 from comparisons.verdict import compared
 from comparisons.words import Word
 from scene.reading import scene_from
+from tests.cprbm.scenes import LENGTH as LONG
+from tests.cprbm.scenes import MOMENT, cantilever_data
+from tests.cprbm.scenes import THICKNESS as THICK
 from tests.together.planted import without_contact
 
 LENGTH, THICKNESS = 0.0923, 0.000368
@@ -91,3 +97,16 @@ def test_a_contact_that_is_ignored_is_not_one_that_is_open():
     found = verdict(CLOSES + 0.05, wrong)
     assert {row.hardly_open for row in found.rows} == {frozenset()}
     assert found.verdict.word is Word.DIFFER
+
+
+def test_the_gap_before_an_open_line_is_measured():
+    # closed form: a beam that hardly anything bends, 0.02 of its length below a line that ends beside its middle
+    data = cantilever_data(MOMENT, [1e-9])
+    line = {"points": [[0.4 * LONG, 0.02 * LONG], [0.8 * LONG, 0.02 * LONG]], "side": "right"}
+    data["contacts"] = {"line": {"kind": "beam-line", "beam": "beam", "body": "wall", **line}}
+    scene = scene_from(data)
+    answer = cprbm_answer(scene, CHOICES)
+    (seen,) = seen_of(scene, answer, rests_of(scene))
+    (space,) = spaces(seen, "line")
+    least = np.min(space.gap, where=space.counted, initial=np.inf)
+    assert least == pytest.approx(0.02 * LONG - 0.5 * THICK, rel=1e-6)
