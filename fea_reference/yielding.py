@@ -137,7 +137,10 @@ def _beside(
     penalties: Mapping[Contact, Penalty],
     quadrature: int,
 ) -> list[tuple[float, Array, float]]:
-    """Of each contact that is open: its least gap, what that goes by (size,), and its compliance."""
+    """Of each contact that is open: its least gap, what that goes by (size,), and its compliance.
+
+    Not of what is least open beside a joint that lies on it, where gaps are rounded to nought.
+    """
     found = []
     for pair in open_ones:
         gap = least_gap(model, pair, system.z)
@@ -145,7 +148,7 @@ def _beside(
             continue
         lead = gap + _BESIDE * pair.measure
         there = touch(model, pair, Penalty(pair.stiffness, lead), quadrature, system.z)
-        if not there.closed:
+        if not there.closed or _beside_joint(there):
             continue
         opening = np.zeros(model.size)
         np.add.at(opening, there.dofs, there.mean)
