@@ -109,7 +109,7 @@ class Mechanism:
 
     def overlap(self, contact: str, point: Point) -> float:
         """Largest constraint value of ``contact``, units of length: positive where it is violated."""
-        groups = _groups(contact, {contact: self.seen(contact, point.rows)}, self.boundaries)(point.state, point.at)
+        groups = _groups(contact, self.seen(contact, point.rows), self.boundaries)(point.state, point.at)
         return max((float(group.values.max()) for group in groups), default=float("-inf"))
 
     def passed(self, before: Point, after: Point, rates: Rates | None = None) -> str:
@@ -264,8 +264,8 @@ def _gone_through(pair: Pair, way: Iterable[tuple[State, Positions]], allowed: f
     return False
 
 
-def _groups(contact: str, pairs: Mapping[str, AnyPair], boundaries: Mapping[str, Boundary]) -> Groups:
-    return boundaries[contact].groups if boundaries else pairs[contact].groups
+def _groups(contact: str, pair: AnyPair, boundaries: Mapping[str, Boundary]) -> Groups:
+    return boundaries[contact].groups if boundaries else pair.groups
 
 
 def _formulations(
@@ -305,7 +305,7 @@ def _formulation(
                 sides = {**sides, name: sight(pair, state, at, sides.get(name, UNSEEN))}
                 pair = pair.sighted(sides[name])
             if name not in idle:
-                groups += _groups(name, {name: pair}, boundaries)(state, at)
+                groups += _groups(name, pair, boundaries)(state, at)
         groups += [group for stop in stops.values() for group in stop.groups(state, at)]
         faces = {}
         for name, pair in watched.items():

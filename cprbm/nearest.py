@@ -298,10 +298,11 @@ class Pair:
     def least_gap(self, state: State, at: Positions) -> float:
         """Least gap of the two beams along A and at the ends of B, units of length; infinite where nothing faces A."""
         lines = self.lines(state, at)
-        least = min(float(np.min(each, initial=np.inf)) for each in self._distances(lines))
-        if self.offset > 0.0 and self.gone_round(state, at):
-            least = min(least, *(float(np.min(each, initial=np.inf)) for each in self.other_sides._distances(lines)))
-        return least - self.offset
+        found = np.concatenate(self._distances(lines, gone=-np.inf))
+        beside = found[~np.isneginf(found)]
+        if self.offset > 0.0 and beside.size < found.size:
+            beside = np.concatenate((beside, *self.other_sides._distances(lines)))
+        return float(np.min(beside, initial=np.inf)) - self.offset
 
     def gone_round(self, state: State, at: Positions) -> bool:
         """Whether a part of a beam lies beyond the other and has come there round an end."""

@@ -29,13 +29,10 @@ UNSEEN: Sides = (0.0, 0.0)
 
 def sight(pair: Pair, state: State, at: Positions, known: Sides) -> Sides:
     """The sides in a state, those that are ``known`` as they are."""
-    if not any(seen_now := [not (seen or side) for seen, side in zip(pair.seen, known, strict=True)]):
-        return known
-    lines = pair.lines(state, at)
-    side, across = known
-    if seen_now[0]:
+    (side, across), lines = known, pair.lines(state, at)
+    if not (pair.seen[0] or side):
         side = pair.side * _sign(pair, lines)
-    if seen_now[1]:
+    if not (pair.seen[1] or across):
         across = pair.across * _sign(pair.exchanged(), lines[::-1])
     return side, across
 

@@ -121,9 +121,8 @@ def _side(
     along, across = _seen(x, y, B)
     k = int((along * along + across * across).argmin())
     if step < abs(across[k]) > abs(along[k]) and 0 < nearest[k] < PLACES - 1:
-        return math.copysign(
-            1.0, across[k]
-        ), True  # so far off that a foot beside the nearest place sees it no otherwise
+        # so far off that a foot beside the nearest place sees it no otherwise
+        return math.copysign(1.0, across[k]), True
     for _ in range(ITERATIONS):
         left = along / np.maximum(1.0 - B.curvature * across, LEAST)
         left /= 1.0 + (B.curvature * left) ** 2 / 3.0

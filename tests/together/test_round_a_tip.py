@@ -15,6 +15,7 @@ from cprbm.point import point_at
 from scene import Ending
 from scene.reading import read, scene_from
 from tests.cprbm.lagrangian import check
+from tests.together import limits
 
 SCENES = Path(__file__).parent / "scenes"
 THICK, THIN = 9.58e-05, 7.75e-05
@@ -71,13 +72,7 @@ def test_what_has_come_round_a_tip_does_not_lie_across_it(thick):
     are as near, and a link is twenty times as long.
     """
     scene = wound(2.04e-05, 2.2e-05, 2.29e-05, thick=thick)
-    true = fea_reference.answer(scene, fea_reference.Settings(elements=40, kinematics="bending"))
-    coarse, fine = (cprbm.answer(scene, cprbm.Settings(links=n)) for n in (40, 80))
-    assert {one.ending for one in (true, coarse, fine)} == {Ending.COMPLETED}
-    for a, b, known in zip(coarse.stations, fine.stations, true.stations, strict=True):
-        for probe, value in known.values.items():
-            limit = (4.0 * b.values[probe] - a.values[probe]) / 3.0
-            assert limit == pytest.approx(value, rel=2e-3), probe
+    limits.check(scene, 40, rel=2e-3)
 
 
 @pytest.mark.parametrize("links", [37, 80])
@@ -94,13 +89,7 @@ def test_a_line_that_is_pressed_on_an_end_comes_round_it(links):
 def test_what_presses_from_behind_is_pressed_there_and_goes_the_same_way_back():
     """Reference: the finite elements; errors of the chain fall with the square of the link."""
     scene = wound(2.2e-05, 2.4e-05, 2.8e-05, 2.40001e-05, 2.20001e-05)
-    true = fea_reference.answer(scene, fea_reference.Settings(elements=40, kinematics="bending"))
-    coarse, fine = (cprbm.answer(scene, cprbm.Settings(links=n)) for n in (40, 80))
-    assert {one.ending for one in (true, coarse, fine)} == {Ending.COMPLETED}
-    for a, b, known in zip(coarse.stations, fine.stations, true.stations, strict=True):
-        for probe, value in known.values.items():
-            limit = (4.0 * b.values[probe] - a.values[probe]) / 3.0
-            assert limit == pytest.approx(value, rel=1e-4), probe
+    fine = limits.check(scene, 40, rel=1e-4)
     for there, back in ((1, 3), (0, 4)):
         one, other = fine.stations[there], fine.stations[back]
         assert other.value == pytest.approx(one.value, rel=1e-5)

@@ -4,12 +4,8 @@ Beyond the end of that face the bow goes on far below what is rigid: the side th
 face behind it, and the side that goes back from the lever's other end passes over the bow's root.
 """
 
-import pytest
-
-import cprbm
-import fea_reference
-from scene import Ending
 from scene.reading import scene_from
+from tests.together import limits
 
 
 def pressed_into_a_bow(*turns):
@@ -58,10 +54,4 @@ def pressed_into_a_bow(*turns):
 def test_what_is_beyond_the_end_of_a_wedges_face_is_not_behind_its_other_side():
     """Reference: the finite elements; errors of the chain fall with the square of the link."""
     scene = pressed_into_a_bow(0.16, 0.31, 0.36, 0.413)
-    true = fea_reference.answer(scene, fea_reference.Settings(elements=40, kinematics="bending"))
-    coarse, fine = (cprbm.answer(scene, cprbm.Settings(links=n)) for n in (20, 40))
-    assert {one.ending for one in (true, coarse, fine)} == {Ending.COMPLETED}
-    for a, b, known in zip(coarse.stations, fine.stations, true.stations, strict=True):
-        for probe, value in known.values.items():
-            limit = (4.0 * b.values[probe] - a.values[probe]) / 3.0
-            assert limit == pytest.approx(value, rel=2e-3), (probe, b.value)
+    limits.check(scene, 20, rel=2e-3)
