@@ -40,7 +40,7 @@ docs: $(READY)
 	  --doctree-dir build/doctrees docs build/docs
 
 fuzz: $(READY)
-	OMP_NUM_THREADS=1 $(BIN)/python -m tests.scene.fuzzing --runs $(RUNS) --seed $(SEED)
+	OMP_NUM_THREADS=1 $(BIN)/python -m tests.cprbm_scene.fuzzing --runs $(RUNS) --seed $(SEED)
 
 mutants: $(READY)
 	$(ENVIRONMENT) OMP_NUM_THREADS=1 $(BIN)/python -m tests.mutants --mutants $(MUTANTS) --seed $(SEED)

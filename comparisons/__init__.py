@@ -4,8 +4,8 @@ Only :mod:`comparisons.pairing` knows the solvers, and only :mod:`comparisons.fi
 
 From Python it is :func:`compare` for a verdict, and :func:`records` and :func:`write_csv` for an answer's numbers::
 
-    >>> import comparisons, cprbm, scene
-    >>> hinge = scene.read("comparisons/cases/hinge.toml")
+    >>> import comparisons, cprbm, cprbm_scene
+    >>> hinge = cprbm_scene.read("comparisons/cases/hinge.toml")
     >>> answer = cprbm.answer(hinge, cprbm.Settings(links=20))
     >>> answer.stations[-1].values["BD.rotation"].round(3)
     array([0.782])
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from comparisons.choices import Choices
     from comparisons.tidy import Number
     from comparisons.verdict import Comparison
-    from scene import Answer, Scene
+    from cprbm_scene import Answer, Scene
 
 __all__ = ["compare", "records", "write_csv"]
 
@@ -33,7 +33,7 @@ def compare(scene: Scene, choices: Choices | None = None) -> Comparison:
     """Both solvers' answers to a scene beside each other, and the verdict.
 
     Args:
-        scene: the question, as :func:`scene.read` hands it back.
+        scene: the question, as :func:`cprbm_scene.read` hands it back.
         choices: how finely, and by which variants (:class:`comparisons.choices.Choices`); the standard ones if None.
 
     Returns:

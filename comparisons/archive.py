@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from comparisons.documents import Plain, plain
-from scene import Answer, Certificate, Critical, Ending, Event, GoneOver, Loss, Shape, StationAnswer
-from scene.answer import Area, Array, Inside, Statics, frozen_array
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Certificate, Critical, Ending, Event, GoneOver, Loss, Shape, StationAnswer
+from cprbm_scene.answer import Area, Array, Inside, Statics, frozen_array
+from cprbm_scene.frozendict import frozendict
 
 
 def text(answers: Mapping[str, Answer]) -> str:

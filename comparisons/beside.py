@@ -20,9 +20,9 @@ from collections.abc import Iterable
 import numpy as np
 
 from comparisons.shared import NOTHING, exerted
-from scene import FreeEnd, Scene, StationAnswer
-from scene.answer import Inside
-from scene.statement import RigidContact
+from cprbm_scene import FreeEnd, Scene, StationAnswer
+from cprbm_scene.answer import Inside
+from cprbm_scene.statement import RigidContact
 
 
 def joint_beside(scene: Scene, stations: Iterable[StationAnswer], name: str) -> str | None:

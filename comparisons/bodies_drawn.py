@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from comparisons.geometry import length, points
-from scene import PinnedEnd, Scene, StationAnswer, WeldedEnd
-from scene.answer import Array
-from scene.statement import (
+from cprbm_scene import PinnedEnd, Scene, StationAnswer, WeldedEnd
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import (
     EdgeContact,
     FixedBody,
     FreeEnd,

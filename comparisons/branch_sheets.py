@@ -9,7 +9,7 @@ from comparisons.measures import load_unit
 from comparisons.per_branch import critical_word, distance, value_and_unit
 from comparisons.sheet import Sheet
 from comparisons.verdict import Comparison
-from scene import Answer, Critical, Scene
+from cprbm_scene import Answer, Critical, Scene
 
 
 def of_criticals(compared: Comparison) -> Sheet:

@@ -1,16 +1,16 @@
 """On which branch each answer is at each station, and where answers cannot be held against each other.
 
 A branch is compared with the same branch: the number of a station's branch is how many have ended before it
-(:class:`scene.answer.StationAnswer`).  Two answers that find the same critical value a little apart are on different
-branches at the stations between, and close to it their differences are those of the critical values, magnified: the
-state at a fold goes with the square root of the distance from it.
+(:class:`cprbm_scene.answer.StationAnswer`).  Two answers that find the same critical value a little apart are on
+different branches at the stations between, and close to it their differences are those of the critical values,
+magnified: the state at a fold goes with the square root of the distance from it.
 
 ==========  ==========================================================================================
 place       what is at a station
 ==========  ==========================================================================================
 COMPARED    all answers are on one branch, and neither compared one has a critical value near by
 NEAR        all are on one branch, and a compared one has a critical value within the margin, or both have one or an
-            end that they went on over (:class:`scene.answer.GoneOver`)
+            end that they went on over (:class:`cprbm_scene.answer.GoneOver`)
 DOUBTFUL    one alone of the compared answers has gone on over an end within the margin: the other may have it just
             behind
 BETWEEN     some have left a branch and others have not, and all do leave it in this stage, or go on over its end
@@ -31,8 +31,8 @@ from enum import Enum
 from itertools import accumulate
 
 from comparisons.stations import station_of
-from scene import Answer, Scene, Stage
-from scene.statement import RotationDrive
+from cprbm_scene import Answer, Scene, Stage
+from cprbm_scene.statement import RotationDrive
 
 NEAR_TURN = math.radians(1.0)
 """Margin about a critical rotation, rad."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
-    from scene import Scene
+    from cprbm_scene import Scene
 
 Kinematics = Literal["bending", "stretch", "shear"]
 KINEMATICS: tuple[Kinematics, ...] = ("bending", "stretch", "shear")
@@ -76,7 +76,7 @@ def check(choices: Choices, scene: Scene) -> None:
     Raises:
         SceneError: a count that names beams leaves one out or names one that is not there.
     """
-    from scene import Mistake, SceneError  # loaded when a scene is there, not with the options' names
+    from cprbm_scene import Mistake, SceneError  # loaded when a scene is there, not with the options' names
 
     mistakes: list[Mistake] = []
     for key, count in (("links", choices.links), ("elements", choices.elements)):

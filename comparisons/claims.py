@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 from comparisons.criticals import CriticalRow
 from comparisons.measures import Row
 from comparisons.scales import VANISHING, norm
-from scene import Claim, Scene
-from scene.statement import CRITICAL
+from cprbm_scene import Claim, Scene
+from cprbm_scene.statement import CRITICAL
 
 _OF_THE_VALUE = frozenset({"force", "reaction", "reaction_moment"})
 """Quantities whose rows are measured by the stage's largest, and claims by the value itself."""

@@ -39,8 +39,8 @@ from comparisons.branches import span_of, turns
 from comparisons.measures import Bounds, bounds_of, load_unit
 from comparisons.order import USUAL
 from comparisons.pairing import Runs
-from scene import Answer, Critical, GoneOver, Scene, Stage
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Critical, GoneOver, Scene, Stage
+from cprbm_scene.frozendict import frozendict
 
 TURN = math.radians(0.3)
 """T of a rotation, rad."""

@@ -18,9 +18,9 @@ from comparisons.third import Third, thirds_of
 from comparisons.tolerances.search import Tolerance
 from comparisons.verdict import Comparison
 from comparisons.work_energy import Reaction
-from scene import Answer, Certificate, Critical, Probe, Scene
-from scene.answer import Array
-from scene.statement import STRESSES
+from cprbm_scene import Answer, Certificate, Critical, Probe, Scene
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import STRESSES
 
 Plain = dict[str, Any]
 

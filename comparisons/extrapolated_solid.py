@@ -37,9 +37,9 @@ from comparisons.order import SAFETY
 from comparisons.scales import norm
 from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
-from scene import Answer, Probe, Scene, StationAnswer
-from scene.answer import Array, Flags
-from scene.statement import STRESSES
+from cprbm_scene import Answer, Probe, Scene, StationAnswer
+from cprbm_scene.answer import Array, Flags
+from cprbm_scene.statement import STRESSES
 
 SLOWEST, FASTEST = 0.5, 4.0
 Orders = Mapping[tuple[str, str], float]

@@ -25,8 +25,8 @@ from comparisons.scales import norm
 from comparisons.sheets import last_rows, shown_rows
 from comparisons.stations import station_of
 from comparisons.verdict import Comparison
-from scene import CircleContact, Scene
-from scene.statement import FreeEnd
+from cprbm_scene import CircleContact, Scene
+from cprbm_scene.statement import FreeEnd
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"))
 

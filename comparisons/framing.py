@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from scene import StationAnswer
+from cprbm_scene import StationAnswer
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

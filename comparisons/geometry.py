@@ -10,7 +10,7 @@ R       radius of an arc, m
 φ       angle that an arc turns through, counter-clockwise
 ======  ===================================================
 
-Of a polynomial and a spline they are what the scene's own geometry says, :mod:`scene.geometry`.
+Of a polynomial and a spline they are what the scene's own geometry says, :mod:`cprbm_scene.geometry`.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from typing import assert_never
 
 import numpy as np
 
-from scene import Arc, Beam, Line, Polynomial, Spline
-from scene.answer import Array, Shape
-from scene.geometry import arc_length, curvature_on, largest_curvature, points_on
-from scene.statement import Curve
+from cprbm_scene import Arc, Beam, Line, Polynomial, Spline
+from cprbm_scene.answer import Array, Shape
+from cprbm_scene.geometry import arc_length, curvature_on, largest_curvature, points_on
+from cprbm_scene.statement import Curve
 
 _SAMPLES = 1001  # along a beam whose thickness varies
 

@@ -15,7 +15,7 @@ from comparisons.formats import number
 from comparisons.measures import Row, load_unit
 from comparisons.pairing import Runs
 from comparisons.words import Word
-from scene import Answer, GoneOver, Scene
+from cprbm_scene import Answer, GoneOver, Scene
 
 
 def why_apart(scene: Scene, runs: Runs, rows: Sequence[Row], words: Sequence[Word | None]) -> tuple[str, ...]:

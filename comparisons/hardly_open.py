@@ -26,7 +26,7 @@ from comparisons.audit.seen import seen_of
 from comparisons.order import USUAL, uncertainty
 from comparisons.pairing import Runs
 from comparisons.stations import station_of
-from scene import Answer, Scene
+from cprbm_scene import Answer, Scene
 
 LESS = 0.1  # of u, by which a gap may seem to be less than nought
 

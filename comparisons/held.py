@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from comparisons.stations import station_of
-from scene import Answer, Scene, StationAnswer
+from cprbm_scene import Answer, Scene, StationAnswer
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-SPEAKERS = ("cprbm", "fea_reference", "exact", "comparisons")
+SPEAKERS = ("cprbm", "fea_reference", "elastica_reference", "comparisons")
 """The rooms that say something; a logger below them has their level."""
 
 SOLVERS = SPEAKERS[:3]

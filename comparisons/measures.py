@@ -93,9 +93,9 @@ from comparisons.scales import denominator, family_size, natural_scale, norm, pr
 from comparisons.shared import resultant, sharing
 from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
-from scene import Answer, Probe, Scene, Stage, StationAnswer
-from scene.answer import Array
-from scene.statement import STRESSES, Quantity
+from cprbm_scene import Answer, Probe, Scene, Stage, StationAnswer
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import STRESSES, Quantity
 
 SHARE_OF_LARGEST = SAFETY - 1.0
 LEVERS = 10.0

@@ -9,8 +9,8 @@ from functools import partial
 from comparisons.audit import Audit, audit
 from comparisons.choices import Choices, Count
 from comparisons.pairing import Crew, Job, Solver, Solvers
-from scene import Answer, Scene
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Scene
+from cprbm_scene.frozendict import frozendict
 
 
 def _silent(text: str) -> None:

@@ -23,8 +23,8 @@ from itertools import chain, pairwise
 
 from comparisons.branches import span_of
 from comparisons.slopes import MOST
-from scene import Drive, Probe, Scene, Stage
-from scene.statement import DisplacementDrive
+from cprbm_scene import Drive, Probe, Scene, Stage
+from cprbm_scene.statement import DisplacementDrive
 
 RHO = 2e-3
 """ρ of section 2.4 of the paper."""

@@ -7,7 +7,7 @@ import numpy as np
 from comparisons.figures import BLUE, RED, Picture, canvas, picture
 from comparisons.offset_exact import offset_curve
 from comparisons.offset_verdict import OffsetComparison
-from scene.offset import Shown
+from cprbm_scene.offset import Shown
 
 
 def of_comparison(compared: OffsetComparison) -> tuple[Picture, ...]:

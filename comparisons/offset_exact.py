@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from scene.answer import Array
-from scene.geometry import arc_length, points_on, tangents_on
-from scene.statement import Curve
+from cprbm_scene.answer import Array
+from cprbm_scene.geometry import arc_length, points_on, tangents_on
+from cprbm_scene.statement import Curve
 
 _TABLE = 2001
 _TURNS = 5

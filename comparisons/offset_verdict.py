@@ -27,9 +27,9 @@ from comparisons.order import SAFETY
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
 from comparisons.verdict import Verdict
 from comparisons.words import Word
-from scene import OffsetClaim, OffsetQuestion
-from scene.answer import Array
-from scene.frozendict import frozendict
+from cprbm_scene import OffsetClaim, OffsetQuestion
+from cprbm_scene.answer import Array
+from cprbm_scene.frozendict import frozendict
 
 _ROUND_OFF = 64.0 * float(np.finfo(float).eps)
 

@@ -20,9 +20,9 @@ from typing import Literal
 
 import numpy as np
 
-from scene import Probe, RigidContact, Scene
-from scene.answer import Array
-from scene.statement import FreeEnd, SelfContact
+from cprbm_scene import Probe, RigidContact, Scene
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import FreeEnd, SelfContact
 
 SAFETY = 1.25  # S, of an error estimate
 USUAL, BESIDE_A_HELD_END = 2, 1

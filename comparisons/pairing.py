@@ -38,10 +38,10 @@ from comparisons.choices import KINEMATICS, Choices, Count, Kinematics, check
 from comparisons.listening import heard_from, listen
 from comparisons.nearby import nearby
 from comparisons.processes import AloneError, deaf, pool
-from scene import Answer, Mistake, RigidContact, Scene, SceneError, Spacing
-from scene.answer import Array
-from scene.frozendict import frozendict
-from scene.statement import Curve
+from cprbm_scene import Answer, Mistake, RigidContact, Scene, SceneError, Spacing
+from cprbm_scene.answer import Array
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.statement import Curve
 
 if TYPE_CHECKING:  # for the peers, which know the record of the problem and nothing of the solver
     from cprbm.discretisation import Discretised as Discretised
@@ -138,9 +138,9 @@ def discretised(scene: Scene, links: Count) -> Discretised:
 
 def exact_answer(scene: Scene, choices: Choices) -> Answer:
     """The exact answer in the theory ``bending``, or as much of it as is known; the choices have no part in it."""
-    import exact
+    import elastica_reference
 
-    return exact.answer(scene, exact.Settings())
+    return elastica_reference.answer(scene, elastica_reference.Settings())
 
 
 def solid_answer(scene: Scene, choices: Choices) -> Answer:

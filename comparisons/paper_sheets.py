@@ -6,7 +6,7 @@ from comparisons.formats import along, number, percent, scaled_unit
 from comparisons.measures import Row, load_unit
 from comparisons.sheet import Sheet
 from comparisons.verdict import Comparison
-from scene import Answer, Scene
+from cprbm_scene import Answer, Scene
 
 MANY_TIMES = 10.0
 

@@ -19,9 +19,9 @@ from comparisons.measures import UNITS, load_unit
 from comparisons.nearby import ENERGY, reaction_of
 from comparisons.verdict import Comparison
 from comparisons.work_energy import along
-from scene import Answer, Critical, Probe, Scene, Stage, StationAnswer
-from scene.freedoms import unit
-from scene.statement import DisplacementDrive, Force, Moment, RotationDrive
+from cprbm_scene import Answer, Critical, Probe, Scene, Stage, StationAnswer
+from cprbm_scene.freedoms import unit
+from cprbm_scene.statement import DisplacementDrive, Force, Moment, RotationDrive
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -11,7 +11,7 @@ from comparisons.criticals import CriticalRow, mechanism
 from comparisons.formats import number
 from comparisons.measures import Row
 from comparisons.words import Word, worst_of
-from scene import Critical
+from cprbm_scene import Critical
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from comparisons.pairing import Runs
-from scene import Answer, Ending, Scene
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Ending, Scene
+from cprbm_scene.frozendict import frozendict
 
 
 def within_reach(scene: Scene, runs: Runs) -> tuple[Scene, Runs] | None:

@@ -10,7 +10,7 @@ from comparisons.formats import scaled_unit
 from comparisons.measures import LOAD_UNITS
 from comparisons.verdict import Comparison
 from comparisons.work_energy import Reaction, by_drive
-from scene import Scene
+from cprbm_scene import Scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -22,9 +22,9 @@ from comparisons.pairing import Solvers
 from comparisons.soundness import complaints
 from comparisons.stations import station_of
 from comparisons.writing import write
-from scene import Answer, Probe, Scene
-from scene.answer import Array
-from scene.statement import STRESSES
+from cprbm_scene import Answer, Probe, Scene
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import STRESSES
 
 TOLERANCE = 1e-6
 """Of a probe's largest kept value: what another processor's rounding may change, and no change of method."""

@@ -15,7 +15,7 @@ from comparisons.rendering import Embedded, embedded, rendered
 from comparisons.sheet import Sheet
 from comparisons.verdict import Comparison, Verdict
 from comparisons.writing import write
-from scene import Question
+from cprbm_scene import Question
 
 _DRAWN = (figures, paths_drawn, reactions_drawn)
 """The modules that draw a comparison, in the order of the page."""

@@ -20,7 +20,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solver, Solvers
 from comparisons.sources import program
 from comparisons.writing import clear_partial, write
-from scene import Answer, Scene
+from cprbm_scene import Answer, Scene
 
 _FOLDER = ".unfinished"
 _ENDED = ".ended"

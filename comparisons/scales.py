@@ -47,9 +47,9 @@ from typing import Literal
 import numpy as np
 
 from comparisons.geometry import length, points
-from scene import Answer, Beam, Probe, Scene, Stage
-from scene.answer import Array, Shape
-from scene.statement import STRESSES, DistributedLoad, Quantity
+from cprbm_scene import Answer, Beam, Probe, Scene, Stage
+from cprbm_scene.answer import Array, Shape
+from cprbm_scene.statement import STRESSES, DistributedLoad, Quantity
 
 SMALLEST_SHARE = 1e-3
 """Least scale of a probe as a share of its family's."""

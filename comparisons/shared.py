@@ -28,8 +28,8 @@ import numpy as np
 from comparisons.audit.gaps import Rigid, faced
 from comparisons.audit.rest import rests_of
 from comparisons.audit.seen import Seen, seen_of
-from scene import Answer, Scene, StationAnswer
-from scene.answer import Array, Flags, Statics
+from cprbm_scene import Answer, Scene, StationAnswer
+from cprbm_scene.answer import Array, Flags, Statics
 
 SAME = 2e-6  # of the longest beam: what the rounding of a drawing leaves between surfaces at one place
 ALIKE = 0.999  # cosine

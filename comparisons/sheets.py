@@ -26,7 +26,7 @@ from comparisons.tolerances.search import Tolerance
 from comparisons.verdict import Comparison
 from comparisons.words import Word
 from comparisons.work_energy import Reaction, by_drive, sentence
-from scene import Answer, Scene, StationAnswer
+from cprbm_scene import Answer, Scene, StationAnswer
 
 MANY = 40
 """Most stations of a drive that a table has a line for."""

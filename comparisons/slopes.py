@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import KroghInterpolator
 
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 MOST = 9
 """Stations that the derivative at one of them takes."""

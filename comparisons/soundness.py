@@ -9,8 +9,8 @@ import numpy as np
 from comparisons.branches import begins_at, span_of
 from comparisons.measures import COMPONENTS
 from comparisons.stations import station_of
-from scene import Answer, Probe, Scene, StationAnswer
-from scene.statement import STRESSES
+from cprbm_scene import Answer, Probe, Scene, StationAnswer
+from cprbm_scene.statement import STRESSES
 
 ABSENT_WHILE_OPEN = frozenset({"centre", "ends", "closing_load"})
 """Quantities of a contact that have no value while it is open."""

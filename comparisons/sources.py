@@ -10,7 +10,7 @@ from importlib.metadata import version
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 
-_ROOMS = ("scene", "cprbm", "fea_reference", "exact", "comparisons")
+_ROOMS = ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons")
 _LIBRARIES = ("numpy", "scipy", "scikit-fem")
 
 

@@ -19,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.geometry import length, nearest, nearest_of_two_laps
-from scene import Scene, StationAnswer
-from scene.answer import Array
-from scene.statement import BeamMoment, FreeEnd, SelfContact
+from cprbm_scene import Scene, StationAnswer
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import BeamMoment, FreeEnd, SelfContact
 
 _STEPS_APART = 3.0
 """Largest distance of neighbours in a zone, in steps of the coarsest line that an answer draws of the beam."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from scene import Answer, StationAnswer
+from cprbm_scene import Answer, StationAnswer
 
 
 def station_of(answer: Answer, stage: str, value: float) -> StationAnswer:

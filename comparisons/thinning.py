@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scene import Scene, Stage
+from cprbm_scene import Scene, Stage
 
 
 def at_shown(scene: Scene) -> Scene:

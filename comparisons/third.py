@@ -16,7 +16,7 @@ from comparisons.scales import norm
 from comparisons.sheet import Sheet
 from comparisons.stations import station_of
 from comparisons.verdict import Comparison
-from scene.answer import Array, Flags
+from cprbm_scene.answer import Array, Flags
 
 
 @dataclass(frozen=True, slots=True)

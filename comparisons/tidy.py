@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from typing import TypedDict
 
 from comparisons.measures import COMPONENTS, arc_lengths, unit_of
-from scene import Answer, Probe, Scene
-from scene.answer import Array
-from scene.statement import STRESSES
+from cprbm_scene import Answer, Probe, Scene
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import STRESSES
 
 
 class Number(TypedDict):

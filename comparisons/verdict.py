@@ -49,8 +49,8 @@ from comparisons.soundness import ABSENT_WHILE_OPEN, complaints, sound_part
 from comparisons.tolerances.search import Tolerance
 from comparisons.words import Word, worst_of
 from comparisons.work_energy import Reaction, reactions
-from scene import Answer, Scene
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Scene
+from cprbm_scene.frozendict import frozendict
 
 Auditor = Callable[[Scene, Answer], Audit]
 """What finds in an answer to a scene what does not hold."""

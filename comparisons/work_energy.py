@@ -47,9 +47,9 @@ from comparisons.nearby import ENERGY, RHO, is_asked, is_dense, reaction_of, vis
 from comparisons.scales import VANISHING
 from comparisons.slopes import FEWEST, slope
 from comparisons.stations import station_of
-from scene import Answer, Scene, Stage, StationAnswer
-from scene.freedoms import unit
-from scene.statement import DisplacementDrive
+from cprbm_scene import Answer, Scene, Stage, StationAnswer
+from cprbm_scene.freedoms import unit
+from cprbm_scene.statement import DisplacementDrive
 
 WITHIN = 1e-3
 """How far the two reactions of one solver may be apart, away from a contact that opens or closes."""

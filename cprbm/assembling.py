@@ -17,7 +17,7 @@ from cprbm.energy import moment_on
 from cprbm.kinematics import place
 from cprbm.mechanism import Mechanism
 from cprbm.point import Point, Problem, point_at
-from scene import Mistake, PinnedEnd, Scene, SceneError
+from cprbm_scene import Mistake, PinnedEnd, Scene, SceneError
 
 APART = 1e-6  # of the beam's length
 BEYOND = 1e-6  # rad, by which a limit may be exceeded as it begins to act

@@ -26,9 +26,9 @@ from cprbm import smooth
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
 from cprbm.moving import moving, position_curvature, position_slopes
-from scene import Scene
-from scene.answer import Array
-from scene.statement import BeamForce, BeamMoment, DistributedLoad
+from cprbm_scene import Scene
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import BeamForce, BeamMoment, DistributedLoad
 
 ABSCISSAE, WEIGHTS = np.polynomial.legendre.leggauss(3)
 

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import lapack
 
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 REFINEMENTS = 3
 REFINED = 1e-14  # of the right-hand side

@@ -14,7 +14,7 @@ from cprbm.excess import Tabulated
 from cprbm.kinks import Missed, polynomials
 from cprbm.model import Chain, Kinks
 from cprbm.smooth import Points, SmoothLine, placed
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,8 +42,8 @@ from cprbm.model import Model
 from cprbm.offset_points import offset_vectors
 from cprbm.once import once
 from cprbm.related import related_joints
-from scene import BeamContact, Mistake, Scene, SceneError
-from scene.answer import Array, Ints
+from cprbm_scene import BeamContact, Mistake, Scene, SceneError
+from cprbm_scene.answer import Array, Ints
 
 FEWEST_POINTS = 3
 FEW = 100  # related joints, whose derivatives are products with a small matrix

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.standing import Attachment
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 AS_DRAWN = 1e-9  # rad, and units of length: what moves by no more than that is where it is drawn
 

@@ -14,8 +14,8 @@ from cprbm.overlap import overlap as largest_overlap
 from cprbm.point import Point
 from cprbm.settings import Settings
 from cprbm.stability import smallest_curvature
-from scene import Certificate, Ending
-from scene.answer import Array
+from cprbm_scene import Certificate, Ending
+from cprbm_scene.answer import Array
 
 LARGEST_BEND = 1.0  # rad: change of angle of one spring beyond which a chord no longer stands for its element
 BALANCE = 1e-8

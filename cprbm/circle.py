@@ -46,8 +46,8 @@ from cprbm.moving import moving, position_curvature, position_slopes, tangent_sl
 from cprbm.once import once
 from cprbm.pairs import THINNEST, Pressed
 from cprbm.standing import Attachment
-from scene import CircleContact, Scene
-from scene.answer import Array, Flags, Ints
+from cprbm_scene import CircleContact, Scene
+from cprbm_scene.answer import Array, Flags, Ints
 
 # local numbers (x, y, θθθ, centre) to (x of joints, y of joints, θθθ)
 ALONE, WITH_CENTRE = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4])

@@ -34,8 +34,8 @@ from cprbm.faces import Face, faces_of
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
 from cprbm.outset import anchor
-from scene import BeamContact, CircleContact, Scene, SelfContact
-from scene.answer import Array, Flags, Ints
+from cprbm_scene import BeamContact, CircleContact, Scene, SelfContact
+from cprbm_scene.answer import Array, Flags, Ints
 
 DISCS = 8  # of a beam
 SHARES = np.arange(DISCS + 1) / DISCS  # of its length, at which their stretches end

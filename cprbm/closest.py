@@ -27,7 +27,7 @@ from cprbm.feet import (
     up_to,
 )
 from cprbm.model import Chain
-from scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array, Flags, Ints
 
 if TYPE_CHECKING:
     from cprbm.nearest import Pair

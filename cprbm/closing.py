@@ -26,7 +26,7 @@ from cprbm.point import Point, point_at
 from cprbm.refining import all_zones, carried_over, fits, fitted
 from cprbm.settings import Settings
 from cprbm.steadied import Turn, steadied
-from scene import Scene
+from cprbm_scene import Scene
 
 Stood = tuple[float, Point]  # a value of what is stepped, and the march's state there
 

@@ -26,7 +26,7 @@ from cprbm.holding import Hold
 from cprbm.kinematics import Positions, State, behind
 from cprbm.model import Model
 from cprbm.posture import Linear, points_of, stacked, turn_of
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import lapack
 
-from scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array, Flags, Ints
 
 RIGID = 1e-13  # of the largest compliance
 TRACE = 1e-13  # of every row's own compliance

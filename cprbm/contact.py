@@ -19,8 +19,8 @@ from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
 from cprbm.once import once
 from cprbm.strands import Faces
-from scene.answer import Array, Flags, Ints
-from scene.frozendict import frozendict
+from cprbm_scene.answer import Array, Flags, Ints
+from cprbm_scene.frozendict import frozendict
 
 Sides = tuple[float, float]
 """That of B on which A lies, and of A on which B does, :mod:`cprbm.sighting`."""

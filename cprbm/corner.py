@@ -30,8 +30,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.faces import SAME, Face, Seen
-from scene import LineContact
-from scene.answer import Array
+from cprbm_scene import LineContact
+from cprbm_scene.answer import Array
 
 JUTTING = 1e-9  # sine of the angle by which an edge turns at least where it stands out
 

@@ -28,8 +28,8 @@ from cprbm.nearest import Pair
 from cprbm.point import Point
 from cprbm.slipping import left_of_side, left_to_go
 from cprbm.stability import Softest, released, softest
-from scene import Certificate, Loss
-from scene.answer import Array
+from cprbm_scene import Certificate, Loss
+from cprbm_scene.answer import Array
 
 Row = tuple[str, int, int]  # its contact or stop, what it is there, and which of those that are the same there
 

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 A_TIME = 64  # pieces of one line that are held against those of another
 AT_ONCE = 512  # pieces of a line that are held against the others together: a table of all pairs has no room

@@ -20,9 +20,9 @@ import numpy as np
 
 from cprbm.polynomial import Places, PolynomialLine, polynomial_line
 from cprbm.spline import SplineLine, spline_line
-from scene import Arc, Line, Polynomial, Spline
-from scene.answer import Array
-from scene.statement import Curve
+from cprbm_scene import Arc, Line, Polynomial, Spline
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import Curve
 
 
 @dataclass(frozen=True, slots=True)

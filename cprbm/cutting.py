@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 
 def cut(course: Array, s: Array, before: Array, behind: Array) -> tuple[float, float] | None:

@@ -26,9 +26,9 @@ from cprbm.model import Chain, Model, attached
 from cprbm.rigid import RigidCircle
 from cprbm.settings import Settings
 from cprbm.standing import Attachment
-from scene import Mistake, Scene, SceneError
-from scene.answer import Array, Ints
-from scene.frozendict import frozendict
+from cprbm_scene import Mistake, Scene, SceneError
+from cprbm_scene.answer import Array, Ints
+from cprbm_scene.frozendict import frozendict
 
 
 @dataclass(frozen=True, slots=True)

@@ -64,8 +64,8 @@ from cprbm.standing import Attachment
 from cprbm.stops import AngleStop
 from cprbm.summit import Summits, looked_at, summits
 from cprbm.whole_edge import NEAREST, WholeEdge
-from scene import EdgeContact, Scene
-from scene.answer import Array, Flags, Ints
+from cprbm_scene import EdgeContact, Scene
+from cprbm_scene.answer import Array, Flags, Ints
 
 # local numbers (x, y, θθθ, m, φ) to (x of joints, y of joints, θθθ φ)
 ALONE, WITH_BODY = np.arange(5), np.array([0, 5, 1, 6, 2, 3, 4, 7])

@@ -19,9 +19,9 @@ import numpy as np
 from cprbm.beam_loads import BeamLoad, MomentOnBeam, beam_loads, beam_moments, beam_work
 from cprbm.kinematics import Positions, State, pulled_back
 from cprbm.model import Model
-from scene import Scene
-from scene.answer import Array
-from scene.statement import Force, Moment
+from cprbm_scene import Scene
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import Force, Moment
 
 
 @dataclass(frozen=True, slots=True)

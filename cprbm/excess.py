@@ -26,7 +26,7 @@ import numpy as np
 
 from cprbm.pieces import CurvePieces
 from cprbm.polynomial import ComplexArray
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 POINTS = (6, 8, 11, 15)  # of the polynomial; the first that is enough
 ENOUGH = 1e-15  # of E″ times d: by so much the tangent is off

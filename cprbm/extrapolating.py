@@ -18,7 +18,7 @@ from cprbm.kinematics import State
 from cprbm.mechanism import Mechanism
 from cprbm.model import Fit, Kinks
 from cprbm.point import Point, Problem, point_at
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 FEWEST = 3  # states: of two the way goes on straight, and so does Newton's first step
 MOST = 5

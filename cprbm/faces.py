@@ -27,8 +27,8 @@ import numpy as np
 from numpy.polynomial import polynomial
 
 from cprbm.smooth import series
-from scene import EdgeContact, HalfPlaneContact, LineContact
-from scene.answer import Array, Flags
+from cprbm_scene import EdgeContact, HalfPlaneContact, LineContact
+from cprbm_scene.answer import Array, Flags
 
 NEWTON_STEPS = 30
 CLOSE = 1e-8  # of ℓ: a step whose square is nothing

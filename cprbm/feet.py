@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cprbm import smooth
-from scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array, Flags, Ints
 
 if TYPE_CHECKING:
     from cprbm.nearest import Pair

@@ -31,8 +31,8 @@ from cprbm.rate import carried_by_others, rate, strayed
 from cprbm.settings import Settings
 from cprbm.slipping import slipped, slipped_off
 from cprbm.stretching import stretched
-from scene import Certificate, Ending
-from scene.answer import Array
+from cprbm_scene import Certificate, Ending
+from cprbm_scene.answer import Array
 
 GROWTH = 2.0
 AGAIN, NEARER = 0.5, 0.25  # of the way to what was refused before: from so near it is tried again, and once more

@@ -20,7 +20,7 @@ from cprbm.holding import Held, held
 from cprbm.kinematics import place
 from cprbm.model import Chain
 from cprbm.point import Point, Problem
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 
 @dataclass(frozen=True, slots=True)

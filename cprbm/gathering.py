@@ -25,7 +25,7 @@ from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions
 from cprbm.model import Chain
 from cprbm.moving import LOCALS
-from scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array, Flags, Ints
 
 
 @dataclass(frozen=True)

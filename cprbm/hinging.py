@@ -24,8 +24,8 @@ from cprbm.kinematics import State, arm, place
 from cprbm.model import Model, attached
 from cprbm.posture import Linear, point_of
 from cprbm.standing import Attachment
-from scene import Scene
-from scene.answer import Array
+from cprbm_scene import Scene
+from cprbm_scene.answer import Array
 
 
 @dataclass(frozen=True, slots=True)

@@ -21,9 +21,9 @@ from cprbm.kinematics import State, arm
 from cprbm.model import Model, attached
 from cprbm.posture import Linear, point_of, turn_of
 from cprbm.standing import Attachment
-from scene import Scene
-from scene.answer import Array
-from scene.statement import DisplacementDrive, SlidingBody, TurningBody
+from cprbm_scene import Scene
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import DisplacementDrive, SlidingBody, TurningBody
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,8 +39,8 @@ from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
 from cprbm.nearest import ARCHING, Pair
 from cprbm.pairs import Pressed
 from cprbm.strands import NO_FACES, QUARTER, Faces, Strand, facing_samples, in_coil, sides, strands, turned_enough
-from scene import Scene, SelfContact
-from scene.answer import Array, Flags
+from cprbm_scene import Scene, SelfContact
+from cprbm_scene.answer import Array, Flags
 
 LEVEL = 1.0 / 16.0  # h² times curvatures, 1/ℓ added: lines that lie on each other cross no more deeply; it is twice
 # as much as chords of two arcs cross by, each over half an element

@@ -20,7 +20,7 @@ from cprbm.model import Layout, Model
 from cprbm.once import once
 from cprbm.posture import Posture, posture, stood
 from cprbm.standing import Attachment
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ import numpy as np
 from cprbm.kinematics import State
 from cprbm.model import Chain, Kinks
 from cprbm.smooth import Points
-from scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array, Flags, Ints
 
 SPRINGS = 2  # on either side of the pressed element
 

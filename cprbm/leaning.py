@@ -24,7 +24,7 @@ import numpy as np
 from cprbm import moving, smooth
 from cprbm.model import Chain
 from cprbm.moving import Moving
-from scene.answer import Array, Flags
+from cprbm_scene.answer import Array, Flags
 
 CORNER = 1e13  # 1/ℓ: the curvature of an edge at a corner
 

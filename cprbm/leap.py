@@ -29,8 +29,8 @@ from cprbm.mechanism import Mechanism
 from cprbm.point import Drag, Point, point_at, point_under, potential_energy
 from cprbm.settings import Settings
 from cprbm.stability import softest
-from scene import Certificate, Ending
-from scene.answer import Array
+from cprbm_scene import Certificate, Ending
+from cprbm_scene.answer import Array
 
 FIRST = 10.0  # η of the first step, S/ℓ³: some curvatures of a straight beam
 MOST = 1e7  # η beyond which nothing moves any more

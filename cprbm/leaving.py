@@ -19,8 +19,8 @@ from cprbm.point import Point, point_at
 from cprbm.rate import carried_by_others, rate, strayed
 from cprbm.settings import Settings
 from cprbm.stability import softest
-from scene import Loss
-from scene.answer import Array
+from cprbm_scene import Loss
+from cprbm_scene.answer import Array
 
 STEPS = 30  # of a motion that leads to a state beside: one that goes on for longer leads far away, or in circles
 BESIDE = 0.3  # rad: a state in which links and bodies are turned by no more is beside another

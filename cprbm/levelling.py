@@ -26,9 +26,9 @@ from cprbm.nearest import Pair
 from cprbm.point import Point
 from cprbm.refining import carried_over
 from cprbm.settings import Settings
-from scene import Scene
-from scene.answer import Array
-from scene.frozendict import frozendict
+from cprbm_scene import Scene
+from cprbm_scene.answer import Array
+from cprbm_scene.frozendict import frozendict
 
 LEVEL = 1e-7  # of a slope: the slopes beside the kinks are those of the state before
 FIRST = 0.02  # elements: the first move of a place

@@ -27,7 +27,7 @@ from cprbm.contact import Rows
 from cprbm.energy import LoadWork, strain_hessian
 from cprbm.kinematics import Positions, State, arm, twice
 from cprbm.model import Model
-from scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array, Flags, Ints
 
 if TYPE_CHECKING:
     from scipy.sparse.linalg import SuperLU

@@ -38,7 +38,7 @@ from cprbm.closure import closure_forces
 from cprbm.kinematics import pulled_back
 from cprbm.point import Point, Problem
 from cprbm.rate import driven
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 NOTHING = 1e-9  # of the largest singular value: rows whose combination is less do not depend on q
 NEXT_TO = 3e-5  # the same of a beam that has bent by what the closure's tolerance lets it, q² ~ 1e-11, and more for it

@@ -36,7 +36,7 @@ from cprbm.sighting import UNSEEN, sight
 from cprbm.stops import AngleStop, stop_of
 from cprbm.strands import NO_FACES
 from cprbm.sweeping import swath, swept
-from scene import (
+from cprbm_scene import (
     BeamContact,
     CircleContact,
     LineContact,
@@ -46,7 +46,7 @@ from scene import (
     SceneError,
     SelfContact,
 )
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 NARROWED = 4  # contacts that may have been passed, from which on their clearances between two states are asked for
 BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states, where a beam is looked for within a circle or another

@@ -18,7 +18,7 @@ import numpy as np
 from cprbm.kinematics import State
 from cprbm.newton import newton_step
 from cprbm.point import Point, Problem, point_at
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 EVEN = 0.25  # of the step, by which it may differ from what the rates at both ends make of it: no more need be known
 ASIDE = 0.1  # of the step, by which the branch may be beside the cubic half-way

@@ -34,9 +34,9 @@ from cprbm.section import Section
 from cprbm.settings import Settings
 from cprbm.spacing import spaced
 from cprbm.standing import Attachment
-from scene import Scene
-from scene.answer import Array, Ints
-from scene.frozendict import frozendict
+from cprbm_scene import Scene
+from cprbm_scene.answer import Array, Ints
+from cprbm_scene.frozendict import frozendict
 
 LARGE = 400  # joints
 

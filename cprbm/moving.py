@@ -26,7 +26,7 @@ import numpy as np
 from cprbm.once import once
 from cprbm.polynomial import ComplexArray
 from cprbm.smooth import ARCS, Points, series
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 LOCALS = 5
 BEFORE, AFTER = np.array(((-1.0, 1.0, 0.0), (0.0, -1.0, 1.0)))  # ∂δ over angles, before and after a border

@@ -75,8 +75,8 @@ from cprbm.model import EVEN, NO_KINKS, Chain, Fit, Kinks, Model
 from cprbm.moving import LOCALS, Moving, angle_slopes, moving, position_curvature, position_slopes, tangent_slopes
 from cprbm.once import once
 from cprbm.pairs import Pressed
-from scene import BeamContact, Scene
-from scene.answer import Array, Flags, Ints
+from cprbm_scene import BeamContact, Scene
+from cprbm_scene.answer import Array, Flags, Ints
 
 ARCHING = 1.0  # of what the largest force bends one element by: unlike elements of two beams arch by as much
 DIP = 1.0 / 32.0  # twice what is derived there, for elements that are not even

@@ -36,7 +36,7 @@ from cprbm.kinematics import twice
 from cprbm.local import GIVING, LocalSystem, local_step, local_system
 from cprbm.once import once
 from cprbm.point import Point, Problem
-from scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array, Flags, Ints
 
 # stiffness of pressing contacts and shift while the energy alone is not convex, S/ℓ²; the first that helps
 TRIES = ((0.0, 0.0), (1e4, 0.0), (1e6, 0.0), *((0.0, 4.0**i) for i in range(1, 12)))

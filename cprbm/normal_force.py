@@ -22,7 +22,7 @@ from cprbm.forces import contact_forces
 from cprbm.mechanism import Mechanism
 from cprbm.model import Chain
 from cprbm.point import Point
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 
 def normal_force(mechanism: Mechanism, point: Point, chain: Chain, points: int) -> Array:

@@ -35,9 +35,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.curves import neutral_line
-from scene import Line, Polynomial, Spacing, Spline
-from scene.answer import Array
-from scene.statement import Arc, Curve
+from cprbm_scene import Line, Polynomial, Spacing, Spline
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import Arc, Curve
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +105,7 @@ def offset_points(curve: Curve, spacing: Spacing, n: int, distances: Array) -> O
 
         >>> import numpy as np
         >>> from cprbm import offset_points
-        >>> from scene import Arc, Spacing
+        >>> from cprbm_scene import Arc, Spacing
         >>> arc = Arc(kind="arc", center=(0, 0), start=(0.07, 0), end=(0, 0.07), direction="counterclockwise")
         >>> found = offset_points(arc, Spacing(law="even", of="joints"), 5, np.array([-0.013]))
         >>> np.hypot(*found.points[0].T).round(6)

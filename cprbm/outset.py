@@ -15,7 +15,7 @@ from cprbm.made import Made
 from cprbm.section import Section, largest_rigidity, section_of
 from cprbm.standing import Attachment, Side, Standing, standing
 from cprbm.staying import led, staying
-from scene import (
+from cprbm_scene import (
     BeamContact,
     BeamEnd,
     CircleContact,
@@ -27,8 +27,8 @@ from scene import (
     Scene,
     WeldedEnd,
 )
-from scene.answer import Array
-from scene.statement import BeamMoment
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import BeamMoment
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -33,7 +33,7 @@ from cprbm.kinematics import Positions, State
 from cprbm.nearest import Pair
 from cprbm.pairs import Touching
 from cprbm.smooth import Points
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 FEW = 50_000  # distances that are sooner worked out than sought
 CLOSE = 1e-6  # units of length: by less a foot is off, and D by a part of the square

@@ -18,8 +18,8 @@ import numpy as np
 from cprbm.faces import Face, faces_of
 from cprbm.model import Chain, Model
 from cprbm.stops import AngleStop
-from scene import EdgeContact, PinnedEnd, Scene
-from scene.answer import Array
+from cprbm_scene import EdgeContact, PinnedEnd, Scene
+from cprbm_scene.answer import Array
 
 ON_IT = 1e-6  # of the longest beam: a pin that is as close is on the edge
 

@@ -7,7 +7,7 @@ from typing import Protocol
 from cprbm.contact import Group
 from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 THINNEST = 1e-3
 """Of the longest beam: of beams thinner than that an overlap with what is rigid is measured by it, as of lines by all

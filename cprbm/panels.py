@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 ABSCISSAE, WEIGHTS = (0.5 * part for part in np.polynomial.legendre.leggauss(8))  # on [−½, ½]
 MOST_PANELS = 1 << 15

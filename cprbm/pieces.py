@@ -20,7 +20,7 @@ import numpy as np
 from cprbm.curves import EvenLine, NeutralLine
 from cprbm.polynomial import ComplexArray, PolynomialLine
 from cprbm.spline import SplineLine
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 
 class Piece(NamedTuple):

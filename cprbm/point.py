@@ -23,7 +23,7 @@ from cprbm.energy import AnyLoad, LoadWork, load_work, spring_moments, strain_en
 from cprbm.kinematics import Positions, State, positions, pulled_back
 from cprbm.model import Model
 from cprbm.once import once
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 if TYPE_CHECKING:
     from cprbm.newton import System

@@ -21,8 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cprbm.panels import Panels, panelled
-from scene import Polynomial
-from scene.answer import Array, Ints
+from cprbm_scene import Polynomial
+from cprbm_scene.answer import Array, Ints
 
 ComplexArray = NDArray[np.complex128]
 

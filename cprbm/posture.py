@@ -25,7 +25,7 @@ from functools import cache
 
 import numpy as np
 
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""The numbers a scene asks for, read off a state; meanings in :mod:`scene.answer`."""
+"""The numbers a scene asks for, read off a state; meanings in :mod:`cprbm_scene.answer`."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from cprbm.normal_force import normal_force
 from cprbm.point import Point, Problem, potential_energy
 from cprbm.stress import bending_stress
 from cprbm.zones import zones_of
-from scene import Probe, Scene, Shape
-from scene.answer import Array, frozen_array
-from scene.statement import DisplacementDrive, PinnedEnd, WeldedEnd
+from cprbm_scene import Probe, Scene, Shape
+from cprbm_scene.answer import Array, frozen_array
+from cprbm_scene.statement import DisplacementDrive, PinnedEnd, WeldedEnd
 
 
 def probed(scene: Scene, mechanism: Mechanism, point: Point, closed_at: dict[str, float]) -> dict[str, Array]:

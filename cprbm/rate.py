@@ -24,7 +24,7 @@ from cprbm.energy import load_work
 from cprbm.model import Model
 from cprbm.newton import local_system_at, many, own_system
 from cprbm.point import Point, Problem
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 APART = 0.5  # of the mean way that the rates make: curvature of the way, and more than one contact
 SHIFTED = 0.002  # rad: links turn by less where contact only comes to be carried by other rows

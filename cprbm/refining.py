@@ -37,7 +37,7 @@ from cprbm.pairs import Pressed
 from cprbm.point import Point, point_at
 from cprbm.settings import Settings
 from cprbm.zones import Zone, zones_of
-from scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array, Flags, Ints
 
 COARSEST = 80  # links that need no coarser mesh to start from
 FACTOR = 4

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from cprbm.model import Chain
-from scene import Mistake, Scene, SceneError
-from scene.answer import Ints
+from cprbm_scene import Mistake, Scene, SceneError
+from cprbm_scene.answer import Ints
 
 
 def related_joints(scene: Scene, contact: str, chain: Chain, fewest: int) -> Ints:

@@ -30,8 +30,8 @@ from cprbm.kinematics import Positions, State
 from cprbm.model import Model
 from cprbm.once import once
 from cprbm.related import related_joints
-from scene import CircleContact, Scene
-from scene.answer import Array, Ints
+from cprbm_scene import CircleContact, Scene
+from cprbm_scene.answer import Array, Ints
 
 
 @dataclass(frozen=True, eq=False)

@@ -40,8 +40,8 @@ from cprbm.kinematics import Positions, State
 from cprbm.model import Chain, Model
 from cprbm.point import Point
 from cprbm.related import related_joints
-from scene import Scene
-from scene.answer import Array, Flags, Ints
+from cprbm_scene import Scene
+from cprbm_scene.answer import Array, Flags, Ints
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,8 +20,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.once import once
-from scene import Beam
-from scene.answer import Array
+from cprbm_scene import Beam
+from cprbm_scene.answer import Array
 
 SAME = 1e-9  # of the thickness over the length: slopes that differ by less are one
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)

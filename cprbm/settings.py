@@ -7,8 +7,8 @@ from typing import Annotated, Literal, cast
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
-from scene import Mistake, Scene, SceneError
-from scene.frozendict import frozendict
+from cprbm_scene import Mistake, Scene, SceneError
+from cprbm_scene.frozendict import frozendict
 
 FEWEST_LINKS = 2
 

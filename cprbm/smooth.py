@@ -43,7 +43,7 @@ from cprbm.kinematics import Positions, State
 from cprbm.model import Chain
 from cprbm.once import once
 from cprbm.polynomial import ComplexArray
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 STRAIGHT = 1e-150  # rad, nothing beside any other angle: added to one that is nought, its sine over it is one
 

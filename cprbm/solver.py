@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from cprbm.march import March
 from cprbm.refining import coarser
 from cprbm.settings import Settings
-from scene import Answer, Ending, Scene
-from scene.threads import one_thread
+from cprbm_scene import Answer, Ending, Scene
+from cprbm_scene.threads import one_thread
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +78,7 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
 
     Returns:
         Certified answers at the scene's stations, or those reached before the solver's Ending says why it stopped.
-        Their values are read-only arrays in SI, of the shapes in :mod:`scene.answer`.
+        Their values are read-only arrays in SI, of the shapes in :mod:`cprbm_scene.answer`.
 
     Raises:
         SceneError: the settings do not fit the scene.
@@ -89,7 +89,7 @@ def answer(scene: Scene, settings: Settings | None = None) -> Answer:
 
     Example:
         >>> import cprbm
-        >>> from scene import read
+        >>> from cprbm_scene import read
         >>> answer = cprbm.answer(read("comparisons/cases/tapered.toml"), cprbm.Settings(links=12))
         >>> answer.completed, answer.stations[-1].values["T.displacement"].shape
         (True, (2,))

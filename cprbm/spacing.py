@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from cprbm.curves import NeutralLine
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 ITERATIONS = 60
 CLOSE = 1e-9  # of the length: a step whose square is nothing

@@ -17,9 +17,9 @@ import numpy as np
 
 from cprbm.panels import Panels, panelled
 from cprbm.polynomial import Places
-from scene import Spline
-from scene.answer import Array
-from scene.statement import Point
+from cprbm_scene import Spline
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import Point
 
 PANELS = 8  # of a piece, to begin with
 CUBIC = 3

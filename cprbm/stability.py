@@ -19,7 +19,7 @@ from scipy.linalg import eigh_tridiagonal, lapack
 from cprbm.newton import local_system_at, many, own_system
 from cprbm.point import Point, Problem
 from cprbm.stretching import folds
-from scene.answer import Array, Flags
+from cprbm_scene.answer import Array, Flags
 
 DENSE = 120  # unknowns up to which all curvatures are computed at once
 LANCZOS = 40  # steps

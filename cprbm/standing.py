@@ -26,7 +26,7 @@ import numpy as np
 from cprbm.curves import NeutralLine
 from cprbm.polynomial import Places
 from cprbm.section import Section
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 PLACES = 65  # of a beam, even in arc length
 ITERATIONS = 8

@@ -23,8 +23,8 @@ from cprbm.mechanism import Mechanism
 from cprbm.model import Chain
 from cprbm.point import Point
 from cprbm.standing import Attachment
-from scene import FreeEnd, Scene
-from scene.answer import Array, Inside, Ints, Statics, frozen_array
+from cprbm_scene import FreeEnd, Scene
+from cprbm_scene.answer import Array, Inside, Ints, Statics, frozen_array
 
 NO_PULLS = frozen_array(np.zeros(0))
 

@@ -18,8 +18,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from scene import Scene
-from scene.statement import DisplacementDrive, SlidingBody, TurningBody
+from cprbm_scene import Scene
+from cprbm_scene.statement import DisplacementDrive, SlidingBody, TurningBody
 
 INDEPENDENT = 1e-6  # of J's least singular value: less than this, and the body can turn about where it is held
 

@@ -20,8 +20,8 @@ from dataclasses import replace
 import numpy as np
 
 from cprbm.model import Fit, Kinks
-from scene.answer import Array
-from scene.frozendict import frozendict
+from cprbm_scene.answer import Array
+from cprbm_scene.frozendict import frozendict
 
 MOST = 0.9  # |w|: beyond, there is no line through the two
 

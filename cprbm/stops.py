@@ -22,8 +22,8 @@ import numpy as np
 from cprbm.contact import Blocks, Group
 from cprbm.kinematics import Positions, State
 from cprbm.model import Model
-from scene import FreeEnd, Scene
-from scene.answer import Array, Ints
+from cprbm_scene import FreeEnd, Scene
+from cprbm_scene.answer import Array, Ints
 
 STRAIGHT = 1e-9  # rad: an angle so close to −π as drawn is π, which rounding turns into either
 

@@ -26,7 +26,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array, Flags, Ints
 
 QUARTER = 0.5 * np.pi
 NEAR = 0.1  # of the longest beam: places whose side is known tell that of others as close, along s and σ together

@@ -38,7 +38,7 @@ from cprbm.mechanism import Mechanism
 from cprbm.model import Chain
 from cprbm.point import Point
 from cprbm.zones import zones_of
-from scene.answer import Array, Flags
+from cprbm_scene.answer import Array, Flags
 
 NEAREST = 4  # springs that a polynomial goes through
 

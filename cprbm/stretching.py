@@ -29,7 +29,7 @@ import numpy as np
 from cprbm.closure import closure_second
 from cprbm.kinematics import State
 from cprbm.point import Point, Problem, point_at
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 NEAR = 0.7  # rad, and units of length: the most that one step may bring a linkage into line by
 SLIGHT = 1e-6  # of the largest turn: κ that is nothing

@@ -27,7 +27,7 @@ from cprbm.kinks import missed
 from cprbm.model import Kinks
 from cprbm.smooth import Points, SmoothLine
 from cprbm.sweeping import swath
-from scene.answer import Array, Flags
+from cprbm_scene.answer import Array, Flags
 
 STEPS = 30  # of Newton's method
 CLOSE = 1e-11  # units of length: its last step

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.smooth import SmoothLine
-from scene.answer import Array, Flags
+from cprbm_scene.answer import Array, Flags
 
 STEPS = 4  # of Newton's method to the closest place, from the nearest sample
 RESTING = 0.25  # of an element times what it turns by: twice the sag of an even bend

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cprbm.model import Chain
-from scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array, Flags, Ints
 
 BESIDE = 2.5  # a joint closer than this many h to a place of its own leaves what presses to that
 NEAR = 1.5  # h between a minimum and a place that is known to be one

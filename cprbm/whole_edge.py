@@ -13,7 +13,7 @@ import numpy as np
 from cprbm.corner import Corner
 from cprbm.faces import SAME, Face, Graph, Seen, Straight
 from cprbm.once import once
-from scene.answer import Array, Flags, Ints
+from cprbm_scene.answer import Array, Flags, Ints
 
 NEAREST = 1e-9  # of ℓ: pieces whose distances differ by less are equally near
 

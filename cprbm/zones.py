@@ -23,7 +23,7 @@ import numpy as np
 from cprbm.model import Chain
 from cprbm.pairs import Touching
 from cprbm.point import Point
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 CLOSE = 1.6  # elements between joints that are close; farther, a joint between them is not
 SHORTEST = 1.9  # elements between the outer forces of a zone; two neighbours share the force of one place

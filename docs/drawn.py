@@ -34,8 +34,8 @@ from comparisons.measures import COMPONENTS, arc_lengths, load_unit, unit_of
 from comparisons.offset_verdict import compared_offset
 from comparisons.stations import station_of
 from comparisons.writing import write
-from scene import Answer, CircleContact, OffsetQuestion, Scene, Stage, StationAnswer
-from scene.statement import STRESSES
+from cprbm_scene import Answer, CircleContact, OffsetQuestion, Scene, Stage, StationAnswer
+from cprbm_scene.statement import STRESSES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -299,7 +299,7 @@ def make(name: str) -> str:
 def _digest() -> str:
     """Of the sources that make the figures."""
     found = hashlib.sha256(Path(__file__).read_bytes())
-    for room in ("scene", "cprbm", "fea_reference", "comparisons"):
+    for room in ("cprbm_scene", "cprbm", "fea_reference", "comparisons"):
         for path in sorted((ROOT / room).rglob("*")):
             if path.suffix in {".py", ".toml"}:
                 found.update(str(path.relative_to(ROOT)).encode())

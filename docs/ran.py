@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 HERE = Path(__file__).resolve().parent
 SCRIPTS = HERE / "gallery"
 MADE = HERE / "made" / "gallery"
-ROOMS = ("scene", "cprbm", "fea_reference", "comparisons", "docs/gallery")
+ROOMS = ("cprbm_scene", "cprbm", "fea_reference", "comparisons", "docs/gallery")
 
 
 def names() -> tuple[str, ...]:

@@ -1,6 +1,7 @@
 """The independent reference: planar corotational beam elements with penalty contact, on scikit-fem.
 
-It reads a :class:`scene.Scene` and hands back a :class:`scene.Answer`; it knows nothing of the other solver.
+It reads a :class:`cprbm_scene.Scene` and hands back a :class:`cprbm_scene.Answer`; it
+knows nothing of the other solver.
 """
 
 from fea_reference.settings import Settings

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from scene.answer import Array
-from scene.frozendict import frozendict
+from cprbm_scene.answer import Array
+from cprbm_scene.frozendict import frozendict
 
 
 @dataclass(frozen=True, slots=True)

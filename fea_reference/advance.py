@@ -17,9 +17,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Ints
 from fea_reference.model import Model
 from fea_reference.state import State
-from scene.answer import Array, Ints
 
 
 def advance(model: Model, z: State, step: Array) -> State:

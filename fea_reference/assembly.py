@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array
+from cprbm_scene.mistakes import Mistake, SceneError
+from cprbm_scene.statement import Scene
 from fea_reference.acting import Acting
 from fea_reference.march import March, StoppedError
 from fea_reference.model import MOMENTS, WAY
 from fea_reference.stops import StopPart
 from fea_reference.travel import Course, reach
-from scene.answer import Array
-from scene.mistakes import Mistake, SceneError
-from scene.statement import Scene
 
 _BEYOND = 1e-9  # rad
 

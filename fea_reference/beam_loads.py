@@ -55,11 +55,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.hermite import Index, NeutralLine, along, by_chord, shape_slopes, shapes, twice_along
 from fea_reference.leaning import Chain
 from fea_reference.model import BeamLoadPart, BeamMomentPart, Model, OnBeam
 from fea_reference.state import State
-from scene.answer import Array
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 _LINE = 7  # unknowns of an element's line

@@ -26,6 +26,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.sparse import csc_matrix
 
+from cprbm_scene.answer import Array
 from fea_reference.acting import Acting
 from fea_reference.advance import advance
 from fea_reference.curvature import Mode, softest
@@ -34,7 +35,6 @@ from fea_reference.settings import Settings
 from fea_reference.sinking import known_depths, sunk
 from fea_reference.system import System, assemble, factors, load_direction
 from fea_reference.touch import Contact, Penalty
-from scene.answer import Array
 
 _ITERATIONS = 20
 _NEAR = 1e-9  # of a way along which a place is sought: how near it is known

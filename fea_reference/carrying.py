@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Flags, Ints
 from fea_reference.zones import Zones
-from scene.answer import Array, Flags, Ints
 
 _AT_END = 1e-6  # elements
 

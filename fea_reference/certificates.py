@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Certificate
 from fea_reference.contacts import CLOSED, least_gap
 from fea_reference.face import cut
 from fea_reference.march import March
@@ -13,7 +14,6 @@ from fea_reference.supports import grounded, held, support
 from fea_reference.system import NOTHING, System
 from fea_reference.touch import LACKING, Face, Pair, Touch
 from fea_reference.yielding import FELT, felt
-from scene.answer import Array, Certificate
 
 _VIOLATION = 1e-9
 _BALANCE = 1e-8

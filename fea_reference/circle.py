@@ -33,6 +33,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Ints
+from cprbm_scene.statement import CircleContact, Scene
 from fea_reference.edge import edge_of
 from fea_reference.hermite import Around, NeutralLine, along, plane, shapes, twice_along
 from fea_reference.model import Model, turned
@@ -40,8 +42,6 @@ from fea_reference.state import Complex, State, squared, summed
 from fea_reference.swept import gone_over
 from fea_reference.touch import Circle, Penalty, Touch, gauss, together
 from fea_reference.zones import Gap, Zones, negative, stepped
-from scene.answer import Array, Ints
-from scene.statement import CircleContact, Scene
 
 _BETWEEN = np.arange(1, 8) / 8.0  # of the way between two states
 _SAGITTA = 0.15  # of the square of a way along an arc, by which its chord may leave it

@@ -47,6 +47,8 @@ from typing import Literal
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Ints
+from cprbm_scene.statement import BeamContact, BeamEnd, FreeEnd, Scene, SelfContact
 from fea_reference.carrying import cut_off, joined, shared_out
 from fea_reference.edge import edge_of
 from fea_reference.facing import Borders, Tapers, borders, lean
@@ -71,8 +73,6 @@ from fea_reference.zones import (
     seen,
     side_of,
 )
-from scene.answer import Array, Ints
-from scene.statement import BeamContact, BeamEnd, FreeEnd, Scene, SelfContact
 
 _AT_END = 1e-6  # elements
 _BESIDE = 2.0  # mean thicknesses: held ends no further apart stand beside each other

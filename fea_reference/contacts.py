@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from cprbm_scene.statement import Scene
 from fea_reference import circle, contact, face
 from fea_reference.crossing import cross, crosses_itself
 from fea_reference.end_on_end import ends_through
@@ -14,7 +15,6 @@ from fea_reference.model import Model
 from fea_reference.state import State
 from fea_reference.touch import Circle, Contact, Face, Pair, Penalty, Touch
 from fea_reference.zones import Zones, none
-from scene.statement import Scene
 
 CLOSED = 1e-9
 """Of the thickness, a gap that is none."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import KDTree
 
+from cprbm_scene.answer import Array, Flags
 from fea_reference.hermite import Index, NeutralLine
 from fea_reference.zones import Zones
-from scene.answer import Array, Flags
 
 _BESIDE = 1.5  # elements beside a zone in which it may cross
 _ROUNDED = 1e-9  # of chords, what they may be apart without being so

@@ -33,12 +33,12 @@ from scipy.linalg.lapack import dpbtrs
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
+from cprbm_scene.answer import Array
 from fea_reference.hermite import Index
 from fea_reference.mass import lumped_mass
 from fea_reference.model import Model
 from fea_reference.stops import acting_stops
 from fea_reference.system import System
-from scene.answer import Array
 
 _STEPS = 30
 _LOOK = 4  # steps after which Lanczos' method looks at what it has

@@ -15,9 +15,9 @@ import math
 
 import numpy as np
 
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import Arc, Curve, Line, Polynomial, Spline
 from fea_reference import polynomial, spline
-from scene.answer import Array
-from scene.statement import Arc, Curve, Line, Polynomial, Spline
 
 
 def length(curve: Curve) -> float:

@@ -25,6 +25,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from cprbm_scene.answer import Loss
 from fea_reference.advance import advance
 from fea_reference.contacts import zones_of
 from fea_reference.energy import penalised_energy, potential_energy
@@ -35,7 +36,6 @@ from fea_reference.newton import equilibrium
 from fea_reference.state import State
 from fea_reference.system import Drag, System
 from fea_reference.touch import Penalty
-from scene.answer import Loss
 
 _BEYOND = 1e-6  # of the span
 _ASIDE = 1e-4  # the same where another branch goes off: both are as good as one nearer by

@@ -15,8 +15,8 @@ from functools import cached_property
 
 import numpy as np
 
-from scene.answer import Array
-from scene.statement import Beam
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import Beam
 
 _EVEN = 1e-9  # of the largest slope: jumps that are none
 

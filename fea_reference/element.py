@@ -35,9 +35,9 @@ from dataclasses import dataclass
 import numpy as np
 from skfem import BilinearForm, CellBasis, ElementLineP2, MeshLine
 
+from cprbm_scene.answer import Array
 from fea_reference.hermite import Index
 from fea_reference.state import State
-from scene.answer import Array
 
 
 @dataclass(frozen=True, slots=True)

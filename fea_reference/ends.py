@@ -26,6 +26,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.circle import centre
 from fea_reference.edge import Edge
 from fea_reference.face import beside
@@ -34,7 +35,6 @@ from fea_reference.model import BeamPart, Model
 from fea_reference.recovery import bending_moment
 from fea_reference.system import System
 from fea_reference.touch import Circle, Face, Touch
-from scene.answer import Array
 
 _AT_END = 1e-6  # elements
 _NOTHING = 1e-9  # of the resultant

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from itertools import combinations
 
+from cprbm_scene.answer import Array
 from fea_reference.beam_loads import beam_load, shared_work
 from fea_reference.model import BeamMomentPart, Model, OnBeam
 from fea_reference.system import System
-from scene.answer import Array
 
 
 def potential_energy(model: Model, system: System, values: Array) -> float:

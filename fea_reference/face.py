@@ -43,6 +43,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Flags
+from cprbm_scene.statement import EdgeContact, Scene
 from fea_reference import swept
 from fea_reference.edge import edge_of
 from fea_reference.element import layer
@@ -54,8 +56,6 @@ from fea_reference.state import Complex, State, summed
 from fea_reference.swept import Beside, gone_over
 from fea_reference.touch import THINNEST, Face, Penalty, Touch, gauss, together
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Zones, negative, none
-from scene.answer import Array, Flags
-from scene.statement import EdgeContact, Scene
 
 _SLENDER = 0.01  # of the longest beam: what stands for the thickness of a beam that touches as a line
 _LAYERS = 32.0  # of the first penalty, in a beam's length

@@ -35,11 +35,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Flags, Ints
 from fea_reference.edge import Edge
 from fea_reference.hermite import Around, NeutralLine
 from fea_reference.projection import closest
 from fea_reference.state import Complex
-from scene.answer import Array, Flags, Ints
 
 _ITERATIONS = 40
 _ARRIVED = 1e-8  # elements: the step that was just made leaves an error of the order of its square

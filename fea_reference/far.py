@@ -13,11 +13,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.hermite import NeutralLine
 from fea_reference.model import BodyPart, Model
 from fea_reference.state import Complex, State
 from fea_reference.touch import Circle, Contact, Face, Pair, Rigid
-from scene.answer import Array
 
 FAR = 0.1  # of the longest beam: a gap at which nothing is near
 _RUNS = 8  # of a beam's nodes

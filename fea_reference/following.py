@@ -30,6 +30,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Loss
 from fea_reference.advance import advance
 from fea_reference.branch import Branch, Place, onwards, place, sought
 from fea_reference.curvature import Mode, softest
@@ -41,7 +42,6 @@ from fea_reference.slipping import gone_past, left_to_go
 from fea_reference.system import System, assemble, stiffened
 from fea_reference.taut import Turn, beyond
 from fea_reference.touch import Touch
-from scene.answer import Array, Loss
 
 WEAKER = 0.6  # of the curvature when contacts were tight: from there on they are to be so again
 _FIRST = 0.01  # arc length of the first step
@@ -81,7 +81,7 @@ _AS_HELD = 0.5  # of what a rigid contact held at the beginning: it holds as eve
 class Lost:
     """The end of a branch at ``value``: the ``system`` there, and φ as ``direction`` (size,) to leave it in.
 
-    All without units; ``curvature``, ``left`` and ``what`` are :class:`scene.answer.Critical`'s.
+    All without units; ``curvature``, ``left`` and ``what`` are :class:`cprbm_scene.answer.Critical`'s.
     """
 
     value: float

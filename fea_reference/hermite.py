@@ -22,8 +22,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from cprbm_scene.answer import Array
 from fea_reference.state import Complex, summed
-from scene.answer import Array
 
 Index = NDArray[np.int64]
 _ARC = 24.0

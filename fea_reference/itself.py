@@ -35,12 +35,12 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
+from cprbm_scene.answer import Array, Ints
 from fea_reference.edge import Edge
 from fea_reference.facing import Tapers, borders
 from fea_reference.hermite import NeutralLine, plane
 from fea_reference.neighbours import nearest
 from fea_reference.zones import SAMPLES_PER_ELEMENT, Gap, Survey, gap, one_side, rounded, survey
-from scene.answer import Array, Ints
 
 _ALIKE = 0.5  # of the way between two places along the beam, by which they may differ from those whose side is known
 _FOLLOWS = 2.0  # elements: by which partners of places that follow each other differ at most

@@ -26,10 +26,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.element import Elements, shear, shear_angle
 from fea_reference.hermite import Index
 from fea_reference.state import State
-from scene.answer import Array
 
 _LINE = 7  # unknowns of an element's line
 _TANGENTS = (2, 5)  # of which these are tangent angles

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.optimize import brentq
 
+from cprbm_scene.answer import Array, Critical, Ending, GoneOver
+from cprbm_scene.frozendict import frozendict
 from fea_reference.acting import Acting
 from fea_reference.advance import advance, bend, way_to
 from fea_reference.carrying import at_ends
@@ -40,8 +42,6 @@ from fea_reference.stops import StopPart
 from fea_reference.system import System, assemble, load_direction
 from fea_reference.touch import LACKING, Circle, Contact, Face, Pair, Penalty, Rigid, Touch
 from fea_reference.yielding import FELT, POINT, ROUNDED, felt, in_points
-from scene.answer import Array, Critical, Ending, GoneOver
-from scene.frozendict import frozendict
 
 _CORRECTED = 0.2  # the most by which the equilibrium may differ from its prediction: farther is another branch
 _AHEAD = 2.0  # of the last step: the longest for which its change of rate tells anything

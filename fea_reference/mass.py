@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.model import Model
-from scene.answer import Array
 
 
 def lumped_mass(model: Model) -> Array:

@@ -17,24 +17,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from skfem import CellBasis, ElementLineP0, ElementLineP1, ElementVector, MeshLine
 
-from fea_reference.acting import Acting
-from fea_reference.curves import length, sample
-from fea_reference.element import ElementForces, Elements, Shear, forces, reference, shear, shear_angle
-from fea_reference.hermite import Index, NeutralLine, by_chord
-from fea_reference.known import Known
-from fea_reference.leaning import Chain, Span, chain, own_chain, sheared_chain, tangent_angles
-from fea_reference.own_pins import own_pins
-from fea_reference.pattern import Patterns
-from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
-from fea_reference.settings import Settings
-from fea_reference.state import Complex, State
-from fea_reference.stops import StopPart, stops_of
-from fea_reference.touch import Contact, Penalty, Touch
-from fea_reference.upright import upright
-from fea_reference.zones import Survey, Zones
-from scene.answer import Array
-from scene.check_shapes import is_apart
-from scene.statement import (
+from cprbm_scene.answer import Array
+from cprbm_scene.check_shapes import is_apart
+from cprbm_scene.statement import (
     Beam,
     BeamEnd,
     BeamForce,
@@ -50,6 +35,21 @@ from scene.statement import (
     TurningBody,
     WeldedEnd,
 )
+from fea_reference.acting import Acting
+from fea_reference.curves import length, sample
+from fea_reference.element import ElementForces, Elements, Shear, forces, reference, shear, shear_angle
+from fea_reference.hermite import Index, NeutralLine, by_chord
+from fea_reference.known import Known
+from fea_reference.leaning import Chain, Span, chain, own_chain, sheared_chain, tangent_angles
+from fea_reference.own_pins import own_pins
+from fea_reference.pattern import Patterns
+from fea_reference.section import bending_stiffness, bending_stiffness_second, compliance
+from fea_reference.settings import Settings
+from fea_reference.state import Complex, State
+from fea_reference.stops import StopPart, stops_of
+from fea_reference.touch import Contact, Penalty, Touch
+from fea_reference.upright import upright
+from fea_reference.zones import Survey, Zones
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)  # within an element: the neutral line is a cubic there
 

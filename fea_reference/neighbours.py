@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import KDTree
 
+from cprbm_scene.answer import Array, Flags
 from fea_reference.hermite import Index
 from fea_reference.state import Complex
-from scene.answer import Array, Flags
 
 _TABLE = 40_000  # distances: so many are found faster one and all than by a tree
 

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.acting import Acting
 from fea_reference.advance import advance
 from fea_reference.hermite import Index
@@ -32,7 +33,6 @@ from fea_reference.sinking import known_depths, sunk
 from fea_reference.state import State
 from fea_reference.system import Drag, System, assemble
 from fea_reference.touch import Contact, Penalty, Touch
-from scene.answer import Array
 
 _TURN = 0.4  # rad, and the same in lengths of the longest beam: the most that one iteration may move anything
 _LOST = 3  # corrections longer than that: an equilibrium so far off would belong to another branch

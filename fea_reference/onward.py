@@ -19,11 +19,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.contacts import CLOSED, touch, zones_of
 from fea_reference.model import Model
 from fea_reference.system import System
 from fea_reference.touch import Contact, Face, Penalty
-from scene.answer import Array
 
 _LEAD = 1e-6  # of the thickness: how near a place is to what it touches that is taken to touch, too
 _NOTHING = 1e-12  # of the largest: an opening that nothing moves by

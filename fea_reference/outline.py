@@ -28,9 +28,9 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
+from cprbm_scene.answer import Array, Ints
+from cprbm_scene.statement import EdgeContact, FunctionContact, HalfPlaneContact, LineContact
 from fea_reference.state import Complex, multiplied, summed
-from scene.answer import Array, Ints
-from scene.statement import EdgeContact, FunctionContact, HalfPlaneContact, LineContact
 
 _SAME = 1e-6  # as near as a scene's places have to be
 _SAMPLES = 257  # of a graph, from which the nearest place is sought

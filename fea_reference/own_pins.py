@@ -25,12 +25,12 @@ from typing import Literal
 
 import numpy as np
 
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import Beam, BeamEnd, EdgeContact, FreeEnd, PinnedEnd, Scene
 from fea_reference.hermite import Index
 from fea_reference.outline import Outline, ends_at, outline_of
 from fea_reference.staying import frame_of
 from fea_reference.stops import StopPart
-from scene.answer import Array
-from scene.statement import Beam, BeamEnd, EdgeContact, FreeEnd, PinnedEnd, Scene
 
 Which = Literal["start", "end"]
 _OPEN = 1.5 * np.pi  # what is free beside an edge that ends at the pin

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csc_matrix
 
+from cprbm_scene.answer import Array
 from fea_reference.hermite import Index
-from scene.answer import Array
 
 _KNOWN = 32  # patterns
 

@@ -23,7 +23,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 DEGREE = 24  # of the sum on one piece
 TAIL = 4  # coefficients that must have vanished

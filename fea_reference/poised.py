@@ -16,10 +16,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.advance import advance
 from fea_reference.model import Model
 from fea_reference.system import System, pushed
-from scene.answer import Array
 
 _STEPS = 4
 _FAR = 1e-9  # of lengths over the longest beam, and of angles: a state that is as near has the same contacts

@@ -15,9 +15,9 @@ import math
 import numpy as np
 from numpy.polynomial import Polynomial as Power
 
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import Polynomial
 from fea_reference.pieces import Speed, pieces_of, places, total
-from scene.answer import Array
-from scene.statement import Polynomial
 
 
 def length(curve: Polynomial) -> float:

@@ -1,9 +1,11 @@
-"""What is asked at a station, in SI units, as :mod:`scene.answer` defines it."""
+"""What is asked at a station, in SI units, as :mod:`cprbm_scene.answer` defines it."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Shape, frozen_array
+from cprbm_scene.statement import DisplacementDrive, Probe, Scene, TurningBody
 from fea_reference.ends import ends
 from fea_reference.energy import potential_energy
 from fea_reference.march import March
@@ -12,8 +14,6 @@ from fea_reference.recovery import bending_moment, normal_force
 from fea_reference.stops import StopPart, acting_stops
 from fea_reference.supports import grounded, held, support
 from fea_reference.touch import Pair, Touch
-from scene.answer import Array, Shape, frozen_array
-from scene.statement import DisplacementDrive, Probe, Scene, TurningBody
 
 _NOTHING = 1e-9  # of the largest force
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from cprbm_scene.answer import Array
 from fea_reference.hermite import Around, NeutralLine
 from fea_reference.state import Complex
-from scene.answer import Array
 
 _ITERATIONS = 40
 _ARRIVED = 1e-8  # elements: the step that was just made leaves an error of the order of its square

@@ -12,11 +12,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.beam_loads import force_before, moment_before
 from fea_reference.model import BeamPart, Model
 from fea_reference.system import System
 from fea_reference.touch import Pair, Touch
-from scene.answer import Array
 
 _NOTHING = (np.empty(0), np.empty((2, 0)), np.empty((2, 0)))
 

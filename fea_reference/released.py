@@ -23,11 +23,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.acting import Acting
 from fea_reference.energy import penalised_energy, potential_energy
 from fea_reference.model import DrivePart, Model
 from fea_reference.system import System, load_direction
-from scene.answer import Array
 
 _OFF = 0.1  # of h times what F changes by: the most by which the rule is off on a branch
 _DROPPED = 0.6  # of what F changes by: by how much it may be less than its rates say

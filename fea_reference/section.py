@@ -27,8 +27,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scene.answer import Array
-from scene.statement import Beam, Material
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import Beam, Material
 
 SHEAR_FACTOR = 5.0 / 6.0  # of a rectangle
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)

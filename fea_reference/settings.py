@@ -7,8 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
-from scene.frozendict import frozendict
-from scene.mistakes import Mistake, SceneError
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import Mistake, SceneError
 
 Kinematics = Literal["bending", "stretch", "shear"]
 

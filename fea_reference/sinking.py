@@ -23,13 +23,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.advance import advance
 from fea_reference.contacts import touch
 from fea_reference.model import Model
 from fea_reference.state import State
 from fea_reference.system import System
 from fea_reference.touch import Contact, Penalty, Touch
-from scene.answer import Array
 
 _FALL = 1.5  # the power of the depth with which the push goes
 _WIDE = 4.0  # elements: a zone no wider may be a point

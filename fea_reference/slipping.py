@@ -17,12 +17,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.hermite import NeutralLine
 from fea_reference.model import Model
 from fea_reference.projection import project
 from fea_reference.state import State
 from fea_reference.touch import Pair, Touch
-from scene.answer import Array
 
 _NEAR = 1.0  # elements: a zone that is no farther from an end is that end's
 

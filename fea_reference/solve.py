@@ -8,6 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Answer, Ending, Event, StationAnswer
+from cprbm_scene.statement import Scene, Stage
+from cprbm_scene.threads import one_thread
+from cprbm_scene.told import station_reached
 from fea_reference.assembly import assemble_ends
 from fea_reference.certificates import certify
 from fea_reference.contacts import contacts
@@ -17,10 +21,6 @@ from fea_reference.probes import probed, shapes, touching
 from fea_reference.settings import Settings
 from fea_reference.statics import statics
 from fea_reference.travel import Course, reach
-from scene.answer import Answer, Ending, Event, StationAnswer
-from scene.statement import Scene, Stage
-from scene.threads import one_thread
-from scene.told import station_reached
 
 _SAYS = logging.getLogger(__name__)
 
@@ -118,7 +118,7 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
 
     Returns:
         Certified answers at the scene's stations, as far as they were reached; values are read-only arrays in SI, of
-        the shapes in :mod:`scene.answer`.
+        the shapes in :mod:`cprbm_scene.answer`.
 
     Raises:
         SceneError: the settings do not fit the scene, or a stop forbids the assembly.
@@ -129,7 +129,7 @@ def answer(scene: Scene, settings: Settings = _DEFAULT) -> Answer:
 
     Example:
         >>> import fea_reference
-        >>> from scene import read
+        >>> from cprbm_scene import read
         >>> answer = fea_reference.answer(read("comparisons/cases/tapered.toml"), fea_reference.Settings(elements=12))
         >>> answer.completed, answer.stations[-1].values["T.displacement"].shape
         (True, (2,))

@@ -28,10 +28,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import Point, Spline
 from fea_reference.hermite import shape_slopes, shapes
 from fea_reference.pieces import pieces_of, places, total
-from scene.answer import Array
-from scene.statement import Point, Spline
 
 _STEPS = 64  # of a piece, between which the tangent turns by less than half a turn
 

@@ -23,7 +23,7 @@ from typing import TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 Complex = NDArray[np.complex128]
 Numbers = TypeVar("Numbers", Array, Complex)

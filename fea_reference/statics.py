@@ -10,14 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Inside, Statics, frozen_array
+from cprbm_scene.statement import Scene, TurningBody
 from fea_reference.march import March
 from fea_reference.model import BeamPart
 from fea_reference.stops import acting_stops
 from fea_reference.supports import held, support
 from fea_reference.touch import Pair, Touch
 from fea_reference.upright import upright
-from scene.answer import Array, Inside, Statics, frozen_array
-from scene.statement import Scene, TurningBody
 
 
 @dataclass(frozen=True, slots=True)

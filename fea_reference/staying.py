@@ -18,8 +18,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from scene.answer import Array
-from scene.statement import DisplacementDrive, FixedBody, Scene, SlidingBody, TurningBody
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import DisplacementDrive, FixedBody, Scene, SlidingBody, TurningBody
 
 _BARRED = 1e-6  # of C's singular values: what bars less lets the body turn by a thousand times what it is held to
 

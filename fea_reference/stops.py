@@ -21,11 +21,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import PinnedEnd, Scene
 from fea_reference.acting import Acting
 from fea_reference.hermite import Index
 from fea_reference.state import State
-from scene.answer import Array
-from scene.statement import PinnedEnd, Scene
 
 _ROUNDED = 1e-9  # rad: an angle that is π may be drawn a little beyond
 

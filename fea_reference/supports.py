@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.model import DrivePart, HingePart, JointPart, Model
 from fea_reference.state import State
-from scene.answer import Array
 
 
 def support(joint: JointPart, z: State) -> tuple[Array, float]:

@@ -19,11 +19,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Flags
 from fea_reference.hermite import NeutralLine
 from fea_reference.neighbours import nearest
 from fea_reference.projection import closest
 from fea_reference.state import Complex
-from scene.answer import Array, Flags
 
 _WAY = 1.5  # times the way of either place: what is passed has come no farther than that across
 _PLACES = 4  # per element, from which the closest one is sought

@@ -14,6 +14,8 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import SuperLU, splu
 
+from cprbm_scene.answer import Array
+from cprbm_scene.frozendict import frozendict
 from fea_reference.acting import Acting
 from fea_reference.beam_loads import BeamLoad, beam_load, load_forces
 from fea_reference.contacts import touch
@@ -24,8 +26,6 @@ from fea_reference.pattern import Block, Single
 from fea_reference.state import State
 from fea_reference.stops import acting_stops
 from fea_reference.touch import Circle, Contact, Pair, Penalty, Touch
-from scene.answer import Array
-from scene.frozendict import frozendict
 
 NOTHING = 10.0
 """Floors: forces below this are round-off themselves."""

@@ -24,10 +24,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse.linalg import splu
 
+from cprbm_scene.answer import Array
 from fea_reference.branch import Branch, Place, bordered, sought
 from fea_reference.march import March
 from fea_reference.system import load_direction
-from scene.answer import Array
 
 _PREDICTED = 0.1  # rad (and lengths): the most that the step beyond may be predicted to move anything
 _CUTS = 6  # each to a quarter

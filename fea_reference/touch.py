@@ -7,6 +7,7 @@ from functools import cache
 
 import numpy as np
 
+from cprbm_scene.answer import Array, frozen_array
 from fea_reference.edge import Edge
 from fea_reference.facing import Facing, Tapers, facing
 from fea_reference.hermite import Index, NeutralLine
@@ -14,7 +15,6 @@ from fea_reference.itself import Roles
 from fea_reference.leaning import Chain
 from fea_reference.outline import Outline
 from fea_reference.zones import Zones
-from scene.answer import Array, frozen_array
 
 THINNEST = 1e-3
 """Of the longest beam: the least thickness by which a penetration of something rigid is measured.  It goes with the

@@ -25,6 +25,7 @@ from typing import Literal
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Critical, Ending, GoneOver, Loss
 from fea_reference.descent import descended
 from fea_reference.drawn import taut_at
 from fea_reference.following import WEAKER, Lost, about_to_go, followed
@@ -32,7 +33,6 @@ from fea_reference.march import Left, March, StoppedError, Trouble
 from fea_reference.model import SharePart
 from fea_reference.released import released
 from fea_reference.touch import Circle, Face, Pair
-from scene.answer import Array, Critical, Ending, GoneOver, Loss
 
 _PREDICTED = 0.3  # rad (and lengths): the most that one load step may be predicted to move anything
 _CUTS = 10  # in a row, each to a quarter

@@ -40,10 +40,7 @@ from typing import Literal
 
 import numpy as np
 
-from fea_reference.own_pins import held_on, own_frame
-from fea_reference.section import SHEAR_FACTOR
-from fea_reference.staying import frame_of
-from scene.statement import (
+from cprbm_scene.statement import (
     BeamContact,
     BeamEnd,
     CircleContact,
@@ -52,6 +49,9 @@ from scene.statement import (
     Scene,
     WeldedEnd,
 )
+from fea_reference.own_pins import held_on, own_frame
+from fea_reference.section import SHEAR_FACTOR
+from fea_reference.staying import frame_of
 
 Which = Literal["start", "end"]
 _REACHED = 0.1  # rad: of shear, which no material bears

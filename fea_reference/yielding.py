@@ -21,11 +21,11 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.contacts import least_gap, touch
 from fea_reference.model import Model
 from fea_reference.system import System
 from fea_reference.touch import Contact, Face, Penalty, Touch
-from scene.answer import Array
 
 FELT = 0.01
 """Of pushes and of the motion: by how much what sinks in may change them."""

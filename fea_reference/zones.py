@@ -30,11 +30,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from cprbm_scene.answer import Array
 from fea_reference.facing import Borders, Tapers, borders, facing
 from fea_reference.hermite import NeutralLine, apart
 from fea_reference.neighbours import near_each_other, nearest
 from fea_reference.projection import project
-from scene.answer import Array
 
 SAMPLES_PER_ELEMENT = 4
 _ITERATIONS = 60

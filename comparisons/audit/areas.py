@@ -24,8 +24,8 @@ from functools import cached_property
 import numpy as np
 
 from comparisons.audit.rest import Complex, Rest, coordinates
-from scene.answer import Area, Array, Shape
-from scene.geometry import points_on, tangents_on
+from cprbm_scene.answer import Area, Array, Shape
+from cprbm_scene.geometry import points_on, tangents_on
 
 PER_ELEMENT = 8
 ROW = 8.0  # sum of magnitudes in a row of a square element's stiffness, over Young's modulus and width

@@ -9,9 +9,9 @@ import numpy as np
 from comparisons.audit.areas import AreaOfBeam
 from comparisons.audit.balance import between_nodes, moments_beyond, near
 from comparisons.audit.seen import Seen
-from scene import Probe
-from scene.answer import Array
-from scene.statement import BeamMoment, DisplacementDrive, DistributedLoad, Drive
+from cprbm_scene import Probe
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import BeamMoment, DisplacementDrive, DistributedLoad, Drive
 
 SAME = 1e-6  # of the probe's largest value at the station, or of what it is a sum of
 STRESS = 0.02  # of the largest stress: what the discretisation leaves between cuts

@@ -16,7 +16,7 @@ from comparisons.audit.areas import AreaOfBeam
 from comparisons.audit.elements import SHEAR_FACTOR, ElementsOfBeam
 from comparisons.audit.links import Links
 from comparisons.audit.seen import Acting, AnyBeam, Seen
-from scene.statement import BeamContact, BeamMoment, SelfContact, WeldedEnd
+from cprbm_scene.statement import BeamContact, BeamMoment, SelfContact, WeldedEnd
 
 CLOSED = 1e-7  # of the largest force or moment in a sum
 ROUNDED = 100.0  # times what round-off leaves

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.audit.rest import Complex
-from scene.answer import Flags, Ints
+from cprbm_scene.answer import Flags, Ints
 
 WITHIN = 1e-6  # of a force: what it may point by beyond b and f
 JUTTING = 1e-9  # sine of the angle by which a corner juts out at least

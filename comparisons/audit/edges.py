@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 from comparisons.audit.areas import AreaOfBeam
 from comparisons.audit.rest import Complex, coordinates
 from comparisons.audit.seen import Seen
-from scene.answer import Array, Flags
+from cprbm_scene.answer import Array, Flags
 
 DEEP = 0.01  # of the thickness: as deep as edges of any certificate may overlap
 APART = 0.01  # of the thickness: by which a contact may press across a gap

@@ -21,7 +21,7 @@ from functools import cached_property
 import numpy as np
 
 from comparisons.audit.rest import Complex, Rest
-from scene.answer import Array, Inside, Shape
+from cprbm_scene.answer import Array, Inside, Shape
 
 PER_ELEMENT = 16
 SHEAR_FACTOR = 5.0 / 6.0  # of a rectangle

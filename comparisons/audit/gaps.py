@@ -18,8 +18,8 @@ from comparisons.audit import edges
 from comparisons.audit.corners import Corners, corners_of, ends_of, leaning
 from comparisons.audit.rest import Complex, coordinates
 from comparisons.audit.seen import AnyBeam, Seen
-from scene.answer import Array, Flags, Ints
-from scene.statement import (
+from cprbm_scene.answer import Array, Flags, Ints
+from cprbm_scene.statement import (
     BeamContact,
     CircleContact,
     FunctionContact,

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from comparisons.audit.seen import Seen
-from scene.statement import DisplacementDrive, FreeEnd, SlidingBody, TurningBody, WeldedEnd
+from cprbm_scene.statement import DisplacementDrive, FreeEnd, SlidingBody, TurningBody, WeldedEnd
 
 APART = 1e-8  # of the longest beam, rad
 

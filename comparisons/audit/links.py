@@ -23,7 +23,7 @@ from itertools import pairwise
 import numpy as np
 
 from comparisons.audit.rest import Complex, Rest
-from scene.answer import Array, Inside, Shape
+from cprbm_scene.answer import Array, Inside, Shape
 
 SMALL = 1e-4  # rad: below this two terms of a series are exact
 PER_HALF = 8  # places of the fine line in half of an element

@@ -27,9 +27,9 @@ from itertools import pairwise
 import numpy as np
 
 from comparisons.audit.seen import Seen
-from scene import Answer
-from scene.answer import Array
-from scene.statement import DisplacementDrive
+from cprbm_scene import Answer
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import DisplacementDrive
 
 ROOM = 1.0  # times the difference of the products at both ends
 CURVED = 2.0  # times what a parabola through a third station makes of it

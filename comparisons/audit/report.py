@@ -14,7 +14,7 @@ from comparisons.audit.path import balance
 from comparisons.audit.rest import rests_of
 from comparisons.audit.second import saddles, smallest_curvature
 from comparisons.audit.seen import Seen, seen_of
-from scene import Answer, Scene
+from cprbm_scene import Answer, Scene
 
 LOOKED_AT = 5  # stations whose second variation is looked at, the last among them
 

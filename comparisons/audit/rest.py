@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.geometry import length
-from scene import Beam, Scene
-from scene.answer import Array, Ints
-from scene.geometry import points_on, tangents_on
+from cprbm_scene import Beam, Scene
+from cprbm_scene.answer import Array, Ints
+from cprbm_scene.geometry import points_on, tangents_on
 
 Complex = NDArray[np.complex128]
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)

@@ -32,8 +32,8 @@ from comparisons.audit.areas import AreaOfBeam
 from comparisons.audit.links import Links
 from comparisons.audit.rest import Complex
 from comparisons.audit.seen import Acting, AnyBeam, Seen
-from scene.answer import Array, Flags, Ints
-from scene.statement import (
+from cprbm_scene.answer import Array, Flags, Ints
+from cprbm_scene.statement import (
     BeamContact,
     CircleContact,
     DisplacementDrive,

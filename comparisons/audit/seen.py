@@ -12,9 +12,9 @@ from comparisons.audit.areas import AreaOfBeam
 from comparisons.audit.elements import ElementsOfBeam
 from comparisons.audit.links import Links
 from comparisons.audit.rest import Complex, Rest
-from scene import Answer, Scene, StationAnswer
-from scene.answer import Area, Array, Statics
-from scene.statement import BeamForce, BeamMoment, DistributedLoad, Force, FreeEnd, Moment, WeldedEnd
+from cprbm_scene import Answer, Scene, StationAnswer
+from cprbm_scene.answer import Area, Array, Statics
+from cprbm_scene.statement import BeamForce, BeamMoment, DistributedLoad, Force, FreeEnd, Moment, WeldedEnd
 
 AnyBeam = Links | ElementsOfBeam | AreaOfBeam
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(4)

@@ -9,8 +9,8 @@ from comparisons import machine
 from comparisons.bench import contenders, errors, question, running
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers
-from scene import Scene
-from scene.frozendict import frozendict
+from cprbm_scene import Scene
+from cprbm_scene.frozendict import frozendict
 
 SIZES = (10, 20, 40, 80, 160)
 METHODS: tuple[contenders.Name, ...] = ("auto", "paper", "fea")

@@ -12,9 +12,9 @@ from comparisons.pairing import Solver, Solvers, discretised, prepared
 from comparisons.peers import ipopt, slsqp, trust_constr
 from comparisons.peers.judged import judged
 from comparisons.peers.solving import Optimiser, Solved
-from scene import Answer, Scene
-from scene.answer import Array
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Scene
+from cprbm_scene.answer import Array
+from cprbm_scene.frozendict import frozendict
 
 Name = Literal["auto", "paper", "fea", "slsqp", "trust-constr", "ipopt"]
 NAMES: tuple[Name, ...] = ("auto", "paper", "fea", "slsqp", "trust-constr", "ipopt")

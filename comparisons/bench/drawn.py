@@ -12,7 +12,7 @@ from comparisons.bench.question import MEASURES, Measure
 from comparisons.bench.running import Benchmark, trend
 from comparisons.bench.told import sized
 from comparisons.figures import BLUE, RED, Picture, canvas, picture
-from scene.frozendict import frozendict
+from cprbm_scene.frozendict import frozendict
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -27,9 +27,9 @@ from comparisons.choices import Choices
 from comparisons.converging.limits import limit
 from comparisons.pairing import Solvers
 from comparisons.scales import SMALLEST_EVENT, natural_scale
-from scene import Scene, SceneError
-from scene.answer import Array
-from scene.frozendict import frozendict
+from cprbm_scene import Scene, SceneError
+from cprbm_scene.answer import Array
+from cprbm_scene.frozendict import frozendict
 
 FINE = (160, 320, 640)
 ORDER = 2.0

@@ -16,8 +16,8 @@ from __future__ import annotations
 from typing import Literal
 
 from comparisons.studies.last_loads import at_last_loads
-from scene import Scene
-from scene.statement import DisplacementDrive, Probe
+from cprbm_scene import Scene
+from cprbm_scene.statement import DisplacementDrive, Probe
 
 Measure = Literal["places", "forces"]
 MEASURES: tuple[Measure, ...] = ("places", "forces")

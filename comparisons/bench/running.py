@@ -36,9 +36,9 @@ from comparisons.bench.errors import NOTHING, Reference, errors
 from comparisons.bench.question import Measure
 from comparisons.bench.timing import middle, quartiles_apart
 from comparisons.choices import Count, Kinematics
-from scene import Scene, SceneError
-from scene.frozendict import frozendict
-from scene.threads import one_thread
+from cprbm_scene import Scene, SceneError
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.threads import one_thread
 
 SIZES = (10, 20, 40, 80, 160, 320, 640, 1280, 2560, 5120)
 FIT_FROM = 40

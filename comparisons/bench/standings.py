@@ -16,7 +16,7 @@ from comparisons.bench.contenders import Name
 from comparisons.bench.question import MEASURES, Measure
 from comparisons.bench.running import Benchmark, Timing
 from comparisons.choices import Count
-from scene.frozendict import frozendict
+from cprbm_scene.frozendict import frozendict
 
 TARGETS = (1e-2, 1e-3, 1e-4)
 Clocked = Literal["solve", "both"]

@@ -11,7 +11,7 @@ import numpy as np
 
 from comparisons.choices import Choices
 from comparisons.pairing import Solver
-from scene import Answer, Scene
+from cprbm_scene import Answer, Scene
 
 Method = Literal["cprbm", "fea"]
 

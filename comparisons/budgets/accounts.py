@@ -10,7 +10,7 @@ from comparisons.budgets.runs import BudgetRuns, budgeted
 from comparisons.choices import Choices
 from comparisons.memory import Remembering
 from comparisons.soundness import complaints
-from scene import Scene
+from cprbm_scene import Scene
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 _SERIES_BELOW = 0.1  # h where the terms left out and the digits that a − 1 loses are both below 1e-13
 _TERMS = 9

@@ -48,8 +48,8 @@ from comparisons.order import order_of
 from comparisons.scales import norm
 from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
-from scene import Answer, Probe, Scene, Stage
-from scene.answer import Array, Flags
+from cprbm_scene import Answer, Probe, Scene, Stage
+from cprbm_scene.answer import Array, Flags
 
 LINEAR = 0.5
 """Of what the line says of p: the most by which the value at p may be off it."""

@@ -31,10 +31,10 @@ from comparisons.claims import claim_difference, claim_of
 from comparisons.measures import Row
 from comparisons.scales import denominator, norm
 from comparisons.stations import station_of
-from scene import Answer, Claim, Scene
-from scene.answer import Array
-from scene.frozendict import frozendict
-from scene.statement import STRESSES
+from cprbm_scene import Answer, Claim, Scene
+from cprbm_scene.answer import Array
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.statement import STRESSES
 
 BOUNDS = (-1.0, 0.5)
 """Between which ν lies; the first is not reached."""

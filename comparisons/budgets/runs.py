@@ -21,8 +21,8 @@ from itertools import islice
 from comparisons.choices import KINEMATICS, Choices, Kinematics, check
 from comparisons.memory import Remembering
 from comparisons.pairing import in_paper
-from scene import Answer, Scene
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Scene
+from cprbm_scene.frozendict import frozendict
 
 LEVELS = (1, 2, 4)
 """Links over N."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 if TYPE_CHECKING:
-    from scene import Question, Scene
+    from cprbm_scene import Question, Scene
 
 T = TypeVar("T")
 
@@ -53,7 +53,7 @@ def opened(case: str) -> Scene:
     Raises:
         SceneError: there is no such case, or the file is no valid scene.
     """
-    from scene import read  # loaded when a scene is asked, not to list the cases
+    from cprbm_scene import read  # loaded when a scene is asked, not to list the cases
 
     return _found(case, read)
 
@@ -68,7 +68,7 @@ def asked(case: str) -> Question:
     Raises:
         SceneError: there is no such case, or the file is no valid question.
     """
-    from scene import read_question
+    from cprbm_scene import read_question
 
     return _found(case, read_question)
 
@@ -79,8 +79,8 @@ def _found(case: str, reader: Callable[[str | Path], T]) -> T:
             return reader(path)
     if case.endswith(".toml") or "/" in case or "\\" in case:
         return reader(case)
-    from scene import Mistake, SceneError
-    from scene.mistakes import hint
+    from cprbm_scene import Mistake, SceneError
+    from cprbm_scene.mistakes import hint
 
     here = Path(f"{case}.toml")
     meant = f" (is the file {here} meant?)" if here.is_file() else hint(case, names())

@@ -9,7 +9,7 @@ import click
 if TYPE_CHECKING:
     from comparisons.choices import Choices
     from comparisons.tolerances.search import Tolerance
-    from scene import Answer, Scene
+    from cprbm_scene import Answer, Scene
 
 SolverName = Literal["cprbm", "fea", "exact", "solid"]
 SOLVERS: tuple[SolverName, ...] = ("cprbm", "fea", "exact", "solid")

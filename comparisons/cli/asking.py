@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 if TYPE_CHECKING:
-    from scene import Question
+    from cprbm_scene import Question
 
 
 def questions(asked: Sequence[str]) -> list[Question]:

@@ -108,7 +108,7 @@ def command(
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
     from comparisons.pairing import solvers_of
-    from scene.frozendict import frozendict
+    from cprbm_scene.frozendict import frozendict
 
     if sizes is not None and links:
         raise click.UsageError("found --sizes and -n; allowed: one of them.")

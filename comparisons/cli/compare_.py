@@ -53,7 +53,7 @@ def command(
     from comparisons.resuming import resumed
     from comparisons.tolerances.tolerated import paired_within
     from comparisons.verdict import compared
-    from scene import OffsetQuestion, Scene
+    from cprbm_scene import OffsetQuestion, Scene
 
     one_of_both(tol)
     taking_part = with_solid(solvers_of(planted)) if asking_solid else solvers_of(planted)

@@ -15,7 +15,7 @@ from comparisons.cli.options import family_sizes, folder, opinions, output, vari
 if TYPE_CHECKING:
     from comparisons.converging.report import Told
     from comparisons.documents import Plain
-    from scene import Question
+    from cprbm_scene import Question
 
 NOT_COMPLETED = 1
 

@@ -57,7 +57,7 @@ def command(
     from comparisons.reporting import folder as put
     from comparisons.reporting.gathering import Wanted, gathered, has_table, table
     from comparisons.resuming import resumed
-    from scene import OffsetQuestion
+    from cprbm_scene import OffsetQuestion
 
     wanted = questions(asked or ("all",))
     choices = Choices(links, formulation, elements, kinematics)

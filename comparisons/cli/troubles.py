@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from comparisons.cli.wanting import WRONG_QUESTION
-from scene import Mistake, SceneError
+from cprbm_scene import Mistake, SceneError
 
 NOT_FINISHED = 1
 

@@ -16,7 +16,7 @@ from comparisons.cli.options import numerical, one_of_both, verbose
 
 if TYPE_CHECKING:
     from comparisons.viewing.frames import Coloured
-    from scene import Answer
+    from cprbm_scene import Answer
 
 _QUANTITIES = ("bending_stress", "combined_stress", "moment")
 

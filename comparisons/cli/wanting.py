@@ -7,7 +7,7 @@ import sys
 
 WRONG_QUESTION = 2
 
-_OURS = ("scene", "cprbm", "fea_reference", "exact", "comparisons")
+_OURS = ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons")
 
 
 def told(error: ImportError) -> tuple[str, int] | None:

@@ -18,7 +18,7 @@ from comparisons.criticals import mechanism
 from comparisons.measures import load_unit
 from comparisons.order import OWN, USUAL
 from comparisons.reach import ends_at_critical
-from scene import Answer, Critical, Scene, Stage
+from cprbm_scene import Answer, Critical, Scene, Stage
 
 
 @dataclass(frozen=True, slots=True)

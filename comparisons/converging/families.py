@@ -34,9 +34,9 @@ from comparisons.scales import norm
 from comparisons.soundness import complaints
 from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
-from scene import Answer, Probe, Scene, Stage
-from scene.answer import Array
-from scene.statement import STRESSES
+from cprbm_scene import Answer, Probe, Scene, Stage
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import STRESSES
 
 SIZES = (10, 20, 40, 80, 160, 320)
 STANDARD_AT = 40

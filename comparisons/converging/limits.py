@@ -47,7 +47,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 SAFETY = 1.25
 COMMON = 2.0

@@ -17,8 +17,8 @@ from comparisons.formats import number, percent
 from comparisons.offset_verdict import OffsetRow, compared_offset
 from comparisons.pairing import OffsetConstruction
 from comparisons.sheet import Sheet
-from scene import OffsetQuestion
-from scene.offset import FEWEST, MOST
+from cprbm_scene import OffsetQuestion
+from cprbm_scene.offset import FEWEST, MOST
 
 Curves = dict[tuple[str, float], list[OffsetRow]]
 """By spacing and offset the rows of all sizes, ascending."""

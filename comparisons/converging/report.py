@@ -11,7 +11,7 @@ from comparisons.figures import Picture
 from comparisons.rendering import Embedded, embedded, rendered
 from comparisons.sheet import Sheet
 from comparisons.writing import write
-from scene import Question
+from cprbm_scene import Question
 
 
 @dataclass(frozen=True, slots=True)

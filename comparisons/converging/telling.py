@@ -15,7 +15,7 @@ from comparisons.converging.report import Told
 from comparisons.memory import Remembering
 from comparisons.pairing import Crew, Solvers
 from comparisons.thinning import at_shown
-from scene import OffsetQuestion, Question
+from cprbm_scene import OffsetQuestion, Question
 
 
 def all_told(question: Question, sizes: tuple[int, ...], choices: Choices, solvers: Solvers, crew: Crew) -> Told:

@@ -21,9 +21,9 @@ from typing import Literal
 
 import numpy as np
 
-from scene import Arc, Line, Spline
-from scene.answer import Array
-from scene.geometry import points_on
+from cprbm_scene import Arc, Line, Spline
+from cprbm_scene.answer import Array
+from cprbm_scene.geometry import points_on
 
 EXACT = 1e-9
 MOST = 257

@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from comparisons.processes import ByForceError, beside
-from scene.answer import Array
-from scene.mistakes import Mistake, SceneError
+from cprbm_scene.answer import Array
+from cprbm_scene.mistakes import Mistake, SceneError
 
 SAMPLES = 2001
 """Points along a curve that is known between them."""

@@ -18,10 +18,10 @@ import numpy as np
 
 from comparisons.importing.curves import Fitted, fitted
 from comparisons.importing.gmshed import Drawn, Traced
-from scene import Arc, Line
-from scene.answer import Array
-from scene.mistakes import Mistake, SceneError
-from scene.reading import scene_from
+from cprbm_scene import Arc, Line
+from cprbm_scene.answer import Array
+from cprbm_scene.mistakes import Mistake, SceneError
+from cprbm_scene.reading import scene_from
 
 Unit = Literal["m", "cm", "mm", "um", "in"]
 

@@ -24,7 +24,7 @@ from functools import cached_property
 
 import numpy as np
 
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from comparisons.peers.fitting import Fitted
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 if TYPE_CHECKING:
     from comparisons.pairing import Discretised, FittedContact, RoundContact, Spot

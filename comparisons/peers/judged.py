@@ -15,10 +15,10 @@ import numpy as np
 from comparisons.peers.formulas import Formulas
 from comparisons.peers.kkt import Stationarity, stationarity
 from comparisons.peers.solving import LATE, Solved
-from scene import Scene
-from scene.answer import Array
-from scene.frozendict import frozendict
-from scene.statement import Probe
+from cprbm_scene import Scene
+from cprbm_scene.answer import Array
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.statement import Probe
 
 if TYPE_CHECKING:
     from comparisons.pairing import Discretised

@@ -21,7 +21,7 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from comparisons.peers.formulas import Formulas
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 NEAR = 1e-6  # ℓ
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 if TYPE_CHECKING:
     from scipy.optimize import OptimizeResult

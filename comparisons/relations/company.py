@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from comparisons.relations.image import Data, Image, copied
-from scene.geometry import points_on
-from scene.reading import scene_from
+from cprbm_scene.geometry import points_on
+from cprbm_scene.reading import scene_from
 
 AWAY = 7.3
 """Distance of what is far, in extents of the scene."""

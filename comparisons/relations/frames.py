@@ -24,8 +24,8 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from comparisons.relations.image import Data, Image, copied
-from scene import Probe
-from scene.answer import Array
+from cprbm_scene import Probe
+from cprbm_scene.answer import Array
 
 OTHER_WAY = {
     "counterclockwise": "clockwise",

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from scene import Answer, Probe, Scene
-from scene.answer import Array
+from cprbm_scene import Answer, Probe, Scene
+from cprbm_scene.answer import Array
 
 Data = dict[str, Any]
 """A scene as a TOML file's plain data."""

@@ -33,10 +33,10 @@ from comparisons.relations.uncertain import Solved, critical_uncertainties, solv
 from comparisons.scales import norm
 from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
-from scene import Answer, Probe, Scene, SceneError, StationAnswer
-from scene.answer import Array, Flags
-from scene.reading import scene_from
-from scene.statement import STRESSES
+from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer
+from cprbm_scene.answer import Array, Flags
+from cprbm_scene.reading import scene_from
+from cprbm_scene.statement import STRESSES
 
 TARGET = 1e-7
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from comparisons.relations.image import Data, Image, copied
-from scene import Probe
-from scene.answer import Array
+from cprbm_scene import Probe
+from cprbm_scene.answer import Array
 
 UNORDERED = ("materials", "bodies", "beams", "loads", "drives", "contacts", "stops", "pins")
 """Tables whose order means nothing; that of stages is the order of events."""

@@ -27,10 +27,10 @@ import numpy as np
 
 from comparisons.geometry import length
 from comparisons.relations.image import Data, Image, copied
-from scene import Answer, Scene, StationAnswer
-from scene.answer import Array
-from scene.reading import scene_from
-from scene.statement import (
+from cprbm_scene import Answer, Scene, StationAnswer
+from cprbm_scene.answer import Array
+from cprbm_scene.reading import scene_from
+from cprbm_scene.statement import (
     BeamForce,
     BeamMoment,
     DisplacementDrive,

@@ -13,10 +13,10 @@ import numpy as np
 from comparisons.geometry import length
 from comparisons.relations.frames import OTHER_WAY
 from comparisons.relations.image import Data, Image, copied
-from scene import Probe
-from scene.answer import Array
-from scene.reading import scene_from
-from scene.statement import FreeEnd, Polynomial, Spline
+from cprbm_scene import Probe
+from cprbm_scene.answer import Array
+from cprbm_scene.reading import scene_from
+from cprbm_scene.statement import FreeEnd, Polynomial, Spline
 
 ASSEMBLED = 1e-6
 """Of a beam's length: an end that is drawn farther from its point is brought there by the assembly."""

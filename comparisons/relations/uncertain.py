@@ -23,8 +23,8 @@ from comparisons.pairing import Solver
 from comparisons.scales import norm
 from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
-from scene import Answer, Probe, Scene, StationAnswer
-from scene.statement import STRESSES
+from cprbm_scene import Answer, Probe, Scene, StationAnswer
+from cprbm_scene.statement import STRESSES
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from comparisons.sheet import Sheet
 from comparisons.sheets import Subject
 from comparisons.studies.told import Told as Study
 from comparisons.verdict import Comparison
-from scene import Answer, Question
+from cprbm_scene import Answer, Question
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,7 +27,7 @@ from comparisons.reporting.inlined import letters_of
 from comparisons.sources import program
 from comparisons.studies.told import Told
 from comparisons.writing import write
-from scene import Question
+from cprbm_scene import Question
 
 _CHAPTER = "chapter.json"
 _TABLE = "table1-told.json"

@@ -18,7 +18,7 @@ from comparisons.reporting.chapters import Found
 from comparisons.studies import table1, table1_told
 from comparisons.studies.told import Told as Study
 from comparisons.verdict import Comparison, compared
-from scene import OffsetQuestion, Question, SceneError
+from cprbm_scene import OffsetQuestion, Question, SceneError
 
 
 @dataclass(frozen=True, slots=True)

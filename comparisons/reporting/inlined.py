@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from xml.etree import ElementTree
 
 from comparisons.figures import BLUE, GREY, RED, Picture
-from scene.frozendict import frozendict
+from cprbm_scene.frozendict import frozendict
 
 _SVG, _XLINK = "{http://www.w3.org/2000/svg}", "{http://www.w3.org/1999/xlink}"
 _COLOURS: Mapping[str, str] = frozendict(

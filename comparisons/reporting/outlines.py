@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 WIDE = 1000.0
 _EPSILON = 0.3

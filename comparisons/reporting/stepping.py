@@ -24,10 +24,10 @@ from comparisons.scales import norm
 from comparisons.stations import station_of
 from comparisons.verdict import Comparison
 from comparisons.viewing.moved import Motion
-from scene import Beam, CircleContact, Scene, Stage, StationAnswer
-from scene.answer import Array
-from scene.freedoms import unit
-from scene.statement import (
+from cprbm_scene import Beam, CircleContact, Scene, Stage, StationAnswer
+from cprbm_scene.answer import Array
+from cprbm_scene.freedoms import unit
+from cprbm_scene.statement import (
     STRESSES,
     BeamForce,
     BeamMoment,

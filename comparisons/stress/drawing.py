@@ -24,8 +24,8 @@ from comparisons.stress.taut import slack
 from comparisons.stress.theories import made_thin, share_of
 from comparisons.stress.toml import toml_of
 from comparisons.stress.whole import WHOLE
-from scene.mistakes import SceneError
-from scene.reading import scene_from
+from cprbm_scene.mistakes import SceneError
+from cprbm_scene.reading import scene_from
 
 Data = dict[str, Any]
 _MOST_DRAWS = 400

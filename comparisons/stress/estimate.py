@@ -26,10 +26,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from scene import Beam, FreeEnd, Scene
-from scene.freedoms import unit
-from scene.geometry import arc_length, points_on
-from scene.statement import (
+from cprbm_scene import Beam, FreeEnd, Scene
+from cprbm_scene.freedoms import unit
+from cprbm_scene.geometry import arc_length, points_on
+from cprbm_scene.statement import (
     BeamForce,
     BeamMoment,
     DisplacementDrive,

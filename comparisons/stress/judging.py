@@ -43,7 +43,7 @@ from comparisons.stress.outcomes import Outcome, Way
 from comparisons.stress.strata import met, stated
 from comparisons.verdict import Comparison, compared
 from comparisons.words import Word
-from scene import Answer, Scene, SceneError
+from cprbm_scene import Answer, Scene, SceneError
 
 DOMINANT = 2.0
 """Times that one solver states more than the other from which on it alone is refined."""

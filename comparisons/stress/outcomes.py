@@ -35,7 +35,7 @@ class Outcome:
         name: of the scene.
         way: in which it ended.
         sentence: which row decided, or what went wrong.
-        ending: name of the :class:`scene.Ending` of the run that ended early; empty of the other ways.
+        ending: name of the :class:`cprbm_scene.Ending` of the run that ended early; empty of the other ways.
         difference: largest difference over what the solvers state together, of all rows; None where no rows stand.
         uncertainty: largest sum of what is stated, a fraction of the probe's scale; None likewise.
         beyond: the largest distance from an exact answer over what is stated; None where none is known.

@@ -13,8 +13,8 @@ from comparisons.stress.draft import Data, Draft
 from comparisons.stress.estimate import BARS, Estimate, State
 from comparisons.stress.obstacles import Obstacle, Spot, is_clear, rigid
 from comparisons.stress.theories import made_thin, share_of
-from scene import FreeEnd
-from scene.reading import scene_from
+from cprbm_scene import FreeEnd
+from cprbm_scene.reading import scene_from
 
 Motion = tuple[complex, complex]
 """A body's turn as a factor of places in the plane, and what is added to them."""

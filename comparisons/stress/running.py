@@ -19,8 +19,8 @@ from comparisons.stress.shrinking import Patience, shrunk
 from comparisons.stress.strata import stated
 from comparisons.stress.toml import toml_of
 from comparisons.writing import write
-from scene import Scene, SceneError
-from scene.reading import scene_from
+from cprbm_scene import Scene, SceneError
+from cprbm_scene.reading import scene_from
 
 FAILURES = (Way.WRONG, Way.CRASHED, Way.TIMED_OUT)
 """The ways that are always a fault of ours."""

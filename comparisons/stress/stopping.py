@@ -10,8 +10,8 @@ import numpy as np
 from comparisons.stress.chance import between, happens
 from comparisons.stress.draft import Data, Draft
 from comparisons.stress.estimate import Estimate, State
-from scene import PinnedEnd
-from scene.geometry import tangents_on
+from cprbm_scene import PinnedEnd
+from cprbm_scene.geometry import tangents_on
 
 SHARE = 0.85  # of the pinned ends that turn
 LEAST = 0.04  # rad

@@ -10,7 +10,7 @@ from math import pi
 
 import numpy as np
 
-from scene import (
+from cprbm_scene import (
     Answer,
     BeamContact,
     CircleContact,
@@ -22,8 +22,8 @@ from scene import (
     Scene,
     SelfContact,
 )
-from scene.geometry import arc_length, points_on
-from scene.statement import PinnedEnd, SlidingBody
+from cprbm_scene.geometry import arc_length, points_on
+from cprbm_scene.statement import PinnedEnd, SlidingBody
 
 FAR_TURN = pi / 3.0  # rad; beyond this a rotation is large
 SLENDER, THICK = 1.0 / 100.0, 1.0 / 30.0  # mean thickness over length

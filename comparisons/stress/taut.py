@@ -21,8 +21,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from comparisons.stress.estimate import Barrier, Estimate, State
-from scene import FreeEnd, Scene
-from scene.statement import DisplacementDrive, FixedBody, PinnedEnd, RotationDrive, SlidingBody, TurningBody, WeldedEnd
+from cprbm_scene import FreeEnd, Scene
+from cprbm_scene.statement import (
+    DisplacementDrive,
+    FixedBody,
+    PinnedEnd,
+    RotationDrive,
+    SlidingBody,
+    TurningBody,
+    WeldedEnd,
+)
 
 Array = NDArray[np.float64]
 Attached = WeldedEnd | PinnedEnd | FreeEnd

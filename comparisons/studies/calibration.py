@@ -14,8 +14,8 @@ from comparisons.choices import Choices
 from comparisons.pairing import ALONE, Crew, Solvers, exact_answer, paired
 from comparisons.soundness import sound_part
 from comparisons.verdict import Verdict, compared
-from scene import Answer, Scene
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Scene
+from cprbm_scene.frozendict import frozendict
 
 SIZES = ((17, 40), (20, 60), (40, 80), (80, 160))
 """Links per beam of the CPRBM and finite elements per beam."""

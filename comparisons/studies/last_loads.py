@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from scene import Scene
+from cprbm_scene import Scene
 
 
 def at_last_loads(scene: Scene) -> Scene:

@@ -30,8 +30,8 @@ from comparisons.soundness import complaints
 from comparisons.stations import station_of
 from comparisons.studies.last_loads import at_last_loads
 from comparisons.verdict import Comparison, compared
-from scene import Answer, Claim, Material, Probe, Scene
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Claim, Material, Probe, Scene
+from cprbm_scene.frozendict import frozendict
 
 MATERIALS: Mapping[str, Material] = frozendict(
     {

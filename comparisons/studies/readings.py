@@ -27,8 +27,8 @@ from comparisons.studies import readings_peers as peers
 from comparisons.studies.readings_optimisers import Ipopt, Optimiser, Slsqp, TrustConstr, Units, bounds
 from comparisons.studies.readings_path import End, State, constraints, followed, settled
 from comparisons.studies.readings_problem import PAPER, Array, Mechanism, Problem, Reading
-from scene import Line, Scene
-from scene.frozendict import frozendict
+from cprbm_scene import Line, Scene
+from cprbm_scene.frozendict import frozendict
 
 JUMP = np.radians(15.0)
 """By this a link turns further than it may in an ordinary step."""

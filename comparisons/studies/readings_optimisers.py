@@ -16,7 +16,7 @@ import numpy as np
 from scipy import optimize
 
 from comparisons.studies.readings_problem import Array, Problem
-from scene.frozendict import frozendict
+from cprbm_scene.frozendict import frozendict
 
 Units = Literal["J, m", "mJ, mm"]
 _FACTORS: Mapping[Units, tuple[float, float]] = frozendict({"J, m": (1.0, 1.0), "mJ, mm": (1e3, 1e3)})

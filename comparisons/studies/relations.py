@@ -11,7 +11,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solver, Solvers
 from comparisons.relations.image import Data
 from comparisons.relations.measured import Violation, violations
-from scene import SceneError
+from cprbm_scene import SceneError
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,9 +17,9 @@ from comparisons.bench.timing import Method, middle, quartiles_apart, timed
 from comparisons.choices import Choices, Count
 from comparisons.pairing import Solver, Solvers
 from comparisons.studies.last_loads import at_last_loads
-from scene import Answer, Ending, Scene, SceneError
-from scene.frozendict import frozendict
-from scene.threads import one_thread
+from cprbm_scene import Answer, Ending, Scene, SceneError
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.threads import one_thread
 
 THEIR_MACHINE = "Intel Core i5-8500, MATLAB R2018b for the CPRBM, ANSYS 19.1 for the finite elements"
 

@@ -41,9 +41,9 @@ from comparisons.converging.limits import limit
 from comparisons.order import foretold, order_of, richardson, unforeseen
 from comparisons.scales import norm
 from comparisons.stations import station_of
-from scene import Answer, Probe, Scene, StationAnswer
-from scene.answer import Array, frozen_array
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Probe, Scene, StationAnswer
+from cprbm_scene.answer import Array, frozen_array
+from cprbm_scene.frozendict import frozendict
 
 Sizes = tuple[int, int, int]
 Three = tuple[Answer, Answer, Answer]

@@ -19,7 +19,7 @@ from comparisons.pairing import Runs, Solver, may_be_uneven
 from comparisons.soundness import complaints
 from comparisons.tolerances.extrapolation import Sizes, settled, uneven
 from comparisons.tolerances.search import FIRST, Estimate, Stated
-from scene import Answer, Scene
+from cprbm_scene import Answer, Scene
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,7 +31,7 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 from comparisons.formats import percent
-from scene import SceneError
+from cprbm_scene import SceneError
 
 FIRST = 10
 """N with which a search begins."""

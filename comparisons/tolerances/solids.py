@@ -35,9 +35,9 @@ from comparisons.soundness import complaints
 from comparisons.stations import station_of
 from comparisons.tolerances.extrapolation import told
 from comparisons.tolerances.search import Estimate, Stated, Tolerance
-from scene import Answer, Scene
-from scene.answer import frozen_array
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Scene
+from cprbm_scene.answer import frozen_array
+from cprbm_scene.frozendict import frozendict
 
 FIRST = (20, 1)
 """Elements along a beam and across it, of the first mesh."""

@@ -21,8 +21,8 @@ from comparisons.soundness import complaints
 from comparisons.tolerances.levels import SceneLevels
 from comparisons.tolerances.search import Found, Tolerance, search
 from comparisons.tolerances.solids import meshed, settled
-from scene import Answer, Scene
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Scene
+from cprbm_scene.frozendict import frozendict
 
 LARGEST_PAPER = 640
 """Most links in the formulation ``paper``, whose time grows with the cube of N; ``auto`` beside it has twice that."""

@@ -24,8 +24,8 @@ from comparisons.viewing.frames import (
     colour_values,
     shown_unit,
 )
-from scene import Scene
-from scene.answer import Array
+from cprbm_scene import Scene
+from cprbm_scene.answer import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

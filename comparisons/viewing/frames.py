@@ -15,8 +15,8 @@ from comparisons.geometry import length
 from comparisons.viewing.moved import Obstacle, obstacles, points_at
 from comparisons.viewing.pushes import Push, pushes_at
 from comparisons.viewing.strips import Strip, strips_at
-from scene import Answer, Scene, StationAnswer
-from scene.answer import Array
+from cprbm_scene import Answer, Scene, StationAnswer
+from cprbm_scene.answer import Array
 
 Coloured = Literal["bending_stress", "combined_stress", "moment"]
 COLOURED: tuple[Coloured, ...] = ("bending_stress", "combined_stress", "moment")

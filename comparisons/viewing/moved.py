@@ -19,9 +19,9 @@ from math import cos, sin
 import numpy as np
 
 from comparisons.bodies_drawn import Places, places_at, rotation
-from scene import Scene, StationAnswer
-from scene.answer import Array
-from scene.statement import (
+from cprbm_scene import Scene, StationAnswer
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import (
     CircleContact,
     EdgeContact,
     FixedBody,

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scene import Scene, StationAnswer
-from scene.answer import Array
-from scene.statement import SelfContact
+from cprbm_scene import Scene, StationAnswer
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import SelfContact
 
 
 @dataclass(frozen=True, slots=True)

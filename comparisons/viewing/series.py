@@ -13,7 +13,7 @@ from xml.sax.saxutils import quoteattr
 
 from comparisons.viewing.frames import Frame
 from comparisons.viewing.solids import Block, beams, contact_forces, obstacles
-from scene.statement import Scene
+from cprbm_scene.statement import Scene
 
 
 def vtu(block: Block) -> bytes:

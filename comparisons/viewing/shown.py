@@ -13,9 +13,9 @@ from comparisons.viewing.animated import animation
 from comparisons.viewing.frames import ARROW, LEAST, Bounds, Coloured, Frame, bounds_of, frames_of, shown_unit
 from comparisons.viewing.solids import beams, obstacles
 from comparisons.viewing.space import View
-from scene import Answer, Scene
-from scene.answer import Array
-from scene.statement import FixedBody
+from cprbm_scene import Answer, Scene
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import FixedBody
 
 Kind = Literal[".3d.png", ".3d.gif", ".3d.apng", ".png", ".svg", ".gif", ".apng", ".vtu", ".pvd"]
 KINDS: tuple[Kind, ...] = get_args(Kind)

@@ -15,7 +15,7 @@ import numpy as np
 from comparisons.viewing.frames import Frame
 from comparisons.viewing.moved import Obstacle
 from comparisons.viewing.strips import Strip
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 ACROSS = 4
 Kind = Literal["hexahedron", "vertex"]

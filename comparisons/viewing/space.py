@@ -16,7 +16,7 @@ import numpy as np
 from comparisons.processes import ByForceError, beside
 from comparisons.viewing.frames import COLOURS, TINY, Bounds, Coloured
 from comparisons.viewing.solids import Block
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 T = TypeVar("T")
 P = ParamSpec("P")

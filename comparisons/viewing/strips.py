@@ -21,9 +21,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.geometry import length, points
-from scene import Beam, Probe, Scene, StationAnswer
-from scene.answer import Array, Shape
-from scene.statement import Quantity
+from cprbm_scene import Beam, Probe, Scene, StationAnswer
+from cprbm_scene.answer import Array, Shape
+from cprbm_scene.statement import Quantity
 
 SECTIONS = 241
 """Places along a beam."""
@@ -42,7 +42,7 @@ class Strip:
         line, normal: middles, m, and unit normals, (n, 2).
         rest_line, rest_normal: the same where the beam was drawn free of stress, (n, 2).
         thickness, width: m (n,).
-        bending_stress, combined_stress: Pa (n,), as :mod:`scene.answer` defines them.
+        bending_stress, combined_stress: Pa (n,), as :mod:`cprbm_scene.answer` defines them.
     """
 
     s: Array

@@ -11,9 +11,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import cprbm
-import scene
+import cprbm_scene
 
-arch = scene.read(Path(__file__).with_name("arch.toml"))
+arch = cprbm_scene.read(Path(__file__).with_name("arch.toml"))
 answer = cprbm.answer(arch, cprbm.Settings(links=24))
 print(answer.ending.name)
 

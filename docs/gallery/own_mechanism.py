@@ -8,10 +8,10 @@ import textwrap
 from pathlib import Path
 
 import comparisons
-import scene
+import cprbm_scene
 from comparisons.choices import Choices
 
-latch = scene.read(Path(__file__).with_name("latch.toml"))
+latch = cprbm_scene.read(Path(__file__).with_name("latch.toml"))
 found = comparisons.compare(latch, Choices(links=40, elements=40))
 
 print(found.verdict.word.value)

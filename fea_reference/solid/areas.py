@@ -17,10 +17,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from scene.answer import Array
-from scene.geometry import arc_length, largest_curvature, points_on, tangents_on
-from scene.mistakes import Mistake
-from scene.statement import Beam, FreeEnd, Scene
+from cprbm_scene.answer import Array
+from cprbm_scene.geometry import arc_length, largest_curvature, points_on, tangents_on
+from cprbm_scene.mistakes import Mistake
+from cprbm_scene.statement import Beam, FreeEnd, Scene
 
 _DEPTH = 1.5
 _SHORTEST = 0.125

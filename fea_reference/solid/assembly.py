@@ -11,13 +11,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from cprbm_scene.answer import Array
+from cprbm_scene.mistakes import Mistake, SceneError
+from cprbm_scene.statement import Scene
 from fea_reference.solid.march import March, StoppedError, reach
 from fea_reference.solid.model import WAY, Model, SharePart
 from fea_reference.solid.stops import StopPart
 from fea_reference.solid.system import assemble
-from scene.answer import Array
-from scene.mistakes import Mistake, SceneError
-from scene.statement import Scene
 
 _BEYOND = 1e-9  # rad
 

@@ -18,10 +18,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Ints
+from cprbm_scene.geometry import arc_length
+from cprbm_scene.statement import BeamForce, DistributedLoad, Scene
 from fea_reference.solid.mesh import Mesh
-from scene.answer import Array, Ints
-from scene.geometry import arc_length
-from scene.statement import BeamForce, DistributedLoad, Scene
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 

@@ -22,11 +22,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Ints
+from cprbm_scene.statement import BeamMoment
 from fea_reference.solid.beam_loads import section
 from fea_reference.solid.bodies import across
 from fea_reference.solid.mesh import Mesh
-from scene.answer import Array, Ints
-from scene.statement import BeamMoment
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,8 +24,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scene.answer import Array, Ints
-from scene.statement import Scene
+from cprbm_scene.answer import Array, Ints
+from cprbm_scene.statement import Scene
 
 
 @dataclass(frozen=True, slots=True)

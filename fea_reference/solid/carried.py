@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 
 def available() -> bool:

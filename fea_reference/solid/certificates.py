@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Certificate
 from fea_reference.solid.contacts import touch
 from fea_reference.solid.curvature import smallest_curvature
 from fea_reference.solid.march import March
@@ -13,7 +14,6 @@ from fea_reference.solid.skin import Skin
 from fea_reference.solid.stops import STIFFNESS
 from fea_reference.solid.supports import balance
 from fea_reference.solid.system import assemble
-from scene.answer import Certificate
 
 _VIOLATION = 1e-9
 _BALANCE = 1e-8

@@ -25,6 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Ints
 from fea_reference.solid import facing, pricking, rigid
 from fea_reference.solid.bodies import turned
 from fea_reference.solid.edges import Broken, Corner, Graph
@@ -33,7 +34,6 @@ from fea_reference.solid.pairs import Butt, Pair, Tip
 from fea_reference.solid.rigid import Shape
 from fea_reference.solid.skin import STENCIL, Skin
 from fea_reference.solid.zones import NOWHERE, Gap, Zones, least, zones
-from scene.answer import Array, Ints
 
 _REACH = 1.0  # thicknesses that gaps are looked for in, and a few nodes
 _FLAT = -0.9  # cosine between a beam's normal and a side's: what leans more on an edge with corners is on a corner

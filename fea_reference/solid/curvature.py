@@ -20,9 +20,9 @@ from scipy.sparse import coo_matrix, diags_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import ArpackError, LinearOperator, SuperLU, eigsh
 
+from cprbm_scene.answer import Array, Ints
 from fea_reference.solid.model import Model
 from fea_reference.solid.system import System
-from scene.answer import Array, Ints
 
 _MODES = 3
 

@@ -22,8 +22,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from scene.answer import Array
-from scene.statement import FunctionContact, LineContact
+from cprbm_scene.answer import Array
+from cprbm_scene.statement import FunctionContact, LineContact
 
 _SAMPLES = 257  # of a graph, from which the nearest place is sought
 _NEWTON_STEPS = 20

@@ -25,8 +25,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csc_matrix
 
+from cprbm_scene.answer import Array, Ints
 from fea_reference.solid.mesh import Mesh
-from scene.answer import Array, Ints
 
 
 @dataclass(frozen=True, slots=True)

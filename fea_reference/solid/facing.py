@@ -26,8 +26,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from cprbm_scene.answer import Array, Flags, Ints
 from fea_reference.solid.skin import Skin
-from scene.answer import Array, Flags, Ints
 
 _ITERATIONS = 12
 _ARRIVED = 1e-12  # of a node's distance

@@ -26,6 +26,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Ending
 from fea_reference.solid.curvature import beside_minima
 from fea_reference.solid.model import Model
 from fea_reference.solid.newton import Found, equilibrium
@@ -33,7 +34,6 @@ from fea_reference.solid.pairs import Pair
 from fea_reference.solid.passing import passed
 from fea_reference.solid.settings import Settings
 from fea_reference.solid.system import System, assemble
-from scene.answer import Array, Ending
 
 _CUTS = 10  # in a row: from an equilibrium no step is found that is a millionth of the one by which it was reached
 _EASY = 9  # iterations in which a step that may be doubled arrives

@@ -21,9 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 from skfem import CellBasis, ElementQuad2, MeshQuad, MeshQuad2
 
+from cprbm_scene.answer import Array, Ints
+from cprbm_scene.statement import Scene
 from fea_reference.solid.areas import fractions, points
-from scene.answer import Array, Ints
-from scene.statement import Scene
 
 _ON = 1e-9  # of η or u: on an edge
 

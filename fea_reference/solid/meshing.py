@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from cprbm_scene.answer import Array
 from fea_reference.solid import carried, gmshed
 from fea_reference.solid.mesh import Rectangle, plain_rectangle
-from scene.answer import Array
 
 
 def chosen() -> tuple[Rectangle, str]:

@@ -13,19 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from fea_reference.solid.areas import longest
-from fea_reference.solid.beam_loads import AreaLoad, on_area
-from fea_reference.solid.beam_moments import CouplePart, couple
-from fea_reference.solid.bodies import BodyPart, Tie, across, displaced, is_own, turned
-from fea_reference.solid.elements import Elements, Strained, built, plane_stress, strained
-from fea_reference.solid.mesh import Mesh, Rectangle, meshed, plain_rectangle
-from fea_reference.solid.rows import Row, brought, rows_of
-from fea_reference.solid.settings import Settings
-from fea_reference.solid.stops import StopPart, stops_of
-from scene.answer import Array, Ints
-from scene.check_shapes import is_apart
-from scene.geometry import arc_length
-from scene.statement import (
+from cprbm_scene.answer import Array, Ints
+from cprbm_scene.check_shapes import is_apart
+from cprbm_scene.geometry import arc_length
+from cprbm_scene.statement import (
     BeamForce,
     BeamMoment,
     DisplacementDrive,
@@ -36,6 +27,15 @@ from scene.statement import (
     PinnedEnd,
     Scene,
 )
+from fea_reference.solid.areas import longest
+from fea_reference.solid.beam_loads import AreaLoad, on_area
+from fea_reference.solid.beam_moments import CouplePart, couple
+from fea_reference.solid.bodies import BodyPart, Tie, across, displaced, is_own, turned
+from fea_reference.solid.elements import Elements, Strained, built, plane_stress, strained
+from fea_reference.solid.mesh import Mesh, Rectangle, meshed, plain_rectangle
+from fea_reference.solid.rows import Row, brought, rows_of
+from fea_reference.solid.settings import Settings
+from fea_reference.solid.stops import StopPart, stops_of
 
 
 @dataclass(frozen=True, slots=True)

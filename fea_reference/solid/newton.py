@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.solid.model import Model
 from fea_reference.solid.pairs import Pair
 from fea_reference.solid.settings import Settings
 from fea_reference.solid.system import Outlook, System, assemble, deepest
-from scene.answer import Array
 
 _LONGEST = 0.5  # rad, and of the longest beam: a step that goes farther is shortened to this
 _DEEP = 0.02  # of the thickness

@@ -12,13 +12,7 @@ from itertools import product
 
 import numpy as np
 
-from fea_reference.solid import edges
-from fea_reference.solid.bodies import BodyPart
-from fea_reference.solid.edges import Corner
-from fea_reference.solid.model import Model
-from fea_reference.solid.rigid import Half, Round, Shape, seen
-from fea_reference.solid.skin import Skin
-from scene.statement import (
+from cprbm_scene.statement import (
     BeamContact,
     CircleContact,
     FunctionContact,
@@ -28,6 +22,12 @@ from scene.statement import (
     SelfContact,
     WeldedEnd,
 )
+from fea_reference.solid import edges
+from fea_reference.solid.bodies import BodyPart
+from fea_reference.solid.edges import Corner
+from fea_reference.solid.model import Model
+from fea_reference.solid.rigid import Half, Round, Shape, seen
+from fea_reference.solid.skin import Skin
 
 RigidContacts = CircleContact | HalfPlaneContact | LineContact | FunctionContact
 

@@ -14,12 +14,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.solid.edges import Corner
 from fea_reference.solid.model import Model
 from fea_reference.solid.pairs import Pair
 from fea_reference.solid.rigid import Round, seen
 from fea_reference.solid.skin import Skin
-from scene.answer import Array
 
 _LOOKS = 16
 

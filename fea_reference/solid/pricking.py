@@ -20,11 +20,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.solid import facing
 from fea_reference.solid.bodies import BodyPart, across, turned
 from fea_reference.solid.edges import Corner
 from fea_reference.solid.skin import STENCIL, Skin
-from scene.answer import Array
 
 
 def place(corner: Corner, body: BodyPart, z: Array) -> tuple[Array, Array]:

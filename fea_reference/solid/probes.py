@@ -1,9 +1,11 @@
-"""What is asked at a station, in SI units, as :mod:`scene.answer` defines it."""
+"""What is asked at a station, in SI units, as :mod:`cprbm_scene.answer` defines it."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Shape, frozen_array
+from cprbm_scene.statement import DisplacementDrive, Probe, Scene, TurningBody
 from fea_reference.solid.beam_loads import AreaLoad
 from fea_reference.solid.beam_moments import CouplePart
 from fea_reference.solid.contacts import Touch, closed
@@ -13,8 +15,6 @@ from fea_reference.solid.pairs import Tip
 from fea_reference.solid.skin import Skin
 from fea_reference.solid.stress import bending_and_membrane
 from fea_reference.solid.supports import Wrench, cross, grounded, held, place, support
-from scene.answer import Array, Shape, frozen_array
-from scene.statement import DisplacementDrive, Probe, Scene, TurningBody
 
 _NOTHING = 1e-9  # of the largest force
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from cprbm_scene.mistakes import Mistake, SceneError
+from cprbm_scene.statement import Scene
 from fea_reference.solid.areas import too_curved
-from scene.mistakes import Mistake, SceneError
-from scene.statement import Scene
 
 
 def refuse(scene: Scene) -> None:

@@ -19,9 +19,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.solid.bodies import BodyPart, turned
 from fea_reference.solid.edges import Broken, Graph
-from scene.answer import Array
 
 _S = np.array([[0.0, -1.0], [1.0, 0.0]])
 

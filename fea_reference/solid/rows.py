@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array, Ints
+from cprbm_scene.statement import BodyPin, DisplacementDrive, Drive, Scene, SlidingBody, TurningBody
 from fea_reference.solid.bodies import BodyPart, Tie, across, is_own, turned
-from scene.answer import Array, Ints
-from scene.statement import BodyPin, DisplacementDrive, Drive, Scene, SlidingBody, TurningBody
 
 
 @dataclass(frozen=True, slots=True)

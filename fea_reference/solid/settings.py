@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
-from scene.frozendict import frozendict
-from scene.mistakes import Mistake, SceneError
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.mistakes import Mistake, SceneError
 
 _LEAST = 3  # along a beam, so that every edge is a smooth curve, see fea_reference.solid.skin
 

@@ -24,7 +24,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.polynomial import polynomial
 
-from scene.answer import Array, Ints
+from cprbm_scene.answer import Array, Ints
 
 STENCIL = 7
 """Nodes on which a place of an edge depends: those of its element and of both neighbours."""

@@ -6,6 +6,10 @@ import logging
 import time
 from dataclasses import dataclass
 
+from cprbm_scene.answer import Answer, Ending, Event, StationAnswer
+from cprbm_scene.statement import Scene, Stage
+from cprbm_scene.threads import one_thread
+from cprbm_scene.told import station_reached
 from fea_reference.solid.assembly import assemble_ends
 from fea_reference.solid.certificates import certify
 from fea_reference.solid.march import March, StoppedError, begin, leave_stage, reach
@@ -16,10 +20,6 @@ from fea_reference.solid.probes import probed, shapes, touching
 from fea_reference.solid.refusals import refuse
 from fea_reference.solid.settings import Settings
 from fea_reference.solid.statics import statics
-from scene.answer import Answer, Ending, Event, StationAnswer
-from scene.statement import Scene, Stage
-from scene.threads import one_thread
-from scene.told import station_reached
 
 _SAYS = logging.getLogger(__name__)
 

@@ -10,14 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Area, Array, Statics, frozen_array
+from cprbm_scene.statement import Scene, TurningBody
 from fea_reference.solid.bodies import is_own, stands_on
 from fea_reference.solid.contacts import Touch
 from fea_reference.solid.march import March
 from fea_reference.solid.pairs import Tip
 from fea_reference.solid.skin import Skin
 from fea_reference.solid.supports import place, support
-from scene.answer import Area, Array, Statics, frozen_array
-from scene.statement import Scene, TurningBody
 
 
 @dataclass(frozen=True, slots=True)

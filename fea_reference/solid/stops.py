@@ -20,10 +20,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cprbm_scene.answer import Array
+from cprbm_scene.geometry import tangents_on
+from cprbm_scene.statement import PinnedEnd, Scene
 from fea_reference.solid.bodies import BodyPart, Tie, stands_on
-from scene.answer import Array
-from scene.geometry import tangents_on
-from scene.statement import PinnedEnd, Scene
 
 STIFFNESS = 1e6
 """K over the largest bending stiffness, per longest beam."""

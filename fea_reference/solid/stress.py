@@ -18,8 +18,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from cprbm_scene.answer import Array
 from fea_reference.solid.model import Model
-from scene.answer import Array
 
 _GAUSS = 1.0 / np.sqrt(3.0)
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene.answer import Array
 from fea_reference.solid.beam_loads import AreaLoad
 from fea_reference.solid.beam_moments import CouplePart
 from fea_reference.solid.bodies import Tie, turned
 from fea_reference.solid.model import Model, SharePart
 from fea_reference.solid.rows import Row
 from fea_reference.solid.system import System
-from scene.answer import Array
 
 Wrench = tuple[Array, float]
 """A force (2,) and a moment, about a point that is said."""

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.sparse import block_diag, coo_matrix, csc_matrix, csr_matrix, vstack
 from scipy.sparse.linalg import SuperLU, splu
 
+from cprbm_scene.answer import Array
 from fea_reference.solid.beam_loads import AreaLoad
 from fea_reference.solid.beam_moments import CouplePart
 from fea_reference.solid.bodies import across, turned
@@ -23,7 +24,6 @@ from fea_reference.solid.elements import Strained
 from fea_reference.solid.model import LoadPart, Model, SharePart
 from fea_reference.solid.pairs import Pair
 from fea_reference.solid.stops import STIFFNESS
-from scene.answer import Array
 
 _ROUND_OFF = 8.0  # measured
 _NOTHING = 10.0  # floors: a force below this is round-off itself

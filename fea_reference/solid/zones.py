@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from scene.answer import Array
+from cprbm_scene.answer import Array
 
 SAMPLES = 6  # between two nodes
 _SECANTS = 12

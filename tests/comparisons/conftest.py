@@ -4,7 +4,7 @@ import pytest
 
 from comparisons import cases
 from comparisons.pairing import Solvers
-from scene import Scene
+from cprbm_scene import Scene
 from tests.comparisons.made_up import MadeUp
 
 

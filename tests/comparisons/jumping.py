@@ -13,10 +13,10 @@ import numpy as np
 
 from comparisons.choices import Choices
 from comparisons.geometry import length
-from scene import Answer, Critical, Ending, GoneOver, Loss, PinnedEnd, Scene, Shape, StationAnswer
-from scene.answer import frozen_array
-from scene.frozendict import frozendict
-from scene.statement import TurningBody
+from cprbm_scene import Answer, Critical, Ending, GoneOver, Loss, PinnedEnd, Scene, Shape, StationAnswer
+from cprbm_scene.answer import frozen_array
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.statement import TurningBody
 from tests.comparisons.made_up import THEORY, MadeUp
 
 FORWARD, BACK = radians(70.4), radians(25.3)

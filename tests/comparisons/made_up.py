@@ -12,9 +12,9 @@ import numpy as np
 
 from comparisons.choices import Choices
 from comparisons.geometry import length, points
-from scene import Answer, Certificate, Ending, Event, Scene, Shape, StationAnswer
-from scene.answer import Array, frozen_array
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Certificate, Ending, Event, Scene, Shape, StationAnswer
+from cprbm_scene.answer import Array, frozen_array
+from cprbm_scene.frozendict import frozendict
 
 CERTIFICATE = Certificate(1e-13, 1e-13, 1e-15, 1e-5, 1e-12, 1e-12, 1e-12, 0.3, 5)
 CLOSES = 0.2

@@ -14,7 +14,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solver, Solvers
 from comparisons.stress.drawing import Drawn
 from comparisons.stress.toml import toml_of
-from scene import Answer, Ending, Mistake, Scene, SceneError
+from cprbm_scene import Answer, Ending, Mistake, Scene, SceneError
 from tests.comparisons.made_up import MadeUp, with_value
 from tests.cprbm.scenes import cantilever_data, force
 

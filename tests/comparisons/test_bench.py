@@ -16,8 +16,8 @@ from comparisons.bench.standings import TARGETS, ratios, reached, standings
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
-from scene import Ending, Mistake, SceneError
-from scene.frozendict import frozendict
+from cprbm_scene import Ending, Mistake, SceneError
+from cprbm_scene.frozendict import frozendict
 from tests.comparisons.made_up import MadeUp
 
 MACHINE = {"cpu": "made up", "cores": 3, "system": "none", "python": "0", "numpy": "1", "scipy": "2", "scikit-fem": "3"}

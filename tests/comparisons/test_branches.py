@@ -14,7 +14,7 @@ from comparisons.pairing import Solvers, paired
 from comparisons.soundness import complaints
 from comparisons.verdict import compared
 from comparisons.words import Word
-from scene import Stage
+from cprbm_scene import Stage
 from tests.comparisons.jumping import BACK, FORWARD, Jumping
 from tests.comparisons.made_up import MadeUp
 

@@ -15,8 +15,8 @@ from comparisons.cli.main import run
 from comparisons.documents import text
 from comparisons.memory import Remembering
 from comparisons.pairing import Solvers
-from scene import Ending, Material, Stage
-from scene.frozendict import frozendict
+from cprbm_scene import Ending, Material, Stage
+from cprbm_scene.frozendict import frozendict
 from tests.comparisons.made_up import THEORY, MadeUp
 
 LOAD = 0.067

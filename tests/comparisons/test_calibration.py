@@ -18,7 +18,7 @@ from comparisons.studies import calibration as study
 from comparisons.studies.calibration_told import told
 from comparisons.verdict import compared
 from comparisons.words import Word
-from scene import Ending
+from cprbm_scene import Ending
 from tests.comparisons.made_up import MadeUp, with_value
 
 EXACT = MadeUp("cprbm", 0.0)

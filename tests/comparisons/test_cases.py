@@ -7,7 +7,7 @@ from comparisons.choices import Choices
 from comparisons.claims import claim_of
 from comparisons.measures import rows_of
 from comparisons.pairing import paired
-from scene import SceneError
+from cprbm_scene import SceneError
 
 
 @pytest.mark.parametrize("name", cases.names())

@@ -11,9 +11,9 @@ from comparisons.claims import claim_difference, claim_met, claim_of, standings
 from comparisons.measures import Row
 from comparisons.pairing import paired
 from comparisons.verdict import compared
-from scene import Claim, Probe
-from scene.answer import frozen_array
-from scene.checks import mistakes_in
+from cprbm_scene import Claim, Probe
+from cprbm_scene.answer import frozen_array
+from cprbm_scene.checks import mistakes_in
 
 
 def row(value, reference, *, station=1.0, quantity="reaction", scale=100.0):

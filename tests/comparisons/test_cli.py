@@ -16,7 +16,7 @@ import pytest
 from comparisons import cases
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
-from scene import Ending
+from cprbm_scene import Ending
 from tests.comparisons.jumping import FORWARD, Jumping
 from tests.comparisons.made_up import MadeUp
 

@@ -15,8 +15,8 @@ from comparisons.pairing import ALONE, Runs, Solvers, paired
 from comparisons.per_branch import critical_sentence, critical_word
 from comparisons.verdict import compared
 from comparisons.words import Word
-from scene import Answer, Claim, Critical, Ending, Loss, Stage
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Claim, Critical, Ending, Loss, Stage
+from cprbm_scene.frozendict import frozendict
 from tests.comparisons.jumping import FORWARD, Jumping
 
 

@@ -9,7 +9,7 @@ from comparisons import documents
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict import compared
-from scene import Certificate
+from cprbm_scene import Certificate
 from tests.comparisons.made_up import CERTIFICATE, MadeUp
 
 NUMBER = (int, float)

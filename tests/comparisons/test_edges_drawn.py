@@ -7,10 +7,10 @@ import pytest
 
 from comparisons import figures
 from comparisons.bodies_drawn import draw_edges, places_at
-from scene import Certificate, Shape, StationAnswer
-from scene.reading import scene_from
-from tests.scene.editing import edited
-from tests.scene.test_pins import LINKAGE
+from cprbm_scene import Certificate, Shape, StationAnswer
+from cprbm_scene.reading import scene_from
+from tests.cprbm_scene.editing import edited
+from tests.cprbm_scene.test_pins import LINKAGE
 
 EDGE = {
     "kind": "beam-line",

@@ -12,9 +12,9 @@ from comparisons.cli.main import run
 from comparisons.converging import drawn, told
 from comparisons.converging.families import at, converged
 from comparisons.pairing import ALONE, Solvers
-from scene import Ending
-from scene.answer import frozen_array
-from scene.frozendict import frozendict
+from cprbm_scene import Ending
+from cprbm_scene.answer import frozen_array
+from cprbm_scene.frozendict import frozendict
 from tests.comparisons.made_up import MadeUp
 
 SIZES = (10, 20, 40, 80)

@@ -181,7 +181,7 @@ def test_a_signal_while_modules_are_loaded_is_a_sentence(number, code):
 import os, sys
 class Sending:
     def find_spec(self, name, path=None, target=None):
-        if name == 'scene.statement':
+        if name == 'cprbm_scene.statement':
             os.kill(os.getpid(), {int(number)})
 sys.meta_path.insert(0, Sending())
 sys.argv[1:] = ['solve', 'hinge']

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from comparisons.geometry import length, nearest, points, radius
-from scene import Arc, Line, Polynomial, Shape
-from scene.answer import frozen_array
+from cprbm_scene import Arc, Line, Polynomial, Shape
+from cprbm_scene.answer import frozen_array
 
 HALF = Arc(kind="arc", center=(0.0, 0.0), start=(-2.0, 0.0), end=(2.0, 0.0), direction="counterclockwise")
 QUARTER = Arc(kind="arc", center=(1.0, 0.0), start=(2.0, 0.0), end=(1.0, -1.0), direction="clockwise")

@@ -14,7 +14,7 @@ from comparisons.pairing import Solvers, paired
 from comparisons.per_branch import critical_sentence, critical_word
 from comparisons.verdict import compared
 from comparisons.words import Word
-from scene import Loss
+from cprbm_scene import Loss
 from tests.comparisons.jumping import FORWARD, Jumping
 
 ENDS, OVER = Jumping("fea", stops=True), Jumping("cprbm", over=0.29)

@@ -9,7 +9,7 @@ import cprbm
 from comparisons.cli.main import run
 from comparisons.importing.curves import fitted
 from comparisons.starting.present import trouble_with
-from scene import Arc, Line, Spline, read
+from cprbm_scene import Arc, Line, Spline, read
 
 needs_gmsh = pytest.mark.skipif(bool(trouble_with("gmsh")), reason="gmsh cannot be imported here")
 
@@ -113,7 +113,7 @@ def test_a_spline_is_as_near_as_it_says():
     made = fitted(np.stack([x, np.sin(x)], axis=1), ways, 3e-5)
     assert isinstance(made.curve, Spline)
     assert made.deviation <= 3e-5
-    from scene.geometry import points_on
+    from cprbm_scene.geometry import points_on
 
     px, py = points_on(made.curve, np.linspace(0.0, 1.0, 4001)).T
     true = float(np.max(np.abs(py - np.sin(px)) / np.hypot(1.0, np.cos(px))))

@@ -14,8 +14,8 @@ from comparisons.offset_exact import offset_curve, ordinates
 from comparisons.offset_verdict import compared_offset
 from comparisons.pairing import Solvers, cprbm_offset_points
 from comparisons.words import Word
-from scene import Arc, OffsetQuestion, SceneError
-from scene.reading import offset_from
+from cprbm_scene import Arc, OffsetQuestion, SceneError
+from cprbm_scene.reading import offset_from
 
 FILE = Path(cases.__file__).parent / "offset.toml"
 DATA = tomllib.loads(FILE.read_text(encoding="utf-8"))

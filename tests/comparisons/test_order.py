@@ -3,7 +3,7 @@
 import pytest
 
 from comparisons.order import order_of, richardson
-from scene import Probe
+from cprbm_scene import Probe
 from tests.cprbm.test_circle import scene_of
 from tests.cprbm.test_lying import lying
 from tests.fea_reference.meeting_itself import strip

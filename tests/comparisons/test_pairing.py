@@ -8,7 +8,7 @@ import pytest
 from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import ALONE, Solvers, begin, cprbm_answer, crew_of, fea_answer, paired
-from scene import Mistake, SceneError
+from cprbm_scene import Mistake, SceneError
 from tests.comparisons.made_up import MadeUp
 
 

@@ -11,7 +11,7 @@ from comparisons.choices import Choices
 from comparisons.framing import frame
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict import compared
-from scene import Stage
+from cprbm_scene import Stage
 from tests.comparisons.jumping import Jumping
 
 

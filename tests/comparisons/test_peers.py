@@ -25,8 +25,8 @@ from cprbm.energy import load_work, spring_moments, strain_energy, strain_gradie
 from cprbm.kinematics import State, positions
 from cprbm.mechanism import mechanism_of
 from cprbm.point import contact_gradient, point_at
-from scene import SceneError
-from scene.frozendict import frozendict
+from cprbm_scene import SceneError
+from cprbm_scene.frozendict import frozendict
 
 OFFERED = ("hinge", "gripper", "gripper-driven", "wrapped", "platform", "tapered")
 COUNT = frozendict({"hinge": 20, "gripper": frozendict({"beam1": 15, "beam2": 20}), "gripper-driven": 20})

@@ -20,7 +20,7 @@ from comparisons.reporting.inlined import inlined
 from comparisons.reporting.stepping import stepper
 from comparisons.verdict import Comparison, Verdict
 from comparisons.words import Word
-from scene import Mistake, SceneError
+from cprbm_scene import Mistake, SceneError
 from tests.comparisons.killed import QUESTION
 from tests.comparisons.made_up import MadeUp
 

@@ -13,7 +13,7 @@ from comparisons.extrapolated_solid import orders_of
 from comparisons.pairing import ALONE, Solvers, solid_answer
 from comparisons.tolerances.solids import LARGEST
 from comparisons.tolerances.tolerated import paired_within, solved
-from scene import Ending
+from cprbm_scene import Ending
 from tests.comparisons.made_up import MadeUp
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
 

@@ -18,8 +18,8 @@ from comparisons.cli.main import run
 from comparisons.pairing import ALONE, crew_of
 from comparisons.starting import present
 from comparisons.starting.begun import SCHEMA, text
-from scene import read
-from scene.schema import schema
+from cprbm_scene import read
+from cprbm_scene.schema import schema
 
 ROOT = Path(__file__).parents[2]
 

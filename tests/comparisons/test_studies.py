@@ -16,9 +16,9 @@ from comparisons.studies import materials, table1
 from comparisons.studies.materials import MATERIALS, SPECIMENS
 from comparisons.studies.materials_told import told as told_of_materials
 from comparisons.studies.table1_told import told as told_of_table1
-from scene import Answer, Ending, Mistake, Scene, SceneError
-from scene.answer import frozen_array
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Ending, Mistake, Scene, SceneError
+from cprbm_scene.answer import frozen_array
+from cprbm_scene.frozendict import frozendict
 from tests.comparisons.made_up import MadeUp
 
 E_0 = 2.3e9

@@ -22,9 +22,9 @@ from comparisons.tolerances.search import FIRST, Estimate, Stated, search
 from comparisons.tolerances.tolerated import paired_within, solved
 from comparisons.verdict import compared
 from comparisons.words import Word
-from scene import Ending, Mistake, Probe, SceneError
-from scene.answer import frozen_array
-from scene.frozendict import frozendict
+from cprbm_scene import Ending, Mistake, Probe, SceneError
+from cprbm_scene.answer import frozen_array
+from cprbm_scene.frozendict import frozendict
 from tests.comparisons.made_up import MadeUp
 
 

@@ -13,8 +13,8 @@ from comparisons.measures import Bounds, Row
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict import compared, judged
 from comparisons.words import Word
-from scene import Ending, Probe, Stage
-from scene.answer import frozen_array
+from cprbm_scene import Ending, Probe, Stage
+from cprbm_scene.answer import frozen_array
 from tests.comparisons.made_up import MadeUp, with_value
 
 ROTATION = Probe(of="BD", quantity="rotation")

@@ -13,11 +13,11 @@ from comparisons.nearby import RHO, nearby
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict import compared
 from comparisons.work_energy import WITHIN, sentence
-from scene import Stage
-from scene.answer import frozen_array
-from scene.freedoms import unit
-from scene.frozendict import frozendict
-from scene.statement import DisplacementDrive
+from cprbm_scene import Stage
+from cprbm_scene.answer import frozen_array
+from cprbm_scene.freedoms import unit
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.statement import DisplacementDrive
 from tests.comparisons.jumping import Jumping
 from tests.comparisons.made_up import MadeUp
 from tests.together.driven import gripper_like, snapping

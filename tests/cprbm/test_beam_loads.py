@@ -9,7 +9,7 @@ from cprbm.energy import load_work
 from cprbm.kinematics import State, positions, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.settings import Settings
-from scene.reading import scene_from
+from cprbm_scene.reading import scene_from
 from tests.cprbm.scenes import hinge_data
 
 STEP = 1e-6

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import cprbm
-from scene import Ending
-from scene.reading import scene_from
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from tests.cprbm.scenes import (
     LENGTH,
     MODULUS,

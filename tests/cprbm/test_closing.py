@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import cprbm
-import exact
-from scene.reading import scene_from
+import elastica_reference
+from cprbm_scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
 
 UNIT = RIGIDITY / LENGTH**2  # a force that bends the beam by about as much as it is long
@@ -62,7 +62,7 @@ def test_a_small_gap_closes_where_a_cantilever_bridges_it():
 def test_a_circle_that_the_beam_would_sweep_over_closes_at_the_same_load_however_far_the_next_station_is():
     # reference: the beam's differential equation
     stations = [0.9 * UNIT, 3.0 * UNIT, 9.0 * UNIT, 23.0 * UNIT]
-    reference = exact.answer(beside_circle(0.33, stations)).stations[-1].values["circle.closing_load"][0]
+    reference = elastica_reference.answer(beside_circle(0.33, stations)).stations[-1].values["circle.closing_load"][0]
     errors = []
     for links in (20, 40):
         by_steps, at_once = (closing_loads(beside_circle(0.33, asked), links) for asked in (stations, stations[-1:]))

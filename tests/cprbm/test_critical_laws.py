@@ -3,7 +3,7 @@
 import pytest
 
 from cprbm.critical import Minimum, _falls_evenly
-from scene import Certificate
+from cprbm_scene import Certificate
 
 
 def at(value, curvature):

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 import cprbm
-import exact
+import elastica_reference
 from cprbm.contact import NO_ROWS
 from cprbm.crossing import cross
 from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import point_at
-from scene.reading import scene_from
+from cprbm_scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
 
 UNIT = RIGIDITY / LENGTH**2
@@ -74,7 +74,7 @@ def beside_another(other, pressed, stations, *, thick, thicker=1.0):
 
 def check(scene, links):
     """Against the beams' differential equations, at every station; the values there."""
-    answer, reference = cprbm.answer(scene, cprbm.Settings(links=links)), exact.answer(scene)
+    answer, reference = cprbm.answer(scene, cprbm.Settings(links=links)), elastica_reference.answer(scene)
     assert reference.completed, reference.sentence
     assert answer.completed, answer.sentence
     for ours, true in zip(answer.stations, reference.stations, strict=True):

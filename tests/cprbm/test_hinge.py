@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import cprbm
-from scene import Ending
-from scene.reading import scene_from
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from tests.cprbm.scenes import hinge, hinge_data, turned
 from tests.references import hinge as exact
 
@@ -232,7 +232,7 @@ def test_a_load_far_beyond_completes_certified_or_ends_by_name():
     ],
 )
 def test_links_that_do_not_fit_are_refused(links, key):
-    from scene import SceneError
+    from cprbm_scene import SceneError
 
     with pytest.raises(SceneError, match=key):
         cprbm.answer(hinge(), cprbm.Settings(links=links))

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 import cprbm
-from scene import read
+from cprbm_scene import read
 
 PRESSED_FLAT = """
 name = "pressed-flat"

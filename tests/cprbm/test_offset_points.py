@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cprbm.offset_points import joint_places, joints_on, offset_points
-from scene import Arc, Polynomial, Spacing
+from cprbm_scene import Arc, Polynomial, Spacing
 
 PARABOLA = Polynomial(kind="polynomial", axis="x", coefficients=(10.0, 0.0, -0.06), range=(-10.0, 10.0))
 SPACINGS = [Spacing(law=law, of=of) for law in ("even", "sine") for of in ("joints", "elements")]

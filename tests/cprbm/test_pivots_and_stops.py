@@ -8,7 +8,7 @@ from cprbm.contact import NO_ROWS
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import contact_rows, point_at
-from scene import Ending, Probe, SceneError
+from cprbm_scene import Ending, Probe, SceneError
 from tests.cprbm.scenes import MODULUS, THICKNESS
 from tests.fea_reference.cantilever import elastica
 from tests.together.pivots import FORCE, LENGTH, MOMENT, bowed, lever, straight, wheel

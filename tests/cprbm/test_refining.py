@@ -18,8 +18,8 @@ from cprbm.point import point_at
 from cprbm.refining import BEYOND, SHARE, all_zones, carried_over, coarser, ends_of, fits, fitted, long_ones
 from cprbm.settings import Settings
 from cprbm.zones import Zone
-from scene import Ending
-from scene.reading import scene_from
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from tests.cprbm.scenes import cantilever_data, force, hinge
 from tests.cprbm.test_circle import BEAM, RADIUS, scene_of
 from tests.references.wrapped import Wrapped

@@ -9,7 +9,7 @@ from cprbm.mechanism import mechanism_of
 from cprbm.model import Fit
 from cprbm.section import Section
 from cprbm.standing import Attachment, Side, standing
-from scene import Arc, Line, Polynomial
+from cprbm_scene import Arc, Line, Polynomial
 from tests.cprbm.scenes import hinge
 
 T = 0.02

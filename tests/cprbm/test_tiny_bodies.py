@@ -8,7 +8,7 @@ from cprbm.contact import NO_ROWS, Local, over_unknowns
 from cprbm.kinematics import State, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import contact_gradient, contact_rows, point_at
-from scene import Scene
+from cprbm_scene import Scene
 from tests.fea_reference.on_an_edge import WIDTH, T
 from tests.references.pressed import Pressed
 

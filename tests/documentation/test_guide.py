@@ -6,7 +6,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from scene import read
+from cprbm_scene import read
 from tests.documentation.pages import DOCS
 
 GUIDE = DOCS / "guide.md"

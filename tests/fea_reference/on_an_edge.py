@@ -1,6 +1,6 @@
 """Beams of unit length and EI with edges that they may touch."""
 
-from scene import Scene
+from cprbm_scene import Scene
 
 T, WIDTH = 0.01, 0.05
 

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from scene import Scene
-from scene.reading import scene_from
+from cprbm_scene import Scene
+from cprbm_scene.reading import scene_from
 
 
 def pressed_arc(

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings
 from fea_reference.advance import advance, carried, way_to
 from fea_reference.model import build
-from scene.reading import scene_from
 from tests.cprbm.scenes import cantilever_data, force
 
 

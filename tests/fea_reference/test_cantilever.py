@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_bvp
 
+from cprbm_scene import Ending
+from cprbm_scene.answer import Loss
 from fea_reference import Settings, answer
-from scene import Ending
-from scene.answer import Loss
 from tests.fea_reference.cantilever import (
     EI,
     LENGTH,

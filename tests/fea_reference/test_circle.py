@@ -5,13 +5,13 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from cprbm_scene import Ending, Profile, Scene, Stage
+from cprbm_scene.statement import Force
 from fea_reference import Settings, answer
 from fea_reference.circle import circles, passed, touch
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.touch import Penalty
-from scene import Ending, Profile, Scene, Stage
-from scene.statement import Force
 from tests.cprbm import test_circle as cprbm_circle
 
 T, WIDTH = 0.01, 0.05

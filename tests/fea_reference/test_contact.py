@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, answer
 from fea_reference.contact import least_at_ends, touch
 from fea_reference.contacts import against, clear, contacts, zones_of
@@ -13,8 +15,6 @@ from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.touch import Penalty
 from fea_reference.zones import Gap, negative, overlap, seen
-from scene import Ending
-from scene.reading import scene_from
 
 YOUNG, WIDTH, T = 2e9, 0.01, 0.002
 EI = YOUNG * WIDTH * T**3 / 12

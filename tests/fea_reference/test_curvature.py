@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from scipy.linalg import eigvalsh, null_space
 
+from cprbm_scene import read
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings
 from fea_reference.contacts import contacts
 from fea_reference.curvature import smallest_curvature, softest
@@ -14,8 +16,6 @@ from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.system import assemble
 from fea_reference.travel import Course, reach
-from scene import read
-from scene.reading import scene_from
 from tests.fea_reference.cantilever import cantilever, force
 
 HINGE = Path(__file__).parents[2] / "comparisons" / "cases" / "hinge.toml"

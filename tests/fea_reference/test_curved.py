@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, answer
-from scene.reading import scene_from
 
 YOUNG, POISSON, WIDTH, T, R = 2e9, 0.3, 0.01, 0.01, 0.06
 P = 1e-3

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cprbm_scene import read
 from fea_reference import Settings
 from fea_reference.contact import pairs, touch
 from fea_reference.element import forces
@@ -13,7 +14,6 @@ from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.system import assemble
 from fea_reference.touch import Penalty
-from scene import read
 from tests.fea_reference.cantilever import cantilever, force
 from tests.fea_reference.differences import check
 

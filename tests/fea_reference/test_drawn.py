@@ -5,10 +5,10 @@ import re
 import numpy as np
 import pytest
 
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, answer
 from fea_reference.drawn import taut_at
-from scene import Ending
-from scene.reading import scene_from
 
 LENGTH, THICKNESS, WIDTH, E = 0.1037, 0.00113, 0.0087, 2.07e11
 

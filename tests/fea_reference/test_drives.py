@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from cprbm_scene import Ending
+from cprbm_scene.answer import Loss
 from fea_reference import Settings, answer
 from fea_reference.contacts import contacts
 from fea_reference.curvature import smallest_curvature
@@ -11,8 +13,6 @@ from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.system import assemble
 from fea_reference.travel import Course, reach
-from scene import Ending
-from scene.answer import Loss
 from tests.cprbm.driven import TURN, UNIT_FORCE, UNIT_MOMENT, driven_cantilever, driven_hinge, guided, push
 from tests.cprbm.scenes import LENGTH, MODULUS, THICKNESS, WIDTH, hinge
 from tests.fea_reference.cantilever import elastica

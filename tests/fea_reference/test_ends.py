@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from cprbm_scene import Ending
 from fea_reference import Settings, answer
-from scene import Ending
 from tests.fea_reference.test_circle import on_circle
 from tests.references.wrapped import Wrapped
 

@@ -7,12 +7,12 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
+from cprbm_scene import Ending
 from fea_reference import Settings, answer
 from fea_reference.face import faces, passed, touch
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.touch import Penalty
-from scene import Ending
 from tests.fea_reference.on_an_edge import T, cantilever_over, scene_of
 from tests.fea_reference.test_circle import wrapped
 

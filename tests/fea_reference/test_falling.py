@@ -6,12 +6,12 @@ growth, r = 0.38 at 2.5 and 0.07 at 8.  A fall by steps of which every other fai
 step may be, takes five times as many.
 """
 
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, descent
 from fea_reference.assembly import assemble_ends
 from fea_reference.following import followed
 from fea_reference.solve import prepared
 from fea_reference.travel import Course, reach
-from scene.reading import scene_from
 from tests.together import branches
 
 TURNED = 0.75  # rad; the free beam has snapped before

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cprbm_scene import Ending, read
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, answer
-from scene import Ending, read
-from scene.reading import scene_from
 from tests.references import hinge as exact
 
 CASE = Path(__file__).parents[2] / "comparisons" / "cases" / "hinge.toml"

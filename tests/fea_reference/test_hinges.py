@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, answer
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.system import assemble
-from scene import Ending
-from scene.reading import scene_from
-from tests.scene.editing import edited
-from tests.scene.test_pins import LINKAGE
+from tests.cprbm_scene.editing import edited
+from tests.cprbm_scene.test_pins import LINKAGE
 
 COARSE = Settings(elements=8, kinematics="bending")
 PROBES = [

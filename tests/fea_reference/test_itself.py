@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from cprbm_scene import Ending
 from fea_reference import Settings, answer
 from fea_reference.contact import selves, touch
 from fea_reference.contacts import looked_at, passed_through, zones_of
@@ -17,7 +18,6 @@ from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.touch import Penalty
 from fea_reference.zones import none
-from scene import Ending
 from tests.fea_reference.differences import check
 from tests.fea_reference.meeting_itself import (
     AT,

@@ -6,8 +6,8 @@ Reference: :func:`tests.fea_reference.test_faces.over_a_corner`, which integrate
 import numpy as np
 import pytest
 
+from cprbm_scene import Ending
 from fea_reference import Settings, answer
-from scene import Ending
 from tests.fea_reference.on_an_edge import cantilever_over
 from tests.fea_reference.test_faces import over_a_corner
 

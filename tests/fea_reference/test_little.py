@@ -7,9 +7,9 @@ that stand close: pushes were 1 to 80 % wrong in a third of these scenes, and ce
 
 import pytest
 
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, answer
-from scene import Ending
-from scene.reading import scene_from
 from tests.fea_reference.small_deflections import one_beam, two_beams
 
 

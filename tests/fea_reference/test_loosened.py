@@ -3,9 +3,9 @@
 The hump's penalty is loosened to look for its zone, with which the other contact presses at once.
 """
 
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, answer
-from scene import Ending
-from scene.reading import scene_from
 
 
 def hump():

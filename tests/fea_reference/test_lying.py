@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from comparisons import cases
+from cprbm_scene import Ending, Scene
 from fea_reference import Settings, answer
 from fea_reference.contacts import contacts, resting_pressure, touch
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.touch import Penalty
-from scene import Ending, Scene
 from tests.fea_reference.lying import LENGTH, LOWER, RADIUS, UPPER, WIDTH, YOUNG, lying
 from tests.references.lying import Lying, Strip
 from tests.references.small import rectangle_second_moment

@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import pytest
 
 from comparisons import cases
+from cprbm_scene.answer import Ending
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, answer
 from fea_reference.march import March
-from scene.answer import Ending
-from scene.reading import scene_from
 
 
 def with_stations(scene, *stations):

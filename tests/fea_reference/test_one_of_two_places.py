@@ -2,8 +2,8 @@
 
 import pytest
 
+from cprbm_scene import Ending, Loss
 from fea_reference import Settings, answer
-from scene import Ending, Loss
 from tests.fea_reference.pressed_arc import pressed_arc
 
 

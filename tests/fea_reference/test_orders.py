@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cprbm_scene import Ending, read
 from fea_reference import Settings, answer
-from scene import Ending, read
 from tests.references import hinge as exact
 from tests.references.wrapped import Wrapped
 
@@ -100,7 +100,7 @@ def test_orders_on_a_wrap():
 
 
 def test_a_contact_in_a_point_is_no_zone_where_the_gap_opens_less_and_less_on_one_side():
-    # closed form: at a point the zone begins and ends where the resultant acts (scene.answer). Beam 1 of the gripper
-    # parts from beam 2 most sharply at the place itself
+    # closed form: at a point the zone begins and ends where the resultant acts (cprbm_scene.answer). Beam 1 of the
+    # gripper parts from beam 2 most sharply at the place itself
     found = values("gripper", 9.6, 40)
     assert found["contact.ends"] == pytest.approx(np.repeat(found["contact.centre"], 2), abs=1e-12)

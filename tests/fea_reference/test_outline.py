@@ -5,8 +5,8 @@ from decimal import Decimal, localcontext
 import numpy as np
 import pytest
 
+from cprbm_scene.statement import FunctionContact
 from fea_reference.outline import Broken, HalfPlane, outline_of
-from scene.statement import FunctionContact
 
 COEFFICIENTS = (0.013, -0.31, 0.83)
 SPAN = (-0.27, 0.61)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from cprbm_scene import Ending, SceneError
 from fea_reference import Settings, answer
 from fea_reference.acting import Acting
 from fea_reference.contacts import contacts
@@ -13,7 +14,6 @@ from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.system import assemble, load_direction
 from fea_reference.travel import Course, reach
-from scene import Ending, SceneError
 from tests.cprbm.scenes import LENGTH, MODULUS, THICKNESS, WIDTH
 from tests.fea_reference.cantilever import elastica
 from tests.fea_reference.test_curvature import dense

@@ -6,9 +6,9 @@ branch leads under either penalty, and it is on its branch all the same.
 
 import pytest
 
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, answer
-from scene import Ending
-from scene.reading import scene_from
 
 
 def arch(stations):

@@ -2,9 +2,9 @@
 
 import pytest
 
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, answer
-from scene import Ending
-from scene.reading import scene_from
 
 LENGTH, PLACE, STRUT = 0.107, 0.0981, 0.0211  # m
 THIN, WIDE, YOUNG = 0.00009, 0.0123, 117e9

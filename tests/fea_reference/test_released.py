@@ -5,8 +5,8 @@ import re
 import pytest
 
 import cprbm
+from cprbm_scene import Ending, Loss
 from fea_reference import Settings, answer
-from scene import Ending, Loss
 from tests.fea_reference.pressed_arc import pressed_arc
 
 # an arc that is pressed flat on a plane.  The chain of 37 links, whose branch no one watches either, says where it

@@ -2,8 +2,8 @@
 
 import pytest
 
+from cprbm_scene import SceneError
 from fea_reference import Settings, answer
-from scene import SceneError
 from tests.fea_reference.cantilever import MOMENT, cantilever
 
 

@@ -21,7 +21,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq, fsolve
 
-from scene import Ending
+from cprbm_scene import Ending
 from tests.fea_reference.test_faces import KAPPA, on_its_pin, peeled
 
 STOUT = 0.07

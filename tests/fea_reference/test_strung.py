@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, answer
-from scene import Ending
-from scene.reading import scene_from
 
 LENGTH, THIN, WIDE, YOUNG = 0.107, 0.00003, 0.0123, 3.1e9
 RADIUS, PLACE, GAP = 0.0053, 0.041, 0.0004  # m

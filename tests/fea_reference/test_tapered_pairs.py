@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from cprbm_scene import Answer, Ending, Scene
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, answer
 from fea_reference.contact import pairs, touch
 from fea_reference.edge import Edge
@@ -13,8 +15,6 @@ from fea_reference.facing import Tapers
 from fea_reference.model import build
 from fea_reference.state import State
 from fea_reference.touch import Penalty
-from scene import Answer, Ending, Scene
-from scene.reading import scene_from
 from tests.fea_reference.differences import check
 from tests.fea_reference.meeting_itself import HALF, START, arch, half
 

@@ -6,9 +6,9 @@ And one whose tip is moved by however little.
 import numpy as np
 import pytest
 
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, answer
-from scene import Ending
-from scene.reading import scene_from
 
 YOUNG, WIDTH, THICK, LENGTH = 7.13e9, 0.0087, 0.00113, 0.0731
 UNIT = YOUNG * WIDTH * THICK**3 / 12.0 / LENGTH**2

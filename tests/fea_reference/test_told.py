@@ -6,10 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from cprbm_scene.reading import scene_from
 from fea_reference import Settings, answer
 from fea_reference.contacts import contacts, least_gap
 from fea_reference.model import build
-from scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH, MOMENT, RIGIDITY, THICKNESS, WIDTH, cantilever_data
 
 LOAD = 0.37 * RIGIDITY / LENGTH

@@ -9,11 +9,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from cprbm_scene.answer import Ending, Loss
 from fea_reference import travel
 from fea_reference.following import Lost
 from fea_reference.march import StoppedError
 from fea_reference.travel import Course, _arrive
-from scene.answer import Ending, Loss
 
 MODEL = SimpleNamespace(moving=np.array([True]), stepped=[SimpleNamespace(unit=1.0)])
 

@@ -22,9 +22,9 @@ from scipy.optimize import brentq
 
 from comparisons.archive import packed, unpacked
 from comparisons.audit import audit
+from cprbm_scene import Ending, Scene
 from fea_reference import Settings, answer
 from fea_reference.upright import upright
-from scene import Ending, Scene
 from tests.fea_reference.on_an_edge import scene_of
 
 STOUT = 0.07

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from comparisons import cases
+from cprbm_scene import Ending, Scene
 from fea_reference import Settings, answer
-from scene import Ending, Scene
 from tests.references.wrapped import Wrapped
 
 LENGTH = 0.0973

@@ -50,7 +50,7 @@ def test_every_import_is_declared():
         ("numpy.linalg", False, False),
         ("skfem", False, False),
         ("json", False, False),
-        ("scene.answer", False, False),
+        ("cprbm_scene.answer", False, False),
     ],
 )
 def test_a_planted_import_is_told(module, late, wrong):

@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-ROOMS = ("scene", "cprbm", "fea_reference", "exact", "comparisons")
+ROOMS = ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons")
 MODULES = sorted(
     ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
     for room in ROOMS
@@ -96,7 +96,9 @@ def test_a_record_tells_of_its_numbers_and_of_shapes(name):
     assert silent_on(RECORDS[name]) == []
 
 
-@pytest.mark.parametrize("solver", ["cprbm.answer", "fea_reference.answer", "exact.answer", "cprbm.offset_points"])
+@pytest.mark.parametrize(
+    "solver", ["cprbm.answer", "fea_reference.answer", "elastica_reference.answer", "cprbm.offset_points"]
+)
 def test_what_computes_names_its_source(solver):
     assert sections(inspect.getdoc(FUNCTIONS[solver]))["Source"].strip()
 
@@ -105,10 +107,10 @@ def test_the_unit_of_every_quantity_stands_in_the_answer_sheet():
     """The quantities that a probe may ask for are those of the table, each with a shape and a unit."""
     from typing import get_args
 
-    import scene.answer
-    from scene.statement import Quantity
+    import cprbm_scene.answer
+    from cprbm_scene.statement import Quantity
 
-    rows = re.findall(r"^(\w+) {2,}(\(\w+,\)) {2,}((?:.+)(?:\n {10,}.*)*)", scene.answer.__doc__, re.MULTILINE)
+    rows = re.findall(r"^(\w+) {2,}(\(\w+,\)) {2,}((?:.+)(?:\n {10,}.*)*)", cprbm_scene.answer.__doc__, re.MULTILINE)
     assert {name for name, _, _ in rows} == set(get_args(Quantity))
     for name, _, said in rows:
         assert re.search(r"\b(m|rad|N|N·m|Pa|J)\b|value of the stepped load", said), name

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from scene import read
+from cprbm_scene import read
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "edges.md"

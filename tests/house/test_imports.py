@@ -12,17 +12,17 @@ ROOT = Path(__file__).parents[2]
 def _house(tmp_path, **files):
     """A small house that keeps the law, with ``files`` (room__module: source) put in."""
     lawful = {
-        "scene____init__": "from scene.statement import Scene\n",
-        "scene__statement": "import pydantic\nclass Scene: ...\n",
-        "cprbm____init__": "from scene import Scene\nfrom .chain import link\n",
-        "cprbm__chain": "import numpy\nfrom scene.statement import Scene\ndef link(): ...\n",
-        "fea_reference____init__": "from scene import Scene\nimport skfem\n",
-        "fea_reference__solid__dot____init__": "from fea_reference.solid.mesh import quads\nfrom scene import Scene\n",
+        "cprbm_scene____init__": "from cprbm_scene.statement import Scene\n",
+        "cprbm_scene__statement": "import pydantic\nclass Scene: ...\n",
+        "cprbm____init__": "from cprbm_scene import Scene\nfrom .chain import link\n",
+        "cprbm__chain": "import numpy\nfrom cprbm_scene.statement import Scene\ndef link(): ...\n",
+        "fea_reference____init__": "from cprbm_scene import Scene\nimport skfem\n",
+        "fea_reference__solid__dot____init__": "from fea_reference.solid.mesh import quads\nimport cprbm_scene\n",
         "fea_reference__solid__dot__mesh": "import skfem\nquads = 9\n",
-        "exact____init__": "from scene import Scene\nimport scipy\n",
+        "elastica_reference____init__": "from cprbm_scene import Scene\nimport scipy\n",
         "comparisons____init__": "",
-        "comparisons__pairing": "import cprbm\nimport exact\nfrom fea_reference import answer\n",
-        "comparisons__verdict": "from comparisons import pairing\nfrom scene import Scene\n",
+        "comparisons__pairing": "import cprbm\nimport elastica_reference\nfrom fea_reference import answer\n",
+        "comparisons__verdict": "from comparisons import pairing\nfrom cprbm_scene import Scene\n",
         "comparisons__figures": "def draw():\n    import matplotlib.pyplot as plt\n    return plt\n",
     }
     for name, source in (lawful | files).items():
@@ -38,7 +38,7 @@ def test_the_source_keeps_the_law():
 
 
 def test_the_source_is_there_to_be_read():
-    assert {"scene", "scene.reading", "scene.statement"} <= set(sources(ROOT))
+    assert {"cprbm_scene", "cprbm_scene.reading", "cprbm_scene.statement"} <= set(sources(ROOT))
 
 
 def test_a_lawful_house_passes(tmp_path):
@@ -55,7 +55,7 @@ def test_two_rooms_that_share_nothing_have_a_door_each(tmp_path):
 
 
 PLANTED = {
-    "scene imports a solver": ("scene__bad", "import cprbm.chain", "scene may not import cprbm"),
+    "scene imports a solver": ("cprbm_scene__bad", "import cprbm.chain", "cprbm_scene may not import cprbm"),
     "the solid imports beam elements": (
         "fea_reference__solid__dot__bad",
         "def f():\n    from fea_reference.curves import sample",
@@ -69,15 +69,31 @@ PLANTED = {
     "the other solver imports the solid": ("cprbm__bad", "import fea_reference.solid", "cprbm may not import"),
     "the solid beside pairing": ("comparisons__verdict", "import fea_reference.solid", "comparisons may not import"),
     "scene imports comparisons": (
-        "scene__bad",
+        "cprbm_scene__bad",
         "from comparisons import verdict",
         "may not import comparisons",
     ),
     "a solver imports the other": ("cprbm__bad", "import fea_reference", "may not import fea_reference"),
-    "the exact one imports a solver": ("exact__bad", "from cprbm import circle", "exact may not import cprbm"),
-    "the exact one imports comparisons": ("exact__bad", "import comparisons.geometry", "exact may not import"),
-    "a solver imports the exact one": ("fea_reference__bad", "import exact", "fea_reference may not import exact"),
-    "the exact one beside pairing": ("comparisons__verdict", "import exact", "comparisons may not import exact"),
+    "the exact one imports a solver": (
+        "elastica_reference__bad",
+        "from cprbm import circle",
+        "elastica_reference may not import cprbm",
+    ),
+    "the exact one imports comparisons": (
+        "elastica_reference__bad",
+        "import comparisons.geometry",
+        "elastica_reference may not import",
+    ),
+    "a solver imports the exact one": (
+        "fea_reference__bad",
+        "import elastica_reference",
+        "fea_reference may not import elastica_reference",
+    ),
+    "the exact one beside pairing": (
+        "comparisons__verdict",
+        "import elastica_reference",
+        "comparisons may not import elastica_reference",
+    ),
     "in a function": (
         "cprbm__bad",
         "def f():\n    from fea_reference import x",

@@ -12,12 +12,12 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 NEVER_OF_A_SOLVE = ("skfem", "matplotlib", "pyvista", "gmsh", "meshio", "casadi", "jinja2", "rich", "multiprocessing")
-ELSEWHERE = ("fea_reference", "exact", "comparisons")
+ELSEWHERE = ("fea_reference", "elastica_reference", "comparisons")
 FRAME = "import json, sys\n{program}\nprint(json.dumps(sorted({{name.split('.')[0] for name in sys.modules}}\
  | {{name for name in sys.modules if name.startswith('scipy.')}})))"
 CANTILEVER = """
 import cprbm
-from scene.reading import scene_from
+from cprbm_scene.reading import scene_from
 from tests.cprbm.scenes import cantilever_data, force
 assert cprbm.answer(scene_from(cantilever_data(force(0.0, -1.0), [0.1]))).completed
 """
@@ -35,14 +35,14 @@ def loaded(program):
 def test_what_solves_nothing_loads_no_numbers(arguments):
     found = loaded(f"from comparisons.cli.main import run\nassert run({arguments}) == 0")
     assert "comparisons" in found
-    assert not found & {"numpy", "scipy", "pydantic", "rich", "concurrent", "scene", "cprbm", *NEVER_OF_A_SOLVE}
+    assert not found & {"numpy", "scipy", "pydantic", "rich", "concurrent", "cprbm_scene", "cprbm", *NEVER_OF_A_SOLVE}
 
 
 @pytest.mark.parametrize(
     "program",
     [
         CANTILEVER,
-        "import cprbm, scene\nassert cprbm.answer(scene.read('comparisons/cases/hinge.toml')).completed",
+        "import cprbm, cprbm_scene\nassert cprbm.answer(cprbm_scene.read('comparisons/cases/hinge.toml')).completed",
     ],
     ids=["cantilever", "hinge"],
 )
@@ -59,4 +59,13 @@ def test_without_contact_nothing_of_scipy_but_linear_algebra_is_loaded():
 def test_the_command_solves_with_one_solver():
     found = loaded("from comparisons.cli.main import run\nassert run(['solve', 'hinge', '--quiet']) == 0")
     assert "cprbm" in found
-    assert not found & {"skfem", "fea_reference", "exact", "matplotlib", "pyvista", "gmsh", "rich", "jinja2"}
+    assert not found & {
+        "skfem",
+        "fea_reference",
+        "elastica_reference",
+        "matplotlib",
+        "pyvista",
+        "gmsh",
+        "rich",
+        "jinja2",
+    }

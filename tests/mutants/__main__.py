@@ -37,7 +37,17 @@ WORK = ROOT / ".mutants"
 RESULTS = Path(__file__).parent / "results.json"
 EQUIVALENT = Path(__file__).parent / "equivalent.json"
 LONGER = Path(__file__).parent / "longer.json"
-COPIED = ("scene", "cprbm", "fea_reference", "exact", "comparisons", "tests", "pyproject.toml", "Makefile", "README.md")
+COPIED = (
+    "cprbm_scene",
+    "cprbm",
+    "fea_reference",
+    "elastica_reference",
+    "comparisons",
+    "tests",
+    "pyproject.toml",
+    "Makefile",
+    "README.md",
+)
 ROOMS = ("cprbm", "fea_reference")
 NO_MECHANICS = ("__init__.py", "settings.py", "remarks.py")
 TOLD = ROOT / "docs" / "mutants.md"

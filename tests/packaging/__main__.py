@@ -28,7 +28,7 @@ QUICK = (
     "tests/cprbm/test_derivatives.py",
     "tests/fea_reference/test_cantilever.py",
     "tests/fea_reference/test_contact.py",
-    "tests/exact/test_pieces.py",
+    "tests/elastica_reference/test_pieces.py",
     "tests/comparisons/test_starting.py",
     "tests/comparisons/test_archive.py",
     "tests/comparisons/test_documents.py",

@@ -12,7 +12,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-ROOMS = ("scene", "cprbm", "fea_reference", "exact", "comparisons")
+ROOMS = ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons")
 FILES = (
     "CHANGELOG.md",
     "CITATION.cff",

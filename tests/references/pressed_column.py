@@ -33,7 +33,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
-from scene.answer import Array
+from cprbm_scene.answer import Array
 from tests.references.post_buckled import post_buckled
 
 BEFORE = 16.0 * 1.85407467730137**2 * 1.3  # P where the neck is narrow but open, for thin columns

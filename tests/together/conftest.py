@@ -7,7 +7,7 @@ import pytest
 from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import Runs, Solvers, paired
-from scene import Scene
+from cprbm_scene import Scene
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from scene import Answer, Ending, Scene
+from cprbm_scene import Answer, Ending, Scene
 
 
 def check(scene: Scene, links: int, rel: float) -> Answer:

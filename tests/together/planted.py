@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from comparisons.choices import Choices
 from comparisons.pairing import Runs, Solver, Solvers
-from scene import Answer, Scene
-from scene.answer import frozen_array
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Scene
+from cprbm_scene.answer import frozen_array
+from cprbm_scene.frozendict import frozendict
 
 COARSE = Choices(elements=20, kinematics="bending")
 

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 
 import cprbm
-import exact
+import elastica_reference
 import fea_reference
 from comparisons.choices import Choices
 from comparisons.measures import load_unit
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict import Word, compared
-from scene import Ending
-from scene.reading import scene_from
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, cantilever_data
-from tests.exact.scenes import case
+from tests.elastica_reference.scenes import case
 from tests.references.loaded import loaded
 from tests.together.bowed import on_a_beam, on_a_circle
 
@@ -76,7 +76,7 @@ def fea_answer(scene, n):
 
 
 def exact_answer(scene, _):
-    return exact.answer(scene)
+    return elastica_reference.answer(scene)
 
 
 def errors(solve, case, n, *, bowed=False):

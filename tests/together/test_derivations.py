@@ -17,11 +17,11 @@ from cprbm.feet import distance_along
 from cprbm.kinematics import positions, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.stops import stop_of
+from cprbm_scene import Arc, Line, Polynomial, Spline
 from fea_reference import curves
 from fea_reference.model import build
 from fea_reference.projection import project
 from fea_reference.section import compliance
-from scene import Arc, Line, Polynomial, Spline
 from tests.cprbm.scenes import hinge, hinge_data
 from tests.together.pivots import wheel
 

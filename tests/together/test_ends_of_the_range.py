@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import cprbm
-import exact
+import elastica_reference
 import fea_reference
-from scene.reading import scene_from
+from cprbm_scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH, cantilever_data, force
 from tests.fea_reference.cantilever import elastica
 from tests.references.wrapped import Wrapped
@@ -114,7 +114,7 @@ def test_beams_that_are_parallel_but_for_round_off_of_a_drawing(gap, slope):
     data["contacts"] = {"lap": {"kind": "beam-beam", "between": ["beam", "lower"]}}
     data["probes"] = [{"of": "T", "quantity": "displacement"}]
     data["probes"] += [{"of": "lap", "quantity": each} for each in ("force", "centre")]
-    truth = exact.answer(scene_from(data))
+    truth = elastica_reference.answer(scene_from(data))
     assert truth.completed, truth.sentence
     data["stages"][0]["stations"].append(3.1 * unit)
     answers = [solved("cprbm", data, 80), solved("fea", data, 40)]
@@ -140,7 +140,7 @@ def test_a_contact_goes_from_one_circle_to_the_next_and_back(solver):
     ]
     data["probes"] = [{"of": name, "quantity": "force"} for name in ("near", "far")]
     data["probes"] += [{"of": "T", "quantity": "displacement"}]
-    truth = exact.answer(scene_from(data))
+    truth = elastica_reference.answer(scene_from(data))
     assert truth.completed, truth.sentence
     closed = []
     for station, true in zip(solved(solver, data, 40), truth.stations, strict=True):

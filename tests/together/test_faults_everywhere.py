@@ -38,10 +38,10 @@ from comparisons.geometry import length, points
 from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer, paired
 from comparisons.verdict import compared
 from comparisons.words import Word
-from scene import Answer, Ending, Probe, Scene, StationAnswer
-from scene.answer import Array, frozen_array
-from scene.frozendict import frozendict
-from scene.statement import Arc, BeamContact, CircleContact, Polynomial
+from cprbm_scene import Answer, Ending, Probe, Scene, StationAnswer
+from cprbm_scene.answer import Array, frozen_array
+from cprbm_scene.frozendict import frozendict
+from cprbm_scene.statement import Arc, BeamContact, CircleContact, Polynomial
 from tests.together.planted import remembered, stiffer, without_contact
 
 CHOICES = Choices(links=40, elements=20, kinematics="bending")

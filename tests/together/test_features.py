@@ -10,15 +10,15 @@ import pytest
 from numpy.typing import NDArray
 
 import cprbm
-import exact
+import elastica_reference
 import fea_reference
 from comparisons.spots import clear_of_spots
+from cprbm_scene import Answer, Ending, SceneError
+from cprbm_scene.answer import Array
+from cprbm_scene.geometry import arc_length
+from cprbm_scene.reading import scene_from
+from cprbm_scene.statement import STRESSES, SelfContact
 from fea_reference import solid
-from scene import Answer, Ending, SceneError
-from scene.answer import Array
-from scene.geometry import arc_length
-from scene.reading import scene_from
-from scene.statement import STRESSES, SelfContact
 from tests.together.features import FEATURES, SOLVERS, Feature
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "features.md"
@@ -43,7 +43,7 @@ def answered(number: int, solver: str) -> Answer:
     if solver == "fea":
         return fea_reference.answer(scene, fea_reference.Settings(elements=ELEMENTS, kinematics="bending"))
     if solver == "exact":
-        return exact.answer(scene)
+        return elastica_reference.answer(scene)
     formulation = "paper" if solver == "paper" else "auto"
     return cprbm.answer(scene, cprbm.Settings(links=LINKS[solver], formulation=formulation))
 

@@ -7,7 +7,7 @@ import fea_reference
 from comparisons import cases
 from cprbm.model import build
 from cprbm.related import related_joints
-from scene import Ending, Probe
+from cprbm_scene import Ending, Probe
 
 JOINTS = {"contact": {"beam1": (8, 26), "beam2": (11, 28)}, "link1": {"beam1": (31, 40)}, "link2": {"beam2": (31, 40)}}
 

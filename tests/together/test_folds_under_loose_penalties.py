@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from cprbm_scene import Ending, Loss
+from cprbm_scene.reading import read
 from fea_reference import Settings, answer
-from scene import Ending, Loss
-from scene.reading import read
 
 SCENE = Path(__file__).parent / "scenes" / "folds-under-loose-penalties.toml"
 FOLDS = -1038.334 - (1038.334 - 1037.639) / 3.0

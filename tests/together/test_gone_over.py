@@ -11,8 +11,8 @@ import pytest
 
 import cprbm
 import fea_reference
-from scene import Loss
-from scene.reading import read
+from cprbm_scene import Loss
+from cprbm_scene.reading import read
 
 SCENE = Path(__file__).parent / "scenes" / "gone-over.toml"
 

@@ -14,7 +14,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solvers, cprbm_answer, crew_of, fea_answer, paired
 from comparisons.verdict import compared
 from comparisons.words import Word
-from scene import Scene
+from cprbm_scene import Scene
 from tests.together.planted import COARSE, without_contact
 
 PAPERS = {"beam1": 30, "beam2": 40}

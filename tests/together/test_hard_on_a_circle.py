@@ -2,10 +2,10 @@
 
 import pytest
 
-import exact
+import elastica_reference
 import fea_reference
-from scene import Ending
-from scene.reading import scene_from
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 
 
 def strip_on_a_circle():
@@ -57,7 +57,7 @@ def strip_on_a_circle():
 def test_loose_penalties_press_out_what_sinks_in_on_the_way():
     """Reference: the exact answer, to what 80 elements leave: they overlap by a twentieth of the thickness at most."""
     scene = strip_on_a_circle()
-    true = exact.answer(scene)
+    true = elastica_reference.answer(scene)
     got = fea_reference.answer(scene, fea_reference.Settings(elements=80, kinematics="bending"))
     assert got.ending is Ending.COMPLETED, got.sentence
     for mine, its in zip(got.stations, true.stations, strict=True):

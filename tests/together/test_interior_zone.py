@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cprbm
-import exact
+import elastica_reference
 from tests.cprbm.test_circle import BEAM, RADIUS, scene_of
 
 LENGTH = BEAM["length"]
@@ -40,7 +40,7 @@ def test_the_ends_are_those_of_the_beam_drawn_from_its_other_end(place, load):
 def test_the_ends_converge_evenly(place, load):
     # reference: the beam's differential equations, integrated to round-off
     scene, counts = lying(place, load), np.array([30, 40, 57])
-    truth = ends(exact, scene)
+    truth = ends(elastica_reference, scene)
     errors = np.array([np.abs(ends(cprbm, scene, cprbm.Settings(links=n)) - truth) for n in counts.tolist()])
     assert np.all(errors < 2.0 / counts[:, None] ** 2)
     orders = -np.diff(np.log(errors[:, 0])) / np.diff(np.log(counts))

@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 
 import cprbm
 import fea_reference
-from scene import Ending
+from cprbm_scene import Ending
 from tests.fea_reference.hooked import hook
 
 EVEN, TAPERED = (0.0011, 0.0011), (0.0009, 0.0012)

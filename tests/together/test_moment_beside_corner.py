@@ -7,8 +7,8 @@ import pytest
 
 import cprbm
 import fea_reference
-from scene import Answer
-from scene.reading import scene_from
+from cprbm_scene import Answer
+from cprbm_scene.reading import scene_from
 from tests.references import moment_beside_corner as truth
 
 M = -0.2081  # N·m

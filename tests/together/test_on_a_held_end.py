@@ -7,9 +7,9 @@ differential equations that the room exact integrates.  From rest on both beams 
 import pytest
 
 import cprbm
-import exact
+import elastica_reference
 import fea_reference
-from scene.reading import scene_from
+from cprbm_scene.reading import scene_from
 
 STUB = 0.00235
 
@@ -60,7 +60,7 @@ def truth():
     found = data()
     circle = {"kind": "beam-circle", "beam": "beam", "body": "wall", "center": [-0.054196, -0.046605]}
     found["contacts"] = {"lean": circle | {"radius": 0.5 * STUB}}
-    answer = exact.answer(scene_from(found))
+    answer = elastica_reference.answer(scene_from(found))
     assert answer.completed, answer.sentence
     return answer.stations
 

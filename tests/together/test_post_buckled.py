@@ -7,9 +7,9 @@ import pytest
 
 import cprbm
 import fea_reference
-from scene.reading import scene_from
+from cprbm_scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY
-from tests.exact.scenes import post_buckled as scene_data
+from tests.elastica_reference.scenes import post_buckled as scene_data
 from tests.references.post_buckled import post_buckled
 
 LOAD = 55.0  # 1.4 times Euler's

@@ -8,8 +8,8 @@ import pytest
 
 import cprbm
 import fea_reference
-from scene import Ending
-from scene.reading import scene_from
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 
 
 def rolled(stations):

@@ -7,10 +7,10 @@ side: the end below is what is nearest once the arch has come over it.
 import pytest
 
 import cprbm
-import exact
+import elastica_reference
 import fea_reference
-from scene import Ending
-from scene.reading import scene_from
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from tests.together import limits
 
 
@@ -59,7 +59,7 @@ def arch_over_an_end():
 
 @pytest.fixture(scope="module")
 def truth():
-    return exact.answer(arch_over_an_end()).stations[0].values
+    return elastica_reference.answer(arch_over_an_end()).stations[0].values
 
 
 def test_an_end_below_an_arch_is_met_whichever_side_is_seen_first(truth):

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from cprbm_scene import Ending, Loss
+from cprbm_scene.reading import read
 from fea_reference import Settings, answer
-from scene import Ending, Loss
-from scene.reading import read
 
 SCENE = Path(__file__).parent / "scenes" / "slips-in-a-long-step.toml"
 SLIPS = 29.6154 + (29.6154 - 29.5746) / 3.0

@@ -10,12 +10,12 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 import cprbm
-import exact
+import elastica_reference
 import fea_reference
-from scene import Ending
-from scene.reading import scene_from
+from cprbm_scene import Ending
+from cprbm_scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, cantilever_data
-from tests.exact.scenes import post_buckled
+from tests.elastica_reference.scenes import post_buckled
 from tests.references.slotted import slotted
 
 SLOT, ARM, LOADS = 0.4, (0.13, -0.21), (-3.0, 4.0)  # rad, beam's lengths, EI/L²
@@ -24,8 +24,8 @@ SLOT, ARM, LOADS = 0.4, (0.13, -0.21), (-3.0, 4.0)  # rad, beam's lengths, EI/L�
 def solved(solver, data, n):
     if solver is cprbm:
         answer = cprbm.answer(scene_from(data), cprbm.Settings(links=n))
-    elif solver is exact:
-        answer = exact.answer(scene_from(data))
+    elif solver is elastica_reference:
+        answer = elastica_reference.answer(scene_from(data))
     else:
         answer = fea_reference.answer(scene_from(data), fea_reference.Settings(elements=n, kinematics="bending"))
     assert answer.ending is Ending.COMPLETED, answer.sentence
@@ -69,7 +69,7 @@ def errors(solver, load, n):
 @pytest.mark.parametrize("load", LOADS)
 def test_an_arm_with_a_pin(load):
     assert abs(slotted(SLOT, ARM, load).rotation) > 0.1
-    assert np.all(errors(exact, load, 0) < 1e-9)
+    assert np.all(errors(elastica_reference, load, 0) < 1e-9)
     for solver, counts, order in ((cprbm, (20, 40, 80), 2.0), (fea_reference, (8, 16, 32), 4.0)):
         found = np.array([errors(solver, load, n) for n in counts])
         assert np.log2(found[:-1] / found[1:]) == pytest.approx(np.full((2, 4), order), abs=0.15)
@@ -87,14 +87,14 @@ def pinned_column(load):
     return data
 
 
-@pytest.mark.parametrize("solver", [cprbm, fea_reference, exact])
+@pytest.mark.parametrize("solver", [cprbm, fea_reference, elastica_reference])
 def test_the_column_between_pins_beyond_eulers_load(solver):
     """Reference: Euler's elastica, P = (2K)²EI/L², shortened by 2(1 − E/K)L, its middle aside by kL/K, k = sin(α/2)."""
     load = 1.3 * pi**2
     m = brentq(lambda m: 4.0 * ellipk(m) ** 2 - load, 1e-6, 0.999)
     K, E = ellipk(m), ellipe(m)
     stations = solved(solver, pinned_column(load), 40)
-    found, tolerance = stations[-1].values, {cprbm: 2e-3, fea_reference: 1e-5, exact: 1e-9}[solver]
+    found, tolerance = stations[-1].values, {cprbm: 2e-3, fea_reference: 1e-5, elastica_reference: 1e-9}[solver]
     assert found["E.displacement"] == pytest.approx([-2.0 * (1.0 - E / K) * LENGTH, 0.0], rel=tolerance, abs=1e-9)
     assert found["M.displacement"][1] == pytest.approx(np.sqrt(m) / K * LENGTH, rel=tolerance)
     assert abs(found["guide.rotation"][0]) == pytest.approx(2.0 * np.arcsin(np.sqrt(m)), rel=tolerance)

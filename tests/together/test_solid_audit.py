@@ -14,8 +14,8 @@ from comparisons.archive import packed, unpacked
 from comparisons.audit import audit, audited
 from comparisons.audit.edges import nearest, within
 from comparisons.cases import opened
+from cprbm_scene.answer import frozen_array
 from fea_reference import solid
-from scene.answer import frozen_array
 from tests.fea_reference.solid.bars import YOUNG, bar, quarter, straight
 from tests.together.test_audit import last, missing_reaction, moved_body, one_sided, saying, scaled_moment, turned_force
 

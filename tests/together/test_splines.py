@@ -8,10 +8,10 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-import exact
-from scene import Ending
-from scene.geometry import points_on
-from scene.reading import scene_from
+import elastica_reference
+from cprbm_scene import Ending
+from cprbm_scene.geometry import points_on
+from cprbm_scene.reading import scene_from
 from tests.together.bowed import RIGIDITY, cantilever, on_a_beam, on_a_circle
 from tests.together.test_bowed import LENGTH, LOADS, cprbm_answer, fea_answer, values
 from tests.together.test_bowed import exact as parabola
@@ -32,7 +32,7 @@ def loaded(curve, name):
 
 
 def exact_answer(scene, _):
-    return exact.answer(scene)
+    return elastica_reference.answer(scene)
 
 
 @cache

@@ -22,7 +22,7 @@ from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
 from comparisons.tolerances.levels import SceneLevels
 from comparisons.tolerances.tolerated import solved
-from scene import Answer, Scene
+from cprbm_scene import Answer, Scene
 from tests.references import hinge as exact
 from tests.together.test_tapered import FORCE, LENGTH, scene_of
 from tests.together.test_tapered import exact as tapered

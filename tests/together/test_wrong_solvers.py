@@ -28,9 +28,9 @@ from comparisons.choices import Choices
 from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer, paired
 from comparisons.verdict import Verdict, compared
 from comparisons.words import Word
-from scene import Answer, Scene
-from scene.answer import Array, frozen_array
-from scene.frozendict import frozendict
+from cprbm_scene import Answer, Scene
+from cprbm_scene.answer import Array, frozen_array
+from cprbm_scene.frozendict import frozendict
 from tests.together.planted import COARSE, asked_of, remembered, stiffer, without_contact
 
 

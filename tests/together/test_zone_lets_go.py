@@ -8,9 +8,9 @@ import pytest
 
 import cprbm
 import fea_reference
-from scene import Ending
-from scene.answer import Loss
-from scene.reading import scene_from
+from cprbm_scene import Ending
+from cprbm_scene.answer import Loss
+from cprbm_scene.reading import scene_from
 
 
 def between_walls():

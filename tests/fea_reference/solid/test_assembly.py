@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from cprbm_scene import SceneError
+from cprbm_scene.reading import scene_from
 from fea_reference import solid
-from scene import SceneError
-from scene.reading import scene_from
 from tests.together.features import LENGTH, bowed
 
 

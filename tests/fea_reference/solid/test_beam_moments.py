@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from cprbm_scene.statement import BeamMoment
 from fea_reference import solid
 from fea_reference.solid.beam_moments import couple
 from fea_reference.solid.model import build
-from scene.statement import BeamMoment
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, quarter, straight
 
 LENGTH, THICKNESS, AT = 0.31, 0.0016, 0.57

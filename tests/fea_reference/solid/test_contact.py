@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from cprbm_scene import SceneError
+from cprbm_scene.reading import scene_from
 from fea_reference import solid
 from fea_reference.solid.rigid import Half
-from scene import SceneError
-from scene.reading import scene_from
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
 
 FLOOR = {"kind": "beam-half-plane", "beam": "beam", "body": "ground"}

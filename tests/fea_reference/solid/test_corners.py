@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import fea_reference
+from cprbm_scene.reading import scene_from
+from cprbm_scene.statement import LineContact
 from fea_reference import solid
 from fea_reference.solid.edges import broken
-from scene.reading import scene_from
-from scene.statement import LineContact
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar
 
 STRIP = {"width": WIDTH, "material": "m", "thickness": 0.0017}

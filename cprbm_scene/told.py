@@ -1,0 +1,33 @@
+"""What a solver says while it works, through ``logging``: nobody listens unless somebody asks for the level INFO.
+
+A record carries, beside its sentence, how many of how many steps are ``done``, by which a bar may be drawn.
+"""
+
+from __future__ import annotations
+
+import logging
+
+from cprbm_scene.answer import StationAnswer
+from cprbm_scene.statement import Scene
+
+
+def station_reached(logger: logging.Logger, scene: Scene, reached: int, station: StationAnswer) -> None:
+    """Say that a solver has come to a ``station``, which is the ``reached``-th of the scene's."""
+    if not logger.isEnabledFor(logging.INFO):
+        return
+    stage = next(stage for stage in scene.stages if stage.name == station.stage)
+    whole = sum(len(each.stations) for each in scene.stages)
+    spent = station.certificate.iterations
+    logger.info(
+        "%s: %s, stage %s: station %d of %d, %s = %.6g, %d iteration%s",
+        scene.name,
+        logger.name.rpartition(".")[0],
+        stage.name,
+        reached,
+        whole,
+        stage.steps,
+        station.value,
+        spent,
+        "" if spent == 1 else "s",
+        extra={"done": reached, "whole": whole},
+    )

@@ -1,0 +1,207 @@
+"""Where beams overlap that are not held apart there.
+
+=======  ===========================================================================================
+symbol   meaning
+=======  ===========================================================================================
+r        place on one line less the foot of its perpendicular on the other, or the circle's centre
+g        gap: distance of the lines (signed by the side on which one lay before) less half thicknesses;
+         of a circle the distance from its centre less radius and half thickness
+=======  ===========================================================================================
+
+Every line is sampled, and each least gap between samples refined.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cprbm_scene import BeamContact, CircleContact
+from cprbm_scene.answer import Array
+from elastica_reference.model import Model, Strip
+from elastica_reference.state import Known
+
+SAMPLES = 401
+_ZOOMS, _ZOOMED = 6, 21  # times that a least gap is looked at more closely, at so many places
+_FEET = 6  # Newton iterations of a foot, at most
+_FOUND = 1e-12  # of the unit of length, a foot
+_TOUCHING = 1e-9  # distance of lines that says nothing of their sides
+_NEAR_END = 1e-9  # of a beam's length
+
+
+@dataclass(frozen=True, slots=True)
+class Overlap:
+    """A least gap that is negative.
+
+    Attributes:
+        contact: its name.
+        beam, s: the beam along which it is least, and where; ``at_end`` where that is one of the beam's ends.
+        onto, sigma: the other beam, and the foot there; None for a circle.
+        side: +1 where ``beam`` lies (or lay) to the left of ``onto``.
+        gap: g, no dimension, negative.
+    """
+
+    contact: str
+    beam: str
+    s: float
+    at_end: bool
+    onto: str | None
+    sigma: float
+    side: float
+    gap: float
+
+
+def overlaps(
+    model: Model,
+    now: Known,
+    before: Known,
+    touched: Mapping[tuple[str, str], tuple[float, float]],
+    sides: Mapping[tuple[str, str, str], float],
+    tolerance: float,
+) -> list[Overlap]:
+    """All least gaps below −``tolerance``.
+
+    Args:
+        model: the mechanism.
+        now, before: the state, and one whose beams have not passed each other; it says which side is which.
+        touched: by contact and beam where it touches already, from and to; a least gap there is known.
+        sides: by contact, beam and other beam, on which side of the other the beam lies where ``before`` still touches.
+        tolerance: no dimension.
+    """
+    found: list[Overlap] = []
+    for name, contact in model.scene.contacts.items():
+        if isinstance(contact, CircleContact):
+            found += _of_circle(model, now, name, contact, now.centre(name), touched)
+        elif isinstance(contact, BeamContact):
+            one, other = contact.between
+            found += _of_pair(model, now, before, name, contact, (one, other), touched, sides)
+            found += _of_pair(model, now, before, name, contact, (other, one), touched, sides)
+    return [overlap for overlap in found if overlap.gap < -tolerance]
+
+
+def _of_circle(
+    model: Model,
+    now: Known,
+    name: str,
+    contact: CircleContact,
+    centre: Array,
+    touched: Mapping[tuple[str, str], tuple[float, float]],
+) -> list[Overlap]:
+    strip = model.strips[contact.beam]
+
+    def gap(s: Array) -> Array:
+        x, y = now.along(contact.beam, s)[:2]
+        half = strip.half_thickness(s) if contact.thick else 0.0
+        return np.asarray(np.hypot(x - centre[0], y - centre[1]) - contact.radius / model.unit_length - half)
+
+    s = np.linspace(0.0, strip.length, SAMPLES)
+    return [
+        Overlap(name, contact.beam, place, at_end, None, 0.0, 1.0, value)
+        for place, value, at_end in _minima(gap, s, gap(s), touched.get((name, contact.beam)))
+        if not (at_end and _held_by(model, strip, place) == contact.body)
+    ]
+
+
+def _of_pair(
+    model: Model,
+    now: Known,
+    before: Known,
+    name: str,
+    contact: BeamContact,
+    beams: tuple[str, str],
+    touched: Mapping[tuple[str, str], tuple[float, float]],
+    sides: Mapping[tuple[str, str, str], float],
+) -> list[Overlap]:
+    one, other = beams
+    a, b = model.strips[one], model.strips[other]
+    s, sigma = np.linspace(0.0, a.length, SAMPLES), np.linspace(0.0, b.length, SAMPLES)
+
+    def nearest(known: Known) -> Array:
+        A, B = known.along(one, s)[:2], known.along(other, sigma)[:2]
+        return np.asarray(sigma[np.argmin((A[0][:, None] - B[0]) ** 2 + (A[1][:, None] - B[1]) ** 2, axis=1)])
+
+    def away(known: Known, places: Array, start: Array) -> tuple[Array, Array, Array]:
+        """To the left of the other line, how far places of the first one are; their feet, and how far those."""
+        at, r0 = start.copy(), known.along(one, places)[:2]
+        for _ in range(_FEET):
+            x, y, theta, m = known.along(other, at)[:4]
+            t, r = np.stack([np.cos(theta), np.sin(theta)]), r0 - np.stack([x, y])
+            bent = 1.0 - (b.line.curvature(at) + b.compliance(at) * m) * (t[0] * r[1] - t[1] * r[0])
+            step = (t[0] * r[0] + t[1] * r[1]) / np.where(np.abs(bent) > 0.1, bent, 1.0)
+            at, last = np.clip(at + step, 0.0, b.length), at
+            if np.max(np.abs(at - last)) < _FOUND:
+                break
+        x, y, theta = known.along(other, at)[:3]
+        r = r0 - np.stack([x, y])
+        return np.cos(theta) * r[1] - np.sin(theta) * r[0], at, np.hypot(*r)
+
+    def between(at: Array) -> NDArray[np.bool_]:
+        """Which feet (n,) lie between the other line's ends."""
+        return np.asarray((at > _NEAR_END * b.length) & (at < (1.0 - _NEAR_END) * b.length))
+
+    feet, feet_before = (away(known, s, nearest(known))[1] for known in (now, before))
+
+    def measured(places: Array) -> tuple[Array, Array, Array, Array]:
+        """Gaps, feet, sides and distances (n,) of places (n,).
+
+        What lay beyond an end of the other line, or on it, had no side: it has come there past the end.
+        """
+        lateral, at, distance = away(now, places, np.interp(places, s, feet))
+        was, foot, _ = away(before, places, np.interp(places, s, feet_before))
+        side = np.where(np.abs(was) > _TOUCHING, np.sign(was), sides.get((name, one, other), 0.0))
+        side = np.where(between(foot), side, 0.0)
+        apart = a.half_thickness(places) + b.half_thickness(at) if contact.thick else 0.0
+        return np.where(side != 0.0, side * lateral - apart, np.inf), at, side, distance
+
+    gaps, at, _, distance = measured(s)
+    # far from the side on which it was, a line has not passed the other but gone round its end
+    gaps = np.where(between(at) & (distance < 0.1), gaps, np.inf)
+    found = []
+    for place, _, at_end in _minima(lambda places: measured(places)[0], s, gaps, touched.get((name, one))):
+        value, foot, side, _ = (float(array[0]) for array in measured(np.array([place])))
+        if between(np.array([foot]))[0]:
+            found.append(Overlap(name, one, place, at_end, other, foot, side, value))
+    return found
+
+
+def _minima(
+    function: Callable[[Array], Array], s: Array, values: Array, touched: tuple[float, float] | None
+) -> list[tuple[float, float, bool]]:
+    """Places, values and whether at an end, of the least values between samples; one that is known is left out."""
+    fence = np.pad(values, 1, constant_values=np.inf)
+    step = s[1] - s[0]
+    found = []
+    # a gap changes by no more than the arc length does; it is not least where what it is measured from ends
+    beside = np.pad(np.isfinite(values), 1, constant_values=True)
+    least = (values < step) & (values <= fence[:-2]) & (values < fence[2:]) & beside[:-2] & beside[2:]
+    for index in np.flatnonzero(least):
+        i = int(index)
+        if touched is not None and touched[0] - step <= s[i] <= touched[1] + step:
+            continue
+        place, value = _least(function, float(s[max(i - 1, 0)]), float(s[min(i + 1, len(s) - 1)]))
+        if i in (0, len(s) - 1) and values[i] <= value:
+            found.append((float(s[i]), float(values[i]), True))
+        else:
+            found.append((place, value, False))
+    return found
+
+
+def _least(function: Callable[[Array], Array], low: float, high: float) -> tuple[float, float]:
+    """Where a function is least between two places, and its value; roughly so where it is not negative there."""
+    for _ in range(_ZOOMS):
+        s = np.linspace(low, high, _ZOOMED)
+        values = function(s)
+        i = int(np.argmin(values))
+        low, high = float(s[max(i - 1, 0)]), float(s[min(i + 1, len(s) - 1)])
+        if values[i] > high - low:
+            break
+    return float(s[i]), float(values[i])
+
+
+def _held_by(model: Model, strip: Strip, s: float) -> str | None:
+    """The body that holds the end of a beam at an arc length."""
+    end = strip.start if s <= 0.5 * strip.length else strip.end
+    return None if end.point is None else model.scene.body_of(end.point)

@@ -1,0 +1,204 @@
+"""The march from rest through a scene's stations, contact by contact.
+
+From one state to the next the load or drive grows by steps that Newton's method can take.  After each the state is
+looked over: a contact that would pull opens, lines that overlap close a contact, a beam that would cut into a circle
+beside the place where it touches lies along it.  Where that happened is found as an equilibrium at which the new
+contact's force, or the old one's, is zero; from there it goes on.
+
+Every state on the way must be a minimum of the energy (:mod:`elastica_reference.stability`), and nothing may have been
+passed since the one before (:mod:`elastica_reference.passing`).  The march ends at a fold or a bifurcation, and also
+where two beams would lie along each other or one contact be closed at two places at once.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+import time
+
+from cprbm_scene import Answer, Ending, Scene, StationAnswer
+from cprbm_scene.statement import BeamContact, BeamMoment, EdgeContact, SelfContact, TurningBody
+from cprbm_scene.told import station_reached
+from elastica_reference.changes import open_first, reform, slide_onto_end
+from elastica_reference.closings import close_first
+from elastica_reference.gaps import overlaps
+from elastica_reference.model import modelled
+from elastica_reference.newton import LostError, checked
+from elastica_reference.passing import passes
+from elastica_reference.probing import answered
+from elastica_reference.restructure import NotCoveredError
+from elastica_reference.settings import Settings
+from elastica_reference.state import State
+from elastica_reference.structure import Meeting, Wrap
+from elastica_reference.way import Way
+
+_SAYS = logging.getLogger(__name__)
+
+_OVERLAP = 1e-10  # of the unit of length
+_FIRST_STEP = 0.2  # of the way to the first station
+_CHANGES = 40  # of structure between two stations
+
+
+def answer(scene: Scene, settings: Settings | None = None) -> Answer:
+    """The exact answer to a scene in the theory of bending without stretch and shear.
+
+    Args:
+        scene: the question.
+        settings: numerical choices.
+
+    Returns:
+        The stations up to where the solution holds; its ending is NOT_COVERED where one is missing. Values are
+        read-only arrays in SI, of the shapes in :mod:`cprbm_scene.answer`.
+
+    Source:
+        Euler's elastica with contact, by Gauss's collocation; nothing is discretised but the integration.
+
+    Example:
+        >>> import elastica_reference
+        >>> from cprbm_scene import read
+        >>> answer = elastica_reference.answer(read("comparisons/cases/tapered.toml"))
+        >>> answer.completed, answer.stations[-1].certificate.residual < 1e-10
+        (True, True)
+    """
+    chosen = settings or Settings()
+    began = time.perf_counter()
+    way = Way(modelled(scene), chosen)
+    stations: list[StationAnswer] = []
+    ending, sentence = Ending.COMPLETED, ""
+    try:
+        _covered(scene)
+        for stage in scene.stages:
+            way.begin(stage)
+            step = 0.0
+            for station in stage.stations:
+                step = _advance(way, station / way.unit, step)
+                stations.append(_certified(way, station))
+                station_reached(_SAYS, scene, len(stations), stations[-1])
+    except NotCoveredError as error:
+        ending, sentence = Ending.NOT_COVERED, f"{error}."
+    return Answer(
+        solver="exact",
+        scene=scene.name,
+        settings=chosen.plain(),
+        ending=ending,
+        sentence=sentence,
+        stations=tuple(stations),
+        events=tuple(way.events),
+        seconds=time.perf_counter() - began,
+    )
+
+
+def _covered(scene: Scene) -> None:
+    """Refuse what has no equations here.
+
+    Raises:
+        NotCoveredError: the scene has stops, an assembly, a body on a pivot, bodies that are pinned to each other,
+            contact with a line, a half-plane or a function, of a beam with itself or of two beams by edges whose
+            distance from the neutral line varies, or a moment on a beam, or it is asked what a slide does.
+    """
+    pivots = any(isinstance(body, TurningBody) for body in scene.bodies.values())
+    edges = any(isinstance(contact, EdgeContact) for contact in scene.contacts.values())
+    selves = any(isinstance(contact, SelfContact) for contact in scene.contacts.values())
+    tapered = any(
+        isinstance(contact, BeamContact) and contact.thick and any(scene.beams[beam].tapered for beam in contact.beams)
+        for contact in scene.contacts.values()
+    )
+    for what, there in (
+        ("stops", scene.stops),
+        ("assembly", scene.assembly is not None),
+        ("bodies on pivots", pivots),
+        ("pins between bodies", scene.pins),
+        ("contact with lines, half-planes and functions", edges),
+        ("contact of a beam with itself", selves),
+        ("contact of two beams by their edges where a thickness varies", tapered),
+        ("what a slide does", any(probe.of in scene.bodies and probe.quantity == "reaction" for probe in scene.probes)),
+        ("moments on beams", any(isinstance(load, BeamMoment) for load in scene.loads.values())),
+    ):
+        if there:
+            raise NotCoveredError(f"there are no equations for {what} here")
+
+
+def _certified(way: Way, station: float) -> StationAnswer:
+    """A station's answer, whose equations hold with more Gauss points too.
+
+    Raises:
+        NotCoveredError: they do not.
+    """
+    try:
+        finer = checked(way.state, way.settings.further)
+    except LostError:
+        finer = math.inf
+    if not finer <= way.settings.tolerance:
+        raise NotCoveredError(f"at {station:g} more Gauss points are needed: a residual of {finer:.1e} is left")
+    return answered(way, station, finer)
+
+
+def _advance(way: Way, target: float, step: float) -> float:
+    """Go on to a value of what is stepped, no dimension; the size of step that served last.
+
+    Raises:
+        NotCoveredError: the path leads beyond what the equations cover.
+    """
+    whole, changes = target - way.lam, 0
+    largest, smallest = way.settings.largest_step * abs(whole), way.settings.smallest_step * abs(whole)
+    step = min(largest, step or _FIRST_STEP * abs(whole))
+    reason, tried = "", 0
+    while way.lam != target:
+        tried += 1
+        goal = target if abs(target - way.lam) <= step else way.lam + math.copysign(step, whole)
+        try:
+            trial = way.attempt(goal)
+            if not _examined(way, trial):
+                changes += 1
+            step = min(1.5 * step, largest)
+        except LostError as error:
+            reason = f", where {error}" if str(error) else ""
+            if slide_onto_end(way, goal):
+                changes += 1
+            else:
+                step *= 0.4
+        if tried >= way.settings.steps and way.lam != target:
+            raise NotCoveredError(
+                f"{way.settings.steps} steps lead no farther than {way.lam * way.unit:.6g} of {way.stepped}"
+            )
+        if step < smallest or changes > _CHANGES:
+            raise NotCoveredError(f"no equilibrium was found beyond {way.lam * way.unit:.6g} of {way.stepped}{reason}")
+    return step
+
+
+def _examined(way: Way, trial: State) -> bool:
+    """Accept a trial if nothing is wrong with it, else go to where something changes and say False.
+
+    Raises:
+        LostError: that was not found.
+        NotCoveredError: there are no equations for it.
+    """
+    if open_first(way, trial) or reform(way, trial):
+        return False
+    found = overlaps(way.model, trial, way.known, _touched(trial), way.sides, _OVERLAP)
+    if found:
+        try:
+            close_first(way, trial, found)
+        except LostError as error:
+            raise LostError(f"{found[0].contact} touches") from error
+        return False
+    if passes(way.model, way.known, trial):
+        raise LostError
+    way.accept(trial)
+    return True
+
+
+def _touched(state: State) -> dict[tuple[str, str], tuple[float, float]]:
+    """By contact and beam, from where to where it touches; ends that touch are looked at like any place."""
+    found = {}
+    for name, touch in state.structure.touches.items():
+        if isinstance(touch, Wrap):
+            found[name, touch.beam] = state.wrapped(touch)
+            continue
+        if touch.at is None:
+            s = state.places[name, touch.beam]
+            found[name, touch.beam] = (s, s)
+        if isinstance(touch, Meeting):
+            sigma = state.places[name, touch.onto]
+            found[name, touch.onto] = (sigma, sigma)
+    return found

@@ -1,0 +1,89 @@
+"""Whether something was passed between two states without being met.
+
+=======  ==================================================================================
+symbol   meaning
+=======  ==================================================================================
+p, q     places before and after, relative to a circle's centre or to an end of another beam
+t        share of the way between the two states, on which places go straight
+=======  ==================================================================================
+
+Two states that overlap nowhere may have a circle or another beam's end between them.  A step on which places that go
+straight come deep into a circle, or an end goes through a line, is too long to say.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cprbm_scene import BeamContact, CircleContact
+from cprbm_scene.answer import Array
+from elastica_reference.gaps import SAMPLES
+from elastica_reference.model import Model
+from elastica_reference.state import Known
+
+_ON = 1e-5  # of the unit of length: more than a line is away from its chords
+_DEEP = 0.5  # of the distance at which a beam touches a circle
+
+
+def passes(model: Model, before: Known, after: Known) -> bool:
+    """Whether a beam that may touch something could have gone through it between two states."""
+    for name, contact in model.scene.contacts.items():
+        if isinstance(contact, CircleContact):
+            strip = model.strips[contact.beam]
+            s = np.linspace(0.0, strip.length, SAMPLES)
+            half = float(np.min(strip.half_thickness(s))) if contact.thick else 0.0
+            p, q = (known.along(contact.beam, s)[:2] - known.centre(name)[:, None] for known in (before, after))
+            if _through_circle(p, q, contact.radius / model.unit_length + half):
+                return True
+            continue
+        assert isinstance(contact, BeamContact)
+        for one, other in (contact.between, contact.between[::-1]):
+            sigma = np.linspace(0.0, model.strips[other].length, SAMPLES)
+            for end in (0.0, model.strips[one].length):
+                place = np.array([end])
+                p, q = (known.along(other, sigma)[:2] - known.along(one, place)[:2] for known in (before, after))
+                if _through_line(p, q):
+                    return True
+    return False
+
+
+def _through_circle(p: Array, q: Array, distance: float) -> bool:
+    """Whether places (2, n) come deep into a circle about the origin, or the line through them sweeps over it."""
+    d = q - p
+    t = np.clip(-np.sum(p * d, axis=0) / np.maximum(np.sum(d * d, axis=0), np.finfo(float).tiny), 0.0, 1.0)
+    if np.min(np.hypot(*(p + t * d))) < _DEEP * distance:
+        return True
+    corners = [p[:, :-1], p[:, 1:], q[:, 1:], q[:, :-1]]
+    turned = np.sum([_angle(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)], axis=0)
+    return bool(np.any(np.abs(turned) > np.pi))
+
+
+def _angle(a: Array, b: Array) -> Array:
+    return np.asarray(np.arctan2(_cross(a, b), a[0] * b[0] + a[1] * b[1]))
+
+
+def _through_line(p: Array, q: Array) -> bool:
+    """Whether the origin goes through the line whose places go from p (2, n) to q.
+
+    It lies on a chord from P to P + D where P × D = 0, quadratic in t, and between the chord's ends.  What is on the
+    line before or after, as an end that touches, does not go through it.
+    """
+    P, P_t = p[:, :-1], (q - p)[:, :-1]
+    D, D_t = np.diff(p), np.diff(q - p)
+    apart = (np.abs(_cross(P, D)) > _ON * np.hypot(*D)) & (
+        np.abs(_cross(P + P_t, D + D_t)) > _ON * np.hypot(*(D + D_t))
+    )
+    c0, c1, c2 = _cross(P, D), _cross(P, D_t) + _cross(P_t, D), _cross(P_t, D_t)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # the two roots without cancellation; what is no root is not finite
+        w = -0.5 * (c1 + np.copysign(np.sqrt(c1 * c1 - 4.0 * c0 * c2), c1))
+        roots = np.stack([w / c2, c0 / w])
+    t = np.where(np.isfinite(roots) & (roots > 0.0) & (roots <= 1.0), roots, np.nan)
+    place, chord = P[:, None] + t * P_t[:, None], D[:, None] + t * D_t[:, None]
+    with np.errstate(invalid="ignore"):
+        share = -np.sum(place * chord, axis=0) / np.maximum(np.sum(chord * chord, axis=0), np.finfo(float).tiny)
+        return bool(np.any(apart & (share >= 0.0) & (share <= 1.0)))
+
+
+def _cross(a: Array, b: Array) -> Array:
+    return np.asarray(a[0] * b[1] - a[1] * b[0])

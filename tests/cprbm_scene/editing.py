@@ -1,0 +1,68 @@
+"""Edits of plain scene data for tests: what is read from TOML, changed at one or more key paths."""
+
+import copy
+import tomllib
+from pathlib import Path
+
+from cprbm_scene import SceneError
+from cprbm_scene.reading import scene_from
+
+HINGE = tomllib.loads((Path(__file__).parents[2] / "comparisons" / "cases" / "hinge.toml").read_text(encoding="utf-8"))
+REMOVED = object()
+
+
+def edited(*edits, base=HINGE):
+    """``base`` with each (path, value) put in; REMOVED takes the key away."""
+    data = copy.deepcopy(base)
+    for path, value in edits:
+        keys = [int(key) if key.isdigit() else key for key in path.split("/")]
+        place = data
+        for key in keys[:-1]:
+            place = place[key]
+        if value is REMOVED:
+            del place[keys[-1]]
+        elif isinstance(place, list) and keys[-1] == len(place):
+            place.append(value)
+        else:
+            place[keys[-1]] = value
+    return data
+
+
+def mistakes(*edits, base=HINGE):
+    """Key, and the two halves of the sentence, of each mistake that the edits make."""
+    try:
+        scene_from(edited(*edits, base=base), file="case.toml")
+    except SceneError as error:
+        return {mistake.key: f"{mistake.found}; {mistake.allowed}" for mistake in error.mistakes}
+    return {}
+
+
+def two_lines(gap, *, thick=True, second=None):
+    """Two level cantilevers of 0.1 m, 2 mm thick, their neutral lines ``gap`` apart."""
+    ends = second or ((0.0, gap), (0.1, gap))
+    beam = {"thickness": 0.002, "width": 0.01, "material": "steel", "end": {"joint": "weld", "point": "Q"}}
+    return {
+        "name": "pair",
+        "materials": {"steel": {"youngs_modulus": 2e11, "poisson_ratio": 0.3}},
+        "bodies": {
+            "ground": {"motion": "fixed", "points": {"O": [0.0, 0.0], "P": list(ends[0])}},
+            "block": {"motion": "free", "points": {"Q": [0.1, 0.0]}},
+        },
+        "beams": {
+            "lower": {
+                **beam,
+                "curve": {"kind": "line", "start": [0.0, 0.0], "end": [0.1, 0.0]},
+                "start": {"joint": "weld", "point": "O"},
+            },
+            "upper": {
+                **beam,
+                "curve": {"kind": "line", "start": list(ends[0]), "end": list(ends[1])},
+                "start": {"joint": "weld", "point": "P"},
+                "end": {"joint": "free"},
+            },
+        },
+        "loads": {"F": {"kind": "force", "point": "Q", "direction": [0.0, 1.0]}},
+        "contacts": {"touch": {"kind": "beam-beam", "between": ["lower", "upper"], "thick": thick}},
+        "stages": [{"name": "load", "steps": "F", "stations": [1.0]}],
+        "probes": [{"of": "Q", "quantity": "displacement"}],
+    }

@@ -1,0 +1,45 @@
+"""A folder of the user's own modules, named like ours, must not break the program or the library."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+OWN_MODULES = ("scene.py", "exact.py", "comparisons.py", "tests.py")
+PROGRAM = Path(sys.executable).with_name("cprbm")
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder whose modules end the process as soon as one of them is imported."""
+    for name in OWN_MODULES:
+        (tmp_path / name).write_text(f'raise SystemExit("imported the user\'s own {name}")\n')
+    return tmp_path
+
+
+def _run(command, folder):
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+
+
+def test_the_program_solves(folder):
+    done = _run([PROGRAM, "solve", "hinge", "-n", "10"], folder)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "BD.rotation" in done.stdout
+
+
+def test_the_program_shares_its_work_among_processes(folder):
+    done = _run([PROGRAM, "compare", "tapered", "-n", "10", "--elements", "10", "--quiet"], folder)
+    assert done.returncode in (0, 3), done.stderr
+    assert "user's own" not in done.stderr
+
+
+def test_the_solvers_are_imported(folder):
+    done = _run([sys.executable, "-c", "import cprbm, fea_reference, elastica_reference, cprbm_scene"], folder)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_planted_module_is_imported(folder):
+    done = _run([sys.executable, "-c", "import scene"], folder)
+    assert done.returncode == 1
+    assert "user's own scene.py" in done.stderr
