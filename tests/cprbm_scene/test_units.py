@@ -7,11 +7,11 @@ import pytest
 from pydantic import BaseModel
 
 from comparisons import cases
-from comparisons.stress.toml import toml_of
 from cprbm_scene import SceneError, statement
 from cprbm_scene.reading import scene_from
 from cprbm_scene.statement import Record, Units
 from cprbm_scene.units import FOLLOWING, MEASURED
+from tests.robustness.toml import toml_of
 
 PURE = {
     "at",

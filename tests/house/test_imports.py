@@ -54,6 +54,11 @@ def test_two_rooms_that_share_nothing_have_a_door_each(tmp_path):
     assert violations(house) == []
 
 
+def test_the_door_to_the_developers_tools_imports_by_a_name_made_at_run_time(tmp_path):
+    source = "from importlib import import_module\ndef load(name):\n    return import_module(name)\n"
+    assert violations(_house(tmp_path, comparisons__workshop=source)) == []
+
+
 PLANTED = {
     "scene imports a solver": ("cprbm_scene__bad", "import cprbm.chain", "cprbm_scene may not import cprbm"),
     "the solid imports beam elements": (
@@ -145,6 +150,12 @@ PLANTED = {
     "skfem elsewhere": ("comparisons__bad", "def f():\n    import skfem", "only fea_reference may"),
     "a cycle": ("cprbm__chain", "from cprbm.energy import e", None),
     "a relative cycle in functions": ("cprbm__chain", "def f():\n    from . import energy", None),
+    "the door to the tools imports tests in a statement": (
+        "comparisons__workshop",
+        "def f():\n    from tests.robustness import command",
+        "not the rooms the tests",
+    ),
+    "benchmarks in a room": ("comparisons__bad", "import benchmarks.peers", "not the rooms the tests"),
     "tests in a room": ("cprbm__bad", "from tests.references import hinge", "not the rooms the tests"),
 }
 

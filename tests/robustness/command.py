@@ -1,4 +1,4 @@
-"""``cprbm stress``: both solvers on random scenes, and in which way each of them ends."""
+"""``cprbm robustness``: both solvers on random scenes, and in which way each of them ends."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import click
 from comparisons.cli.options import folder, output, positive, whole
 
 if TYPE_CHECKING:
-    from comparisons.stress.outcomes import Outcome
-    from comparisons.stress.running import Stress
+    from tests.robustness.outcomes import Outcome
+    from tests.robustness.running import Stress
 
 NOT_FINISHED = 1
 UNDECIDED = 3
 
 
-@click.command("stress")
+@click.command("robustness")
 @click.option("--scenes", callback=whole, metavar="K", default="40", show_default=True, help="How many.")
 @click.option("--seed", type=click.IntRange(min=0), metavar="S", default=1, show_default=True,
               help="Of the scenes: one seed is one list of them, however many are asked.")  # fmt: skip
@@ -31,10 +31,10 @@ UNDECIDED = 3
 @click.option("--replay", type=click.Path(dir_okay=False, path_type=Path), metavar="FILE.toml",
               help="Judge this scene alone.")  # fmt: skip
 @output
-@folder("Folder of outcomes and of scenes that fail, 'stress-SEED' unless given; a run goes on from what is there.")
-@click.pass_obj
+@folder("Folder of outcomes and of scenes that fail, 'robustness-SEED' unless given; a run goes on from what is there.")
+@click.pass_context
 def command(
-    planted: object,
+    ctx: click.Context,
     scenes: int,
     seed: int,
     at_most: float,
@@ -42,19 +42,19 @@ def command(
     also: tuple[str, ...],
     replay: Path | None,
     json_file: Path | None,
-    quiet: bool,  # noqa: FBT001 - click hands it over by name
+    quiet: bool,
     out: Path | None,
 ) -> int:
     """See on random scenes how stable both solvers are, and whether a certified answer is ever wrong."""
     from comparisons.cases import opened
     from comparisons.cli import showing
     from comparisons.pairing import solvers_of
-    from comparisons.stress import told
-    from comparisons.stress.apart import Limits
-    from comparisons.stress.outcomes import Way
-    from comparisons.stress.running import Crew, Plan, Stress, replayed, run
+    from tests.robustness import told
+    from tests.robustness.apart import Limits
+    from tests.robustness.outcomes import Way
+    from tests.robustness.running import Crew, Plan, Stress, replayed, run
 
-    solvers = solvers_of(planted)
+    solvers = solvers_of(ctx.obj)
     plan = Plan(seed, limits=Limits(seconds=at_most))
     printing = str(json_file) != "-"
     if replay is not None:
@@ -65,7 +65,7 @@ def command(
         if printing:
             click.echo(told.told_of(there.outcomes[0]))
         return exit_code(there.outcomes.values())
-    out = Path(f"stress-{seed}") if out is None else out
+    out = Path(f"{ctx.info_name}-{seed}") if out is None else out
     showing.room_for(json_file, out)
     there = Stress(plan, {}, {})
     try:
@@ -83,7 +83,7 @@ def exit_code(outcomes: Iterable[Outcome]) -> int:
 
     A scene that is refused counts as undecided: a question was drawn that nobody answers.
     """
-    from comparisons.stress.outcomes import Way
+    from tests.robustness.outcomes import Way
 
     ways = {outcome.way for outcome in outcomes}
     if ways & {Way.WRONG, Way.CRASHED, Way.TIMED_OUT, Way.ENDED}:
@@ -100,7 +100,7 @@ def _cores() -> int:
 def _show(there: Stress, json_file: Path | None, out: Path, *, quiet: bool) -> None:
     """Write and print a run, or as much of it as there is."""
     from comparisons.cli import showing
-    from comparisons.stress import told
+    from tests.robustness import told
 
     if json_file is not None:
         showing.json(json_file, told.document(there))

@@ -2,8 +2,8 @@
 
 A line is written when a scene has ended, and is whole or, where writing it was cut short, the last and without its
 end; that one is dropped when the file is opened again.  The file's name holds a digest of what an outcome depends on:
-the seed, the effort, the limits, and the sources of all rooms.  So a run goes on from its own outcomes alone, and
-what another program or another question has found stays beside them.
+the seed, the effort, the limits, and the sources of all rooms and of this folder.  So a run goes on from its own
+outcomes alone, and what another program or another question has found stays beside them.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from pathlib import Path
 
 from comparisons.documents import Plain
 from comparisons.sources import program
-from comparisons.stress.outcomes import Outcome, packed, unpacked
 from comparisons.writing import add_line, whole_lines
+from tests.robustness.outcomes import Outcome, packed, unpacked
 
 
 def digest(question: object) -> str:
     """Of a record, by what it shows of itself, and of the program that answers it: eight hexadecimal digits."""
-    return hashlib.sha256(f"{question!r}\n{program()}".encode()).hexdigest()[:8]
+    return hashlib.sha256(f"{question!r}\n{program('tests.robustness')}".encode()).hexdigest()[:8]
 
 
 @dataclass(frozen=True, slots=True)

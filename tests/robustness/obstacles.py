@@ -18,10 +18,10 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from comparisons.stress.chance import RedrawError, any_of, between, happens, sign, spread, weighted
-from comparisons.stress.curves import curve_between
-from comparisons.stress.draft import Data, Draft
-from comparisons.stress.estimate import BARS, Estimate, State
+from tests.robustness.chance import RedrawError, any_of, between, happens, sign, spread, weighted
+from tests.robustness.curves import curve_between
+from tests.robustness.draft import Data, Draft
+from tests.robustness.estimate import BARS, Estimate, State
 
 Array = NDArray[np.float64]
 Distance = Callable[[Array], Array]

@@ -1,4 +1,4 @@
-"""A stress run: scenes drawn and judged in hosts, outcomes kept at once, and what fails shrunk and saved."""
+"""A run of random scenes, drawn and judged in hosts, outcomes kept at once, and what fails shrunk and saved."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from pathlib import Path
 
 from comparisons.documents import Plain
 from comparisons.pairing import Solvers
-from comparisons.stress.apart import Crashed, End, Limits, OutOfTime, Returned, apart
-from comparisons.stress.drawing import Drawn, drawn
-from comparisons.stress.hosts import Hosts, hosts_of
-from comparisons.stress.judging import Effort, judged
-from comparisons.stress.kept import Kept, digest
-from comparisons.stress.outcomes import Outcome, Way
-from comparisons.stress.shrinking import Patience, shrunk
-from comparisons.stress.strata import stated
-from comparisons.stress.toml import toml_of
 from comparisons.writing import write
 from cprbm_scene import Scene, SceneError
 from cprbm_scene.reading import scene_from
+from tests.robustness.apart import Crashed, End, Limits, OutOfTime, Returned, apart
+from tests.robustness.drawing import Drawn, drawn
+from tests.robustness.hosts import Hosts, hosts_of
+from tests.robustness.judging import Effort, judged
+from tests.robustness.kept import Kept, digest
+from tests.robustness.outcomes import Outcome, Way
+from tests.robustness.shrinking import Patience, shrunk
+from tests.robustness.strata import stated
+from tests.robustness.toml import toml_of
 
 FAILURES = (Way.WRONG, Way.CRASHED, Way.TIMED_OUT)
 """The ways that are always a fault of ours."""

@@ -7,7 +7,7 @@ from math import cos, floor, log10, sin, tau
 
 from numpy.random import Generator
 
-from comparisons.stress.chance import between, happens, spread
+from tests.robustness.chance import between, happens, spread
 
 Place = tuple[float, float]
 DIGITS = 5  # of a coordinate, counted from the scene's size

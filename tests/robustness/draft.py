@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator
 
-from comparisons.stress.chance import any_of, between, happens, rounded, spread
-from comparisons.stress.curves import curve_between
-from comparisons.stress.frame import Frame, Place, drawn_frame
+from tests.robustness.chance import any_of, between, happens, rounded, spread
+from tests.robustness.curves import curve_between
+from tests.robustness.frame import Frame, Place, drawn_frame
 
 Data = dict[str, Any]
 

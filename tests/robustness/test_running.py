@@ -1,4 +1,4 @@
-"""The stress run, on scenes whose fate is known: every way of ending, what is kept, what is shrunk."""
+"""The run of random scenes, on scenes whose fate is known: every way of ending, what is kept, what is shrunk."""
 
 import json
 import os
@@ -15,21 +15,21 @@ import pytest
 from comparisons import cases, memory
 from comparisons.audit import audit
 from comparisons.cli.main import run as command
-from comparisons.cli.stress_ import exit_code
 from comparisons.pairing import Solvers
-from comparisons.stress.apart import Limits, OutOfTime, Returned
-from comparisons.stress.hosts import hosts_of
-from comparisons.stress.judging import Effort, judged
-from comparisons.stress.kept import Kept, digest
-from comparisons.stress.outcomes import Outcome, Way, in_bending, packed, shares, totals, unpacked
-from comparisons.stress.running import FAILURES, Crew, Plan, Stress, run
-from comparisons.stress.shrinking import Patience, shrunk, steps
-from comparisons.stress.told import document, sentence, sheets_of, told_of
-from comparisons.stress.toml import toml_of
 from cprbm_scene import Ending, SceneError, read
 from cprbm_scene.reading import scene_from
 from tests.comparisons.made_up import MadeUp
-from tests.comparisons.stressed import FATES, WAYS, fated, fated_solvers, nothing
+from tests.robustness.apart import Limits, OutOfTime, Returned
+from tests.robustness.command import exit_code
+from tests.robustness.fates import FATES, WAYS, fated, fated_solvers, nothing
+from tests.robustness.hosts import hosts_of
+from tests.robustness.judging import Effort, judged
+from tests.robustness.kept import Kept, digest
+from tests.robustness.outcomes import Outcome, Way, in_bending, packed, shares, totals, unpacked
+from tests.robustness.running import FAILURES, Crew, Plan, Stress, run
+from tests.robustness.shrinking import Patience, shrunk, steps
+from tests.robustness.told import document, sentence, sheets_of, told_of
+from tests.robustness.toml import toml_of
 
 ROOT = Path(__file__).parents[2]
 PLAN = Plan(0, limits=Limits(seconds=1.0, waiting=120.0))
@@ -43,7 +43,7 @@ def last(steps_):
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     """One scene of every fate, judged by two hosts."""
-    folder = tmp_path_factory.mktemp("stress")
+    folder = tmp_path_factory.mktemp("robustness")
     crew = Crew(fated_solvers(str(folder / "asked")), 2, fated, Patience(attempts=9))
     return folder, last(run(PLAN, len(FATES), folder, [], crew))
 
@@ -71,7 +71,7 @@ def test_totals_sum_to_the_scenes_and_the_json_says_so(whole):
 @pytest.mark.parametrize(
     ("fate", "said"),
     [
-        ("raises", "ZeroDivisionError: a beam of no length (comparisons/stressed.py:"),
+        ("raises", "ZeroDivisionError: a beam of no length (robustness/fates.py:"),
         ("segfault", "SIGSEGV"),
         ("leaves", "exit code 7"),
         ("spins", "1 seconds of the processor"),
@@ -160,8 +160,8 @@ KILLED = """
 import sys
 from pathlib import Path
 from comparisons.pairing import Solvers
-from comparisons.stress.running import FAILURES, Crew, Plan, Stress, run
-from tests.comparisons.stressed import fated, fated_solvers, slow
+from tests.robustness.running import FAILURES, Crew, Plan, Stress, run
+from tests.robustness.fates import fated, fated_solvers, slow
 
 if __name__ == "__main__":
     crew = Crew(Solvers(slow, fated_solvers().fea), 1, fated)
@@ -462,7 +462,7 @@ def test_every_step_is_another_scene_and_leaves_the_first_alone(name):
 
 
 def test_the_command_prints_totals_and_writes_json(tmp_path, capsys):
-    arguments = ["stress", "--scenes", "3", "--seed", "7", "--out", str(tmp_path / "out"), "--json", "-"]
+    arguments = ["robustness", "--scenes", "3", "--seed", "7", "--out", str(tmp_path / "out"), "--json", "-"]
     right = fated_solvers()
     code = command(arguments, right)
     data = json.loads(capsys.readouterr().out)
@@ -475,18 +475,18 @@ def test_the_command_prints_totals_and_writes_json(tmp_path, capsys):
 def test_a_scene_is_replayed_from_its_file(tmp_path, capsys):
     file = tmp_path / "leaves.toml"
     file.write_text(fated(0, FATES.index("leaves")).text, "utf-8")
-    assert command(["stress", "--replay", str(file)], fated_solvers()) == 1
+    assert command(["robustness", "--replay", str(file)], fated_solvers()) == 1
     assert "crashed. its process ended by itself, with the exit code 7" in capsys.readouterr().out
 
 
 INTERRUPTED = """
 from comparisons.pairing import Solvers
 import comparisons.cli.main as main
-from tests.comparisons.stressed import fated_solvers, slow
+from tests.robustness.fates import fated_solvers, slow
 import sys
 
 if __name__ == "__main__":
-    sys.exit(main.run(["stress", "--scenes", "400", "--seed", "3", "--out", sys.argv[1]],
+    sys.exit(main.run(["robustness", "--scenes", "400", "--seed", "3", "--out", sys.argv[1]],
                       Solvers(slow, fated_solvers().fea)))
 """
 

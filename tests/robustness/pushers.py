@@ -7,14 +7,14 @@ from copy import deepcopy
 
 import numpy as np
 
-from comparisons.stress.actions import ENERGY, Action, force_of, led
-from comparisons.stress.chance import RedrawError, any_of, between, happens, rounded, sign
-from comparisons.stress.draft import Data, Draft
-from comparisons.stress.estimate import BARS, Estimate, State
-from comparisons.stress.obstacles import Obstacle, Spot, is_clear, rigid
-from comparisons.stress.theories import made_thin, share_of
 from cprbm_scene import FreeEnd
 from cprbm_scene.reading import scene_from
+from tests.robustness.actions import ENERGY, Action, force_of, led
+from tests.robustness.chance import RedrawError, any_of, between, happens, rounded, sign
+from tests.robustness.draft import Data, Draft
+from tests.robustness.estimate import BARS, Estimate, State
+from tests.robustness.obstacles import Obstacle, Spot, is_clear, rigid
+from tests.robustness.theories import made_thin, share_of
 
 Motion = tuple[complex, complex]
 """A body's turn as a factor of places in the plane, and what is added to them."""

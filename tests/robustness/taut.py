@@ -20,7 +20,6 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.stress.estimate import Barrier, Estimate, State
 from cprbm_scene import FreeEnd, Scene
 from cprbm_scene.statement import (
     DisplacementDrive,
@@ -31,6 +30,7 @@ from cprbm_scene.statement import (
     TurningBody,
     WeldedEnd,
 )
+from tests.robustness.estimate import Barrier, Estimate, State
 
 Array = NDArray[np.float64]
 Attached = WeldedEnd | PinnedEnd | FreeEnd

@@ -161,7 +161,7 @@ def _rounded(data: Plain) -> Iterator[Plain]:
         yield _with_numbers(data, digits)
 
 
-def _with_numbers(value: Any, digits: int) -> Any:  # noqa: ANN401 - whatever a scene holds
+def _with_numbers(value: Any, digits: int) -> Any:
     """The same with all its numbers rounded to so many digits."""
     match value:
         case bool() | str() | int():
@@ -192,7 +192,7 @@ def _names(data: Plain) -> set[str]:
     return {"scene", *points, *named}
 
 
-def _spoken_for(value: Any, names: set[str]) -> Any:  # noqa: ANN401 - whatever a scene holds
+def _spoken_for(value: Any, names: set[str]) -> Any:
     """Of a table or a list of records those that speak of nothing that is missing."""
     match value:
         case Mapping():

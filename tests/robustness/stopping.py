@@ -7,11 +7,11 @@ from math import atan2, tau
 
 import numpy as np
 
-from comparisons.stress.chance import between, happens
-from comparisons.stress.draft import Data, Draft
-from comparisons.stress.estimate import Estimate, State
 from cprbm_scene import PinnedEnd
 from cprbm_scene.geometry import tangents_on
+from tests.robustness.chance import between, happens
+from tests.robustness.draft import Data, Draft
+from tests.robustness.estimate import Estimate, State
 
 SHARE = 0.85  # of the pinned ends that turn
 LEAST = 0.04  # rad

@@ -13,10 +13,10 @@ from math import cos, pi, sin
 
 import numpy as np
 
-from comparisons.stress.actions import force_of
-from comparisons.stress.chance import RedrawError, between, happens, rounded, sign, spread, weighted
-from comparisons.stress.curves import arc_of_turn
-from comparisons.stress.draft import THINNEST, Data, Draft
+from tests.robustness.actions import force_of
+from tests.robustness.chance import RedrawError, between, happens, rounded, sign, spread, weighted
+from tests.robustness.curves import arc_of_turn
+from tests.robustness.draft import THINNEST, Data, Draft
 
 STOUTEST_COLUMN = 120.0  # times as long as thick
 STOUTEST_HELD = 60.0  # the same of a beam with both ends held, which has to stretch where it can bend but little

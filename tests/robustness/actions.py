@@ -17,9 +17,9 @@ from math import cos, inf, sin, tau
 import numpy as np
 from numpy.random import Generator
 
-from comparisons.stress.chance import RedrawError, any_of, between, happens, rounded, sign, spread, weighted
-from comparisons.stress.draft import Data, Draft
-from comparisons.stress.estimate import Estimate, State, followed
+from tests.robustness.chance import RedrawError, any_of, between, happens, rounded, sign, spread, weighted
+from tests.robustness.draft import Data, Draft
+from tests.robustness.estimate import Estimate, State, followed
 
 GROWTH = 1.3  # of a load from one state to the next
 MOST_STATES = 34

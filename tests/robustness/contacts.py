@@ -7,10 +7,10 @@ from copy import deepcopy
 
 import numpy as np
 
-from comparisons.stress.chance import RedrawError, happens, weighted
-from comparisons.stress.draft import Data, Draft
-from comparisons.stress.estimate import Barrier, Estimate, State, followed
-from comparisons.stress.obstacles import Obstacle, Spot, companion, is_clear, rigid, spot_on
+from tests.robustness.chance import RedrawError, happens, weighted
+from tests.robustness.draft import Data, Draft
+from tests.robustness.estimate import Barrier, Estimate, State, followed
+from tests.robustness.obstacles import Obstacle, Spot, companion, is_clear, rigid, spot_on
 
 MOST_BEAMS = 4
 _TRIES = 10

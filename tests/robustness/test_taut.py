@@ -5,9 +5,9 @@ from math import acos, asin, hypot, pi, sqrt
 import numpy as np
 import pytest
 
-from comparisons.stress.estimate import Barrier, Estimate, State
-from comparisons.stress.taut import length, slack, tight
 from cprbm_scene.reading import scene_from
+from tests.robustness.estimate import Barrier, Estimate, State
+from tests.robustness.taut import length, slack, tight
 
 CENTER, RADIUS = np.array([0.43, 0.21]), 0.09
 

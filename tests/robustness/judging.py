@@ -39,11 +39,11 @@ from comparisons.pairing import Runs, Solvers, paired
 from comparisons.reach import ends_at_critical, first_stations, up_to
 from comparisons.scales import norm
 from comparisons.stations import station_of
-from comparisons.stress.outcomes import Outcome, Way
-from comparisons.stress.strata import met, stated
 from comparisons.verdict import Comparison, compared
 from comparisons.words import Word
 from cprbm_scene import Answer, Scene, SceneError
+from tests.robustness.outcomes import Outcome, Way
+from tests.robustness.strata import met, stated
 
 DOMINANT = 2.0
 """Times that one solver states more than the other from which on it alone is refined."""

@@ -1,4 +1,4 @@
-"""What is told of a stress run: its documented JSON, its tables, and a sentence."""
+"""What is told of a run of random scenes: its documented JSON, its tables, and a sentence."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterable
 from comparisons.documents import Plain, plain
 from comparisons.formats import number, percent
 from comparisons.sheet import Sheet
-from comparisons.stress.outcomes import Outcome, Way, in_bending, packed, shares, totals
-from comparisons.stress.running import Stress
+from tests.robustness.outcomes import Outcome, Way, in_bending, packed, shares, totals
+from tests.robustness.running import Stress
 
 _WORST: dict[str, Callable[[Outcome], float | None]] = {
     "difference": lambda outcome: outcome.difference,

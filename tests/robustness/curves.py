@@ -17,8 +17,8 @@ import numpy as np
 from numpy.polynomial import Polynomial as Graph
 from numpy.random import Generator
 
-from comparisons.stress.chance import between, happens, sign, weighted
-from comparisons.stress.frame import Frame, Place
+from tests.robustness.chance import between, happens, sign, weighted
+from tests.robustness.frame import Frame, Place
 
 Data = dict[str, object]
 

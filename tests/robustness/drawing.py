@@ -12,20 +12,20 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator, Philox
 
-from comparisons.stress.actions import ENERGY, Action, drawn_action, drawn_turn, led, stations_to
-from comparisons.stress.chance import RedrawError, between, happens, rounded, weighted
-from comparisons.stress.contacts import put_in_the_way
-from comparisons.stress.draft import Draft, started
-from comparisons.stress.estimate import Estimate, State
-from comparisons.stress.mechanisms import MECHANISMS
-from comparisons.stress.pushers import push
-from comparisons.stress.stopping import put_stops
-from comparisons.stress.taut import slack
-from comparisons.stress.theories import made_thin, share_of
-from comparisons.stress.toml import toml_of
-from comparisons.stress.whole import WHOLE
 from cprbm_scene.mistakes import SceneError
 from cprbm_scene.reading import scene_from
+from tests.robustness.actions import ENERGY, Action, drawn_action, drawn_turn, led, stations_to
+from tests.robustness.chance import RedrawError, between, happens, rounded, weighted
+from tests.robustness.contacts import put_in_the_way
+from tests.robustness.draft import Draft, started
+from tests.robustness.estimate import Estimate, State
+from tests.robustness.mechanisms import MECHANISMS
+from tests.robustness.pushers import push
+from tests.robustness.stopping import put_stops
+from tests.robustness.taut import slack
+from tests.robustness.theories import made_thin, share_of
+from tests.robustness.toml import toml_of
+from tests.robustness.whole import WHOLE
 
 Data = dict[str, Any]
 _MOST_DRAWS = 400

@@ -12,18 +12,18 @@ from numpy.random import Generator, Philox
 
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer
-from comparisons.stress import contacts, strata
-from comparisons.stress.chance import RedrawError
-from comparisons.stress.draft import started
-from comparisons.stress.drawing import drawn
-from comparisons.stress.estimate import Estimate, State, followed
-from comparisons.stress.obstacles import ON, TURNED, Obstacle, Spot, spot_on
-from comparisons.stress.pushers import leaves_alone
-from comparisons.stress.theories import LARGEST_SHARE, made_thin, share_of
-from comparisons.stress.toml import toml_of
-from comparisons.stress.whole import assembled, column, lying
 from cprbm_scene.reading import read, scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
+from tests.robustness import contacts, strata
+from tests.robustness.chance import RedrawError
+from tests.robustness.draft import started
+from tests.robustness.drawing import drawn
+from tests.robustness.estimate import Estimate, State, followed
+from tests.robustness.obstacles import ON, TURNED, Obstacle, Spot, spot_on
+from tests.robustness.pushers import leaves_alone
+from tests.robustness.theories import LARGEST_SHARE, made_thin, share_of
+from tests.robustness.toml import toml_of
+from tests.robustness.whole import assembled, column, lying
 
 COUNTERS = st.integers(0, 2**64 - 1)
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from math import cos, sin
 
-from comparisons.stress.chance import any_of, between, happens, sign, weighted
-from comparisons.stress.draft import Draft
+from tests.robustness.chance import any_of, between, happens, sign, weighted
+from tests.robustness.draft import Draft
 
 
 def cantilever(draft: Draft) -> None:

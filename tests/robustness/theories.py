@@ -20,12 +20,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from comparisons.stress.chance import RedrawError, rounded
-from comparisons.stress.draft import Data, Draft
-from comparisons.stress.estimate import BARS, Barrier, Estimate, State, rigidity_of
 from cprbm_scene import FreeEnd
 from cprbm_scene.freedoms import unit
 from cprbm_scene.statement import BeamForce, DistributedLoad
+from tests.robustness.chance import RedrawError, rounded
+from tests.robustness.draft import Data, Draft
+from tests.robustness.estimate import BARS, Barrier, Estimate, State, rigidity_of
 
 Array = NDArray[np.float64]
 LARGEST_SHARE = 3e-3  # of U_t in U_b: a contact's force may differ by some times that

@@ -1,7 +1,7 @@
 """Processes that have everything loaded and call a function apart, for one argument after the other.
 
 Each is a fresh interpreter, which loads and tries out all that the function needs once, with linear algebra on one
-thread.  For each call it forks (:mod:`comparisons.stress.apart`), so that calls neither wait for imports nor see what
+thread.  For each call it forks (:mod:`tests.robustness.apart`), so that calls neither wait for imports nor see what
 another has left behind, and what is found hangs neither on their order nor on how many hosts there are.
 """
 
@@ -20,8 +20,8 @@ from typing import Any, Generic, TypeVar
 
 from comparisons.pairing import COLLECTED
 from comparisons.processes import deaf
-from comparisons.stress.apart import Crashed, End, Limits, apart
 from comparisons.threads import ONE_THREAD
+from tests.robustness.apart import Crashed, End, Limits, apart
 
 A = TypeVar("A")
 R = TypeVar("R")
