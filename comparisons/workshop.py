@@ -39,6 +39,10 @@ TOOLS = {
         "See on random scenes how stable both solvers are, and whether a certified answer is ever wrong.",
     ),
     "stress": Tool("tests.robustness.command", new_name="robustness"),
+    "study relations": Tool(
+        "tests.relations.command",
+        "What must not change an answer: place, mirror, order, direction, units, steps, company; action and reaction.",
+    ),
 }
 """The tools by their commands, without the name of the program."""
 

@@ -42,6 +42,7 @@ def _run(arguments, packages, folder):
         (["robustness", "--scenes", "3"], "robustness"),
         (["robustness", "--help"], "robustness"),
         (["stress", "--scenes", "3"], "stress"),
+        (["study", "relations", "tapered"], "study relations"),
     ],
 )
 def test_an_installed_package_says_where_the_tool_is(installed, tmp_path, arguments, command):
@@ -55,6 +56,13 @@ def test_an_installed_package_lists_no_tools(installed, tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
     assert "compare" in done.stdout
     assert "robustness" not in done.stdout
+
+
+def test_an_installed_package_lists_no_study_of_a_checkout(installed, tmp_path):
+    done = _run(["study"], installed, tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "calibration" in done.stdout
+    assert "relations" not in done.stdout
 
 
 def test_a_checkout_lists_its_tools_under_their_new_names(capsys):

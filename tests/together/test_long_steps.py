@@ -12,10 +12,10 @@ import pytest
 
 import cprbm
 import fea_reference
-from comparisons.relations.image import Data
 from cprbm_scene import Ending
 from cprbm_scene.answer import Loss
 from cprbm_scene.reading import scene_from
+from tests.relations.image import Data
 
 FIRST, SECOND = 0.00937, 0.0113  # on the branch; beyond its end
 END = 0.01085  # of the branch, by the finite elements (40 elements, `beyond = "stop"`)

@@ -26,7 +26,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from comparisons.geometry import length
-from comparisons.relations.image import Data, Image, copied
 from cprbm_scene import Answer, Scene, StationAnswer
 from cprbm_scene.answer import Array
 from cprbm_scene.reading import scene_from
@@ -45,6 +44,7 @@ from cprbm_scene.statement import (
     SlidingBody,
     TurningBody,
 )
+from tests.relations.image import Data, Image, copied
 
 
 def on_drives(data: Data) -> Image:

@@ -9,9 +9,9 @@ from itertools import chain
 from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import Solver, Solvers
-from comparisons.relations.image import Data
-from comparisons.relations.measured import Violation, violations
 from cprbm_scene import SceneError
+from tests.relations.image import Data
+from tests.relations.measured import Violation, violations
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ v′      what v is in the image
 c       the probe's scale in the stage in the image, :mod:`comparisons.scales`
 e       |w − v′|/c, the violation
 r       what the image's certificates leave unsettled of the probe (:func:`comparisons.measures.round_off`), over c
-u, u′   the uncertainties of v and w on their discretisations, :mod:`comparisons.relations.uncertain`
+u, u′   the uncertainties of v and w on their discretisations, :mod:`tests.relations.uncertain`
 ======  ==============================================================================================
 
 An image that leaves the discretised problem what it is holds to e ≤ max(1e-7, r), another to e ≤ max(1e-7, r, u + u′).
@@ -27,9 +27,6 @@ import numpy as np
 from comparisons.choices import Choices
 from comparisons.measures import arc_lengths, probe_scales, round_offs
 from comparisons.pairing import Solver
-from comparisons.relations.image import Data, Image, plain
-from comparisons.relations.relations import RELATIONS, Relation
-from comparisons.relations.uncertain import Solved, critical_uncertainties, solved, uncertainties
 from comparisons.scales import norm
 from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
@@ -37,6 +34,9 @@ from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer
 from cprbm_scene.answer import Array, Flags
 from cprbm_scene.reading import scene_from
 from cprbm_scene.statement import STRESSES
+from tests.relations.image import Data, Image, plain
+from tests.relations.relations import RELATIONS, Relation
+from tests.relations.uncertain import Solved, critical_uncertainties, solved, uncertainties
 
 TARGET = 1e-7
 

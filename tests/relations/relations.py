@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from comparisons.relations.company import far_circle
-from comparisons.relations.frames import MIRROR, QUARTER, Frame, has_graphs, turned_by
-from comparisons.relations.image import Data, Image
-from comparisons.relations.naming import backwards, other_way_round
-from comparisons.relations.reactions import on_drives
-from comparisons.relations.reversing import may_run_back, reversed_beam
-from comparisons.relations.stepping import coarser, finer
+from tests.relations.company import far_circle
+from tests.relations.frames import MIRROR, QUARTER, Frame, has_graphs, turned_by
+from tests.relations.image import Data, Image
+from tests.relations.naming import backwards, other_way_round
+from tests.relations.reactions import on_drives
+from tests.relations.reversing import may_run_back, reversed_beam
+from tests.relations.stepping import coarser, finer
 
 ANGLE = 2.1991
 """Of the turn, rad: near no special angle."""

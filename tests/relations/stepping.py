@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import isclose
 
-from comparisons.relations.image import Data, Image, copied
+from tests.relations.image import Data, Image, copied
 
 SHARE = 0.381
 """Where between two stations a further one is put: no half, which a solver's own cutting would find by itself."""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from comparisons.relations.image import Data, Image, copied
 from cprbm_scene import Probe
 from cprbm_scene.answer import Array
+from tests.relations.image import Data, Image, copied
 
 UNORDERED = ("materials", "bodies", "beams", "loads", "drives", "contacts", "stops", "pins")
 """Tables whose order means nothing; that of stages is the order of events."""

@@ -11,12 +11,12 @@ from __future__ import annotations
 import numpy as np
 
 from comparisons.geometry import length
-from comparisons.relations.frames import OTHER_WAY
-from comparisons.relations.image import Data, Image, copied
 from cprbm_scene import Probe
 from cprbm_scene.answer import Array
 from cprbm_scene.reading import scene_from
 from cprbm_scene.statement import FreeEnd, Polynomial, Spline
+from tests.relations.frames import OTHER_WAY
+from tests.relations.image import Data, Image, copied
 
 ASSEMBLED = 1e-6
 """Of a beam's length: an end that is drawn farther from its point is brought there by the assembly."""

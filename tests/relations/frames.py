@@ -23,9 +23,9 @@ from math import cos, sin
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from comparisons.relations.image import Data, Image, copied
 from cprbm_scene import Probe
 from cprbm_scene.answer import Array
+from tests.relations.image import Data, Image, copied
 
 OTHER_WAY = {
     "counterclockwise": "clockwise",

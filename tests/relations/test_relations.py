@@ -13,16 +13,16 @@ import pytest
 from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer, fea_answer
-from comparisons.relations.frames import MIRROR, QUARTER, Frame, turned_by
-from comparisons.relations.image import copied, plain
-from comparisons.relations.measured import TARGET, violations
-from comparisons.relations.relations import RELATIONS
-from comparisons.relations.reversing import reversed_beam
 from cprbm_scene import Scene
 from cprbm_scene.answer import Critical, Loss, frozen_array
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.geometry import points_on
 from cprbm_scene.reading import scene_from
+from tests.relations.frames import MIRROR, QUARTER, Frame, turned_by
+from tests.relations.image import copied, plain
+from tests.relations.measured import TARGET, violations
+from tests.relations.relations import RELATIONS
+from tests.relations.reversing import reversed_beam
 from tests.together.planted import asked_of
 
 COARSE = Choices(links=11, elements=11)

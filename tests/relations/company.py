@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from comparisons.relations.image import Data, Image, copied
 from cprbm_scene.geometry import points_on
 from cprbm_scene.reading import scene_from
+from tests.relations.image import Data, Image, copied
 
 AWAY = 7.3
 """Distance of what is far, in extents of the scene."""

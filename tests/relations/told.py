@@ -6,11 +6,11 @@ import math
 
 from comparisons.documents import Plain
 from comparisons.formats import number
-from comparisons.relations.measured import TARGET
-from comparisons.relations.relations import RELATIONS
 from comparisons.sheet import Sheet
-from comparisons.studies.relations import Relations, Seen
 from comparisons.studies.told import Told
+from tests.relations.measured import TARGET
+from tests.relations.relations import RELATIONS
+from tests.relations.study import Relations, Seen
 
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA"}
 
