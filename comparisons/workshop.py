@@ -15,7 +15,7 @@ from types import ModuleType
 ROOT = Path(__file__).resolve().parents[1]
 """Folder above this package: the checkout, or the folder of installed packages."""
 
-FOLDERS = ("tests/robustness",)
+FOLDERS = ("tests/robustness", "benchmarks")
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,11 +43,15 @@ TOOLS = {
         "tests.relations.command",
         "What must not change an answer: place, mirror, order, direction, units, steps, company; action and reaction.",
     ),
+    "bench --method slsqp": Tool("benchmarks.peers.slsqp"),
+    "bench --method ipopt": Tool("benchmarks.peers.ipopt"),
 }
 """The tools by their commands, without the name of the program."""
 
-REMOVED: dict[str, str] = {}
-"""Commands without a successor, with a sentence for whoever asks for them."""
+REMOVED = {
+    "bench --method trust-constr": "it took 10 times as long as the CPRBM (the page 'Run time against error').",
+}
+"""Commands without a successor, with the reason and the page that keeps their results."""
 
 
 def is_checkout() -> bool:
@@ -59,7 +63,7 @@ def absence(command: str) -> str:
     """The sentence that says why a tool or a removed command cannot run here; empty for every other command."""
     if command in TOOLS and not is_checkout():
         return f"'cprbm {command}' is a developers' tool: it runs in a checkout of the repository, not from a wheel."
-    return REMOVED.get(command, "")
+    return f"'cprbm {command}' is removed: {REMOVED[command]}" if command in REMOVED else ""
 
 
 def load(command: str) -> ModuleType:

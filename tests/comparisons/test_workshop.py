@@ -1,5 +1,6 @@
 """The door to the developers' tools: what a checkout offers, and what an installed package says of the rest."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -43,12 +44,37 @@ def _run(arguments, packages, folder):
         (["robustness", "--help"], "robustness"),
         (["stress", "--scenes", "3"], "stress"),
         (["study", "relations", "tapered"], "study relations"),
+        (["bench", "hinge", "--method", "ipopt"], "bench --method ipopt"),
+        (["bench", "hinge", "--method", "auto", "--method", "slsqp"], "bench --method slsqp"),
     ],
 )
 def test_an_installed_package_says_where_the_tool_is(installed, tmp_path, arguments, command):
     done = _run(arguments, installed, tmp_path)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == f"cprbm: 'cprbm {command}' {ELSEWHERE}\n"
+
+
+def test_an_installed_package_times_its_own_solvers(installed, tmp_path):
+    done = _run(["bench", "tapered", "--sizes", "10", "--repeat", "1", "--json", "-"], installed, tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    data = json.loads(done.stdout)
+    assert [(row["method"], row["formulation"]) for row in data["rows"]] == [
+        ("cprbm", "auto"),
+        ("cprbm", "paper"),
+        ("fea", None),
+    ]
+    assert data["tolerance"] is None
+
+
+@pytest.mark.parametrize(
+    ("arguments", "command"), [(["bench", "hinge", "--method", "trust-constr"], "bench --method trust-constr")]
+)
+def test_a_removed_command_is_refused_in_one_sentence(capsys, arguments, command):
+    assert run(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith(f"cprbm: 'cprbm {command}' is removed: ")
+    assert captured.err.count("\n") == 1
 
 
 def test_an_installed_package_lists_no_tools(installed, tmp_path):

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from comparisons.peers.formulas import Formulas
+from benchmarks.peers.formulas import Formulas
 from cprbm_scene.answer import Array
 
 NEAR = 1e-6  # ℓ

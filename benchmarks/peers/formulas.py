@@ -1,4 +1,4 @@
-"""Energy, closure and contact of the paper, with first and second derivatives, in dense NumPy.
+"""Energy, closure and contact of the paper, with first derivatives, in dense NumPy.
 
 =========  ====================================================================================================
 symbol     meaning
@@ -13,8 +13,7 @@ J_x, J_y   derivatives of the joints' x and y over z
 =========  ====================================================================================================
 
 This is the textbook's way to hand such a problem to an optimiser, written a second time from the record alone: dense,
-all constraints carried, nothing shared with the solver that is compared.  The second derivative of what depends on z
-through places and angles y(z) is  Jᵀ f_yy J + Σ f_y y_zz;  that of a place is diagonal.
+all constraints carried, nothing shared with the solver that is compared.
 """
 
 from __future__ import annotations
@@ -25,11 +24,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from comparisons.peers.fitting import Fitted
+from benchmarks.peers.fitting import Fitted
 from cprbm_scene.answer import Array, Ints
 
 if TYPE_CHECKING:
-    from comparisons.pairing import Discretised, FittedContact, RoundContact, Spot
+    from cprbm.discretisation import Discretised, FittedContact, RoundContact, Spot
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,24 +115,6 @@ class Formulas:
             found[self._phi(load.at.body)] -= load.moment
         return found
 
-    @cached_property
-    def _strain_second(self) -> Array:
-        k = self.problem.couplings
-        whole = np.diag(np.append(k, 0.0) + np.append(0.0, k)) - np.diag(k, 1) - np.diag(k, -1)
-        second = np.zeros((self.size, self.size))
-        m = len(self.turning)
-        second[:m, :m] = whole[np.ix_(self.turning, self.turning)]
-        return second
-
-    def energy_second(self, z: Array) -> Array:
-        """∂²PE/∂z² (n_z, n_z)."""
-        at, second = self.at(z), self._strain_second.copy()
-        for load in self.problem.loads:
-            rx, ry = self._arm(load.at, at.bodies)
-            phi = self._phi(load.at.body)
-            second[phi, phi] += load.force[0] * rx + load.force[1] * ry
-        return second
-
     # equalities
 
     def closure(self, z: Array) -> Array:
@@ -179,24 +160,6 @@ class Formulas:
             rows.append(row)
         return np.array(rows).reshape(-1, self.size)
 
-    def closure_second(self, z: Array, mu: Array) -> Array:
-        """∂²(μ·Z)/∂z²."""
-        p, at, second = self.problem, self.at(z), np.zeros((self.size, self.size))
-        row = 0
-        for beam, spot in p.ends:
-            self._joints_second(second, beam, np.array([p.beams[beam].count]), mu[[row]], mu[[row + 1]], at)
-            self._spot_second(second, spot, -mu[row], -mu[row + 1], at)
-            row += 2
-        row += len(p.welds)
-        for one, other in p.pins:
-            self._spot_second(second, one, mu[row], mu[row + 1], at)
-            self._spot_second(second, other, -mu[row], -mu[row + 1], at)
-            row += 2
-        for held in p.held:
-            self._spot_second(second, held.at, mu[row] * held.along[0], mu[row] * held.along[1], at)
-            row += 1
-        return second
-
     # contact
 
     def contact(self, z: Array) -> Array:
@@ -217,43 +180,6 @@ class Formulas:
             rows_x, rows_y = self._centre_rows(circle, at)
             rows.append(-(rx[:, None] * rows_x + ry[:, None] * rows_y) / np.hypot(rx, ry)[:, None])
         return np.concatenate([np.zeros((0, self.size)), *rows])
-
-    def contact_second(self, z: Array, lam: Array) -> Array:
-        """∂²(λ·c)/∂z²."""
-        at, second, first = self.at(z), np.zeros((self.size, self.size)), 0
-        for contact in self.problem.fitted:
-            m, n = len(contact.joints), len(contact.points)
-            mine, fit = lam[first : first + m], self._fit(contact, at)
-            entering = self._entering(contact, at)
-            second += entering.T @ fit.second(mine) @ entering
-            over_a, over_o, over_A, over_B = np.split(mine @ fit.slopes(), [m, 2 * m, 2 * m + n])
-            sense = 1 if contact.along_x else -1
-            wx, wy = (over_a, over_o)[::sense]
-            self._joints_second(second, contact.beam, contact.joints, wx, wy, at)
-            wx, wy = (over_A, over_B)[::sense]
-            self._joints_second(second, contact.boundary, contact.points, wx, wy, at)
-            # the offset turns with the mean of two links: −¼ of itself over both
-            ox, oy = self._offset(contact, at)
-            along, across = (ox, oy)[::sense]
-            turned = -0.25 * (over_A * along + over_B * across)
-            for link in (0, 1):
-                for other in (0, 1):
-                    rows, columns = (self._columns(contact, at_link) for at_link in (link, other))
-                    there = (rows >= 0) & (columns >= 0)
-                    np.add.at(second, (rows[there], columns[there]), turned[there])
-            first += m
-        for circle in self.problem.circles:
-            mine = lam[first : first + len(circle.joints)]
-            rx, ry = self._from_centre(circle, at)
-            rows_x, rows_y = self._centre_rows(circle, at)
-            rho = np.hypot(rx, ry)
-            swung = (-ry[:, None] * rows_x + rx[:, None] * rows_y) / rho[:, None]
-            second -= (swung * (mine / rho)[:, None]).T @ swung
-            wx, wy = -mine * rx / rho, -mine * ry / rho
-            self._joints_second(second, circle.beam, circle.joints, wx, wy, at)
-            self._spot_second(second, circle.centre, -float(wx.sum()), -float(wy.sum()), at)
-            first += len(circle.joints)
-        return second
 
     def contact_forces(self, z: Array, lam: Array) -> dict[str, float]:
         """Magnitude of each contact's resultant on the beam whose joints are held."""
@@ -304,13 +230,6 @@ class Formulas:
             rows[:, phi] = -ry, rx
         return rows[0], rows[1]
 
-    def _spot_second(self, second: Array, spot: Spot, wx: float, wy: float, at: At) -> None:
-        """Add ∂²(w·s)/∂z²."""
-        if spot.body >= 0:
-            rx, ry = self._arm(spot, at.bodies)
-            phi = self._phi(spot.body)
-            second[phi, phi] -= wx * rx + wy * ry
-
     def _joint_rows(self, beam: int, joints: Ints, at: At) -> tuple[Array, Array]:
         """J_x and J_y of some joints of a beam (k, n_z)."""
         p, mine = self.problem, self.problem.beams[beam]
@@ -321,15 +240,6 @@ class Formulas:
         rows_x[:, :m] = np.where(before, -p.lengths[links] * np.sin(at.theta[links]), 0.0)
         rows_y[:, :m] = np.where(before, p.lengths[links] * np.cos(at.theta[links]), 0.0)
         return rows_x, rows_y
-
-    def _joints_second(self, second: Array, beam: int, joints: Ints, wx: Array, wy: Array, at: At) -> None:
-        """Add ∂²(Σ w_j·p_j)/∂z²."""
-        p, mine = self.problem, self.problem.beams[beam]
-        before = (self.turning >= mine.first) & (self.turning < mine.first + joints[:, None])
-        links, m = self.turning, np.arange(len(self.turning))
-        pulled = np.cos(at.theta[links]) * (wx @ before) + np.sin(at.theta[links]) * (wy @ before)
-        second[m, m] -= p.lengths[links] * pulled
-        self._spot_second(second, mine.start, float(wx.sum()), float(wy.sum()), at)
 
     # what enters a contact
 

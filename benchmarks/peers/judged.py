@@ -12,16 +12,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from comparisons.peers.formulas import Formulas
-from comparisons.peers.kkt import Stationarity, stationarity
-from comparisons.peers.solving import LATE, Solved
+from benchmarks.peers.formulas import Formulas
+from benchmarks.peers.kkt import Stationarity, stationarity
+from benchmarks.peers.solving import LATE, Solved
 from cprbm_scene import Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import Probe
 
 if TYPE_CHECKING:
-    from comparisons.pairing import Discretised
+    from cprbm.discretisation import Discretised
 
 TOLERANCE = 1e-6
 

@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING
 
 from scipy import optimize
 
-from comparisons.peers.formulas import Formulas
-from comparisons.peers.solving import Clock, Solve, by_scipy
+from benchmarks.peers.formulas import Formulas
+from benchmarks.peers.method import method
+from benchmarks.peers.solving import Clock, Solve, by_scipy
 
 if TYPE_CHECKING:
-    from comparisons.pairing import Discretised
+    from comparisons.bench.contenders import Contender
+    from cprbm.discretisation import Discretised
 
 # The change of the energy, in S, at which it stops: at 1e-10 the common residual of the hinge at N = 40 is 1.4e-6, at
 # 1e-12 it is 6e-7, and differences leave no less.
@@ -39,3 +41,8 @@ def prepared(problem: Discretised, seconds: float) -> Solve:
 
     # how it ends is judged by the residual alone: at the end of its digits it says that a line search has failed
     return lambda: by_scipy(minimised, formulas.rest, seconds)
+
+
+def contender() -> Contender:
+    """SLSQP as a method of the benchmark."""
+    return method("slsqp", "SLSQP", prepared, 80, ("#7a5195", "v"), ("both",))

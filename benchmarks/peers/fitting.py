@@ -7,14 +7,11 @@ a, o       of the joints, along the axis and across it (m,)
 A, B       of the points (n,)
 φ, V       powers of (a − centre)/width, and of A likewise: rows of d + 1 numbers
 K, q       VᵀV, and coefficients of the fit, K q = VᵀB
-P, R       V q, and B − P
 c_j        ±(φ(a_j)·q − o_j) ≤ 0
-w, ν       ±λ, and the adjoint K ν = Σ w_j φ(a_j);  U = V ν
 =========  ====================================================================================================
 
-With  L = Σ w_j (φ(a_j)·q − o_j) + ν·Vᵀ(B − V q),  stationary over q, the second derivative of λ·c over (a, o, A, B) is
-L_yy + L_yq q_y + (L_yq q_y)ᵀ;  L is linear in q.  The curve does not depend on centre and width, which are therefore
-constants of the derivatives although they are the present mean and half-range of A.
+The curve does not depend on centre and width, which are therefore constants of the derivatives although they are the
+present mean and half-range of A.
 """
 
 from __future__ import annotations
@@ -29,7 +26,7 @@ from cprbm_scene.answer import Array
 
 @dataclass(frozen=True)
 class Fitted:
-    """Values, slopes and second derivatives at one place, of which nothing is found before it is asked for."""
+    """Values and slopes at one place, of which nothing is found before it is asked for."""
 
     a: Array
     o: Array
@@ -93,25 +90,3 @@ class Fitted:
         phi, phi1 = self._phi, self._phi1
         q_A, q_B = self._q_slopes
         return self.sense * np.hstack((np.diag(phi1 @ self.q), -np.eye(len(self.o)), phi @ q_A, phi @ q_B))
-
-    def second(self, lam: Array) -> Array:
-        """∂²(λ·c) over the same, (2m + 2n, 2m + 2n)."""
-        m, n = len(self.o), len(self.B)
-        phi, phi1, phi2 = self._phi, self._phi1, self._powers(self.a, 2)
-        V, V1, V2 = self._V, self._V1, self._powers(self.A, 2)
-        w = self.sense * lam
-        nu = np.linalg.solve(V.T @ V, phi.T @ w)
-        U, U1, U2 = V @ nu, V1 @ nu, V2 @ nu
-        P, P1, P2 = V @ self.q, V1 @ self.q, V2 @ self.q
-        a, A, B = np.arange(m), 2 * m + np.arange(n), 2 * m + n + np.arange(n)
-        found = np.zeros((2 * (m + n), 2 * (m + n)))
-        found[a, a] = w * (phi2 @ self.q)
-        found[A, A] = U2 * (self.B - P) - 2.0 * U1 * P1 - U * P2
-        found[A, B] = found[B, A] = U1
-        over_q = np.zeros((2 * (m + n), V.shape[1]))
-        over_q[a] = w[:, None] * phi1
-        over_q[A] = -U1[:, None] * V - U[:, None] * V1
-        q_y = np.zeros((V.shape[1], 2 * (m + n)))
-        q_y[:, A], q_y[:, B] = self._q_slopes
-        mixed = over_q @ q_y
-        return found + mixed + mixed.T

@@ -14,7 +14,7 @@ from cprbm_scene.answer import Array
 if TYPE_CHECKING:
     from scipy.optimize import OptimizeResult
 
-    from comparisons.pairing import Discretised
+    from cprbm.discretisation import Discretised
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """The same functions as expressions of CasADi, which differentiates them itself.
 
-Symbols and equations are those of :mod:`comparisons.peers.formulas` and :mod:`comparisons.peers.fitting`; CasADi is the
+Symbols and equations are those of :mod:`benchmarks.peers.formulas` and :mod:`benchmarks.peers.fitting`; CasADi is the
 optional extra ``peers``.
 """
 
@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from comparisons.peers.formulas import Formulas
+from benchmarks.peers.formulas import Formulas
 
 if TYPE_CHECKING:
-    from comparisons.pairing import Discretised, FittedContact, RoundContact, Spot
+    from cprbm.discretisation import Discretised, FittedContact, RoundContact, Spot
 
 
 SX = Any  # a matrix of CasADi's scalar expressions, or a number

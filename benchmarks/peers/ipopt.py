@@ -15,12 +15,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from comparisons.peers.expressions import expressions
-from comparisons.peers.formulas import Formulas
-from comparisons.peers.solving import LATE, Solve, Solved
+from benchmarks.peers.expressions import expressions
+from benchmarks.peers.formulas import Formulas
+from benchmarks.peers.method import method
+from benchmarks.peers.solving import LATE, Solve, Solved
 
 if TYPE_CHECKING:
-    from comparisons.pairing import Discretised
+    from comparisons.bench.contenders import Contender
+    from cprbm.discretisation import Discretised
 
 OPTIONS: dict[str, Any] = {
     "print_time": False,
@@ -65,3 +67,9 @@ def prepared(problem: Discretised, seconds: float) -> Solve:
         return Solved(np.array(found["x"]).ravel(), int(stats["iter_count"]), why)
 
     return solve
+
+
+def contender() -> Contender:
+    """IPOPT as a method of the benchmark."""
+    absence = "" if there() else "CasADi is not installed (the extra 'peers')"
+    return method("ipopt", "IPOPT", prepared, 160, ("#2f8f4e", "P"), ("solve", "both"), absence)
