@@ -49,6 +49,8 @@ TOOLS = {
 """The tools by their commands, without the name of the program."""
 
 REMOVED = {
+    "study readings": "no reading of section 3.4 jumps where the paper says (the page 'Where a branch ends').",
+    "study materials": "within bending no error depends on the modulus (the page 'What the paper claims').",
     "bench --method trust-constr": "it took 10 times as long as the CPRBM (the page 'Run time against error').",
 }
 """Commands without a successor, with the reason and the page that keeps their results."""

@@ -43,32 +43,6 @@ def command(ctx: click.Context) -> None:
             click.echo(f"{name:<16} {study.get_short_help_str(100)}")
 
 
-@command.command("materials")
-@output
-@folder("Folder for the page, the numbers and the figure.")
-@click.pass_obj
-def materials(
-    planted: object,
-    json_file: Path | None,
-    quiet: bool,  # noqa: FBT001 - click hands it over by name
-    out: Path | None,
-) -> int:
-    """ABS, titanium and steel at one deformation: what of the error a material can change."""
-    from comparisons.cli import showing
-    from comparisons.pairing import solvers_of
-    from comparisons.resuming import resumed
-    from comparisons.studies import materials as study
-    from comparisons.studies.materials_told import told
-
-    showing.room_for(json_file, out)
-    show = Shown(json_file, out, quiet)
-    pieces = showing.progress(study.pieces(), shown=not quiet)
-    with resumed(out, solvers_of(planted), ()) as whole:
-        solvers = whole.solvers
-        found = answered(study.Materials(), pieces, lambda found, piece: found.with_piece(piece(solvers)), told, show)
-    return 0 if all(tested.comparison.verdict.completed for tested in found.tested) else 1
-
-
 @command.command("calibration")
 @output
 @folder("Folder for the page, the numbers and the figure.")
@@ -99,26 +73,6 @@ def calibration(
             show,
         )
     return 1 if any(trial.verdict.word is Word.DIFFER or not trial.verdict.completed for trial in found.trials) else 0
-
-
-@command.command("readings")
-@output
-@folder("Folder for the page, the numbers and the figure.")
-def readings(
-    json_file: Path | None,
-    quiet: bool,  # noqa: FBT001 - click hands it over by name
-    out: Path | None,
-) -> int:
-    """Where the prestressed mechanism jumps, by what is read into the paper's words and by who solves it."""
-    from comparisons.cli import showing
-    from comparisons.studies import readings as study
-    from comparisons.studies.readings_told import told
-
-    showing.room_for(json_file, out)
-    show = Shown(json_file, out, quiet)
-    pieces = showing.progress(study.pieces(), shown=not quiet)
-    answered(study.Readings(), pieces, lambda found, piece: found.with_piece(piece()), told, show)
-    return 0
 
 
 @command.command("table1")

@@ -67,7 +67,13 @@ def test_an_installed_package_times_its_own_solvers(installed, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "command"), [(["bench", "hinge", "--method", "trust-constr"], "bench --method trust-constr")]
+    ("arguments", "command"),
+    [
+        (["bench", "hinge", "--method", "trust-constr"], "bench --method trust-constr"),
+        (["study", "readings"], "study readings"),
+        (["study", "materials", "--quiet"], "study materials"),
+        (["study", "materials", "--help"], "study materials"),
+    ],
 )
 def test_a_removed_command_is_refused_in_one_sentence(capsys, arguments, command):
     assert run(arguments) == 2
