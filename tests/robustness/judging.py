@@ -34,7 +34,6 @@ from comparisons.calibration import FAR, every
 from comparisons.choices import Choices
 from comparisons.formats import number
 from comparisons.measures import Bounds, Row
-from comparisons.memory import Remembering
 from comparisons.pairing import Runs, Solvers, paired
 from comparisons.reach import ends_at_critical, first_stations, up_to
 from comparisons.scales import norm
@@ -42,6 +41,7 @@ from comparisons.stations import station_of
 from comparisons.verdict import Comparison, compared
 from comparisons.words import Word
 from cprbm_scene import Answer, Scene, SceneError
+from tests.robustness.auditing import Auditing
 from tests.robustness.outcomes import Outcome, Way
 from tests.robustness.strata import met, stated
 
@@ -89,7 +89,7 @@ def judged(scene: Scene, solvers: Solvers, effort: Effort) -> Outcome:
     """How a scene ends."""
     begun = time.process_time()
     # those who know the exact answer are asked once, when the size is found
-    memory = Remembering(solvers=replace(solvers, exact=None))
+    memory = Auditing(solvers=replace(solvers, exact=None))
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
@@ -107,7 +107,7 @@ def judged(scene: Scene, solvers: Solvers, effort: Effort) -> Outcome:
     )
 
 
-def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Remembering) -> _Finding:
+def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Auditing) -> _Finding:
     """What the first size says that says something, or the finest.
 
     Raises:
@@ -135,7 +135,7 @@ def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Remembering) 
     return replace(_of_comparison(finding.choices, comparison), apart=finding.apart)
 
 
-def _at_one_size(scene: Scene, choices: Choices, memory: Remembering) -> _Finding:
+def _at_one_size(scene: Scene, choices: Choices, memory: Auditing) -> _Finding:
     """What one size says; where one of the two compared answers ends early, nothing is asked beside them.
 
     Raises:
@@ -160,7 +160,7 @@ def _at_one_size(scene: Scene, choices: Choices, memory: Remembering) -> _Findin
     return replace(finding, rows=part.rows)
 
 
-def _as_far_as_it_goes(scene: Scene, finding: _Finding, memory: Remembering) -> _Finding:
+def _as_far_as_it_goes(scene: Scene, finding: _Finding, memory: Auditing) -> _Finding:
     """The finding of answers that ended early, unless what they reached is wrong.
 
     Raises:
@@ -250,7 +250,7 @@ def _for_the_theorys_sake(scene: Scene, finding: _Finding, *, last: bool) -> boo
     return last and bool(vague) and all(bounds.total - bounds.theory <= allowed for bounds, allowed in vague)
 
 
-def _in_bending(scene: Scene, finding: _Finding, memory: Remembering) -> _Finding:
+def _in_bending(scene: Scene, finding: _Finding, memory: Auditing) -> _Finding:
     """What the same size says in the theory ``bending``, which has been solved already.
 
     Raises:

@@ -12,13 +12,14 @@ from pathlib import Path
 
 import pytest
 
-from comparisons import cases, memory
+from comparisons import cases
 from comparisons.audit import audit
 from comparisons.cli.main import run as command
 from comparisons.pairing import Solvers
 from cprbm_scene import Ending, SceneError, read
 from cprbm_scene.reading import scene_from
 from tests.comparisons.made_up import MadeUp
+from tests.robustness import auditing
 from tests.robustness.apart import Limits, OutOfTime, Returned
 from tests.robustness.command import exit_code
 from tests.robustness.fates import FATES, WAYS, fated, fated_solvers, nothing
@@ -391,7 +392,7 @@ def test_an_answer_is_audited_once_however_often_it_is_compared(monkeypatch):
         looked.append((answer.solver, answer.settings["n"]))
         return audit(scene, answer)
 
-    monkeypatch.setattr(memory, "audit", noted)
+    monkeypatch.setattr(auditing, "audit", noted)
     scene, right = scene_from(fated(1, 0).data), fated_solvers()
 
     def exact(scene, choices):
