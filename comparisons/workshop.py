@@ -64,7 +64,8 @@ def is_checkout() -> bool:
 def absence(command: str) -> str:
     """The sentence that says why a tool or a removed command cannot run here; empty for every other command."""
     if command in TOOLS and not is_checkout():
-        return f"'cprbm {command}' is a developers' tool: it runs in a checkout of the repository, not from a wheel."
+        where = "it runs in a checkout of the repository, not from an installed package"
+        return f"'cprbm {command}' is a developers' tool: {where}."
     return f"'cprbm {command}' is removed: {REMOVED[command]}" if command in REMOVED else ""
 
 

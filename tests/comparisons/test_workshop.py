@@ -14,7 +14,7 @@ from comparisons.cli.main import run
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons")
-ELSEWHERE = "is a developers' tool: it runs in a checkout of the repository, not from a wheel."
+ELSEWHERE = "is a developers' tool: it runs in a checkout of the repository, not from an installed package."
 
 
 @pytest.fixture(scope="module")
