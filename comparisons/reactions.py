@@ -83,7 +83,7 @@ _STATE = ("reaction", "reaction_moment", "moment")
 class Absence(Enum):
     """Why a station has no work–energy reaction; the value states the reason in tables."""
 
-    NOT_PERTURBED = "no perturbed stations"
+    NOT_PERTURBED = "not perturbed in a long stage"
     NOT_REACHED = "perturbed stations not reached"
     BRANCH = "change of branch"
     CRITICAL_POINT = "critical point passed"

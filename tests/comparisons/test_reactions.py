@@ -139,7 +139,7 @@ def test_a_stage_of_many_stations_is_perturbed_at_the_stations_it_shows():
     known = [at.station for at in comparison.reactions if at.absence is not Absence.NOT_PERTURBED]
     assert known == [stations[4], stations[9], stations[-1]]
     assert len(comparison.reactions) == len(stations)
-    assert f"No value at {len(stations) - 3} stations: no perturbed stations." in summary(comparison.reactions)
+    assert f"No value at {len(stations) - 3} stations: not perturbed in a long stage." in summary(comparison.reactions)
 
 
 # The central difference and its errors
