@@ -2,7 +2,7 @@
 #
 #   make compare   set up where that is missing, run the comparison of all cases, write report/
 #   make test      set up where that is missing, run the whole test suite
-#   make check     the rules of style and the types
+#   make check     the rules of style, the types and the rules of imports
 #   make docs      the documentation in build/docs, with figures made by the code; warnings are errors
 #   make fuzz      alter scene files at places drawn from SEED, RUNS times, and see that the reader takes them
 #   make mutants   put MUTANTS small faults, drawn from SEED, into the solvers, and see which the quick tests catch; an hour
@@ -34,6 +34,7 @@ check: $(READY)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/lint-imports --no-cache --no-logo
 
 docs: $(READY)
 	$(ENVIRONMENT) OMP_NUM_THREADS=1 $(BIN)/python -m sphinx --builder html --fail-on-warning --keep-going --quiet \
