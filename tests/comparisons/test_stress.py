@@ -26,8 +26,7 @@ from comparisons.stress.running import FAILURES, Crew, Plan, Stress, run
 from comparisons.stress.shrinking import Patience, shrunk, steps
 from comparisons.stress.told import document, sentence, sheets_of, told_of
 from comparisons.stress.toml import toml_of
-from cprbm_scene import Ending, SceneError, read
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, SceneError, read, scene_from
 from tests.comparisons.made_up import MadeUp
 from tests.comparisons.stressed import FATES, WAYS, fated, fated_solvers, nothing
 

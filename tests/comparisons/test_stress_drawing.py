@@ -22,7 +22,7 @@ from comparisons.stress.pushers import leaves_alone
 from comparisons.stress.theories import LARGEST_SHARE, made_thin, share_of
 from comparisons.stress.toml import toml_of
 from comparisons.stress.whole import assembled, column, lying
-from cprbm_scene.reading import read, scene_from
+from cprbm_scene import read, scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
 
 COUNTERS = st.integers(0, 2**64 - 1)

@@ -7,7 +7,7 @@ import pytest
 
 from comparisons.stress.estimate import Barrier, Estimate, State
 from comparisons.stress.taut import length, slack, tight
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 
 CENTER, RADIUS = np.array([0.43, 0.21]), 0.09
 

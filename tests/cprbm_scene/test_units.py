@@ -8,8 +8,7 @@ from pydantic import BaseModel
 
 from comparisons import cases
 from comparisons.stress.toml import toml_of
-from cprbm_scene import SceneError, statement
-from cprbm_scene.reading import scene_from
+from cprbm_scene import SceneError, scene_from, statement
 from cprbm_scene.statement import Record, Units
 from cprbm_scene.units import FOLLOWING, MEASURED
 

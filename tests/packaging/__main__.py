@@ -20,7 +20,7 @@ from tests.packaging.made import ROOMS, ROOT, copied, sources, wheel
 
 MINORS = (11, 12, 13, 14)
 QUICK = (
-    "tests/scene",
+    "tests/cprbm_scene",
     "tests/house/test_loaded.py",
     "tests/house/test_threads.py",
     "tests/cprbm/test_cantilever.py",

@@ -17,8 +17,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import paired, solvers_of
 from comparisons.verdict import Comparison, compared
 from comparisons.words import Word
-from cprbm_scene import Answer, Scene
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Answer, Scene, scene_from
 from tests.together.planted import stiffer
 
 CHOICES = Choices(links=37, elements=30, kinematics="bending")

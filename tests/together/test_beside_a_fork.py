@@ -12,7 +12,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene.reading import read
+from cprbm_scene import read
 
 SCENE = Path(__file__).parent / "scenes" / "beside-a-fork.toml"
 

@@ -15,8 +15,7 @@ from comparisons.measures import Row
 from comparisons.pairing import paired, solvers_of
 from comparisons.verdict import Comparison, compared
 from comparisons.words import Word
-from cprbm_scene import Scene
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Scene, scene_from
 from tests.together.planted import stiffer
 
 R, ANGLE = 0.31, 0.6

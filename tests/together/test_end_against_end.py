@@ -5,8 +5,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 
 THICKNESS, RADIUS, HALF = 0.0011, 0.051, 3.0
 SLENDER = 0.000265

@@ -24,8 +24,7 @@ from scipy.optimize import root
 
 import cprbm
 import fea_reference
-from cprbm_scene.answer import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 
 SPAN, REACH, RISE, BEND = 0.15, 0.1, 0.6, 6.0  # the upper is y = RISE x − BEND x² from 0 to REACH
 START, LIFT = 0.0128, 0.006

@@ -11,7 +11,7 @@ import pytest
 import cprbm
 import fea_reference
 from comparisons.relations.image import Data
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 
 STATIONS = (0.007542, 0.01131)
 PROBES = ("scene.potential_energy", "wedge.force")

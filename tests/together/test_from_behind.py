@@ -4,7 +4,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 
 E, THICK, WIDE, TALL, HIGH = 2.1e9, 0.0011, 0.0093, 0.1, 0.053
 SIDEWAYS = 7e-5

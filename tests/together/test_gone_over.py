@@ -11,8 +11,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene import Loss
-from cprbm_scene.reading import read
+from cprbm_scene import Loss, read
 
 SCENE = Path(__file__).parent / "scenes" / "gone-over.toml"
 

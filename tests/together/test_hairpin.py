@@ -7,7 +7,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 
 PROBES = {"T": ["displacement"], "neck": ["force", "centre", "closing_load"], "scene": ["potential_energy"]}
 POINTS = [[0.0, 0.0], [0.05, -0.004], [0.08, 0.012], [0.05, 0.034], [0.005, 0.03]]

@@ -4,8 +4,7 @@ import pytest
 
 import elastica_reference
 import fea_reference
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 
 
 def strip_on_a_circle():

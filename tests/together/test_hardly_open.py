@@ -11,7 +11,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solvers, cprbm_answer, fea_answer, paired
 from comparisons.verdict import compared
 from comparisons.words import Word
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH as LONG
 from tests.cprbm.scenes import MOMENT, cantilever_data
 from tests.cprbm.scenes import THICKNESS as THICK

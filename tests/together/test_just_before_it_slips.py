@@ -11,7 +11,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene.reading import read
+from cprbm_scene import read
 
 SCENE = Path(__file__).parent / "scenes" / "just-before-it-slips.toml"
 

@@ -13,9 +13,7 @@ import pytest
 import cprbm
 import fea_reference
 from comparisons.relations.image import Data
-from cprbm_scene import Ending
-from cprbm_scene.answer import Loss
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, Loss, scene_from
 
 FIRST, SECOND = 0.00937, 0.0113  # on the branch; beyond its end
 END = 0.01085  # of the branch, by the finite elements (40 elements, `beyond = "stop"`)

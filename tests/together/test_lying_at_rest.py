@@ -5,7 +5,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
 from tests.fea_reference.cantilever import elastica
 

@@ -7,8 +7,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene import Answer
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Answer, scene_from
 from tests.references import moment_beside_corner as truth
 
 M = -0.2081  # N·m

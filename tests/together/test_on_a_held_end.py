@@ -9,7 +9,7 @@ import pytest
 import cprbm
 import elastica_reference
 import fea_reference
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 
 STUB = 0.00235
 

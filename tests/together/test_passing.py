@@ -6,7 +6,7 @@ import pytest
 import cprbm
 import fea_reference
 from comparisons import cases
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 
 
 def tip_on_tip():

@@ -18,11 +18,10 @@ from comparisons.relations.image import copied, plain
 from comparisons.relations.measured import TARGET, violations
 from comparisons.relations.relations import RELATIONS
 from comparisons.relations.reversing import reversed_beam
-from cprbm_scene import Scene
-from cprbm_scene.answer import Critical, Loss, frozen_array
+from cprbm_scene import Critical, Loss, Scene, scene_from
+from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.geometry import points_on
-from cprbm_scene.reading import scene_from
 from tests.together.planted import asked_of
 
 COARSE = Choices(links=11, elements=11)

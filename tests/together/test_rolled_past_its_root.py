@@ -7,8 +7,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 
 
 @cache

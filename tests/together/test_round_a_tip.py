@@ -12,8 +12,7 @@ from cprbm.kinematics import State
 from cprbm.march import March
 from cprbm.nearest import BEHIND
 from cprbm.point import point_at
-from cprbm_scene import Ending
-from cprbm_scene.reading import read, scene_from
+from cprbm_scene import Ending, read, scene_from
 from tests.cprbm.lagrangian import check
 from tests.together import limits
 

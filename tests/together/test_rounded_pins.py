@@ -8,7 +8,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 
 DATA = {
     "name": "rounded",

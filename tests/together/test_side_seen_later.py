@@ -9,8 +9,7 @@ import pytest
 import cprbm
 import elastica_reference
 import fea_reference
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from tests.together import limits
 
 

@@ -11,8 +11,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene import Ending, Loss
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, Loss, scene_from
 
 L, T, B, E = 0.0913, 0.00071, 0.0123, 2.1e9
 ARM = 0.0307

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from cprbm_scene import Ending, Loss
-from cprbm_scene.reading import read
+from cprbm_scene import Ending, Loss, read
 from fea_reference import Settings, answer
 
 SCENE = Path(__file__).parent / "scenes" / "slips-in-a-long-step.toml"

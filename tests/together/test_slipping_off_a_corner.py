@@ -20,8 +20,7 @@ from scipy.optimize import brentq
 
 import cprbm
 import fea_reference
-from cprbm_scene import Ending, Loss, Scene
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, Loss, Scene, scene_from
 
 L, T, B, E = 0.2, 4e-4, 0.01, 2e9
 EI = E * B * T**3 / 12.0

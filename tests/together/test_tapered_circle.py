@@ -8,8 +8,7 @@ from scipy.integrate import quad
 
 import cprbm
 import fea_reference
-from cprbm_scene import Scene, SceneError
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Scene, SceneError, scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH, cantilever_data, force
 
 SLOPE = -0.6 * THICKNESS / LENGTH  # of a thickness that falls to two fifths of what it is at the clamp

@@ -4,7 +4,7 @@ import numpy as np
 
 import cprbm
 import fea_reference
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 
 COEFFICIENTS = [0.0, 1.579063862562064, -45.538437690705194, -504.5867953787889]
 

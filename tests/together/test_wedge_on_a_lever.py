@@ -4,7 +4,7 @@ Beyond the end of that face the bow goes on far below what is rigid: the side th
 face behind it, and the side that goes back from the lever's other end passes over the bow's root.
 """
 
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.together import limits
 
 

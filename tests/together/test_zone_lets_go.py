@@ -8,9 +8,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene import Ending
-from cprbm_scene.answer import Loss
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, Loss, scene_from
 
 
 def between_walls():
