@@ -1,4 +1,4 @@
-"""A crew that solves nothing twice, and an audit that looks at nothing twice."""
+"""A crew that solves nothing twice."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
 
-from comparisons.audit import Audit, audit
 from comparisons.choices import Choices, Count
 from comparisons.pairing import Crew, Job, Solver, Solvers
 from cprbm_scene import Answer, Scene
@@ -25,13 +24,11 @@ class Remembering(Crew):
         solvers: so that of a run's choices those count that its solver looks at.
         say: told what is about to be solved.
         known: every answer so far.
-        looked: what audits have found, by the identities of a scene's and an answer's records, which are held with it.
     """
 
     solvers: Solvers = field(default_factory=Solvers)
     say: Callable[[str], None] = _silent
     known: dict[Job, Answer] = field(default_factory=dict)
-    looked: dict[tuple[int, int], tuple[Scene, Answer, Audit]] = field(default_factory=dict)
 
     def answers(self, jobs: list[Job]) -> list[Answer]:
         """The answers to some jobs, in their order; only those not known yet are solved.
@@ -50,13 +47,6 @@ class Remembering(Crew):
     def begin(self, jobs: list[Job]) -> Callable[[], list[Answer]]:
         """As of any crew; nothing is done before the answers are asked for, since what is known changes till then."""
         return partial(self.answers, jobs)
-
-    def audit(self, scene: Scene, answer: Answer) -> Audit:
-        """What an audit of an answer finds, which is looked at once."""
-        key = id(scene), id(answer)
-        if key not in self.looked:
-            self.looked[key] = scene, answer, audit(scene, answer)
-        return self.looked[key][2]
 
     def sizes(self, solver: Solver, scene: Scene) -> tuple[int, ...]:
         """Every number of links or elements at which a solver has answered a scene, ascending."""

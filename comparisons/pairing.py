@@ -30,11 +30,11 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 from pydantic import ValidationError
 
-from comparisons.choices import KINEMATICS, Choices, Count, Kinematics, check
+from comparisons.choices import KINEMATICS, Choices, Kinematics, check
 from comparisons.listening import heard_from, listen
 from comparisons.nearby import nearby
 from comparisons.processes import AloneError, deaf, pool
@@ -42,12 +42,6 @@ from cprbm_scene import Answer, Mistake, RigidContact, Scene, SceneError, Spacin
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import Curve
-
-if TYPE_CHECKING:  # for the peers, which know the record of the problem and nothing of the solver
-    from cprbm.discretisation import Discretised as Discretised
-    from cprbm.discretisation import FittedContact as FittedContact
-    from cprbm.discretisation import RoundContact as RoundContact
-    from cprbm.discretisation import Spot as Spot
 
 _SAYS = logging.getLogger(__name__)
 
@@ -121,19 +115,6 @@ def prepared(solver: Solver, scene: Scene, choices: Choices) -> Prepared:
     if solver is fea_answer:
         return fea_prepared(scene, choices)
     return lambda: solver(scene, choices)
-
-
-def discretised(scene: Scene, links: Count) -> Discretised:
-    """The scene's last state as the problem of the CPRBM's formulation ``paper``, for other optimisers.
-
-    Raises:
-        SceneError: the formulation does not offer it, or it is more than one minimum over links and bodies.
-    """
-    import cprbm
-
-    with _named("links"):
-        settings = cprbm.Settings(links=_plain(links), formulation="paper")
-    return cprbm.discretised(scene, settings)
 
 
 def exact_answer(scene: Scene, choices: Choices) -> Answer:

@@ -15,12 +15,12 @@ _LIBRARIES = ("numpy", "scipy", "scikit-fem")
 
 
 @cache
-def program() -> str:
-    """A digest of all sources and of what they compute with."""
+def program(*further: str) -> str:
+    """A digest of all sources, those of ``further`` packages among them, and of what they compute with."""
     digest = sha256(sys.version.encode())
     for library in _LIBRARIES:
         digest.update(f"{library} {version(library)}\n".encode())
-    sources = [source for room in _ROOMS for source in _sources(files(room))]
+    sources = [source for room in (*_ROOMS, *further) for source in _sources(files(room))]
     for source in sorted(source.name.encode() + b"\0" + source.read_bytes() for source in sources):
         digest.update(source)
     return digest.hexdigest()

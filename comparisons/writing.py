@@ -1,4 +1,4 @@
-"""Files that are either whole or not there, written beside their place and moved into it, and files that only grow."""
+"""Files that are either whole or not there, written beside their place and moved into it."""
 
 from __future__ import annotations
 
@@ -42,33 +42,6 @@ def clear_partial(folders: Iterable[Path]) -> None:
     for folder in folders:
         for partial in folder.glob(f".*{_PARTIAL}"):
             partial.unlink(missing_ok=True)
-
-
-def add_line(path: Path, line: bytes) -> None:
-    """Add a ``line``, which has no end of its own, to a file that only grows; what of it is cut short has none either.
-
-    Raises:
-        OSError: the file cannot be written to.
-    """
-    with path.open("ab") as stream:
-        stream.write(line + b"\n")
-
-
-def whole_lines(path: Path) -> list[bytes]:
-    """The lines of such a file, of which one that was cut short is taken away; none where there is no file.
-
-    Raises:
-        OSError: the file cannot be read, or not be cut.
-    """
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
-        return []
-    whole = content[: content.rfind(b"\n") + 1]
-    if len(whole) < len(content):
-        with path.open("r+b") as stream:
-            stream.truncate(len(whole))
-    return whole.splitlines()
 
 
 def _umask() -> int:

@@ -13,7 +13,6 @@ from cprbm_scene import Scene
 from cprbm_scene.frozendict import frozendict
 
 SIZES = (10, 20, 40, 80, 160)
-METHODS: tuple[contenders.Name, ...] = ("auto", "paper", "fea")
 REPEAT = 3
 AT_MOST = 4.0
 """Seconds after which a size is not repeated and no larger one is begun."""
@@ -31,8 +30,8 @@ def measured(scene: Scene, timed: Solvers, knowing: Solvers) -> running.Benchmar
         SceneError: every method refuses the question.
     """
     asked = question.asked(scene)
-    plan = running.Plan(frozendict(dict.fromkeys(METHODS, SIZES)), repeat=REPEAT, at_most=AT_MOST, clock="cpu")
-    taking_part = contenders.contenders(METHODS, timed, Choices(kinematics=plan.kinematics))
+    plan = running.Plan(frozendict(dict.fromkeys(contenders.OURS, SIZES)), repeat=REPEAT, at_most=AT_MOST, clock="cpu")
+    taking_part = contenders.contenders(timed, Choices(kinematics=plan.kinematics))
     session = running.Session(asked, plan, taking_part, machine.described(), running.CLOCKS[plan.clock])
     for job in session.jobs():
         session.do(job)

@@ -1,4 +1,7 @@
-"""Who takes part: the project's solvers and the peers, each as a set-up, a solve, and what is made of its result."""
+"""Methods that a benchmark times, each as a set-up, a solve, and what is made of its result.
+
+The project's own solvers are here; the optimisers beside them come from outside, as further contenders.
+"""
 
 from __future__ import annotations
 
@@ -8,22 +11,17 @@ from typing import Any, Literal
 
 from comparisons.choices import Choices, Count
 from comparisons.converging.families import at
-from comparisons.pairing import Solver, Solvers, discretised, prepared
-from comparisons.peers import ipopt, slsqp, trust_constr
-from comparisons.peers.judged import judged
-from comparisons.peers.solving import Optimiser, Solved
+from comparisons.pairing import Solver, Solvers, prepared
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
 
-Name = Literal["auto", "paper", "fea", "slsqp", "trust-constr", "ipopt"]
-NAMES: tuple[Name, ...] = ("auto", "paper", "fea", "slsqp", "trust-constr", "ipopt")
-PEERS: tuple[Name, ...] = ("slsqp", "trust-constr", "ipopt")
+Name = str
+OURS: tuple[Name, ...] = ("auto", "paper", "fea")
+"""The project's own methods, in the order of the tables."""
 
-LARGEST: Mapping[Name, int] = frozendict(
-    {"auto": 5120, "paper": 640, "fea": 1280, "slsqp": 80, "trust-constr": 160, "ipopt": 160}
-)
-"""Up to which size each goes if no sizes are named."""
+Clocked = Literal["solve", "both"]
+"""What a time is of: the solve alone, or set-up and solve together."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +65,12 @@ class Contender:
         method, formulation: as the JSON has them.
         label: as tables have it.
         begin: from a scene, N and the seconds that a solve may take to a run; raises SceneError where it is refused.
+        largest: size up to which the method goes if no sizes are named.
+        tolerance: largest residual with which a peer's solve counts as completed; None for the project's own methods,
+            which certify themselves.
+        ratios: clocks by which the method's time is told over that of CPRBM ``paper``.
+        look: colour and marker of a peer's points in figures.
+        absence: why the method cannot take part on this machine; empty if it can.
     """
 
     name: Name
@@ -74,37 +78,39 @@ class Contender:
     formulation: str | None
     label: str
     begin: Callable[[Scene, Count, float], Run]
+    largest: int = 160
+    tolerance: float | None = None
+    ratios: tuple[Clocked, ...] = ()
+    look: tuple[str, str] = ("#606060", "x")
+    absence: str = ""
+
+    @property
+    def is_peer(self) -> bool:
+        """True for an optimiser on the problem of CPRBM ``paper``, which knows the last station alone."""
+        return self.tolerance is not None
 
 
-def contenders(names: tuple[Name, ...], solvers: Solvers, choices: Choices) -> tuple[Contender, ...]:
-    """The methods of some names, in the order of ``NAMES``."""
-    every: dict[Name, Contender] = {
-        "auto": Contender(
-            "auto", "cprbm", "auto", "CPRBM auto", _ours(solvers.cprbm, replace(choices, formulation="auto"))
+def contenders(solvers: Solvers, choices: Choices) -> tuple[Contender, ...]:
+    """The project's own methods, in the order of ``OURS``."""
+    auto, paper = replace(choices, formulation="auto"), replace(choices, formulation="paper")
+    return (
+        Contender(
+            "auto",
+            "cprbm",
+            "auto",
+            "CPRBM auto",
+            _ours(solvers.cprbm, auto),
+            largest=5120,
+            ratios=("both",),
         ),
-        "paper": Contender(
-            "paper", "cprbm", "paper", "CPRBM paper", _ours(solvers.cprbm, replace(choices, formulation="paper"))
-        ),
-        "fea": Contender("fea", "fea", None, f"FEA {choices.kinematics}", _ours(solvers.fea, choices)),
-        "slsqp": Contender("slsqp", "slsqp", "paper", "SLSQP", _peer(slsqp.prepared)),
-        "trust-constr": Contender(
-            "trust-constr", "trust-constr", "paper", "trust-constr", _peer(trust_constr.prepared)
-        ),
-        "ipopt": Contender("ipopt", "ipopt", "paper", "IPOPT", _peer(ipopt.prepared)),
-    }
-    return tuple(every[name] for name in NAMES if name in names)
+        Contender("paper", "cprbm", "paper", "CPRBM paper", _ours(solvers.cprbm, paper), largest=640),
+        Contender("fea", "fea", None, f"FEA {choices.kinematics}", _ours(solvers.fea, choices), largest=1280),
+    )
 
 
 def mean(count: Count) -> float:
     """N: links or elements per beam, on average where beams have numbers of their own."""
     return float(count) if isinstance(count, int) else sum(count.values()) / len(count)
-
-
-def missing(name: Name) -> str:
-    """Why a method cannot take part on this machine; empty if it can."""
-    if name == "ipopt" and not ipopt.there():
-        return "CasADi is not installed (the extra 'peers')"
-    return ""
 
 
 def _ours(solver: Solver, choices: Choices) -> Callable[[Scene, Count, float], Run]:
@@ -123,17 +129,3 @@ def _of_answer(answer: Answer) -> Outcome:
         iterations=tuple(station.certificate.iterations for station in answer.stations),
         values=answer.stations[-1].values if answer.completed and answer.stations else frozendict(),
     )
-
-
-def _peer(optimiser: Optimiser) -> Callable[[Scene, Count, float], Run]:
-    def begin(scene: Scene, count: Count, at_most: float) -> Run:
-        # cutting beams into links is no part of an optimiser's time
-        problem = discretised(scene, count)
-
-        def told(solved: Solved) -> Outcome:
-            found = judged(scene, problem, solved)
-            return Outcome(found.ended, found.why, (solved.iterations,), found.values, found.residual)
-
-        return Run(lambda: optimiser(problem, at_most), told)
-
-    return begin

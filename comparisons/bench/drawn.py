@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from comparisons.bench.contenders import Name
+from comparisons.bench.contenders import Contender, Name
 from comparisons.bench.question import MEASURES, Measure
 from comparisons.bench.running import Benchmark, trend
 from comparisons.bench.told import sized
@@ -23,11 +23,9 @@ _LOOKS: Mapping[Name, tuple[str, str]] = frozendict(
         "auto": (BLUE, "o"),
         "paper": ("#5aa0e0", "s"),
         "fea": (RED, "^"),
-        "slsqp": ("#7a5195", "v"),
-        "trust-constr": ("#b08a00", "D"),
-        "ipopt": ("#2f8f4e", "P"),
     }
 )
+"""Colours and markers of the project's own methods; a peer brings its own."""
 _MEASURED = {"places": "error of displacements and rotations", "forces": "error of forces"}
 
 
@@ -49,7 +47,7 @@ def _precision(measured: Benchmark) -> Picture:
         for measure, (alone, both) in zip(measures, rows, strict=True):
             for axes, solve in ((alone, True), (both, False)):
                 for contender in measured.contenders:
-                    _series(axes, measured, contender.name, measure, solve=solve)
+                    _series(axes, measured, contender, measure, solve=solve)
                 axes.set_xscale("log")
                 axes.set_yscale("log")
                 _grid(axes)
@@ -66,15 +64,19 @@ def _precision(measured: Benchmark) -> Picture:
         return picture(figure, "bench-precision", "Error against time, each point a number of links or elements.")
 
 
-def _series(axes: Axes, measured: Benchmark, name: Name, measure: Measure, *, solve: bool) -> None:
+def _look(contender: Contender) -> tuple[str, str]:
+    return _LOOKS.get(contender.name, contender.look)
+
+
+def _series(axes: Axes, measured: Benchmark, contender: Contender, measure: Measure, *, solve: bool) -> None:
     """A method's points, with N at the first and the last."""
-    shown = [one for one in measured.of(name) if one.counts and one.errors.get(measure, 0.0) > 0.0]
+    shown = [one for one in measured.of(contender.name) if one.counts and one.errors.get(measure, 0.0) > 0.0]
     if not shown:
         return
-    colour, marker = _LOOKS[name]
+    colour, marker = _look(contender)
     points = [(one.solve if solve else one.total, one.errors[measure]) for one in shown]
     axes.plot(*zip(*points, strict=True), f"-{marker}", color=colour, markersize=5, linewidth=1.1,
-              label=shown[0].contender.label)  # fmt: skip
+              label=contender.label)  # fmt: skip
     for place, below in {0: 3.0, len(shown) - 1: -10.0}.items():
         axes.annotate(sized(shown[place].count), points[place], (5.0, below), textcoords="offset points", color=colour,
                       fontsize=8.0)  # fmt: skip
@@ -85,7 +87,7 @@ def _growth(measured: Benchmark) -> Picture:
     with canvas(6.4, 7.2) as figure:
         seconds, iterations = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
         for contender in measured.contenders:
-            colour, marker = _LOOKS[contender.name]
+            colour, marker = _look(contender)
             done = [timing for timing in measured.of(contender.name) if timing.counts]
             if not done:
                 continue

@@ -31,7 +31,7 @@ from typing import Literal
 
 import numpy as np
 
-from comparisons.bench.contenders import LARGEST, PEERS, Contender, Name, Outcome, mean
+from comparisons.bench.contenders import Contender, Name, Outcome, mean
 from comparisons.bench.errors import NOTHING, Reference, errors
 from comparisons.bench.question import Measure
 from comparisons.bench.timing import middle, quartiles_apart
@@ -300,11 +300,11 @@ def trend(timings: tuple[Timing, ...]) -> Trend:
     return Trend(sizes, float(exponent), float(np.exp(log_factor)), growth)
 
 
-def sizes_of(name: Name, named: tuple[Count, ...]) -> tuple[Count, ...]:
+def sizes_of(contender: Contender, named: tuple[Count, ...]) -> tuple[Count, ...]:
     """The sizes of a method: those ``named``, else the usual ones up to its largest."""
     if named:
         return tuple(sorted(dict.fromkeys(named), key=mean))
-    return tuple(size for size in SIZES if size <= LARGEST[name])
+    return tuple(size for size in SIZES if size <= contender.largest)
 
 
 def compared(timings: tuple[Timing, ...]) -> tuple[Timing, ...]:
@@ -313,7 +313,7 @@ def compared(timings: tuple[Timing, ...]) -> tuple[Timing, ...]:
     found = []
     for timing in timings:
         mine = ours.get(timing.count, {})
-        worse = timing.contender.name in PEERS and any(
+        worse = timing.contender.is_peer and any(
             error > NO_WORSE * mine[measure] for measure, error in timing.errors.items() if measure in mine
         )
         found.append(replace(timing, worse=worse))

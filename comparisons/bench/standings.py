@@ -10,16 +10,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
 
-from comparisons.bench.contenders import Name
+from comparisons.bench.contenders import Clocked, Name
 from comparisons.bench.question import MEASURES, Measure
 from comparisons.bench.running import Benchmark, Timing
 from comparisons.choices import Count
 from cprbm_scene.frozendict import frozendict
 
 TARGETS = (1e-2, 1e-3, 1e-4)
-Clocked = Literal["solve", "both"]
 CLOCKED: tuple[Clocked, ...] = ("both", "solve")
 
 
@@ -49,19 +47,12 @@ class Ratios:
     """At one size, how many times longer others take than the CPRBM in ``paper``; None where a row does not count.
 
     Attributes:
-        ipopt_solve: IPOPT's solve over our solve.
-        ipopt_both: its set-up and solve over ours.
-        trust_both, slsqp_both: the same of SciPy's.
-        auto_both: the same of the CPRBM in ``auto``.
+        of: time over ours, by the method and by what is on the clock.
         iterations: of ours, per station.
     """
 
     count: Count
-    ipopt_solve: float | None
-    ipopt_both: float | None
-    trust_both: float | None
-    slsqp_both: float | None
-    auto_both: float | None
+    of: Mapping[tuple[Name, Clocked], float | None]
     iterations: float | None
 
 
@@ -83,23 +74,21 @@ def ratios(measured: Benchmark) -> tuple[Ratios, ...]:
         others = {one.contender.name: one for one in measured.timings if one.count == ours.count and one.counts}
         if not ours.counts or not others.keys() - {"paper", "fea"}:
             continue
-
-        def over(name: Name, others: Mapping[Name, Timing] = others, ours: Timing = ours) -> float | None:
-            return others[name].total / ours.total if name in others and ours.total > 0.0 else None
-
-        ipopt = others.get("ipopt")
-        found.append(
-            Ratios(
-                count=ours.count,
-                ipopt_solve=None if ipopt is None or ours.solve == 0.0 else ipopt.solve / ours.solve,
-                ipopt_both=over("ipopt"),
-                trust_both=over("trust-constr"),
-                slsqp_both=over("slsqp"),
-                auto_both=over("auto"),
-                iterations=ours.iterations_per_station,
-            )
-        )
+        of = {
+            (method.name, clocked): _over(others.get(method.name), ours, clocked)
+            for method in measured.contenders
+            for clocked in method.ratios
+        }
+        found.append(Ratios(ours.count, frozendict(of), ours.iterations_per_station))
     return tuple(found)
+
+
+def _over(other: Timing | None, ours: Timing, clocked: Clocked) -> float | None:
+    """The other's time over ours; None where either has none."""
+    if other is None:
+        return None
+    theirs, mine = (other.solve, ours.solve) if clocked == "solve" else (other.total, ours.total)
+    return theirs / mine if mine > 0.0 else None
 
 
 def reached(points: Sequence[tuple[float, float]], target: float) -> float | None:

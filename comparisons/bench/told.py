@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from comparisons.bench.contenders import NAMES, Name
+from comparisons.bench.contenders import OURS, Clocked, Contender, Name
 from comparisons.bench.errors import uncertainties
 from comparisons.bench.question import MEASURES
 from comparisons.bench.running import FIT_FROM, NO_WORSE, Benchmark, Clock, LeftOut, Timing, trend
-from comparisons.bench.standings import Clocked, Ratios, Standing, ratios, standings
+from comparisons.bench.standings import Ratios, Standing, ratios, standings
 from comparisons.choices import Count
 from comparisons.documents import Plain, plain
 from comparisons.formats import number, percent
-from comparisons.peers.judged import TOLERANCE
 from comparisons.sheet import Sheet, without_empty
 
 _OF_CLOCK: dict[Clock, str] = {"wall": "", "cpu": " of the processor"}
@@ -50,6 +49,7 @@ def _timings(measured: Benchmark) -> Sheet:
         )
         for timing in measured.timings
     )
+    tolerance = _tolerance(measured)
     what = "the whole scene" if measured.plan.whole else "the last load, from the state without stress"
     off = {measure: percent(u) for measure, u in uncertainties(measured.scene, measured.reference).items() if u > 0.0}
     known = f"; itself known to {', '.join(f'{u} ({measure})' for measure, u in off.items())}" if off else ""
@@ -59,9 +59,20 @@ def _timings(measured: Benchmark) -> Sheet:
         body,
         f"Seconds{_OF_CLOCK[measured.plan.clock]} for {what}: medians of the set-up and of the solve, and the distance "
         "of the solve's quartiles. N: links or elements per beam. Errors: the largest of displacements and rotations "
-        f"(places), of contacts' and drives' forces (forces), against {measured.reference.by}{known}. A peer has "
-        f"completed with a residual of at most {TOLERANCE:g}; WORSE: its error is more than {NO_WORSE:g} times that of "
-        "CPRBM paper at this N.",
+        f"(places), of contacts' and drives' forces (forces), against {measured.reference.by}{known}."
+        + (f" {_of_peers(tolerance)}" if tolerance is not None else ""),
+    )
+
+
+def _tolerance(measured: Benchmark) -> float | None:
+    """Largest residual with which a peer's solve counts as completed; None if no peer takes part."""
+    return next((each.tolerance for each in measured.contenders if each.is_peer), None)
+
+
+def _of_peers(tolerance: float) -> str:
+    return (
+        f"A peer has completed with a residual of at most {tolerance:g}; WORSE: its error is more than {NO_WORSE:g} "
+        "times that of CPRBM paper at this N."
     )
 
 
@@ -90,25 +101,22 @@ def _fastest(measured: Benchmark) -> tuple[Sheet, ...]:
 
 
 def _ratios(measured: Benchmark) -> Sheet:
+    labels = [_ratio_label(method, clocked) for method in measured.contenders for clocked in method.ratios]
     return Sheet(
         "How many times longer than CPRBM paper on the same problem",
-        ("N", "IPOPT, solve", "IPOPT, both", "trust-constr", "SLSQP", "CPRBM auto", "iterations per station"),
+        ("N", *labels, "iterations per station"),
         tuple(
-            (
-                sized(one.count),
-                number(one.ipopt_solve),
-                number(one.ipopt_both),
-                number(one.trust_both),
-                number(one.slsqp_both),
-                number(one.auto_both),
-                number(one.iterations),
-            )
+            (sized(one.count), *(number(ratio) for ratio in one.of.values()), number(one.iterations))
             for one in ratios(measured)
         ),
         "Medians over medians: the solve over our solve, else set-up and solve over ours; a dash where a row does not "
         "count. Set-up begins with the scene for the CPRBM, with the discretised problem for the peers. Iterations are "
         "those of CPRBM paper.",
     )
+
+
+def _ratio_label(method: Contender, clocked: Clocked) -> str:
+    return method.label if len(method.ratios) == 1 else f"{method.label}, {clocked}"
 
 
 def _trends(measured: Benchmark) -> Sheet:
@@ -169,7 +177,7 @@ def document(measured: Benchmark) -> Plain:
         "kinematics": measured.plan.kinematics,
         "clock": measured.plan.clock,
         "stations": "all" if measured.plan.whole else "last",
-        "tolerance": TOLERANCE,
+        "tolerance": _tolerance(measured),
         "reference": {
             "by": measured.reference.by,
             "uncertainty": plain(uncertainties(measured.scene, measured.reference)),
@@ -190,7 +198,7 @@ def document(measured: Benchmark) -> Plain:
         ],
         "left_out": [
             {"method": one.name, "n": plain(one.count), "why": one.why}
-            for one in sorted(measured.left_out, key=lambda one: NAMES.index(one.name))
+            for one in sorted(measured.left_out, key=lambda one: _place(one.name))
         ],
     }
 
@@ -229,10 +237,11 @@ def _standing(one: Standing) -> Plain:
 def _ratio(one: Ratios) -> Plain:
     return {
         "n": plain(one.count),
-        "ipopt_solve": one.ipopt_solve,
-        "ipopt_both": one.ipopt_both,
-        "trust_constr_both": one.trust_both,
-        "slsqp_both": one.slsqp_both,
-        "auto_both": one.auto_both,
+        **{f"{name.replace('-', '_')}_{clocked}": ratio for (name, clocked), ratio in one.of.items()},
         "iterations_per_station": one.iterations,
     }
+
+
+def _place(name: Name) -> tuple[int, str]:
+    """Sorts the project's own methods first, in their order, and peers by their names."""
+    return OURS.index(name) if name in OURS else len(OURS), name

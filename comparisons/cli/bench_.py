@@ -7,18 +7,40 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
+from comparisons import workshop
 from comparisons.choices import KINEMATICS, Kinematics
 from comparisons.cli.completing import offered
 from comparisons.cli.options import count, counts, folder, output, timed
 
 if TYPE_CHECKING:
-    from comparisons.bench.contenders import Name
+    from comparisons.bench.contenders import Contender
     from comparisons.bench.errors import Reference
     from comparisons.bench.running import Clock, Session
     from comparisons.documents import Plain
 
 NOT_COMPLETED = 1
 OURS = ("auto", "paper", "fea")
+PEERS = ("slsqp", "ipopt") if workshop.is_checkout() else ()
+"""Optimisers on the same problem, which are developers' tools."""
+
+
+class _Method(click.Choice[str]):
+    """A method by its name; a sentence refuses a method of the checkout in a wheel, and a removed method."""
+
+    def convert(self, value: str, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """The method.
+
+        Raises:
+            click.ClickException: the method is a developers' tool and this is no checkout, or the method is removed.
+            click.BadParameter: no method has this name.
+        """
+        if absence := workshop.absence(_tool(value)):
+            raise click.ClickException(absence)
+        return super().convert(value, param, ctx)
+
+
+def _tool(name: str) -> str:
+    return f"bench --method {name}"
 
 
 def _named(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -> tuple[int | dict[str, int], ...]:
@@ -37,7 +59,7 @@ def _named(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -
     callback=counts,
     metavar="N,N,...",
     help="Links and elements per beam; unless given 10, 20, 40 and so on doubled, up to 5120 links in auto, 640 in "
-    "paper, 1280 elements, 160 links for ipopt and trust-constr and 80 for slsqp.",
+    "paper and 1280 elements; in a checkout 160 links for ipopt and 80 for slsqp.",
 )
 @click.option(
     "-n",
@@ -51,7 +73,7 @@ def _named(ctx: click.Context, param: click.Parameter, value: tuple[str, ...]) -
     "--method",
     "methods",
     multiple=True,
-    type=click.Choice(["auto", "paper", "fea", "slsqp", "trust-constr", "ipopt"]),
+    type=_Method([*OURS, *PEERS]),
     help="Who takes part; may be repeated. Unless given all that the scene offers. auto and paper are the CPRBM's.",
 )
 @click.option(
@@ -89,7 +111,7 @@ def command(
     case: str,
     sizes: tuple[int, ...] | None,
     links: tuple[int | dict[str, int], ...],
-    methods: tuple[Name, ...],
+    methods: tuple[str, ...],
     stations: Literal["last", "all"],
     repeat: int,
     at_most: float,
@@ -119,21 +141,23 @@ def command(
         check(Choices(links=one), opened)
     scene = opened if whole else question.asked(opened)
     solvers = solvers_of(planted)
-    asked = methods or contenders.NAMES
-    left_out = {name: _why_not(name, whole=whole) for name in asked}
-    taking_part = tuple(name for name in contenders.NAMES if name in asked and not left_out[name])
+    every = (
+        *contenders.contenders(solvers, Choices(kinematics=kinematics)),
+        *(_peer(name) for name in PEERS if not methods or name in methods),
+    )
+    asked = [one for one in every if not methods or one.name in methods]
+    absent = frozendict({one.name: why for one in asked if (why := _why_not(one, whole=whole))})
+    taking = tuple(one for one in asked if one.name not in absent)
+    if not taking:
+        raise click.UsageError("Nobody is left: " + "; ".join(f"{name}: {why}" for name, why in absent.items()) + ".")
     plan = running.Plan(
-        frozendict({name: running.sizes_of(name, named) for name in taking_part}),
+        frozendict({one.name: running.sizes_of(one, named) for one in taking}),
         kinematics,
         repeat,
         at_most,
         whole,
         clock,
     )
-    absent = frozendict({name: why for name, why in left_out.items() if why})
-    if not taking_part:
-        raise click.UsageError("Nobody is left: " + "; ".join(f"{name}: {why}" for name, why in absent.items()) + ".")
-    taking = contenders.contenders(taking_part, solvers, Choices(kinematics=kinematics))
     session = running.Session(scene, plan, taking, machine.described(), running.CLOCKS[clock], absent=absent)
     showing.room_for(json_file, out)
     with showing.current(shown=not quiet) as say:
@@ -196,9 +220,13 @@ def _written(data: Plain, json_file: Path | None, out: Path | None, name: str) -
         write(out / name / "bench.json", documents.text(data))
 
 
-def _why_not(name: Name, *, whole: bool) -> str:
-    from comparisons.bench.contenders import PEERS, missing
+def _peer(name: str) -> Contender:
+    found: Contender = workshop.load(_tool(name)).contender()
+    return found
 
-    if whole and name in PEERS:
+
+def _why_not(contender: Contender, *, whole: bool) -> str:
+    """Why a method cannot take part; empty if it can."""
+    if whole and contender.is_peer:
         return "an optimiser of one minimum knows the last station alone"
-    return missing(name)
+    return contender.absence

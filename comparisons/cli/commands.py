@@ -1,4 +1,4 @@
-"""Groups of commands that say which there are where one is asked that there is not."""
+"""Groups of commands, some of which are developers' tools outside the wheel; unknown names get a list of the known."""
 
 from __future__ import annotations
 
@@ -6,9 +6,33 @@ from difflib import get_close_matches
 
 import click
 
+from comparisons import workshop
+
+
+class ToolCommand(click.Command):
+    """Stands for a developers' tool in a list of commands, so that listing imports nothing of the tool.
+
+    Attributes:
+        tool: the tool's command, without the name of the program.
+    """
+
+    def __init__(self, tool: str) -> None:
+        super().__init__(tool.rpartition(" ")[2], help=workshop.TOOLS[tool].purpose)
+        self.tool = tool
+
+    def loaded(self) -> click.Command:
+        """The tool's own command; standard error names the new command of a tool that goes by its old one."""
+        new_name = workshop.TOOLS[self.tool].new_name
+        if new_name:
+            click.echo(
+                f"cprbm: 'cprbm {self.tool}' is now 'cprbm {new_name}'; the next release drops the old name.", err=True
+            )
+        found: click.Command = workshop.load(self.tool).command
+        return found
+
 
 class Commands(click.Group):
-    """Commands by their names; one that there is not is refused with those that there are."""
+    """Commands by their names; the refusal of an unknown name lists the known ones."""
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -16,13 +40,18 @@ class Commands(click.Group):
         """The command that the arguments begin with.
 
         Raises:
-            click.UsageError: there is none of that name.
+            click.ClickException: the command is a developers' tool and this is no checkout, or the command is removed.
+            click.UsageError: no command has this name.
         """
         name = args[0]
+        path = f"{ctx.command_path} {name}".partition(" ")[2]
+        if absence := workshop.absence(path):
+            raise click.ClickException(absence)
         if self.get_command(ctx, name) is None:
             known = self.list_commands(ctx)
             near = get_close_matches(name.casefold(), known, n=1)
             meant = f" (is {near[0]!r} meant?)" if near else ""
             said = f"found {name!r}, which is no command of '{ctx.command_path}'{meant}; allowed: {', '.join(known)}"
             ctx.fail(said)
-        return super().resolve_command(ctx, args)
+        _, command, rest = super().resolve_command(ctx, args)
+        return name, command.loaded() if isinstance(command, ToolCommand) else command, rest

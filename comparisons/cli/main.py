@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from comparisons.cli.commands import Commands
+from comparisons import workshop
+from comparisons.cli.commands import Commands, ToolCommand
 from comparisons.cli.signals import Ended
 
 if TYPE_CHECKING:
@@ -28,7 +29,6 @@ _COMMANDS = (
     "converge",
     "bench",
     "study",
-    "stress",
     "report",
     "regress",
     "view",
@@ -45,8 +45,8 @@ class _SubCommands(Commands):
     """Finds a sub-command in the module of its name, so that only the one that runs is imported."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        """Names of all sub-commands."""
-        return list(_COMMANDS)
+        """Names of all sub-commands; the developers' tools are among them in a checkout."""
+        return [*_COMMANDS, *(["robustness"] if workshop.is_checkout() else [])]
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The sub-command of a name."""
@@ -65,8 +65,8 @@ class _SubCommands(Commands):
                 from comparisons.cli.bench_ import command
             case "study":
                 from comparisons.cli.study_ import command
-            case "stress":
-                from comparisons.cli.stress_ import command
+            case "robustness" | "stress":
+                command = ToolCommand(cmd_name)
             case "report":
                 from comparisons.cli.report_ import command
             case "regress":

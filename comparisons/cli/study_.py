@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, TypeVar
 
 import click
 
-from comparisons.cli.commands import Commands
-from comparisons.cli.completing import offered
-from comparisons.cli.options import count, folder, output, timed
+from comparisons import workshop
+from comparisons.cli.commands import Commands, ToolCommand
+from comparisons.cli.options import folder, output, timed
 
 if TYPE_CHECKING:
     from comparisons.studies.told import Told
@@ -20,39 +20,27 @@ Found = TypeVar("Found")
 Step = TypeVar("Step")
 
 
-@click.group("study", cls=Commands, invoke_without_command=True)
+class _Studies(Commands):
+    """The studies, and in a checkout those that are developers' tools."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Names of all studies."""
+        return sorted([*self.commands, *(["relations"] if workshop.is_checkout() else [])])
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The study of a name."""
+        return ToolCommand("study relations") if cmd_name == "relations" else super().get_command(ctx, cmd_name)
+
+
+@click.group("study", cls=_Studies, invoke_without_command=True)
 @click.pass_context
 def command(ctx: click.Context) -> None:
     """Answer one of the longer questions; without a name, say which there are."""
     if ctx.invoked_subcommand is None:
-        for name, study in sorted(command.commands.items()):
+        for name in command.list_commands(ctx):
+            study = command.get_command(ctx, name)
+            assert study is not None, "a study is listed"
             click.echo(f"{name:<16} {study.get_short_help_str(100)}")
-
-
-@command.command("materials")
-@output
-@folder("Folder for the page, the numbers and the figure.")
-@click.pass_obj
-def materials(
-    planted: object,
-    json_file: Path | None,
-    quiet: bool,  # noqa: FBT001 - click hands it over by name
-    out: Path | None,
-) -> int:
-    """ABS, titanium and steel at one deformation: what of the error a material can change."""
-    from comparisons.cli import showing
-    from comparisons.pairing import solvers_of
-    from comparisons.resuming import resumed
-    from comparisons.studies import materials as study
-    from comparisons.studies.materials_told import told
-
-    showing.room_for(json_file, out)
-    show = Shown(json_file, out, quiet)
-    pieces = showing.progress(study.pieces(), shown=not quiet)
-    with resumed(out, solvers_of(planted), ()) as whole:
-        solvers = whole.solvers
-        found = _answered(study.Materials(), pieces, lambda found, piece: found.with_piece(piece(solvers)), told, show)
-    return 0 if all(tested.comparison.verdict.completed for tested in found.tested) else 1
 
 
 @command.command("calibration")
@@ -77,7 +65,7 @@ def calibration(
     show = Shown(json_file, out, quiet)
     pieces = showing.progress(study.pieces(), shown=not quiet)
     with resumed(out, solvers_of(planted), ()) as whole, crew_of(workers_for(planted)) as crew:
-        found = _answered(
+        found = answered(
             study.Calibration(),
             pieces,
             lambda found, piece: study.with_piece(found, piece, whole.solvers, crew),
@@ -85,26 +73,6 @@ def calibration(
             show,
         )
     return 1 if any(trial.verdict.word is Word.DIFFER or not trial.verdict.completed for trial in found.trials) else 0
-
-
-@command.command("readings")
-@output
-@folder("Folder for the page, the numbers and the figure.")
-def readings(
-    json_file: Path | None,
-    quiet: bool,  # noqa: FBT001 - click hands it over by name
-    out: Path | None,
-) -> int:
-    """Where the prestressed mechanism jumps, by what is read into the paper's words and by who solves it."""
-    from comparisons.cli import showing
-    from comparisons.studies import readings as study
-    from comparisons.studies.readings_told import told
-
-    showing.room_for(json_file, out)
-    show = Shown(json_file, out, quiet)
-    pieces = showing.progress(study.pieces(), shown=not quiet)
-    _answered(study.Readings(), pieces, lambda found, piece: found.with_piece(piece()), told, show)
-    return 0
 
 
 @command.command("table1")
@@ -132,42 +100,8 @@ def table1(
     show = Shown(json_file, out, quiet)
     runs = showing.progress(study.runs(repeat), shown=not quiet)
     begun = study.begun(solvers, machine.described())
-    found = _answered(begun, runs, lambda found, run: study.solved(found, run, solvers, at_most), told, show)
+    found = answered(begun, runs, lambda found, run: study.solved(found, run, solvers, at_most), told, show)
     return 1 if found.unfinished else 0
-
-
-@command.command("relations")
-@click.argument("scenes", nargs=-1, metavar="[CASE]...", shell_complete=offered)
-@click.option("-n", "links", callback=count, metavar="COUNT", default="20", show_default=True,
-              help="CPRBM links per beam: one number or beam1=30,beam2=40.")  # fmt: skip
-@click.option("--elements", callback=count, metavar="COUNT", default="20", show_default=True,
-              help="Finite elements per beam, likewise.")  # fmt: skip
-@output
-@folder("Folder for the page and the numbers.")
-@click.pass_obj
-def relations(
-    planted: object,
-    scenes: tuple[str, ...],
-    links: int | dict[str, int],
-    elements: int | dict[str, int],
-    json_file: Path | None,
-    quiet: bool,  # noqa: FBT001 - click hands it over by name
-    out: Path | None,
-) -> int:
-    """What must not change an answer: place, mirror, order, direction, units, steps, company; action and reaction."""
-    from comparisons.choices import Choices
-    from comparisons.cli import showing
-    from comparisons.pairing import solvers_of
-    from comparisons.resuming import resumed
-    from comparisons.studies import relations as study
-    from comparisons.studies.relations_told import told
-
-    showing.room_for(json_file, out)
-    show = Shown(json_file, out, quiet)
-    with resumed(out, solvers_of(planted), ()) as whole:
-        asked = study.pieces(scenes, Choices(links=links, elements=elements), whole.solvers)
-        found = _answered(study.Relations(), showing.progress(asked, shown=not quiet), study.with_piece, told, show)
-    return 1 if found.broken else 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,7 +147,7 @@ class Shown:
             click.echo(f"report: {self.out / told.name}.html")
 
 
-def _answered(
+def answered(
     found: Found,
     steps: Iterable[Step],
     taken: Callable[[Found, Step], Found],

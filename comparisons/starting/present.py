@@ -58,7 +58,7 @@ LIBRARIES = (
     Library("rich", "rich", "tables and progress", ">=13.7"),
     Library("jinja2", "jinja2", "pages", ">=3.1"),
     Library("matplotlib", "matplotlib.figure", "figures", ">=3.9"),
-    Library("casadi", "casadi", "IPOPT, an optimiser that 'bench' and 'study readings' compare with", ">=3.6", "peers"),
+    Library("casadi", "casadi", "IPOPT, an optimiser that 'bench' compares with in a checkout", ">=3.6", "peers"),
     Library(
         "threadpoolctl",
         "threadpoolctl",

@@ -9,8 +9,8 @@ from comparisons.starting.begun import begin
 
 WORDS = [
     (["slove", "hinge"], "found 'slove'", "is 'solve' meant?", "allowed: list, solve, compare", "Try 'cprbm --help'"),
-    (["study", "material"], "found 'material'", "is 'materials' meant?", "Try 'cprbm study --help'"),
-    (["study", "zzz"], "found 'zzz', which is no command of 'cprbm study'; allowed: calibration, materials"),
+    (["study", "calibrate"], "found 'calibrate'", "is 'calibration' meant?", "Try 'cprbm study --help'"),
+    (["study", "zzz"], "found 'zzz', which is no command of 'cprbm study'; allowed: calibration, relations"),
     (["solve"], "'CASE|FILE.toml'", "'cprbm list' names the cases", "'cprbm new NAME'", "Try 'cprbm solve --help'"),
     (["compare"], "'CASE|FILE.toml...|all'", "'cprbm list' names the cases", "Try 'cprbm compare --help'"),
     (["new"], "'NAME'", "Try 'cprbm new --help'"),

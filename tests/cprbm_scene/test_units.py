@@ -7,10 +7,10 @@ import pytest
 from pydantic import BaseModel
 
 from comparisons import cases
-from comparisons.stress.toml import toml_of
 from cprbm_scene import SceneError, scene_from, statement
 from cprbm_scene.statement import Record, Units
 from cprbm_scene.units import FOLLOWING, MEASURED
+from tests.robustness.toml import toml_of
 
 PURE = {
     "at",

@@ -128,9 +128,9 @@ def imports_by_computed_name(source):
 
 def test_no_module_is_imported_by_a_computed_name():
     files = [path for package in SETTINGS["root_packages"] for path in (ROOT / package).rglob("*.py")]
-    found = [str(path) for path in files if imports_by_computed_name(path.read_text(encoding="utf-8"))]
+    found = {path for path in files if imports_by_computed_name(path.read_text(encoding="utf-8"))}
     assert len(files) > 100
-    assert found == []
+    assert found == {ROOT / "comparisons" / "workshop.py"}  # the door to the developers' tools of a checkout
 
 
 @pytest.mark.parametrize("source", ["importlib.import_module('fea' + name)", "m = __import__('comparisons')"])

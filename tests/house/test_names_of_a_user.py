@@ -9,6 +9,13 @@ import pytest
 OWN_MODULES = ("scene.py", "exact.py", "comparisons.py", "tests.py")
 PROGRAM = Path(sys.executable).with_name("cprbm")
 
+FIRST_ON_THE_PATH = """
+from comparisons.cli.main import run
+
+if __name__ == "__main__":
+    raise SystemExit(run(["robustness", "--scenes", "1", "--quiet"]))
+"""
+
 
 @pytest.fixture
 def folder(tmp_path):
@@ -32,6 +39,20 @@ def test_the_program_shares_its_work_among_processes(folder):
     done = _run([PROGRAM, "compare", "tapered", "-n", "10", "--elements", "10", "--quiet"], folder)
     assert done.returncode in (0, 3), done.stderr
     assert "user's own" not in done.stderr
+
+
+def test_the_tools_of_a_checkout_run(folder):
+    done = _run([PROGRAM, "robustness", "--scenes", "1", "--quiet"], folder)
+    assert done.returncode in (0, 3), done.stderr
+    assert done.stderr == ""
+
+
+def test_the_tools_of_a_checkout_run_where_the_user_s_folder_comes_first_on_the_path(folder):
+    (folder / "program.py").write_text(FIRST_ON_THE_PATH)
+    (folder / "comparisons.py").unlink()
+    done = _run([sys.executable, "program.py"], folder)
+    assert done.returncode in (0, 3), done.stderr
+    assert done.stderr == ""
 
 
 def test_the_solvers_are_imported(folder):

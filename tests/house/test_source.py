@@ -10,7 +10,7 @@ ROOT = Path(__file__).parents[2]
 HERE = Path(__file__).resolve()
 FILES = sorted(
     path
-    for part in ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons", "tests")
+    for part in ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons", "benchmarks", "tests")
     for path in (ROOT / part).rglob("*")
     if path.suffix in {".py", ".toml", ".html", ".css", ".js", ".md"} and path.resolve() != HERE
 )

@@ -43,6 +43,7 @@ COPIED = (
     "fea_reference",
     "elastica_reference",
     "comparisons",
+    "benchmarks",
     "tests",
     "pyproject.toml",
     "Makefile",

@@ -12,7 +12,7 @@ import sys
 import traceback
 from pathlib import Path
 
-OURS = ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons", "tests")
+OURS = ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons", "benchmarks", "tests")
 OTHERS = (
     *("numpy", "pytest", "hypothesis", "pydantic", "skfem", "scipy.linalg", "scipy.optimize", "scipy.integrate"),
     *("scipy.sparse.linalg", "scipy.interpolate", "scipy.special"),

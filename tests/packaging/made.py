@@ -24,7 +24,7 @@ FILES = (
     "pyproject.toml",
     "requirements.lock",
 )
-FOLDERS = (*ROOMS, "docs", "tests")
+FOLDERS = (*ROOMS, "benchmarks", "docs", "tests")
 _LEFT_BY_RUNS = shutil.ignore_patterns("__pycache__", "*.pyc", "_build")
 
 

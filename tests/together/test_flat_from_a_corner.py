@@ -10,8 +10,8 @@ import pytest
 
 import cprbm
 import fea_reference
-from comparisons.relations.image import Data
 from cprbm_scene import scene_from
+from tests.relations.image import Data
 
 STATIONS = (0.007542, 0.01131)
 PROBES = ("scene.potential_energy", "wedge.force")

@@ -12,8 +12,8 @@ import pytest
 
 import cprbm
 import fea_reference
-from comparisons.relations.image import Data
 from cprbm_scene import Ending, Loss, scene_from
+from tests.relations.image import Data
 
 FIRST, SECOND = 0.00937, 0.0113  # on the branch; beyond its end
 END = 0.01085  # of the branch, by the finite elements (40 elements, `beyond = "stop"`)

@@ -15,8 +15,8 @@ import pytest
 
 import cprbm
 import fea_reference
-from comparisons.relations.image import Data
 from cprbm_scene import Answer, Ending, Loss, scene_from
+from tests.relations.image import Data
 
 LENGTH, THICKNESS, WIDTH, YOUNGS_MODULUS = 0.0973, 0.00117, 0.0083, 2.07e11
 ASIDE, BELOW = 0.0071, 0.0317

@@ -1,0 +1,116 @@
+"""The door to the developers' tools: what a checkout offers, and what an installed package says of the rest."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from comparisons import workshop
+from comparisons.cli.main import run
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("cprbm_scene", "cprbm", "fea_reference", "elastica_reference", "comparisons")
+ELSEWHERE = "is a developers' tool: it runs in a checkout of the repository, not from an installed package."
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """The packages as a wheel holds them, in a folder without ``tests`` and ``benchmarks``."""
+    folder = tmp_path_factory.mktemp("installed")
+    for package in PACKAGES:
+        shutil.copytree(ROOT / package, folder / package, ignore=shutil.ignore_patterns("__pycache__"))
+    return folder
+
+
+def _run(arguments, packages, folder):
+    return subprocess.run(
+        [sys.executable, "-m", "comparisons", *arguments],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(packages)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize(
+    ("arguments", "command"),
+    [
+        (["robustness", "--scenes", "3"], "robustness"),
+        (["robustness", "--help"], "robustness"),
+        (["stress", "--scenes", "3"], "stress"),
+        (["study", "relations", "tapered"], "study relations"),
+        (["bench", "hinge", "--method", "ipopt"], "bench --method ipopt"),
+        (["bench", "hinge", "--method", "auto", "--method", "slsqp"], "bench --method slsqp"),
+    ],
+)
+def test_an_installed_package_says_where_the_tool_is(installed, tmp_path, arguments, command):
+    done = _run(arguments, installed, tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"cprbm: 'cprbm {command}' {ELSEWHERE}\n"
+
+
+def test_an_installed_package_times_its_own_solvers(installed, tmp_path):
+    done = _run(["bench", "tapered", "--sizes", "10", "--repeat", "1", "--json", "-"], installed, tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    data = json.loads(done.stdout)
+    assert [(row["method"], row["formulation"]) for row in data["rows"]] == [
+        ("cprbm", "auto"),
+        ("cprbm", "paper"),
+        ("fea", None),
+    ]
+    assert data["tolerance"] is None
+
+
+@pytest.mark.parametrize(
+    ("arguments", "command"),
+    [
+        (["bench", "hinge", "--method", "trust-constr"], "bench --method trust-constr"),
+        (["study", "readings"], "study readings"),
+        (["study", "materials", "--quiet"], "study materials"),
+        (["study", "materials", "--help"], "study materials"),
+    ],
+)
+def test_a_removed_command_is_refused_in_one_sentence(capsys, arguments, command):
+    assert run(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith(f"cprbm: 'cprbm {command}' is removed: ")
+    assert captured.err.count("\n") == 1
+
+
+def test_an_installed_package_lists_no_tools(installed, tmp_path):
+    done = _run(["--help"], installed, tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "compare" in done.stdout
+    assert "robustness" not in done.stdout
+
+
+def test_an_installed_package_lists_no_study_of_a_checkout(installed, tmp_path):
+    done = _run(["study"], installed, tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "calibration" in done.stdout
+    assert "relations" not in done.stdout
+
+
+def test_a_checkout_lists_its_tools_under_their_new_names(capsys):
+    assert run(["--help"]) == 0
+    listed = [line.split()[0] for line in capsys.readouterr().out.splitlines() if line.startswith("  ")]
+    assert "robustness" in listed
+    assert "stress" not in listed
+
+
+def test_an_old_name_runs_the_tool_and_names_the_new_one(capsys):
+    assert run(["stress", "--help"]) == 0
+    captured = capsys.readouterr()
+    assert "--replay" in captured.out
+    assert captured.err == "cprbm: 'cprbm stress' is now 'cprbm robustness'; the next release drops the old name.\n"
+
+
+@pytest.mark.parametrize("name", [name for name, tool in workshop.TOOLS.items() if tool.purpose])
+def test_the_list_of_commands_says_of_a_tool_what_its_own_help_does(name):
+    assert workshop.load(name).command.help.splitlines()[0] == workshop.TOOLS[name].purpose

@@ -1,0 +1,37 @@
+"""Something far away that nothing can touch."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cprbm_scene import scene_from
+from cprbm_scene.geometry import points_on
+from tests.relations.image import Data, Image, copied
+
+AWAY = 7.3
+"""Distance of what is far, in extents of the scene."""
+
+
+def far_circle(data: Data) -> Image:
+    """A ground of its own with a rigid circle far away, which the first beam may touch."""
+    scene = scene_from(data)
+    u = np.linspace(0.0, 1.0, 9)
+    points = np.concatenate(
+        [
+            *(np.array(list(body.points.values())) for body in scene.bodies.values()),
+            *(points_on(beam.curve, u) for beam in scene.beams.values()),
+        ]
+    )
+    least, most = points.min(axis=0), points.max(axis=0)
+    extent = float(np.linalg.norm(most - least))
+    centre = [float(most[0] + AWAY * extent), float(least[1] - 0.61 * AWAY * extent)]
+    new = copied(data)
+    new["bodies"]["far_body"] = {"motion": "fixed", "points": {"far_point": centre}}
+    new.setdefault("contacts", {})["far_contact"] = {
+        "kind": "beam-circle",
+        "beam": next(iter(data["beams"])),
+        "body": "far_body",
+        "center": centre,
+        "radius": 0.37 * extent,
+    }
+    return Image("a circle far away", new)

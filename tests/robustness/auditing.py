@@ -1,0 +1,28 @@
+"""A crew that solves nothing twice and audits no answer twice."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from comparisons.audit import Audit, audit
+from comparisons.memory import Remembering
+from cprbm_scene import Answer, Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Auditing(Remembering):
+    """A crew with a memory of answers and of audits.
+
+    Attributes:
+        audited: findings of audits by the identities of the scene's and the answer's records; the records are kept, so
+            that no other record takes over an identity.
+    """
+
+    audited: dict[tuple[int, int], tuple[Scene, Answer, Audit]] = field(default_factory=dict)
+
+    def audit(self, scene: Scene, answer: Answer) -> Audit:
+        """The findings of the answer's audit, which is made once."""
+        key = id(scene), id(answer)
+        if key not in self.audited:
+            self.audited[key] = scene, answer, audit(scene, answer)
+        return self.audited[key][2]

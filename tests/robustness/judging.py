@@ -1,0 +1,341 @@
+"""One scene judged: both solvers, the ordinary verdict, from coarse to fine until it can be told.
+
+It is the verdict of ``compare`` on the runs on which it rests, at a size at which most scenes can be told: from 20 to
+160 links time grows by a quarter, and what is asked twice is paid twice.  Where it cannot be told, or a run ended
+early, the solver on whose account that is does it once more at twice its size: as often as the effort allows where
+what is stated promises to become little enough by that, and once where it is something else that keeps it.  The finer
+runs of one size are then the coarser ones of the next, and nothing is solved twice.  Of a scene whose answers end
+early at every size the stations that both reached are judged as a scene of their own.
+
+Where the theories of ``bending`` and ``shear`` alone are further apart than may be stated, that is a property of the
+mechanism and no doubt about either solver, both of which can be asked in ``bending``: there the scene is judged once
+more, by the same rules, with the chosen theory left out.  It has then agreed in ``bending`` alone, which the outcome
+says together with how far the theories are apart; what the finite elements make of stretch and shear in it nothing
+has told.  What differs in the chosen theory is wrong all the same, and so is what differs in ``bending``.
+
+An answer is *wrong* if it is certified and
+
+* a row of the verdict differs, also of a scene whose other stations were not reached, or an answer that calls itself
+  complete is not whole; or
+* a value is further from the finest that was found than F times what is stated of it; or
+* it is further from the exact answer, where one is known, than F times what is stated of it,
+
+with the F of :mod:`comparisons.calibration`: a stated uncertainty is to hold in 95 % of the rows and not in all.
+"""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field, replace
+
+from comparisons.calibration import FAR, every
+from comparisons.choices import Choices
+from comparisons.formats import number
+from comparisons.measures import Bounds, Row
+from comparisons.pairing import Runs, Solvers, paired
+from comparisons.reach import ends_at_critical, first_stations, up_to
+from comparisons.scales import norm
+from comparisons.stations import station_of
+from comparisons.verdict import Comparison, compared
+from comparisons.words import Word
+from cprbm_scene import Answer, Scene, SceneError
+from tests.robustness.auditing import Auditing
+from tests.robustness.outcomes import Outcome, Way
+from tests.robustness.strata import met, stated
+
+DOMINANT = 2.0
+"""Times that one solver states more than the other from which on it alone is refined."""
+
+PROMISING = 2.0
+"""Times too much that may be foretold of a finer size by the second order: many errors fall faster."""
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How much is done for one scene.
+
+    Attributes:
+        first: the coarsest choices.
+        sizes: how many there are at most, each of twice the links or elements, or of both, of the one before.
+    """
+
+    first: Choices = field(default_factory=lambda: Choices(links=80, elements=40))
+    sizes: int = 3
+
+
+@dataclass(frozen=True, slots=True)
+class _Finding:
+    """What one size says: a way, why, and the rows on which it rests; whether an audit ``doubts`` an answer; of answers
+    that ended, whose they are (``early``), how many stations they reached, and whether in all of them the branch is
+    ``over``, or was left where it is in others; ``apart`` as an outcome has it.
+    """
+
+    way: Way
+    sentence: str
+    choices: Choices
+    runs: Runs | None = None
+    rows: tuple[Row, ...] = ()
+    ending: str = ""
+    reached: int = 0
+    early: frozenset[str] = frozenset()
+    doubts: bool = False
+    over: bool = False
+    apart: float | None = None
+
+
+def judged(scene: Scene, solvers: Solvers, effort: Effort) -> Outcome:
+    """How a scene ends."""
+    begun = time.process_time()
+    # those who know the exact answer are asked once, when the size is found
+    memory = Auditing(solvers=replace(solvers, exact=None))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            finding = _found(scene, solvers, effort, memory)
+        except SceneError as error:
+            outcome = Outcome(scene.name, Way.REFUSED, "; ".join(map(str, error.mistakes)))
+        else:
+            outcome = _told(scene, finding)
+    return replace(
+        outcome,
+        seconds=time.process_time() - begun,
+        iterations=sum(_iterations(memory.known.values())),
+        stated=tuple(sorted(stated(scene))),
+        warnings=tuple(dict.fromkeys(str(each.message) for each in caught)),
+    )
+
+
+def _found(scene: Scene, solvers: Solvers, effort: Effort, memory: Auditing) -> _Finding:
+    """What the first size says that says something, or the finest.
+
+    Raises:
+        SceneError: a solver refuses the scene.
+    """
+    finding, left = _at_one_size(scene, effort.first, memory), effort.sizes - 1
+    while finding.way in (Way.UNDECIDED, Way.ENDED):
+        worth = left > 0 and _worth_while(scene, finding, left, first=left == effort.sizes - 1)
+        if _for_the_theorys_sake(scene, finding, last=not worth):
+            finding = _in_bending(scene, finding, memory)
+        elif not worth:
+            break
+        else:
+            finer = _at_one_size(scene, _finer(scene, finding, left), memory)
+            finer = finer if finer.way is Way.WRONG else _beside(finding, finer)
+            finding, left = replace(finer, apart=finding.apart), left - 1
+    if finding.runs is None:
+        return _as_far_as_it_goes(scene, finding, memory)
+    if solvers.exact is None or finding.way not in (Way.AGREE, Way.UNDECIDED):
+        return finding
+    exact = solvers.exact(scene, finding.choices)
+    if not exact.stations:
+        return finding
+    comparison = compared(scene, replace(finding.runs, exact=exact), memory.audit)
+    return replace(_of_comparison(finding.choices, comparison), apart=finding.apart)
+
+
+def _at_one_size(scene: Scene, choices: Choices, memory: Auditing) -> _Finding:
+    """What one size says; where one of the two compared answers ends early, nothing is asked beside them.
+
+    Raises:
+        SceneError: a solver refuses the scene.
+    """
+    solvers = memory.solvers
+    two = memory.answers([(solvers.cprbm, scene, choices), (solvers.fea, scene, choices)])
+    if any(not answer.completed and not ends_at_critical(answer) for answer in two):
+        early = [(answer.solver, answer) for answer in two if not answer.completed]
+        reached = min(len(answer.stations) for answer in two)
+        return _Finding(
+            Way.ENDED, _why(early), choices, ending=early[0][1].ending.name, reached=reached, early=_whose(early)
+        )
+    runs = paired(scene, choices, solvers, memory, bare=True)
+    finding = _of_comparison(choices, compared(scene, runs, memory.audit))
+    reached = min(len(answer.stations) for _, answer in runs.everything())
+    if finding.way is not Way.ENDED or finding.rows or reached == 0:
+        return finding
+    part = compared(*up_to(scene, runs, reached), memory.audit)
+    if part.verdict.word is Word.DIFFER:
+        return replace(finding, way=Way.WRONG, sentence=part.verdict.sentence, rows=part.rows, ending="")
+    return replace(finding, rows=part.rows)
+
+
+def _as_far_as_it_goes(scene: Scene, finding: _Finding, memory: Auditing) -> _Finding:
+    """The finding of answers that ended early, unless what they reached is wrong.
+
+    Raises:
+        SceneError: a solver refuses the scene.
+    """
+    if finding.reached == 0:
+        return finding
+    part = _at_one_size(first_stations(scene, finding.reached), finding.choices, memory)
+    return part if part.way is Way.WRONG else replace(finding, rows=part.rows, runs=part.runs)
+
+
+def _of_comparison(choices: Choices, comparison: Comparison) -> _Finding:
+    """The way in which a verdict is one of the seven."""
+    verdict, runs = comparison.verdict, comparison.runs
+    early = [(name, answer) for name, answer in runs.everything() if not answer.completed]
+    sentence, ending = verdict.sentence, ""
+    if verdict.word is Word.DIFFER:
+        way = Way.WRONG
+    elif early:
+        way = Way.ENDED
+        ending = early[0][1].ending.name
+        sentence = _why(early)
+    elif not verdict.completed:
+        way = Way.WRONG
+    else:
+        way = Way.AGREE if verdict.word is Word.AGREE else Way.UNDECIDED
+    doubts = any(audit.complaints for audit in comparison.audits.values())
+    gone = {name for row in comparison.criticals for name in row.turned}
+    over = all(ends_at_critical(answer) or name in gone for name, answer in runs.everything())
+    return _Finding(
+        way, sentence, choices, runs, comparison.rows, ending, early=_whose(early), doubts=doubts, over=over
+    )
+
+
+def _finer(scene: Scene, finding: _Finding, left: int) -> Choices:
+    """Choices with twice the links or twice the elements, of which so many are left: of the solver whose runs ended
+    early, or state more than DOMINANT times what the other does in the rows that cannot be told, if what the other
+    states leaves it room enough; of both where that is neither.
+    """
+    choices, finer = finding.choices, finding.choices.finer()
+    found = [(row.bounds, scene.limit(row.probe) * row.scale) for row in finding.rows if row.bounds is not None]
+    vague = [(bounds, allowed) for bounds, allowed in found if max(bounds.total, bounds.same_theory) > allowed > 0.0]
+    cprbm, fea = (sum(getattr(bounds, solver) / allowed for bounds, allowed in vague) for solver in ("cprbm", "fea"))
+
+    def room(mine: str) -> bool:
+        smaller = 1.0 - 0.25**left
+        return all(bounds.total - smaller * getattr(bounds, mine) <= allowed for bounds, allowed in vague)
+
+    if finding.early == {"cprbm"} or (not finding.early and cprbm > DOMINANT * fea and room("cprbm")):
+        return replace(choices, links=finer.links)
+    if finding.early == {"fea"} or (not finding.early and fea > DOMINANT * cprbm and room("fea")):
+        return replace(finer, links=choices.links)
+    return finer
+
+
+def _worth_while(scene: Scene, finding: _Finding, left: int, *, first: bool) -> bool:
+    """Whether so many further sizes may tell what cannot be told; of answers that ended, or are doubted, the next.
+
+    Not where every run says that the branch ends, or has gone on over that: a finer one would say it again.
+    """
+    if finding.over:
+        return False
+    found = [(row.bounds, scene.limit(row.probe) * row.scale) for row in finding.rows if row.bounds is not None]
+    vague = [(bounds, allowed) for bounds, allowed in found if bounds.total > allowed]
+    if finding.way is Way.ENDED or finding.doubts or not vague:
+        return first
+    smaller = PROMISING * 4.0**left
+    return all(
+        (bounds.total - bounds.theory) / smaller + bounds.theory <= allowed
+        for bounds, allowed in vague
+        if allowed > 0.0
+    )
+
+
+def _for_the_theorys_sake(scene: Scene, finding: _Finding, *, last: bool) -> bool:
+    """Whether nothing but what lies between the theories keeps a scene from being told.
+
+    So it does where that alone is more than may be stated, which no finer size makes smaller; and at the ``last`` size
+    that is worth while, where no row states too much without it.  An audit that doubts an answer is another reason.
+    """
+    if finding.way is not Way.UNDECIDED or finding.doubts or finding.choices.kinematics == "bending":
+        return False
+    found = [(row.bounds, scene.limit(row.probe) * row.scale) for row in finding.rows if row.bounds is not None]
+    if any(bounds.theory > allowed for bounds, allowed in found):
+        return True
+    vague = [(bounds, allowed) for bounds, allowed in found if bounds.total > allowed]
+    return last and bool(vague) and all(bounds.total - bounds.theory <= allowed for bounds, allowed in vague)
+
+
+def _in_bending(scene: Scene, finding: _Finding, memory: Auditing) -> _Finding:
+    """What the same size says in the theory ``bending``, which has been solved already.
+
+    Raises:
+        SceneError: a solver refuses the scene.
+    """
+    shares = [row.bounds.theory / row.scale for row in finding.rows if row.bounds is not None and row.scale > 0.0]
+    apart = max(shares, default=0.0)
+    return replace(_at_one_size(scene, finding.choices.within("bending"), memory), apart=apart)
+
+
+def _why(early: Iterable[tuple[str, Answer]]) -> str:
+    """Which answers ended early, and what each of them says of it."""
+    return "; ".join(f"{name}: {answer.ending.name}, {answer.sentence}" for name, answer in early)
+
+
+def _whose(early: Iterable[tuple[str, Answer]]) -> frozenset[str]:
+    """The solvers whose answers ended early, by the names of their runs."""
+    return frozenset(name.split()[0] for name, _ in early)
+
+
+def _beside(coarser: _Finding, finding: _Finding) -> _Finding:
+    """The finding of a size with what it says of half of it: wrong where a value is too far from its refinement."""
+    worst, said = 1.0, ""
+    if finding.runs is None:
+        return finding
+    for row in coarser.rows:
+        for solver, off, allowed in _from_refinement(row, finding.runs):
+            if off > worst * allowed:
+                worst = off / allowed
+                said = (
+                    f"{solver}: {row.probe.name} at {row.stage} {row.station:g} is {number(FAR * worst)} times as far "
+                    f"from its value at a finer size as is stated of it."
+                )
+    return finding if not said else replace(finding, way=Way.WRONG, sentence=said, ending="")
+
+
+def _from_refinement(row: Row, finer: Runs) -> Iterator[tuple[str, float, float]]:
+    """By solver the distance of a row's value from the finest of the finer runs, and what it may be.
+
+    Of stresses, whose places next to contacts do not count, of forces that contacts share in a way that nothing tells,
+    or with a joint in one that no mesh does, of what hangs on a contact that is open by less than meshes tell, and of
+    rows that are not compared nothing is said.
+    """
+    if row.bounds is None or row.arc_length is not None or row.shared or row.hardly_open or row.beside is not None:
+        return
+    for solver, mine, answer, own in (
+        ("cprbm", row.cprbm, finer.cprbm[1], row.bounds.cprbm),
+        ("fea", row.fea, finer.fea[finer.kinematics][1], row.bounds.fea),
+    ):
+        try:
+            station = station_of(answer, row.stage, row.station)
+        except KeyError:
+            continue
+        its = station.values[row.probe.name]
+        if mine.shape == its.shape and station.branch == row.branch:
+            yield solver, norm(row.probe.quantity, mine - its), FAR * (own + row.bounds.round_off)
+
+
+def _told(scene: Scene, finding: _Finding) -> Outcome:
+    """The outcome that a finding is, without what the whole effort took."""
+    rows = [(row, row.bounds) for row in finding.rows if row.bounds is not None]
+    links, elements = finding.choices.links, finding.choices.elements
+    assert isinstance(links, int)
+    assert isinstance(elements, int)
+    return Outcome(
+        scene.name,
+        finding.way,
+        finding.sentence,
+        finding.ending,
+        difference=max((_pressure(row, bounds) for row, bounds in rows), default=None),
+        uncertainty=max((max(bounds.total, bounds.same_theory) / row.scale for row, bounds in rows), default=None),
+        beyond=max((each.ratio for row, _ in rows for each in every(row)), default=None),
+        apart=finding.apart,
+        links=links,
+        elements=elements,
+        met=() if finding.runs is None else tuple(sorted(met(scene, finding.runs.reference))),
+    )
+
+
+def _pressure(row: Row, bounds: Bounds) -> float:
+    """The larger of a row's two differences over what is stated of each."""
+    pairs = ((row.difference, bounds.total), (row.same_theory, bounds.same_theory))
+    return max(off / allowed if allowed > 0.0 else (float("inf") if off else 0.0) for off, allowed in pairs)
+
+
+def _iterations(answers: Iterable[Answer]) -> Iterator[int]:
+    for answer in answers:
+        yield from (station.certificate.iterations for station in answer.stations)

@@ -1,0 +1,119 @@
+"""What is told of a run of random scenes: its documented JSON, its tables, and a sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from comparisons.documents import Plain, plain
+from comparisons.formats import number, percent
+from comparisons.sheet import Sheet
+from tests.robustness.outcomes import Outcome, Way, in_bending, packed, shares, totals
+from tests.robustness.running import Stress
+
+_WORST: dict[str, Callable[[Outcome], float | None]] = {
+    "difference": lambda outcome: outcome.difference,
+    "uncertainty": lambda outcome: outcome.uncertainty,
+    "beyond": lambda outcome: outcome.beyond,
+    "apart": lambda outcome: outcome.apart,
+    "seconds": lambda outcome: outcome.seconds,
+    "iterations": lambda outcome: float(outcome.iterations),
+}
+_WHAT = {
+    "difference": "difference over what is stated",
+    "uncertainty": "stated uncertainty, of the scale",
+    "beyond": "distance from the exact answer over what is stated",
+    "apart": "step between the theories, of the scale, where bending alone was judged",
+    "seconds": "seconds of the processor",
+    "iterations": "iterations of all runs",
+}
+_ALONE = "of these in the theory of bending alone"
+_OF_AGREEMENT = frozenset({"difference", "uncertainty", "beyond", "apart"})
+
+
+def document(there: Stress) -> Plain:
+    """The documented JSON; of scenes without an outcome yet nothing is told."""
+    outcomes = list(there.outcomes.values())
+    found: Plain = {"scenes": len(outcomes), **{way.value: count for way, count in totals(outcomes).items()}}
+    return {
+        **found,
+        "agree_in_bending": in_bending(outcomes),
+        "strata": shares(outcomes),
+        "worst": {
+            name: None if worst is None else {"scene": worst.name, "value": plain(_WORST[name](worst))}
+            for name, worst in _worst(outcomes).items()
+        },
+        "seed": there.plan.seed,
+        "records": [
+            {"index": index, **packed(outcome), "file": there.saved.get(index)}
+            for index, outcome in there.outcomes.items()
+        ],
+    }
+
+
+def sheets_of(there: Stress) -> tuple[Sheet, ...]:
+    """How many ended in which way; what came nearest to another; what the scenes have; every one that failed."""
+    outcomes = list(there.outcomes.values())
+    every = max(len(outcomes), 1)
+    counts = {way.words: count for way, count in totals(outcomes).items()}
+    counts = {"agree": counts.pop("agree"), _ALONE: in_bending(outcomes), **counts}
+    ways = tuple((said, str(count), percent(count / every)) for said, count in counts.items() if outcomes)
+    worst = tuple(
+        (_WHAT[name], number(value), outcome.name)
+        for name, outcome in _worst(outcomes).items()
+        if outcome is not None and (value := _WORST[name](outcome)) is not None
+    )
+    others = tuple(
+        (outcome.name, _way(outcome), outcome.sentence, there.saved.get(index, ""))
+        for index, outcome in there.outcomes.items()
+        if outcome.way not in (Way.AGREE, Way.UNDECIDED)
+    )
+    strata = tuple((feature, percent(share)) for feature, share in shares(outcomes).items())
+    sheets = [
+        Sheet(f"{len(outcomes)} scenes of seed {there.plan.seed}", ("ended", "scenes", "share"), ways),
+        Sheet("The largest of", ("what", "", "scene"), worst, note="The first four of the scenes that agree."),
+        Sheet(
+            "What the scenes have", ("feature", "share"), strata, note="What only answers show, of those that agree."
+        ),
+    ]
+    if others:
+        sheets.append(Sheet("Ended otherwise", ("scene", "ended", "why", "file"), others))
+    return tuple(sheets)
+
+
+def sentence(there: Stress) -> str:
+    """The run in a line."""
+    counts = totals(there.outcomes.values())
+    said = ", ".join(f"{count} {way.words}{_alone(there, way)}" for way, count in counts.items() if count)
+    before = f" ({there.before} of them in a run before)" if there.before else ""
+    return f"{len(there.outcomes)} scenes{before}: {said or 'none'}."
+
+
+def told_of(outcome: Outcome) -> str:
+    """One scene in a line."""
+    apart = "" if outcome.apart is None else f" Judged in the theory of bending alone: {_too_far(outcome.apart)}."
+    return f"{outcome.name}: {_way(outcome)}. {outcome.sentence}{apart}"
+
+
+def _too_far(apart: float) -> str:
+    return f"stretch and shear make {percent(apart)} of a probe's scale"
+
+
+def _alone(there: Stress, way: Way) -> str:
+    """Of those that agree how many in bending alone."""
+    count = in_bending(there.outcomes.values()) if way is Way.AGREE else 0
+    return f" ({count} of them in the theory of bending alone)" if count else ""
+
+
+def _way(outcome: Outcome) -> str:
+    return f"{outcome.way.words}, {outcome.ending}" if outcome.ending else outcome.way.words
+
+
+def _worst(outcomes: Iterable[Outcome]) -> dict[str, Outcome | None]:
+    """By what is measured the scene with the largest; of what answers show only those that agree have a part."""
+    every = list(outcomes)
+    found: dict[str, Outcome | None] = {}
+    for name, measured in _WORST.items():
+        mine = [one for one in every if one.way is Way.AGREE] if name in _OF_AGREEMENT else every
+        with_value = [(value, one) for one in mine if (value := measured(one)) is not None]
+        found[name] = max(with_value, key=lambda pair: pair[0])[1] if with_value else None
+    return found
