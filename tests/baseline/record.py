@@ -83,7 +83,11 @@ def start(folder: Path, about: About) -> set[str]:
                 f"{file}: {key}: found {getattr(found, key)!r}, asked for {value!r}; "
                 "continue with the same options and sources, or record into another folder"
             )
-    return set(_entries(_lines(folder / "entries.jsonl")))
+    file = folder / "entries.jsonl"
+    if file.exists() and not file.read_text(encoding="utf-8").endswith("\n"):
+        with file.open("a", encoding="utf-8") as cut:
+            cut.write("\n")  # ends the line that a stop cut short
+    return set(_entries(_lines(file)))
 
 
 def add(folder: Path, entry: Entry) -> None:
