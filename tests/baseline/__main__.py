@@ -62,13 +62,13 @@ def compare(old: Path, new: Path, accepted: Path | None, same: float) -> None:
 
 
 @main.command()
-@click.argument("folder", type=click.Path(exists=True, path_type=Path))
+@click.argument("sources", metavar="RECORD...", nargs=-1, required=True, type=click.Path(exists=True, path_type=Path))
 @click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
-def pack(folder: Path, file: Path) -> None:
-    """Write the record of FOLDER as one compressed FILE (.jsonl.xz)."""
+def pack(sources: tuple[Path, ...], file: Path) -> None:
+    """Write records as one compressed FILE (.jsonl.xz); a later RECORD replaces runs of an earlier one."""
     if not file.name.endswith(records.PACKED):
         raise click.UsageError(f"FILE: found {file.name!r}, allowed: a name that ends in {records.PACKED}")
-    records.pack(records.read(folder), file)
+    records.pack(records.join([records.read(source) for source in sources]), file)
     click.echo(f"{file}: {file.stat().st_size / 1e6:.2f} MB")
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import json
 import lzma
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from hashlib import sha256
 from pathlib import Path
 
@@ -114,6 +114,13 @@ def read(path: Path) -> Record:
             first, *rest = file
         return Record(_about(json.loads(first), path), _entries(rest))
     raise RecordError(f"{path}: no record; allowed: a folder written by 'record', or a file that ends in {PACKED}")
+
+
+def join(parts: Sequence[Record]) -> Record:
+    """One record of all runs; of a run in several parts the last entry counts, and the last part describes it."""
+    names = sorted({name for part in parts for name in part.about.built_in})
+    entries = {name: entry for part in parts for name, entry in part.entries.items()}
+    return Record(replace(parts[-1].about, built_in=tuple(names)), entries)
 
 
 def pack(record: Record, path: Path) -> None:

@@ -29,6 +29,13 @@ def test_a_folder_and_a_packed_file_hold_the_same_record(tmp_path):
     assert set(records.read(folder).entries) == {"arm cprbm 40", "arm cprbm 80", "arm comparison"}
 
 
+def test_a_further_case_joins_a_record(tmp_path):
+    first, second = record_of(solver_entry(), solver_entry(80)), record_of(solver_entry(tip=0.6))
+    joined = records.join([first, second])
+    assert joined.entries == {**first.entries, **second.entries}
+    assert joined.about == ABOUT
+
+
 def test_a_stopped_record_goes_on(tmp_path):
     folder = written(tmp_path / "a", solver_entry())
     with (folder / "entries.jsonl").open("a") as file:
