@@ -252,7 +252,7 @@ def numbers(scene: Scene) -> str:
     answers = [recorded()[f"{scene.name} {run}"]["stations"][-1] for run in (f"cprbm {N}", f"fea {n}")]
     lines = [
         f"The recorded numbers at {last.steps} = {_told(last.stations[-1] / factor, unit)} ({N} links and {n} finite "
-        "elements per beam, which stretch and shear; `python -m tests.baseline compare` holds a new record against them):",
+        "elements per beam, which stretch and shear; `python -m tests.baseline` compares new ones with them):",
         "",
         "| probe | unit | CPRBM | FEA |",
         "|---|---|---:|---:|",
