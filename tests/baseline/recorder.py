@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
-from comparisons.stress.apart import Crashed, Limits, OutOfTime, Returned
-from comparisons.stress.hosts import Hosts, hosts_of
 from tests.baseline import record
 from tests.baseline.measuring import Entry, Program, heading, measure
 from tests.baseline.runs import Run
+from tests.robustness.apart import Crashed, Limits, OutOfTime, Returned
+from tests.robustness.hosts import Hosts, hosts_of
 
 SECONDS = 60.0
 """Limit of processor time for a run of a random scene: no user waits longer for the answer to one scene."""

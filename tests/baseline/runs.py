@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 from comparisons import cases
-from comparisons.stress.drawing import drawn
-from cprbm_scene import Scene
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Scene, scene_from
+from tests.robustness.drawing import drawn
 
 SolverName = Literal["cprbm", "fea", "comparison"]
 Theory = Literal["bending", "stretch", "shear"]
