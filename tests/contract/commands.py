@@ -24,7 +24,10 @@ def commands_of(
     context = click.Context(group)
     hidden = [words[len(path)] for name in further if (words := name.split())[: len(path)] == list(path) != words]
     for name in sorted({*group.list_commands(context), *hidden}):
-        command = group.get_command(context, name)
+        try:
+            _, command, _ = group.resolve_command(context, [name])
+        except click.ClickException:  # no command of this name, or a removed one
+            continue
         if isinstance(command, click.Group):
             yield from commands_of(command, further, (*path, name))
         elif command is not None:
