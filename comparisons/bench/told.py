@@ -234,14 +234,10 @@ def _standing(one: Standing) -> Plain:
     }
 
 
-DOCUMENTED_RATIOS = ("slsqp_both", "ipopt_both", "ipopt_solve")
-"""Keys of the documented JSON; null where the method was not timed."""
-
-
 def _ratio(one: Ratios) -> Plain:
     return {
         "n": plain(one.count),
-        **dict.fromkeys(DOCUMENTED_RATIOS),
+        **dict.fromkeys(("slsqp_both", "ipopt_both", "ipopt_solve")),  # documented: null for an untimed method
         **{f"{name.replace('-', '_')}_{clocked}": ratio for (name, clocked), ratio in one.of.items()},
         "iterations_per_station": one.iterations,
     }
