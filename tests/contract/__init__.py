@@ -1,1 +1,1 @@
-"""Promises to users at commit 3c78333, and the tests that hold the program to them."""
+"""Tests of promises to users: the program keeps the promises of commit 3c78333, or declares a change."""

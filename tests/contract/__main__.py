@@ -1,6 +1,6 @@
 """``python -m tests.contract``: undeclared changes as entries for ``declared.toml``; with ``record`` a recording.
 
-The recording of 3c78333 came from this package, copied beside a checkout of that commit under another name::
+The recording of 3c78333 came from a copy of this package under another name, run with a checkout of 3c78333::
 
     python -m NAME record --scene scene --exact exact --pages docs/api > promises.json
 """
@@ -19,7 +19,7 @@ from .today import today, undeclared, visible
 
 
 def main() -> None:
-    """Do what the command line says."""
+    """Print a recording, or entries for ``declared.toml``."""
     parser = argparse.ArgumentParser(prog="tests.contract", description=__doc__)
     parser.add_argument("what", nargs="?", choices=["changes", "record"], default="changes")
     parser.add_argument("--scene", default=Packages.scene, help="name of the scene's package")

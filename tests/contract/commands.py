@@ -13,11 +13,11 @@ HELP = frozenset({"-h", "--help"})
 def commands_of(
     group: click.Group, further: Iterable[str] = (), path: tuple[str, ...] = (PROGRAM,)
 ) -> Iterator[tuple[str, click.Command]]:
-    """Every command of a group with its full name, the group itself first.
+    """Every command of a group with the full name, the group itself first.
 
     Args:
         group: where the walk begins.
-        further: full names of commands to look for although no list names them: an alias may be hidden.
+        further: full names of further commands to look for: an alias may be hidden.
         path: words of the group's own full name.
     """
     yield " ".join(path), group
@@ -35,7 +35,7 @@ def commands_of(
 
 
 def promised_by(name: str, command: click.Command) -> Promises:
-    """The promises of one command under its full name."""
+    """The promises of a command under the full name."""
     promises: Promises = {name: "group" if isinstance(command, click.Group) else "command"}
     demands: list[str] = []
     place = 0

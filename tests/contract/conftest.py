@@ -1,10 +1,10 @@
-"""One recording of today's program for all tests of this folder."""
+"""The recording of 3c78333 and the declared changes, for all tests of this folder."""
 
 import pytest
 
 from .declared import declared
 from .promises import recorded
-from .today import today, visible
+from .today import visible
 
 
 @pytest.fixture(scope="session")
@@ -15,8 +15,3 @@ def promised():
 @pytest.fixture(scope="session")
 def changes():
     return declared()
-
-
-@pytest.fixture(scope="session")
-def now(promised, changes):
-    return today(promised, changes)

@@ -1,4 +1,4 @@
-"""Declared changes: which promises end or alter, why, and what a user does instead."""
+"""Declared changes: promises that end or alter, the reasons, and the advice to users."""
 
 import re
 import tomllib
@@ -16,13 +16,13 @@ class Change:
     """One declared change.
 
     Attributes:
-        promise: items that the change ends, moves or alters; in each ``*`` stands for any text.
-        reason: why.
-        instead: what a user does from now on.
-        becomes: for each item of ``promise`` the item under which the promise goes on, with as many ``*``.
-        value: what is promised from now on, where a value alters.
-        shown_by: a command line that only a checkout takes; with it the promise goes on in a checkout, and ends in an
-            installed package, which refuses the command line with exit code 2.
+        promise: patterns of the items under change; ``*`` stands for any text.
+        reason: why the promise changes.
+        instead: the advice to users.
+        becomes: further names of the items, in the order of ``promise``, with the same number of ``*``.
+        value: the value of the promise from now on.
+        shown_by: a command line for checkouts only. The promise holds in a checkout; an installed package refuses the
+            command line with exit code 2.
     """
 
     promise: tuple[str, ...]
@@ -33,7 +33,7 @@ class Change:
     shown_by: tuple[str, ...] = ()
 
     def __post_init__(self):
-        """See that the change says all of what it must.
+        """Check the parts of the change against one another.
 
         Raises:
             ValueError: a part is missing, or two parts contradict each other.
@@ -48,7 +48,7 @@ class Change:
                 raise ValueError(f"{self.promise}: an item and what it becomes have the same number of '*'")
 
     def becoming(self, item: str) -> str | None:
-        """The item under which a promise goes on; None for one that ends or is not meant."""
+        """The further name of an item; None where the promise ends, or where no pattern matches."""
         for pattern, new in zip(self.promise, self.becomes, strict=False):
             found = _meant(pattern, item)
             if found:
@@ -62,7 +62,7 @@ def _meant(pattern: str, item: str) -> re.Match[str] | None:
 
 
 def meant(pattern: str, items: Iterable[str]) -> list[str]:
-    """The items that a pattern stands for."""
+    """The items under a pattern."""
     return [item for item in items if _meant(pattern, item)]
 
 
@@ -70,7 +70,7 @@ def declared(file: Path = DECLARED) -> list[Change]:
     """The changes in a file.
 
     Raises:
-        ValueError: a change has a key that means nothing, or says too little.
+        ValueError: a change has an unknown key, or lacks a part.
     """
     changes = []
     known = {field.name for field in fields(Change)}
@@ -87,7 +87,7 @@ def declared(file: Path = DECLARED) -> list[Change]:
 
 
 def trouble(promised: Mapping[str, Value], now: Mapping[str, Value], item: str, under: str = "") -> str:
-    """How the program breaks a promise, looked for under its own item or under another; empty where it is kept."""
+    """How the program breaks a promise, under its own or a further name; empty for a kept promise."""
     value = promised[item]
     if (under or item) not in now:
         return "is gone"
@@ -99,11 +99,11 @@ def trouble(promised: Mapping[str, Value], now: Mapping[str, Value], item: str, 
 
 
 def broken(promised: Mapping[str, Value], now: Mapping[str, Value], changes: Iterable[Change] = ()) -> list[str]:
-    """What is wrong between a recording, the program and the declared changes; one sentence for each fault.
+    """Sentences about broken promises and stale changes; none where the program and the recording agree.
 
     Args:
         promised: the recording.
-        now: what the program keeps, of at least the promised items and those that they become.
+        now: a recording of today's program, with the further names of items.
         changes: the declared changes.
     """
     changes = list(changes)
@@ -120,7 +120,7 @@ def broken(promised: Mapping[str, Value], now: Mapping[str, Value], changes: Ite
 
 
 def _unkept(promised: Mapping[str, Value], now: Mapping[str, Value], change: Change, item: str) -> list[str]:
-    """Where a promise that moves or alters is not kept as the change says."""
+    """Sentences about a declared change without effect in the program."""
     under = change.becoming(item)
     if under is not None and (wrong := trouble(promised, now, item, under)):
         return [f"The promise '{item}' is declared to become '{under}', which {wrong}. Mend the program or the change."]
@@ -132,7 +132,7 @@ def _unkept(promised: Mapping[str, Value], now: Mapping[str, Value], change: Cha
 
 
 def _stale(promised: Mapping[str, Value], now: Mapping[str, Value], change: Change) -> list[str]:
-    """Where a change is declared of no promise, or of promises that are kept."""
+    """Sentences about a change of no promise, or of kept promises."""
     sentences = []
     for pattern in change.promise:
         items = meant(pattern, promised)

@@ -1,12 +1,12 @@
-"""Promises of JSON documents: paths of keys, in which ``[]`` is an item of a list and ``*`` a name of the user."""
+"""Promises of JSON documents: paths of keys, with ``[]`` for items of lists and ``*`` for names of the user."""
 
 from collections.abc import Iterator, Mapping, Set
 
 SOLVERS = frozenset({"cprbm", "fea", "exact", "solid", "auto", "paper", "slsqp", "trust-constr", "ipopt"})
-"""Names of solvers and of methods that ``bench`` times."""
+"""Names of solvers, and of the methods in ``bench``."""
 
 FREE = frozenset({"strata", "machine"})
-"""Keys whose value is a mapping by texts that no page promises: features of scenes, libraries of the machine."""
+"""Keys of mappings by free texts: features of scenes, libraries of the machine."""
 
 
 def paths(document: object, names: Set[str], path: str = "") -> Iterator[str]:
@@ -14,7 +14,7 @@ def paths(document: object, names: Set[str], path: str = "") -> Iterator[str]:
 
     Args:
         document: plain data, as ``json.loads`` gives it.
-        names: names that the user chose: of beams, stages, contacts.
+        names: names of the user, for beams, stages, contacts.
         path: of ``document`` itself.
 
     A mapping by solvers gives a path for each solver and, as ``*``, the paths below.

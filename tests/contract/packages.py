@@ -1,16 +1,16 @@
-"""Names of the packages, which commit 3c78333 and today's program do not share."""
+"""Names of the packages, at commit 3c78333 and today."""
 
 from dataclasses import astuple, dataclass
 
 
 @dataclass(frozen=True)
 class Packages:
-    """The five packages, those named that have had another name."""
+    """The five packages; two of the names differ at 3c78333."""
 
     scene: str = "cprbm_scene"
     exact: str = "elastica_reference"
 
     @property
     def all(self) -> tuple[str, ...]:
-        """Names of all five."""
+        """The names of the five packages."""
         return (*astuple(self), "cprbm", "fea_reference", "comparisons")

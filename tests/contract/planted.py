@@ -1,4 +1,4 @@
-"""Solvers that a situation plants: the public ones, asked in another way.  Nothing here knows how a solver works."""
+"""Planted solvers: calls of the public solvers with other arguments, and no mechanics."""
 
 import importlib
 from dataclasses import dataclass, field, replace
@@ -19,12 +19,12 @@ class Exact:
 
 
 def plain(packages):
-    """The real solvers in one process, with the exact answer beside them."""
+    """The real solvers and the exact reference, all in this process."""
     return Solvers(exact=Exact(packages.exact))
 
 
 def wider(packages):
-    """A CPRBM that takes every beam for 3 % wider than it is: its answers differ from the finite elements'."""
+    """A CPRBM with beams 3 % wider than in the scene: the answers differ from the finite elements'."""
     return Solvers(cprbm=_of_wider_beams)
 
 
@@ -35,7 +35,7 @@ def _of_wider_beams(scene, choices):
 
 
 def interrupted(packages):
-    """Solvers that the user interrupts."""
+    """Solvers under which the user interrupts."""
     return Solvers(_interrupt, _interrupt)
 
 
@@ -44,7 +44,7 @@ def _interrupt(scene, choices):
 
 
 def brief(packages):
-    """Answers that repeat a scene's first station at every station; the user interrupts as a second scene is solved."""
+    """Answers with the first station in place of all stations; the user interrupts at the second scene."""
     session = _Session()
     return Solvers(
         cprbm=_Brief(session, "cprbm", _few_links),
@@ -63,7 +63,7 @@ def _few_elements(scene, choices):
 
 @dataclass
 class _Session:
-    """One run of the program: the first scene that a solver is asked, and the answers so far."""
+    """A run of the program: the first scene, and the answers so far."""
 
     first: str = ""
     answers: dict = field(default_factory=dict)
@@ -71,7 +71,7 @@ class _Session:
 
 @dataclass
 class _Brief:
-    """A solver of the first station of a session's first scene; nothing is solved twice."""
+    """A solver of the first station of a session's first scene; no solve is repeated."""
 
     session: _Session
     name: str
@@ -89,7 +89,7 @@ class _Brief:
         return answers[key]
 
     def _repeated(self, scene, choices):
-        """An answer whose every station repeats the first; without a station where the first was not reached."""
+        """An answer with the first station in place of all stations; none where the solver reaches none."""
         stage = scene.stages[0]
         short = scene.model_copy(update={"stages": (stage.model_copy(update={"stations": stage.stations[:1]}),)})
         found = self.solver(short, choices)

@@ -1,8 +1,8 @@
-"""A recording of promises: items by name, kept as JSON with one item a line.
+"""A recording of promises: items and values as JSON, an item a line.
 
-An item is a string that says of which part of the program the promise is: ``cprbm solve option --json``.
-Its value is what is promised of it: an exit code, a default, or nothing but that the item exists (``""``).
-A list of strings holds demands on the user, such as required options: a program may drop demands, never add any.
+An item is a string that names a part of the program: ``cprbm solve option --json``.
+The value is an exit code, a default, a kind, or ``""`` where the promise is the existence of the item.
+A list of strings holds demands on the user, such as required options: a program may drop demands, and add none.
 """
 
 import json
@@ -16,7 +16,7 @@ RECORDED = Path(__file__).parent / "promises.json"
 
 
 def merged(parts: Iterable[Mapping[str, Value]]) -> Promises:
-    """All items of several recordings; the same item twice must have one value.
+    """All items of several recordings.
 
     Raises:
         ValueError: two values of one item.
@@ -30,7 +30,7 @@ def merged(parts: Iterable[Mapping[str, Value]]) -> Promises:
 
 
 def text(promises: Mapping[str, Value]) -> str:
-    """A recording as JSON, sorted, with one item a line."""
+    """A recording as sorted JSON, an item a line."""
     lines = [
         f" {json.dumps(item, ensure_ascii=False)}: {json.dumps(value, ensure_ascii=False)}"
         for item, value in sorted(promises.items())

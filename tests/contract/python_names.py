@@ -16,7 +16,7 @@ _DIRECTIVE = re.compile(r"^\.\. (auto\w+):: (\S+)((?:\n +:.*)*)", re.MULTILINE)
 
 
 def documented(pages: Path) -> set[str]:
-    """Full names that the pages of the library document, as Sphinx's directives choose them."""
+    """Full names in the directives of the library's pages."""
     names: set[str] = set()
     for page in sorted(pages.glob("*.md")):
         for directive, target, options in _DIRECTIVE.findall(page.read_text("utf-8")):
@@ -33,7 +33,7 @@ def documented(pages: Path) -> set[str]:
 
 
 def _own(module: ModuleType) -> list[str]:
-    """Public names of a module: those of ``__all__``, or else what is defined in it."""
+    """Public names of a module: the names in ``__all__``, or else the module's own definitions."""
     if hasattr(module, "__all__"):
         return list(module.__all__)
     found = vars(module).items()
@@ -41,7 +41,7 @@ def _own(module: ModuleType) -> list[str]:
 
 
 def exported(package: str) -> Promises:
-    """The names in ``__all__`` of a package; none of a package that is not there."""
+    """The names in ``__all__`` of a package; none of a missing package."""
     try:
         names = importlib.import_module(package).__all__
     except ImportError:
@@ -50,7 +50,7 @@ def exported(package: str) -> Promises:
 
 
 def promised_by_name(full: str) -> Promises:
-    """The promises of one public name; none where it is not there."""
+    """The promises of a public name; none of a missing name."""
     module, _, name = full.rpartition(".")
     try:
         value = getattr(importlib.import_module(module), name)
@@ -83,7 +83,7 @@ def _of_class(item: str, kind: type) -> Iterator[tuple[str, str | list[str]]]:
     for field in fields:
         yield f"{item} field {field}", ""
     if not item.startswith("python comparisons."):
-        yield f"{item} requires", sorted(required)  # records of the harness are results, and no user makes any
+        yield f"{item} requires", sorted(required)  # records of the harness are results, and users make none
     for name, value in vars(kind).items():
         if name.startswith(("_", "model_")) or name in fields:
             continue

@@ -1,4 +1,4 @@
-"""The recorder: all promises that the running program keeps."""
+"""The recorder: all promises of the running program."""
 
 import contextlib
 import csv
@@ -23,12 +23,12 @@ from .scene_keys import FILES, promised_by_file, promised_by_schema
 
 
 def command_line(further: Iterable[str] = ()) -> Promises:
-    """Commands, arguments, options, choices, defaults; also of hidden commands whose full names are given."""
+    """Commands, arguments, options, choices and defaults; ``further`` names hidden commands."""
     return merged(of_command(name, command) for name, command in commands_of(commands, further))
 
 
 def exits_and_documents(command_names: set[str], packages: Packages) -> Promises:
-    """Exit codes and JSON keys in all situations of commands that there are and whose libraries are there."""
+    """Exit codes and JSON keys in all situations with a present command and library."""
     with tempfile.TemporaryDirectory() as folder:
         parts = [
             of_situation(situation, place, Path(folder), packages)
@@ -39,7 +39,7 @@ def exits_and_documents(command_names: set[str], packages: Packages) -> Promises
 
 
 def helps(command_names: Iterable[str]) -> Promises:
-    """Exit codes of every command that is asked for help, or with an option that there is not."""
+    """Exit codes of every command with a request for help, and with an unknown option."""
     promises: Promises = {}
     for name in command_names:
         for form in ("--help", "-h", "--no-such-option"):
@@ -58,7 +58,7 @@ def schema() -> dict[str, object]:
 
 
 def scene_format(packages: Packages) -> Promises:
-    """Built-in cases, keys of scene files, and files of a user that read."""
+    """Built-in cases, keys of scene files, and stored scene files."""
     from comparisons.cases import asked, names
 
     read_question = importlib.import_module(packages.scene).read_question
@@ -68,7 +68,7 @@ def scene_format(packages: Packages) -> Promises:
 
 
 def tables(packages: Packages) -> Promises:
-    """Columns of the tables that the library makes of an answer."""
+    """Columns of the library's tables of an answer."""
     import comparisons
     import cprbm
 
@@ -86,19 +86,19 @@ def tables(packages: Packages) -> Promises:
 
 
 def library(names: Iterable[str], packages: Iterable[str]) -> Promises:
-    """Public names of the library: those given, and those that the packages export."""
+    """Public names of the library, documented and exported."""
     return merged([*map(promised_by_name, names), *map(exported, packages)])
 
 
 def program(packages: Packages, further: Iterable[str] = ()) -> Promises:
-    """All promises but those of the library's names."""
+    """All promises except the names of the library."""
     line = command_line(further)
     names = {item for item, value in line.items() if value in ("command", "group")}
     return merged([line, helps(names), exits_and_documents(names, packages), scene_format(packages), tables(packages)])
 
 
 def promised_names(promises: Mapping[str, Value]) -> set[str]:
-    """The full names of the library that a recording promises."""
+    """The full names of the library in a recording."""
     kinds = ("class", "function", "name")
     return {
         item.split()[1]

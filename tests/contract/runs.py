@@ -1,4 +1,4 @@
-"""Promises that running the program shows: exit codes, and keys of the JSON that it writes."""
+"""Promises of runs of the program: exit codes, and keys of the written JSON."""
 
 import contextlib
 import importlib
@@ -24,24 +24,24 @@ from .promises import Promises
 SITUATIONS = Path(__file__).parent / "situations.toml"
 SCENES = Path(__file__).parent / "scenes"
 NAMES = frozenset({"strip", "pin", "press", "clamp", "grip", "tip", "beam", "apex", "bend", "beam1", "beam2"})
-"""Names in the scenes of this folder, and of the beams that ``study table1`` solves."""
+"""Names in the scenes of this folder, and of beams in ``study table1``."""
 
 DOCUMENTED = frozenset({"comparison.json", "convergence.json", "bench.json"})
-"""Files of a report's folder whose keys a page documents."""
+"""Files with documented keys in the folder of a report."""
 
 
 @dataclass(frozen=True)
 class Situation:
-    """A command line and what is promised of it.
+    """A command line, and the promises about the run.
 
     Attributes:
         of: the command, without ``cprbm``.
-        name: what a user meets, in words.
-        run: the command line; ``SCENES`` is the folder of this package's scenes, ``OUT`` a folder that all situations
-            share in their order, ``JSON`` a file and ``REPORT`` a folder of this situation alone.
-        json: the kind of the document that it writes to ``JSON`` or to standard output; empty where it writes none.
-        planted: a name of solvers in :mod:`planted`.
-        needs: a library without which the situation cannot be met.
+        name: the situation in words.
+        run: the command line; ``SCENES`` is the folder of this package's scenes, ``OUT`` a common folder of all
+            situations, ``JSON`` a file and ``REPORT`` a folder of this situation alone.
+        json: the kind of the document in ``JSON`` or on standard output; empty without a document.
+        planted: a key of ``planted.PLANTED``.
+        needs: a library, without which the situation is impossible.
         fresh: whether a process of its own runs the program by ``python -m comparisons``.
     """
 
@@ -60,12 +60,12 @@ class Situation:
 
     @property
     def meant(self) -> str:
-        """The full name of the command that the situation is of."""
+        """The full name of the command of the situation."""
         return " ".join(["cprbm", *self.of.split()])
 
     @property
     def possible(self) -> bool:
-        """Whether the library that it needs is there and can be imported."""
+        """Whether the needed library can be imported."""
         if not self.needs:
             return True
         with contextlib.suppress(ImportError, OSError):
@@ -77,7 +77,7 @@ def situations(file: Path = SITUATIONS) -> list[Situation]:
     """The table of situations.
 
     Raises:
-        TypeError: a situation has a key that means nothing.
+        TypeError: a situation has an unknown key.
     """
     known = {field.name for field in fields(Situation)}
     tables = tomllib.loads(file.read_text("utf-8"))["situation"]
@@ -86,12 +86,12 @@ def situations(file: Path = SITUATIONS) -> list[Situation]:
 
 
 def promised_by(situation: Situation, place: int, out: Path, packages: Packages) -> Promises:
-    """The promises of one situation: an exit code, and keys of the JSON that the program writes there.
+    """The promises of a situation: an exit code, and keys of the written JSON.
 
     Args:
         situation: a line of the table.
-        place: its place in the table.
-        out: the folder that all situations share.
+        place: the place in the table.
+        out: the common folder of all situations.
         packages: names of the packages.
     """
     file, report = out / f"{place}.json", out / f"report-{place}"
@@ -128,14 +128,14 @@ def _run(words: list[str], situation: Situation, out: Path, packages: Packages) 
 
 
 def _paths(document: str) -> set[str]:
-    """Paths of keys; none of what is no JSON, such as the output of a command that refuses."""
+    """Paths of keys; none of a text other than JSON, such as the output of a refusal."""
     with contextlib.suppress(json.JSONDecodeError):
         return set(paths(json.loads(document), NAMES))
     return set()
 
 
 def unmet(promised: Iterable[str]) -> set[str]:
-    """The promises that cannot be seen here: those of situations whose library is not there."""
+    """The promises of impossible situations, for want of a library."""
     table = situations()
     missing = [each for each in table if not each.possible]
     seen = {(each.meant, each.json) for each in table if each.possible}

@@ -1,4 +1,4 @@
-"""Promises of the scene format: keys and kinds that the schema names, and files that the reader takes."""
+"""Promises of the scene format: keys and kinds in the schema, and readable files."""
 
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -7,13 +7,13 @@ from typing import Any
 from .promises import Promises
 
 FILES = Path(__file__).parent / "files"
-"""Scene files as they stood at 3c78333: the built-in cases, scenes of the pages, and one with keys that those lack."""
+"""Scene files as they stood at 3c78333: the built-in cases, scenes of the pages, and a file with all other keys."""
 
 Schema = Mapping[str, Any]
 
 
 def promised_by_schema(schema: Schema) -> Promises:
-    """Keys, kinds and required keys of a JSON schema; a key that the user names is ``*``, an item of a list ``[]``."""
+    """Keys, kinds and required keys of a JSON schema; ``*`` is a name of the user, ``[]`` an item of a list."""
     promises: Promises = {}
     demands: dict[str, set[str]] = {}
     for path, part in _parts(schema, schema, "", ()):
@@ -23,13 +23,13 @@ def promised_by_schema(schema: Schema) -> Promises:
             promises[f"scene choice {path} {value}"] = ""
         if "properties" in part:
             needed = {f"{path}.{key}".lstrip(".") for key in part.get("required", ())}
-            # of several records at one place only what all of them require is required there
+            # of several records at the same place only the common required keys are required
             demands[path] = demands[path] & needed if path in demands else needed
     return promises | {f"scene requires {path or '(file)'}": sorted(needed) for path, needed in demands.items()}
 
 
 def _parts(part: Schema, whole: Schema, path: str, above: tuple[str, ...]) -> Iterator[tuple[str, Schema]]:
-    """Every part of a schema with its path; references ``above`` are not followed again."""
+    """Every part of a schema with a path; references ``above`` are not followed again."""
     if "$ref" in part:
         name = part["$ref"]
         if name in above:
@@ -54,7 +54,7 @@ def _parts(part: Schema, whole: Schema, path: str, above: tuple[str, ...]) -> It
 
 
 def keys_of(data: object, known: frozenset[str], path: str = "") -> Iterator[str]:
-    """Paths of keys that a file uses, with names of the user as ``*`` where ``known`` has such a path."""
+    """Paths of keys in a file, with ``*`` for names of the user where ``known`` has such a path."""
     if isinstance(data, Mapping):
         for key, value in data.items():
             deeper = f"{path}.*" if f"{path}.*" in known else f"{path}.{key}".lstrip(".")
@@ -67,9 +67,9 @@ def keys_of(data: object, known: frozenset[str], path: str = "") -> Iterator[str
 
 
 def promised_by_file(item: str, read: Callable[[], object]) -> Promises:
-    """The promise that a file reads, with the kind of question that it is, or why it is refused."""
+    """The promise about a scene file: the kind of question, or the reason of a refusal."""
     try:
         question = read()
-    except Exception as error:  # whatever a reader raises breaks the promise
+    except Exception as error:  # any error of a reader breaks the promise
         return {item: f"refused: {error}"}
     return {item: type(question).__name__}

@@ -1,4 +1,4 @@
-"""The recorder sees what is there: each kind of promise in a small example whose items are counted by hand."""
+"""The recorder sees every kind of promise, in small examples with items written by hand."""
 
 import enum
 import sys
@@ -9,11 +9,14 @@ from types import ModuleType
 import click
 import pytest
 
+from comparisons.cli.main import commands
+
 from .commands import commands_of, promised_by
+from .declared import broken
 from .documents import paths
 from .promises import merged, text
 from .python_names import exported, promised_by_name
-from .recorder import schema
+from .recorder import command_line, schema
 from .runs import situations
 from .scene_keys import FILES, keys_of, promised_by_file, promised_by_schema
 from .today import undeclared
@@ -21,7 +24,7 @@ from .today import undeclared
 
 @click.group("demo")
 def demo():
-    """A group of one listed and one hidden command."""
+    """A group of commands."""
 
 
 @demo.command("paint")
@@ -61,6 +64,14 @@ def test_a_hidden_command_is_found_by_its_promised_name():
     assert [name for name, _ in commands_of(hiding, path=("demo",))] == ["demo"]
     found = [name for name, _ in commands_of(hiding, ["demo paint", "demo plaster"], ("demo",))]
     assert found == ["demo", "demo paint"]
+
+
+def test_an_option_gone_from_the_program_is_named(monkeypatch):
+    before = command_line()
+    solve = dict(commands_of(commands))["cprbm solve"]
+    monkeypatch.setattr(solve, "params", [each for each in solve.params if "--json" not in each.opts])
+    (sentence,) = broken(before, command_line())
+    assert sentence.startswith("The promise 'cprbm solve option --json' is gone.")
 
 
 def test_paths_of_a_document():
@@ -122,7 +133,7 @@ def test_keys_of_a_schema():
 
 
 def test_the_stored_files_use_every_key_of_the_schema(promised):
-    """So the reader, and not the schema alone, is held to each key; items of lists of numbers are no keys."""
+    """So the reader, and not the schema alone, is held to every key; items of lists of numbers are no keys."""
     items = {item.removeprefix("scene key ") for item in promised if item.startswith("scene key ")}
     used = {key for file in FILES.glob("*.toml") for key in keys_of(tomllib.loads(file.read_text("utf-8")), items)}
     assert {item for item in items if not item.endswith("[]")} - used == set()
@@ -219,7 +230,7 @@ def test_one_entry_is_of_one_command():
 
 
 def test_situations_have_names_of_their_own_and_promises(promised):
-    """A situation that is added after the recording has no promise, and would test nothing."""
+    """A situation without a promise in the recording would test nothing."""
     exits = [f"{each.meant} exit: {each.name}" for each in situations() if each.possible]
     assert len(exits) == len(set(exits))
     assert set(exits) <= set(promised)

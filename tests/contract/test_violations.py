@@ -1,8 +1,8 @@
-"""Planted violations: the test of promises says of each what is wrong and what to do."""
+"""Planted violations: the sentence names the promise, the fault and the next step."""
 
 import pytest
 
-from .declared import Change, broken, declared
+from .declared import Change, broken, declared, meant
 
 KEEP_OR_DECLARE = "Keep the promise, or declare the change in tests/contract/declared.toml."
 
@@ -32,6 +32,17 @@ ALTERED = {
     "a further demand": ("cprbm solve requires", ["--force", "argument 1"], "demands --force, which 3c78333 did not"),
     "a place of a parameter": ("python cprbm.answer parameter scene", "place 2", "was 'place 1' and is 'place 2'"),
 }
+
+
+@pytest.fixture(scope="module")
+def now(promised, changes):
+    """A program that keeps every promise and makes every declared change."""
+    pairs = [(each, item) for each in changes for pattern in each.promise for item in meant(pattern, promised)]
+    ended = {item for each, item in pairs if not each.shown_by}
+    kept = {item: value for item, value in promised.items() if item not in ended}
+    moved = {new: promised[item] for each in changes for item in promised if (new := each.becoming(item))}
+    altered = {item: each.value for each, item in pairs if each.value is not None}
+    return {**kept, **moved, **altered}
 
 
 def change(*promise, **further):

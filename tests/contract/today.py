@@ -1,4 +1,4 @@
-"""The promises that today's program keeps, beside the recording."""
+"""The promises of today's program, beside the recording."""
 
 import json
 from collections.abc import Iterable, Mapping
@@ -11,17 +11,17 @@ from .runs import unmet
 
 COMMANDS = ("command", "group")
 WHOLES = (*COMMANDS, "class", "function")
-"""Values of items to which other items belong."""
+"""Values of items with further items under the same name."""
 
 
 def visible(promised: Mapping[str, Value]) -> Promises:
-    """The promises that can be looked at here: not those of situations whose library is not there."""
+    """The promises of a recording without the impossible situations."""
     hidden = unmet(promised)
     return {item: value for item, value in promised.items() if item not in hidden}
 
 
 def today(promised: Mapping[str, Value], changes: Iterable[Change]) -> Promises:
-    """What the program keeps of a recording, under the recorded names and those that they become."""
+    """A recording of today's program, under the recorded names and the declared further names."""
     changes = list(changes)
     moved = {new: promised[item] for change in changes for item in promised if (new := change.becoming(item))}
     both = {**promised, **moved}
@@ -31,9 +31,9 @@ def today(promised: Mapping[str, Value], changes: Iterable[Change]) -> Promises:
 
 
 def undeclared(promised: Mapping[str, Value], now: Mapping[str, Value], changes: Iterable[Change]) -> str:
-    """Broken promises that no change declares, as entries for ``declared.toml`` with their words left to be written.
+    """Broken and undeclared promises, as entries for ``declared.toml`` with blank reasons.
 
-    One entry is of one command or one public name: by a pattern where nothing of it is left, else item by item.
+    An entry is about a command or a public name: a pattern where all items changed, else item by item.
     """
     covered = {item for each in changes if not each.shown_by for p in each.promise for item in meant(p, promised)}
     items = [item for item in promised if item not in covered and trouble(promised, now, item)]
