@@ -1,4 +1,4 @@
-"""``python -m tests.baseline``: record what the program answers, compare two records, pack one into a file."""
+"""``python -m tests.baseline``: record the program's answers, compare two records, pack a record into a file."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ BUILT_IN = cases.scenes()
 
 @click.group()
 def main() -> None:
-    """Record what both solvers and the comparison answer, and compare records."""
+    """Record the answers of both solvers and of the comparison, and compare records."""
 
 
 @main.command()
@@ -34,7 +34,7 @@ def main() -> None:
 @click.option("--theory", type=click.Choice(THEORIES), help="Beam theory of every solver with a choice.")
 @click.option("--workers", type=click.IntRange(1), default=os.cpu_count() or 1, help="Processes; all cores by default.")
 def record(folder: Path, built_in: tuple[str, ...], scenes: int, seed: int, theory: str | None, workers: int) -> None:
-    """Record all runs into FOLDER; a stopped record goes on where it was."""
+    """Record all runs into FOLDER; a stopped record goes on."""
     names = built_in or BUILT_IN
     about = records.About(names, scenes, seed, theory, records.program_digest())
     runs = list(planned_runs(names, scenes, seed, theory))
@@ -65,7 +65,7 @@ def compare(old: Path, new: Path, accepted: Path | None, same: float) -> None:
 @click.argument("sources", metavar="RECORD...", nargs=-1, required=True, type=click.Path(exists=True, path_type=Path))
 @click.argument("file", type=click.Path(dir_okay=False, path_type=Path))
 def pack(sources: tuple[Path, ...], file: Path) -> None:
-    """Write records as one compressed FILE (.jsonl.xz); a later RECORD replaces runs of an earlier one."""
+    """Write records as a compressed FILE (.jsonl.xz); a later RECORD replaces runs of earlier records."""
     if not file.name.endswith(records.PACKED):
         raise click.UsageError(f"FILE: found {file.name!r}, allowed: a name that ends in {records.PACKED}")
     records.pack(records.join([records.read(source) for source in sources]), file)

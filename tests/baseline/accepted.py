@@ -8,7 +8,7 @@
     [improved]
     cprbm = "the chain is of fourth order: its stated uncertainty falls"
 
-An entry accepts one class of change in one scene. At most ten scenes are accepted for one issue. A crash and a
+An entry accepts a class of change in a scene. At most ten scenes are accepted for one issue. A crash and a
 verdict that became DIFFER cannot be accepted.
 """
 
@@ -28,18 +28,18 @@ PARTS = ("cprbm", "fea", "theory", "fea_bending", "round_off")
 
 
 class AcceptedError(ValueError):
-    """A file of accepted changes that says something it may not; the text names file, key, found and allowed."""
+    """A mistake in a file of accepted changes; the text names file, key, found and allowed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Accepted:
-    """Reasons of accepted changes by scene and class, and of stated uncertainties that may become smaller."""
+    """Reasons of accepted changes by scene and class, and of smaller stated uncertainties by part."""
 
     changes: Mapping[tuple[str, Change], str] = field(default_factory=dict)
     improved: Mapping[str, str] = field(default_factory=dict)
 
     def reason(self, finding: Finding) -> str:
-        """The reason for which a finding is accepted; empty if it is not."""
+        """The reason of an accepted finding; empty for any other finding."""
         if finding.change is Change.WORD and finding.word == "DIFFER":
             return ""
         return self.changes.get((finding.scene, finding.change), "")
@@ -49,7 +49,7 @@ def read_accepted(path: Path | None) -> Accepted:
     """The accepted changes of a file; none without a file.
 
     Raises:
-        AcceptedError: the file is missing, is no TOML, or says something it may not.
+        AcceptedError: the file is missing, is no TOML, or holds a mistake.
     """
     if path is None:
         return Accepted()

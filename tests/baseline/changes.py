@@ -3,17 +3,17 @@
 ========================  ====================================================================================
 class                     meaning
 ========================  ====================================================================================
-same                      every number within 1e-9 of its scale
-moved within              numbers moved by no more than the old record states of them
+same                      all numbers within 1e-9 of their scales
+moved within              numbers moved by at most the uncertainty stated in the old record
 won                       a station or a whole answer is new
-states less               a comparison states less of a row than four fifths of the old uncertainty
+states less               a row's stated uncertainty fell below four fifths of the old one
 moved beyond              a number moved by more than stated, or a critical point went or came
-lost                      a station, a row or a whole answer of the old record is missing
+lost                      no longer there: a station, a row or a whole answer of the old record
 word changed              the verdict is another one
 crashed                   the run crashed, and did not in the old record
 ========================  ====================================================================================
 
-A run with several changes is in the class that stands last in this table.
+A run with several changes is in the last of these classes.
 """
 
 from __future__ import annotations
@@ -29,17 +29,17 @@ from tests.baseline.scales import ROUND_OFF, norm, probe_scales, quantity_of
 from tests.baseline.stated import StatedUncertainty, by_place
 
 SAME = 1e-9
-"""Share of a probe's scale up to which two values are the same."""
+"""Largest distance of two equal values over the probe's scale."""
 
 SMALLER = 0.8
-"""Share of an old stated uncertainty below which a new one is smaller: one over Roache's safety factor."""
+"""A new stated uncertainty below this share of the old one is smaller; inverse of Roache's safety factor."""
 
 ABSENT_WHILE_OPEN = frozenset({"centre", "ends", "closing_load"})
-"""Quantities without a value while a contact is open; the contact's force then says what changed."""
+"""Quantities without a value while a contact is open; the contact's force then decides."""
 
 
 class Change(Enum):
-    """Class of a run's change, in ascending order of weight; the value is its name on the screen."""
+    """Class of a run's change, in ascending order of weight; the value is the name on the screen."""
 
     SAME = "same"
     WITHIN = "moved within the stated uncertainty"

@@ -57,7 +57,7 @@ def comparison_of(scene: Scene, theory: Theory | None) -> Comparison:
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """The functions that a record measures; a test puts wrong ones in their place."""
+    """The measured functions; a test plants wrong functions here."""
 
     cprbm: Callable[[Scene, int, Theory | None], Answer] = answer_of_cprbm
     fea: Callable[[Scene, int, Theory | None], Answer] = answer_of_fea

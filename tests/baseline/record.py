@@ -1,4 +1,4 @@
-"""A record on disk: a folder that grows entry by entry, or one compressed file.
+"""A record on disk: a growing folder or a compressed file.
 
 A folder holds ``about.json`` (options and digest of the program) and ``entries.jsonl`` (an entry a line, in the order
 of the runs' ends). A packed record has the same lines in one file with the ending ``.jsonl.xz``.
@@ -22,7 +22,7 @@ PACKED = ".jsonl.xz"
 
 
 class RecordError(ValueError):
-    """A record cannot be read or continued; the text says where, why and what helps."""
+    """A record cannot be read or continued; the text names the file, the fault and the remedy."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +117,7 @@ def read(path: Path) -> Record:
 
 
 def join(parts: Sequence[Record]) -> Record:
-    """One record of all runs; of a run in several parts the last entry counts, and the last part describes it."""
+    """A record of all runs; of a run in several parts the last entry counts."""
     names = sorted({name for part in parts for name in part.about.built_in})
     entries = {name: entry for part in parts for name, entry in part.entries.items()}
     return Record(replace(parts[-1].about, built_in=tuple(names)), entries)
@@ -145,7 +145,7 @@ def _lines(path: Path) -> list[str]:
 
 
 def _entries(lines: Iterable[str]) -> dict[str, Entry]:
-    """Entries by name, without a line that a stop cut short: the run is then made again."""
+    """Entries by name, without a line cut short by a stop: the run is then made again."""
 
     def parsed() -> Iterator[Entry]:
         for line in lines:

@@ -13,7 +13,7 @@ from tests.robustness.apart import Crashed, Limits, OutOfTime, Returned
 from tests.robustness.hosts import Hosts, hosts_of
 
 SECONDS = 60.0
-"""Limit of processor time for a run of a random scene: no user waits longer for the answer to one scene."""
+"""Limit of processor time for a run of a random scene: no user waits longer for an answer."""
 
 SECONDS_BUILT_IN = 300.0
 """The same for a built-in case: a record of these is whole, and the longest comparison takes more than a minute."""
@@ -53,7 +53,7 @@ def _ended(folder: Path, hosts: Hosts[Run, Entry], runs: Sequence[Run], program:
 
 
 def load(program: Program) -> None:
-    """Load both solvers by one small case, so that loading counts in no run."""
+    """Load both solvers by a small case: the time of loading counts in no run."""
     for solver in ("cprbm", "fea"):
         measure(Run("tapered", solver, 10), program)
 

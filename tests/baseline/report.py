@@ -1,4 +1,4 @@
-"""What ``compare`` prints: a line for every class of change, the failing numbers, and ratios of effort."""
+"""The output of ``compare``: a line for every class of change, the failing numbers, and ratios of effort."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _effort(old: Record, new: Record) -> Iterator[str]:
-    """Seconds and iterations, new over old, of the runs that both records answer: of all, and the median."""
+    """Seconds and iterations, new over old, of the runs with an answer in both records: sums and median."""
     for solver in ("cprbm", "fea", "comparison"):
         pairs = [
             (before, new.entries[name])

@@ -42,7 +42,7 @@ class Run:
 
     @property
     def name(self) -> str:
-        """The name by which two records are matched."""
+        """The name of the run; records are matched by names."""
         size = f" {self.size}" if self.size else ""
         return f"{self.scene} {self.solver}{size}"
 

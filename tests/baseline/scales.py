@@ -22,10 +22,10 @@ import numpy as np
 from cprbm_scene import Answer, Scene
 
 ROUND_OFF = 1e-12
-"""Share of the natural scale below which a change is round-off of the numbers themselves."""
+"""Round-off of a number over the natural scale."""
 
 LEAST_SHARE = 1e-3
-"""Least scale of a probe over the largest scale of its quantity: a value that is zero by symmetry has no own scale."""
+"""Least scale of a probe over the largest scale of its quantity: a value of zero by symmetry has no own scale."""
 
 LENGTHS = frozenset({"displacement", "centre", "ends"})
 ANGLES = frozenset({"rotation", "angle"})
@@ -34,7 +34,7 @@ STRESSES = frozenset({"bending_stress", "combined_stress"})
 
 
 def natural_scales(scene: Scene, answer: Answer) -> dict[str, float]:
-    """Natural scale of every quantity that the scene asks for, in SI; empty for an answer without stations."""
+    """Natural scale of every requested quantity, in SI; empty for an answer without stations."""
     if not answer.stations:
         return {}
     length = max(float(shape.s[-1]) for shape in answer.stations[0].shapes.values())

@@ -17,7 +17,7 @@ SAFETY = 1.25
 """Roache's factor for an error estimated from two grids of known order."""
 
 ORDER = 2
-"""Order of convergence that both solvers reach at least."""
+"""Least order of convergence of both solvers."""
 
 Place = tuple[str, float, str]
 """Stage, load and probe; the probe is empty for a station."""

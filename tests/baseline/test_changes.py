@@ -1,6 +1,6 @@
 """Classes of change between two records, by made-up entries and by planted faults of the solvers.
 
-Reference: the class that each entry must have follows from its numbers, which this file writes by hand.
+Reference: numbers and classes are written by hand; a comment gives the arithmetic.
 """
 
 from copy import deepcopy
@@ -188,7 +188,7 @@ def stiffer(scene, links, theory):
 
 
 def without_contact(scene, links, theory):
-    """The CPRBM with the contact ignored: its force is zero, its place and closing load are absent."""
+    """The CPRBM with the contact ignored: zero force, no place and no closing load."""
     (contact,) = scene.contacts
     probes = tuple(probe for probe in scene.probes if probe.of != contact)
     answer = answer_of_cprbm(scene.model_copy(update={"contacts": {}, "probes": probes}), links, theory)

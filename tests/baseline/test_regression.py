@@ -1,6 +1,7 @@
 """Both solvers on every built-in case beside the newest record in ``tests/baseline/records``.
 
-The record shows that numbers moved, never that a number is right. A change of method writes a new record.
+The record is no reference: a difference shows a change, and agreement proves nothing. A change of method packs a new
+record.
 """
 
 from pathlib import Path
