@@ -13,7 +13,7 @@ word changed              the verdict is another one
 crashed                   the run crashed, and did not in the old record
 ========================  ====================================================================================
 
-A run with several changes is in the last of these classes.
+A run with changes from *states less* on is in all classes of these changes; any other run is in its last class.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class Finding:
 def compare_records(
     old: Record, new: Record, *, same: float = SAME, improved: Collection[str] = ()
 ) -> Iterator[Finding]:
-    """The finding of every run of the old record, by name.
+    """The findings of every run of the old record, by name: at least one, and one for each failing class.
 
     Args:
         old: the record that states the uncertainties.
@@ -95,9 +95,13 @@ def compare_records(
             yield Finding(Change.LOST, name, before["scene"], "the new record lacks this run")
             continue
         stated = StatedUncertainty(before, of_scene[before["scene"]])
-        details = list(_details(before, after, stated, same, improved))
-        change, sentence = max(details, key=lambda detail: WEIGHT.index(detail[0]), default=(Change.SAME, ""))
-        yield Finding(change, name, before["scene"], sentence, after.get("verdict", ""))
+        first: dict[Change, str] = {}
+        for change, sentence in _details(before, after, stated, same, improved):
+            first.setdefault(change, sentence)
+        failing = [change for change in WEIGHT if change in first and change in FAILING]
+        mild = max(first, key=WEIGHT.index, default=Change.SAME)
+        for change in failing or [mild]:
+            yield Finding(change, name, before["scene"], first.get(change, ""), after.get("verdict", ""))
 
 
 def _details(

@@ -9,7 +9,7 @@ from dataclasses import replace
 import pytest
 
 from cprbm_scene import Ending
-from tests.baseline.changes import FAILING, Change, compare_records
+from tests.baseline.changes import FAILING, WEIGHT, Change, compare_records
 from tests.baseline.measuring import Program, answer_of_cprbm, measure
 from tests.baseline.record import About, Record
 from tests.baseline.runs import Run
@@ -75,8 +75,12 @@ def record_of(*entries):
 
 
 def change_of(before, after, run="arm cprbm 40", **options):
-    findings = {finding.run: finding for finding in compare_records(before, after, **options)}
-    return findings[run].change
+    """The weightiest class of a run."""
+    return max(changes_of(before, after, run, **options), key=WEIGHT.index)
+
+
+def changes_of(before, after, run, **options):
+    return [finding.change for finding in compare_records(before, after, **options) if finding.run == run]
 
 
 OLD = record_of(solver_entry(), solver_entry(80), comparison_entry())
@@ -163,6 +167,12 @@ def test_a_smaller_uncertainty_passes_where_it_is_declared():
 def test_another_word_outweighs_numbers():
     assert change_of(OLD, record_of(comparison_entry(verdict="DIFFER")), "arm comparison") is Change.WORD
     assert change_of(OLD, record_of(comparison_entry(rows=[])), "arm comparison") is Change.LOST
+
+
+def test_an_accepted_class_hides_no_other_class():
+    after = comparison_entry(verdict="UNDECIDED")
+    after["rows"] = after["rows"][1:]
+    assert changes_of(OLD, record_of(after), "arm comparison") == [Change.LOST, Change.WORD]
 
 
 def test_a_run_that_answers_at_last_is_won():
