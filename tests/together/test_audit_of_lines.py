@@ -7,7 +7,7 @@ import cprbm
 from comparisons.audit.gaps import spaces
 from comparisons.audit.rest import rests_of
 from comparisons.audit.seen import seen_of
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, MOMENT, THICKNESS, cantilever_data
 
 
