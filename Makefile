@@ -2,7 +2,8 @@
 #
 #   make compare   set up where that is missing, run the comparison of all cases, write report/
 #   make test      set up where that is missing, run the whole test suite
-#   make check     the rules of style and the types
+#   make check     the rules of style, the types and the rules of imports
+#   make ratchets  sizes of the packages beside their limits, which only fall
 #   make docs      the documentation in build/docs, with figures made by the code; warnings are errors
 #   make fuzz      alter scene files at places drawn from SEED, RUNS times, and see that the reader takes them
 #   make mutants   put MUTANTS small faults, drawn from SEED, into the solvers, and see which the quick tests catch; an hour
@@ -13,7 +14,7 @@
 #   make lock      renew requirements.lock (needs uv)
 
 .POSIX:
-.PHONY: setup compare test check docs fuzz mutants wheel pythons lowest lock clean
+.PHONY: setup compare test check ratchets docs fuzz mutants wheel pythons lowest lock clean
 
 PYTHON = python3
 SEED = 905
@@ -34,6 +35,10 @@ check: $(READY)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/lint-imports --no-cache --no-logo
+
+ratchets: $(READY)
+	$(BIN)/python -m tests.ratchets
 
 docs: $(READY)
 	$(ENVIRONMENT) OMP_NUM_THREADS=1 $(BIN)/python -m sphinx --builder html --fail-on-warning --keep-going --quiet \

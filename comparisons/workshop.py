@@ -49,6 +49,7 @@ TOOLS = {
 """The tools by their commands, without the name of the program."""
 
 REMOVED = {
+    "regress": "'python -m tests.baseline' of a checkout records and compares the numbers (CONTRIBUTING.md).",
     "study readings": "no reading of section 3.4 jumps where the paper says (the page 'Where a branch ends').",
     "study materials": "within bending no error depends on the modulus (the page 'What the paper claims').",
     "bench --method trust-constr": "it took 10 times as long as the CPRBM (the page 'Run time against error').",

@@ -8,7 +8,7 @@ This room states; it never computes mechanics.  Both solvers read the same
 from cprbm_scene.answer import Answer, Certificate, Critical, Ending, Event, GoneOver, Loss, Shape, StationAnswer
 from cprbm_scene.mistakes import Mistake, SceneError
 from cprbm_scene.offset import OffsetClaim, OffsetQuestion, Spacing
-from cprbm_scene.reading import Question, read, read_question
+from cprbm_scene.reading import Question, read, read_question, scene_from
 from cprbm_scene.statement import (
     Arc,
     Beam,
@@ -88,4 +88,5 @@ __all__ = [
     "WeldedEnd",
     "read",
     "read_question",
+    "scene_from",
 ]

@@ -117,10 +117,27 @@ def read_question(path: str | Path) -> Question:
 
 
 def scene_from(data: dict[str, Any], *, file: str = "") -> Scene:
-    """Make a scene of plain data, as :func:`read` does of a file's.
+    """A scene from plain data, checked as :func:`read` checks a file.
+
+    Args:
+        data: tables, lists, numbers and texts with the keys of a scene file, as ``tomllib.loads`` returns them. Numbers
+            are in SI units or in the units that ``data["units"]`` states.
+        file: the name of the file in messages and in ``Scene.file``; may be empty.
+
+    Returns:
+        The scene in SI units.
 
     Raises:
-        SceneError: anything in it is wrong; all mistakes are named.
+        SceneError: the data are no valid scene. The error names every mistake with its key.
+
+    Example:
+        >>> import tomllib
+        >>> from pathlib import Path
+        >>> from cprbm_scene import scene_from
+        >>> data = tomllib.loads(Path("comparisons/cases/hinge.toml").read_text(encoding="utf-8"))
+        >>> data["beams"]["beam1"]["thickness"] = 0.003
+        >>> scene_from(data).beams["beam1"].thickness
+        0.003
     """
     return _record(Scene, data, file, mistakes_in)
 

@@ -4,20 +4,22 @@
     python docs/drawn.py hinge wrapped      some of them
 
 Of each case both solvers' answers are drawn, coarser than at the standard settings (``LINKS`` and ``ELEMENTS``), so
-that all is made in a minute; the numbers of the tables are the accepted ones, which ``cprbm regress`` holds against
-what comes out at the standard settings.  What is there and was made by the same code is not made again.
+that all is made in a minute; the numbers of the tables come from the newest record of the baseline
+(``tests/baseline/records``), at the standard settings.  Figures that the same code made before are not made again.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import lzma
 import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.patches import Circle
@@ -44,9 +46,10 @@ if TYPE_CHECKING:
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 MADE = HERE / "made"
-ACCEPTED = ROOT / "tests" / "together" / "regression"
+RECORDS = ROOT / "tests" / "baseline" / "records"
 LONGEST = ("prestressed", "five-bar", "rolled")  # begun first, so that no process waits at the end
 LINKS, ELEMENTS = 20, 40
+N, n = 40, 80  # links and elements of the recorded numbers: the standard settings
 MOST_STATIONS = 41  # of a stage that is drawn; of more every so-many-th is solved, the shown ones and the last
 NOTHING = 1e-15  # m, rad, N, N·m or J: round-off of what is zero
 CURVES = ("rotation", "force", "moment", "reaction", "reaction_moment", "potential_energy")
@@ -234,23 +237,28 @@ def stress(scene: Scene, answers: tuple[Answer, Answer]) -> Picture | None:
         )
 
 
+@cache
+def recorded() -> dict[str, Any]:
+    """Entries of the newest record by the names of their runs."""
+    with lzma.open(max(RECORDS.glob("*.jsonl.xz")), "rt", encoding="utf-8") as file:
+        _, *entries = (json.loads(line) for line in file)
+    return {entry["run"]: entry for entry in entries}
+
+
 def numbers(scene: Scene) -> str:
-    """The accepted numbers at the last station as a table, without the stresses along beams."""
-    accepted = json.loads((ACCEPTED / f"{scene.name}.json").read_text(encoding="utf-8"))
+    """The recorded numbers at the last station as a table, without the stresses along beams."""
     last = scene.stages[-1]
-    station = f"{last.name} {last.stations[-1]:g}"
     factor, unit = along_axis(load_unit(scene, last), last.stations[-1])
-    settings = accepted["settings"]
+    answers = [recorded()[f"{scene.name} {run}"]["stations"][-1] for run in (f"cprbm {N}", f"fea {n}")]
     lines = [
-        f"The accepted numbers at {last.steps} = {_told(last.stations[-1] / factor, unit)} "
-        f"({settings['cprbm']['links']} links and {settings['fea']['elements']} finite elements per beam, theory "
-        f"`{settings['fea']['kinematics']}`; `cprbm regress {scene.name}` holds them against what comes out today):",
+        f"The recorded numbers at {last.steps} = {_told(last.stations[-1] / factor, unit)} ({N} links and {n} finite "
+        "elements per beam, which stretch and shear; `python -m tests.baseline` compares new ones with them):",
         "",
         "| probe | unit | CPRBM | FEA |",
         "|---|---|---:|---:|",
     ]
     for probe in scene.probes:
-        found = [accepted["values"][solver].get(probe.name, {}).get(station) for solver in ("cprbm", "fea")]
+        found = [answer["values"].get(probe.name) for answer in answers]
         if probe.quantity in STRESSES or not all(found):  # of a stress, and of what has no value there
             continue
         factor, unit = scaled_unit(unit_of(scene, probe, last), max(abs(each) for values in found for each in values))
@@ -304,7 +312,7 @@ def _digest() -> str:
             if path.suffix in {".py", ".toml"}:
                 found.update(str(path.relative_to(ROOT)).encode())
                 found.update(path.read_bytes())
-    for path in sorted(ACCEPTED.glob("*.json")):
+    for path in sorted(RECORDS.glob("*.jsonl.xz")):
         found.update(path.read_bytes())
     return found.hexdigest()
 

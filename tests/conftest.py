@@ -1,7 +1,20 @@
-"""What every test runs under."""
+"""Settings and markers of all tests."""
 
+from __future__ import annotations
+
+import pytest
 from hypothesis import settings
 
-# an example takes as long as the machine's other work lets it
+from tests.house.internals import ROOT, Internals, product_names
+
+# the time for an example depends on the load of the machine
 settings.register_profile("no clock", deadline=None)
 settings.load_profile("no clock")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Put the marker ``internals`` on the tests of internals of the product packages."""
+    internals = Internals(ROOT, product_names())
+    for item in items:
+        if internals.names_for(item.path, getattr(item, "fixturenames", ())):
+            item.add_marker(pytest.mark.internals)

@@ -237,6 +237,7 @@ def _standing(one: Standing) -> Plain:
 def _ratio(one: Ratios) -> Plain:
     return {
         "n": plain(one.count),
+        **dict.fromkeys(("slsqp_both", "ipopt_both", "ipopt_solve")),  # documented: null for an untimed method
         **{f"{name.replace('-', '_')}_{clocked}": ratio for (name, clocked), ratio in one.of.items()},
         "iterations_per_station": one.iterations,
     }

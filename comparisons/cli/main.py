@@ -30,7 +30,6 @@ _COMMANDS = (
     "bench",
     "study",
     "report",
-    "regress",
     "view",
     "new",
     "import",
@@ -69,8 +68,6 @@ class _SubCommands(Commands):
                 command = ToolCommand(cmd_name)
             case "report":
                 from comparisons.cli.report_ import command
-            case "regress":
-                from comparisons.cli.regress_ import command
             case "new":
                 from comparisons.cli.new_ import command
             case "import":

@@ -1,19 +1,20 @@
-"""The hinge, and two made-up solvers that agree on it."""
+"""Fixtures: the hinge, and two made-up solvers with equal verdicts."""
 
 import pytest
 
 from comparisons import cases
-from comparisons.pairing import Solvers
-from cprbm_scene import Scene
-from tests.comparisons.made_up import MadeUp
 
 
 @pytest.fixture
-def hinge() -> Scene:
+def hinge():
     return cases.opened("hinge")
 
 
 @pytest.fixture
-def right() -> Solvers:
+def right():
     """Two solvers that agree: 0.2 % and 0.05 % of error, half a per cent of theory."""
+    # an import at the head would mark every test of the folder as dependent on internals
+    from comparisons.pairing import Solvers
+    from tests.comparisons.made_up import MadeUp
+
     return Solvers(cprbm=MadeUp("cprbm", 2e-3), fea=MadeUp("fea", -5e-4))

@@ -13,7 +13,7 @@ import numpy as np
 from comparisons.choices import Choices
 from comparisons.geometry import length, points
 from cprbm_scene import Answer, Certificate, Ending, Event, Scene, Shape, StationAnswer
-from cprbm_scene.answer import Array, frozen_array
+from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
 
 CERTIFICATE = Certificate(1e-13, 1e-13, 1e-15, 1e-5, 1e-12, 1e-12, 1e-12, 0.3, 5)
@@ -69,7 +69,7 @@ class MadeUp:
         first = next(iter(scene.beams))
         total = length(scene.beams[first].curve)
         shift = 0.01 * total * push / (1.0 + abs(push))
-        laws: dict[str, Array] = {
+        laws: dict[str, np.ndarray] = {
             "displacement": np.array([0.01 * reach, 0.02 * reach - 0.005 * push]),
             "rotation": np.array([0.9 * reach - 0.1 * push]),
             "force": np.array([20.0 * abs(push)]),

@@ -153,10 +153,6 @@ def test_kinematics_reach_the_table(right, capsys):
         (["solve", "."], "built-in case"),
         (["dance"], "dance"),
         (["solve", "hinge", "--colour"], "--colour"),
-        (["regress", "hinge", "--accept", "because"], "--date"),
-        (["regress", "hinge", "--accept", " ", "--date", "2025-01-01"], "empty"),
-        (["regress", "hinge", "--accept", "because", "--date", "1 May"], "1 May"),
-        (["regress", "hinge", "--folder", "no/such/folder"], "--accept"),
     ],
 )
 def test_a_wrong_question_is_a_paragraph_and_2(right, capsys, arguments, said):
@@ -321,14 +317,6 @@ def test_help_and_version_are_no_mistakes(capsys):
     assert "compare" in capsys.readouterr().out
     assert run(["compare", "--help"]) == 0
     assert "--kinematics" in capsys.readouterr().out
-
-
-def test_regress_accepts_compares_and_reports(right, capsys, tmp_path):
-    where = ["--folder", str(tmp_path)]
-    assert run(["regress", "all", "--accept", "first", "--date", "2025-01-31", *where], right) == 0
-    assert run(["regress", "hinge", *where], right) == 0
-    assert run(["regress", "all", *where], Solvers(MadeUp("cprbm", 4e-3), right.fea)) == 1
-    assert "the file says" in capsys.readouterr().out
 
 
 PROGRAM = "from comparisons.cli.program import main\nif __name__ == '__main__':\n    main()\n"

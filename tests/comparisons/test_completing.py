@@ -27,7 +27,6 @@ def test_cases_and_files_are_offered_where_they_may_stand():
     names = [("plain", name) for name in cases.names() if name.startswith("gripper")]
     assert len(names) > 1
     assert completed("cprbm", "solve", "gripper") == [("file", "gripper"), *names]
-    assert completed("cprbm", "regress", "gripper") == names
     assert completed("cprbm", "solve", "al") == [("file", "al")]
     assert completed("cprbm", "compare", "hinge", "al") == [("file", "al"), ("plain", "all")]
 

@@ -7,8 +7,7 @@ import pytest
 
 from comparisons import figures
 from comparisons.bodies_drawn import draw_edges, places_at
-from cprbm_scene import Certificate, Shape, StationAnswer
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Certificate, Shape, StationAnswer, scene_from
 from tests.cprbm_scene.editing import edited
 from tests.cprbm_scene.test_pins import LINKAGE
 

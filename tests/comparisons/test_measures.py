@@ -15,10 +15,9 @@ from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
 from comparisons.verdict import judged
 from comparisons.words import Word
-from cprbm_scene import Probe, Stage
+from cprbm_scene import Probe, Stage, scene_from
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.reading import scene_from
 from tests.comparisons.made_up import CLOSES, MadeUp, with_value
 from tests.cprbm.scenes import LENGTH, RIGIDITY, cantilever_data
 

@@ -26,7 +26,6 @@ WORDS = [
     (["compare", "hinge", "--tol", "2"], "found '2'; allowed: as 0.1%", "Try 'cprbm compare --help'"),
     (["converge", "hinge", "--sizes", "40,20"], "found '40,20'", "each larger than the one before"),
     (["new", "mine"], "found mine.toml, which is kept", "another name"),
-    (["regress", "hinge"], "hinge.json is not there", "--accept REASON --date YYYY-MM-DD makes it"),
 ]
 FILES = [
     ("thickness =", "thicknes =", "beams.strip.thicknes: found 'thicknes'", "is 'thickness' meant?"),

@@ -142,7 +142,7 @@ def test_compare_prints_json_alone_and_ends_with_1_if_it_differs(small, right, c
     assert json.loads(capsys.readouterr().out)["cases"][0]["verdict"] == "DIFFER"
 
 
-@pytest.mark.parametrize("command", ["solve", "bench", "regress"])
+@pytest.mark.parametrize("command", ["solve", "bench"])
 def test_what_needs_an_equilibrium_says_so(command, capsys):
     assert run([command, "offset"]) == 2
     assert "no equilibrium" in capsys.readouterr().err

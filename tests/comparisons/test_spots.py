@@ -11,8 +11,8 @@ import pytest
 from comparisons.choices import Choices
 from comparisons.geometry import nearest, nearest_of_two_laps
 from comparisons.spots import clear_of_spots, ends_of_zones
-from cprbm_scene import Scene, StationAnswer
-from cprbm_scene.answer import Shape, frozen_array
+from cprbm_scene import Scene, Shape, StationAnswer
+from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
 from tests.comparisons.made_up import MadeUp
 

@@ -20,7 +20,7 @@ from comparisons.viewing.animated import animation
 from comparisons.viewing.frames import bounds_of, frames_of
 from comparisons.viewing.solids import ACROSS, beams, contact_forces, obstacles
 from comparisons.viewing.strips import SECTIONS, with_stresses
-from cprbm_scene.statement import CircleContact, FunctionContact, HalfPlaneContact, LineContact
+from cprbm_scene import CircleContact, FunctionContact, HalfPlaneContact, LineContact
 
 needs_meshio = pytest.mark.skipif(bool(trouble_with("meshio")), reason="meshio, of the extra 'view', is not there")
 needs_pyvista = pytest.mark.skipif(bool(trouble_with("pyvista")), reason="pyvista, of the extra 'view', is not there")

@@ -70,6 +70,7 @@ def test_an_installed_package_times_its_own_solvers(installed, tmp_path):
     ("arguments", "command"),
     [
         (["bench", "hinge", "--method", "trust-constr"], "bench --method trust-constr"),
+        (["regress", "hinge"], "regress"),
         (["study", "readings"], "study readings"),
         (["study", "materials", "--quiet"], "study materials"),
         (["study", "materials", "--help"], "study materials"),

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cprbm_scene import Scene
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Scene, scene_from
 
 LENGTH, WIDTH, MODULUS = 0.0973, 0.0087, 7.13e9
 NUDGE = 0.5  # E·I/L², on the middle, to choose on which side it buckles; it goes away before anything is asked

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 import cprbm
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.references.pressed_column import closing
 
 MODULUS, WIDTH, THICKNESS = 3.0e9, 0.02, 0.005  # the latter two over the length

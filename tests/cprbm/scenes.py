@@ -6,7 +6,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 
 LENGTH, THICKNESS, WIDTH, MODULUS = 0.0731, 0.00113, 0.0087, 7.13e9
 RIGIDITY = MODULUS * WIDTH * THICKNESS**3 / 12.0

@@ -11,7 +11,7 @@ import cprbm
 from cprbm.feet import distance_along
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.mechanism import mechanism_of
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, THICKNESS, cantilever_data, force
 
 STEP = 1e-5

@@ -13,7 +13,7 @@ from cprbm.forces import balances
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import point_at
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.driven import TURN, UNIT_FORCE, driven_cantilever, push
 from tests.cprbm.scenes import LENGTH, RIGIDITY, cantilever, cantilever_data, force
 

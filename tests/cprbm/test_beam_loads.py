@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-from cprbm import smooth
+from cprbm import Settings, smooth
 from cprbm.beam_loads import beam_loads, beam_work, kinks
 from cprbm.energy import load_work
 from cprbm.kinematics import State, positions, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
-from cprbm.settings import Settings
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import hinge_data
 
 STEP = 1e-6

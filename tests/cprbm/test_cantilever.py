@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from tests.cprbm.scenes import (
     LENGTH,
     MODULUS,

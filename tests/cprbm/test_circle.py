@@ -16,8 +16,7 @@ from cprbm.mechanism import mechanism_of
 from cprbm.newton import system
 from cprbm.point import contact_gradient, contact_rows, point_at
 from cprbm.zones import zones_of
-from cprbm_scene import Ending, Profile
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, Profile, scene_from
 from tests.cprbm.scenes import cantilever_data, drives_of, force
 from tests.references.wrapped import Wrapped
 

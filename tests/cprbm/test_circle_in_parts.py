@@ -6,7 +6,7 @@ import cprbm
 from cprbm.circle import reach
 from cprbm.kinematics import positions, rest_state
 from cprbm.mechanism import mechanism_of
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, THICKNESS, cantilever_data
 from tests.cprbm.test_circle import scene_of
 

@@ -10,8 +10,7 @@ from comparisons.cases import opened
 from cprbm import mechanism
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.mechanism import mechanism_of
-from cprbm_scene import CircleContact, Ending, FunctionContact, HalfPlaneContact, LineContact, Scene
-from cprbm_scene.statement import RigidContact
+from cprbm_scene import CircleContact, Ending, FunctionContact, HalfPlaneContact, LineContact, RigidContact, Scene
 
 SMALL = cprbm.Settings(links=12)
 

@@ -5,7 +5,7 @@ import pytest
 
 import cprbm
 import elastica_reference
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
 
 UNIT = RIGIDITY / LENGTH**2  # a force that bends the beam by about as much as it is long

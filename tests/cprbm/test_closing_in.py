@@ -2,8 +2,8 @@
 
 import pytest
 
+from cprbm import Settings
 from cprbm.following import Follower, Way
-from cprbm.settings import Settings
 
 
 @pytest.mark.parametrize(

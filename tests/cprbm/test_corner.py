@@ -12,7 +12,7 @@ from cprbm.edge import REACH
 from cprbm.faces import faces_of, sides_of
 from cprbm.kinematics import positions, rest_state
 from cprbm.mechanism import mechanism_of
-from cprbm_scene.statement import HalfPlaneContact, LineContact
+from cprbm_scene import HalfPlaneContact, LineContact
 from tests.fea_reference.on_an_edge import T, cantilever_over, scene_of
 from tests.references.cornered import Cornered
 

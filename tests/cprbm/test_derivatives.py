@@ -5,7 +5,7 @@ from functools import partial
 import numpy as np
 import pytest
 
-from cprbm import smooth
+from cprbm import Settings, smooth
 from cprbm.closure import closure_forces, closure_rows, closure_second, closure_values
 from cprbm.contact import NO_ROWS
 from cprbm.energy import spring_moments, strain_energy, strain_gradient, strain_hessian
@@ -14,7 +14,6 @@ from cprbm.kinematics import State, positions, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.newton import newton_step, system
 from cprbm.point import contact_gradient, contact_rows, point_at
-from cprbm.settings import Settings
 from tests.cprbm.rolled import coil, hooked, nearly_closed, neck, strip
 from tests.cprbm.scenes import hinge, hinge_data
 

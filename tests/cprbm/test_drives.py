@@ -8,8 +8,7 @@ from cprbm import Settings, newton
 from cprbm.closure import closure_forces, closure_rows, closure_second, closure_values
 from cprbm.kinematics import State, positions, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from tests.cprbm.driven import TURN, UNIT_FORCE, UNIT_MOMENT, driven_cantilever, driven_hinge, guided, push
 from tests.cprbm.scenes import LENGTH, MODULUS, THICKNESS, cantilever, force, hinge
 from tests.references.elastica import cantilever_under_tip_force, roll_up

@@ -12,8 +12,7 @@ from cprbm.contact import NO_ROWS, Local, over_unknowns
 from cprbm.kinematics import State, positions, pulled_back, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import contact_gradient, contact_rows, point_at
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from cprbm_scene.statement import Contact, PaperRigid, Related
 from tests.references.flattened import Flattened
 from tests.together.pivots import LENGTH, MATERIALS, RIGIDITY, STRIP, THICKNESS, weld

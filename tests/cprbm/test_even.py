@@ -13,7 +13,7 @@ from cprbm.kinematics import State, positions, rest_state
 from cprbm.kinks import kinks_at, missed
 from cprbm.model import NO_KINKS, Kinks, build
 from cprbm.smooth import smooth_line
-from cprbm_scene.reading import read
+from cprbm_scene import read
 from tests.cprbm.scenes import cantilever, force
 
 CASES = Path(__file__).parents[2] / "comparisons" / "cases"

@@ -10,7 +10,7 @@ from cprbm.excess import Asked, Tabulated
 from cprbm.kinematics import positions, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.smooth import smooth_line
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, cantilever_data, force
 
 STEEP = 0.7 / LENGTH  # y = STEEP x²

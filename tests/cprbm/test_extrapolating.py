@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import cprbm
+from cprbm import Settings
 from cprbm.extrapolating import continued
 from cprbm.march import March
-from cprbm.settings import Settings
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import cantilever_data, force, hinge
 
 STATIONS = [0.1 * k for k in range(1, 13)]

@@ -7,7 +7,7 @@ from numpy.polynomial import polynomial
 import cprbm
 from cprbm.faces import Graph
 from cprbm.mechanism import mechanism_of
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import cantilever_data, force
 
 

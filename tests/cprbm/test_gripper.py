@@ -13,7 +13,7 @@ from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import point_at
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 
 CASES = Path(__file__).parents[2] / "comparisons" / "cases"
 # Displacement of A, m, and potential energy, J, at 16 N by IPOPT (CasADi's, exact derivatives, standard options) on the

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from tests.cprbm.scenes import hinge, hinge_data, turned
 from tests.references import hinge as exact
 

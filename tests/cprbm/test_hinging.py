@@ -12,7 +12,7 @@ from cprbm.local import local_step
 from cprbm.mechanism import mechanism_of
 from cprbm.newton import local_system_at, newton_step
 from cprbm.point import point_at
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.together.pivots import FORCE, LENGTH, MATERIALS, MOMENT, STRIP, line, pin, weld
 
 D = (1.1, 0.2)

@@ -14,8 +14,7 @@ from cprbm.kinematics import State, positions
 from cprbm.local import local_step
 from cprbm.newton import local_system_at, newton_step
 from cprbm.point import contact_gradient, point_at
-from cprbm_scene import Ending, SceneError
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, SceneError, scene_from
 from tests.cprbm import necks
 from tests.cprbm.rolled import MODULUS, NARROWS, THICKNESS, WIDTH, coil, hooked, nearly_closed, neck, roll, strip
 from tests.references import rolled as rolled_strip

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm_scene import Ending, Loss
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, Loss, scene_from
 
 LENGTH, THICKNESS, WIDTH, E = 0.1037, 0.00113, 0.0087, 2.07e11
 STIFFNESS = E * WIDTH * THICKNESS**3 / 12.0

@@ -12,7 +12,7 @@ from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import point_at
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.lagrangian import check
 from tests.cprbm.scenes import drives_of
 from tests.references.lying import Lying, Strip

@@ -10,7 +10,7 @@ from cprbm.contact import Rows
 from cprbm.feet import distance_along
 from cprbm.kinematics import State, positions, rest_state
 from cprbm.mechanism import mechanism_of
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 
 H = np.sqrt(0.4985**2 - 0.065**2)  # of the bowl's ends below its centre
 

@@ -13,7 +13,7 @@ from cprbm.kinematics import rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.newton import newton_step, own_system
 from cprbm.point import point_at
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.driven import UNIT_FORCE
 from tests.cprbm.scenes import LENGTH, THICKNESS, cantilever_data, force
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import cprbm
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 
 GRIPPER = Path(__file__).parents[2] / "comparisons" / "cases" / "gripper.toml"
 

@@ -8,7 +8,7 @@ from cprbm.kinematics import positions, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.model import Fit
 from cprbm.rigid_edge import rigid_edge
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, drives_of
 
 FORCE = 1.3 * RIGIDITY / LENGTH**2

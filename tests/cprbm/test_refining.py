@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import cprbm
+from cprbm import Settings
 from cprbm.contact import NO_ROWS
 from cprbm.equilibrium import equilibrium
 from cprbm.kinematics import State, rest_state
@@ -16,10 +17,8 @@ from cprbm.mechanism import mechanism_of
 from cprbm.model import Fit, Kinks, build
 from cprbm.point import point_at
 from cprbm.refining import BEYOND, SHARE, all_zones, carried_over, coarser, ends_of, fits, fitted, long_ones
-from cprbm.settings import Settings
 from cprbm.zones import Zone
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from tests.cprbm.scenes import cantilever_data, force, hinge
 from tests.cprbm.test_circle import BEAM, RADIUS, scene_of
 from tests.references.wrapped import Wrapped

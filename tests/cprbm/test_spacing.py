@@ -7,7 +7,7 @@ import pytest
 
 import cprbm
 from cprbm.model import build
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import cantilever_data, force
 
 N = 7

@@ -11,9 +11,7 @@ from cprbm.feet import distance_along
 from cprbm.kinematics import State, rest_state
 from cprbm.mechanism import mechanism_of
 from cprbm.point import point_at
-from cprbm_scene import SceneError
-from cprbm_scene.reading import scene_from
-from cprbm_scene.statement import Profile
+from cprbm_scene import Profile, SceneError, scene_from
 from tests.cprbm import necks
 from tests.cprbm.lagrangian import check
 from tests.cprbm.test_lying import bowl

@@ -8,7 +8,7 @@ from cprbm.contact import NO_ROWS
 from cprbm.kinematics import State
 from cprbm.mechanism import mechanism_of
 from cprbm.point import point_at, potential_energy
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import MODULUS, THICKNESS, WIDTH
 
 STEP = 1e-6

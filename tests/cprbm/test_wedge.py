@@ -5,7 +5,7 @@ import pytest
 
 import cprbm
 from cprbm.mechanism import mechanism_of
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, MOMENT, RIGIDITY, THICKNESS, cantilever_data
 
 # of the beam's length: a face 0.11 long and one 0.29 long, at 59 degrees to each other

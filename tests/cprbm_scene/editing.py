@@ -4,8 +4,7 @@ import copy
 import tomllib
 from pathlib import Path
 
-from cprbm_scene import SceneError
-from cprbm_scene.reading import scene_from
+from cprbm_scene import SceneError, scene_from
 
 HINGE = tomllib.loads((Path(__file__).parents[2] / "comparisons" / "cases" / "hinge.toml").read_text(encoding="utf-8"))
 REMOVED = object()

@@ -2,7 +2,7 @@
 
 import pytest
 
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from cprbm_scene.statement import BeamForce, DistributedLoad
 from tests.cprbm_scene.editing import REMOVED, edited, mistakes, two_lines
 

@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
+from cprbm_scene import Polynomial
 from cprbm_scene.geometry import arc_length, largest_curvature, points_on
-from cprbm_scene.statement import Polynomial
 from tests.cprbm_scene.editing import edited, mistakes, two_lines
 
 T = 0.002

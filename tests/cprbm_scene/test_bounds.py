@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from cprbm_scene import OffsetQuestion, Scene, SceneError, read, read_question
+from cprbm_scene import OffsetQuestion, Scene, SceneError, read, read_question, scene_from
 from cprbm_scene.mistakes import MOST
-from cprbm_scene.reading import DEEPEST, LARGEST, scene_from
+from cprbm_scene.reading import DEEPEST, LARGEST
 from tests.cprbm_scene.editing import HINGE, mistakes
 
 FOUND = sorted((Path(__file__).parent / "found").glob("*.toml"))

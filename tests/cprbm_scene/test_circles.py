@@ -7,9 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cprbm_scene import Arc, Line, scene_from
 from cprbm_scene.geometry import distance_to, points_on
-from cprbm_scene.reading import scene_from
-from cprbm_scene.statement import Arc, Line
 from tests.cprbm_scene.editing import REMOVED, edited, mistakes
 
 T, L, R = 0.002, 0.1, 0.03

@@ -8,8 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cprbm_scene import Scene, SceneError
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Scene, SceneError, scene_from
 from cprbm_scene.statement import DisplacementDrive
 from tests.cprbm_scene.editing import REMOVED, edited, mistakes
 

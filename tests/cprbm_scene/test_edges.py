@@ -6,10 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from cprbm_scene import SceneError
+from cprbm_scene import FunctionContact, HalfPlaneContact, LineContact, SceneError, scene_from
 from cprbm_scene.check_edges import distance_from
-from cprbm_scene.reading import scene_from
-from cprbm_scene.statement import FunctionContact, HalfPlaneContact, LineContact
 from tests.cprbm_scene.editing import REMOVED, edited, mistakes
 
 T, L = 0.002, 0.1

@@ -7,8 +7,7 @@ from contextlib import suppress
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from cprbm_scene import Scene, SceneError, read
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Scene, SceneError, read, scene_from
 from tests.cprbm_scene.conftest import HINGE as FILE
 from tests.cprbm_scene.editing import HINGE
 

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from cprbm_scene import Arc, Line
 from cprbm_scene.geometry import closest_pair
-from cprbm_scene.statement import Arc, Line
 from tests.cprbm_scene.editing import HINGE, edited, mistakes, two_lines
 
 T = 0.002

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm_scene.editing import REMOVED, mistakes
 
 LINKAGE = {

@@ -5,6 +5,7 @@ from math import asinh, hypot, sqrt
 import numpy as np
 import pytest
 
+from cprbm_scene import Line, Polynomial, scene_from
 from cprbm_scene.geometry import (
     arc_length,
     closest_pair,
@@ -14,8 +15,6 @@ from cprbm_scene.geometry import (
     scaled,
     tangents_on,
 )
-from cprbm_scene.reading import scene_from
-from cprbm_scene.statement import Line, Polynomial
 from tests.cprbm_scene.editing import REMOVED, edited, mistakes, two_lines
 
 A, TIP = 29.28, 0.05  # the parabola x = A y²/2 + 0.05 m up to y = TIP

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from cprbm_scene import Profile
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Profile, scene_from
 from tests.cprbm_scene.editing import edited, mistakes, two_lines
 
 NAN = float("nan")

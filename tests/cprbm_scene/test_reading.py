@@ -3,8 +3,7 @@
 import pytest
 from pydantic import ValidationError
 
-from cprbm_scene import SceneError, read
-from cprbm_scene.reading import scene_from
+from cprbm_scene import SceneError, read, scene_from
 from tests.cprbm_scene.conftest import HINGE
 from tests.cprbm_scene.editing import REMOVED, edited, mistakes
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from cprbm_scene import Line, Spline, scene_from
 from cprbm_scene.geometry import (
     arc_length,
     closest_pair,
@@ -16,8 +17,6 @@ from cprbm_scene.geometry import (
     scaled,
     tangents_on,
 )
-from cprbm_scene.reading import scene_from
-from cprbm_scene.statement import Line, Spline
 from tests.cprbm_scene.editing import mistakes, two_lines
 
 U = np.linspace(0.0, 1.0, 401)

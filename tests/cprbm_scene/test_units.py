@@ -7,8 +7,7 @@ import pytest
 from pydantic import BaseModel
 
 from comparisons import cases
-from cprbm_scene import SceneError, statement
-from cprbm_scene.reading import scene_from
+from cprbm_scene import SceneError, scene_from, statement
 from cprbm_scene.statement import Record, Units
 from cprbm_scene.units import FOLLOWING, MEASURED
 from tests.robustness.toml import toml_of

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import elastica_reference
-from cprbm_scene import Answer, Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Answer, Ending, scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, WIDTH, cantilever_data, hinge_data
 from tests.references.hinge import Hinge
 from tests.references.two_cantilevers import TwoCantilevers

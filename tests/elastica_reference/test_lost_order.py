@@ -6,7 +6,7 @@ import pytest
 
 import elastica_reference
 import fea_reference
-from cprbm_scene.reading import read
+from cprbm_scene import read
 
 SCENE = Path(__file__).parents[1] / "together" / "scenes" / "past-each-other.toml"
 

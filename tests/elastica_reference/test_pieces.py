@@ -8,13 +8,12 @@ from hypothesis import given, seed, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad, solve_ivp
 
-from cprbm_scene.reading import scene_from
-from cprbm_scene.statement import Arc, Line, Polynomial, Spline
+from cprbm_scene import Arc, Line, Polynomial, Spline, scene_from
+from elastica_reference import Settings
 from elastica_reference.curves import neutral_line
 from elastica_reference.march import _advance  # the march itself, stopped at a station
 from elastica_reference.model import modelled
 from elastica_reference.newton import linearised
-from elastica_reference.settings import Settings
 from elastica_reference.spectral import Law, UnsolvableError, piece, rule
 from elastica_reference.way import Way
 from tests.elastica_reference import scenes

@@ -8,7 +8,7 @@ import json
 import numpy as np
 import pytest
 
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from elastica_reference import Settings
 from elastica_reference import answer as exact_answer
 from tests.cprbm.scenes import LENGTH, MODULUS, MOMENT, RIGIDITY, THICKNESS, cantilever_data, force

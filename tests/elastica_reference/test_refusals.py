@@ -7,8 +7,7 @@ import pytest
 
 import cprbm
 import elastica_reference
-from cprbm_scene import Ending, SceneError
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, SceneError, scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
 from tests.elastica_reference.scenes import FREE, STRIP, answer, completed, line, post_buckled, tip_on_beam, weld
 from tests.references.elastica import cantilever_under_tip_force

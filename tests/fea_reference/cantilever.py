@@ -6,8 +6,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipeinc, ellipk, ellipkinc
 
-from cprbm_scene import Scene
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Scene, scene_from
 
 LENGTH, THICKNESS, WIDTH, YOUNG, POISSON = 0.3, 0.002, 0.01, 2e9, 0.3
 EI = YOUNG * WIDTH * THICKNESS**3 / 12

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cprbm_scene import Scene
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Scene, scene_from
 
 BEHIND = -0.006  # m, where the strip passes the clamp
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from cprbm_scene import Scene
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Scene, scene_from
 
 YOUNG, WIDTH, LENGTH = 2e9, 0.01, 0.1
 UPPER, LOWER = 0.001, 0.0014

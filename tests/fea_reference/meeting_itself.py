@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cprbm_scene import Scene
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Scene, scene_from
 
 YOUNG, WIDTH = 2.1e9, 0.01
 HALF = 0.1  # m, of the arch

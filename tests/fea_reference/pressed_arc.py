@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from cprbm_scene import Scene
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Scene, scene_from
 
 
 def pressed_arc(

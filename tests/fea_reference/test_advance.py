@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from fea_reference import Settings
 from fea_reference.advance import advance, carried, way_to
 from fea_reference.model import build

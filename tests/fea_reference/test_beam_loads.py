@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from fea_reference import Settings
+from fea_reference import Settings, answer
 from fea_reference.beam_loads import beam_load, load_forces
 from fea_reference.model import build
-from fea_reference.solve import answer
 from fea_reference.state import State
 from fea_reference.system import assemble
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_bvp
 
-from cprbm_scene import Ending
-from cprbm_scene.answer import Loss
+from cprbm_scene import Ending, Loss
 from fea_reference import Settings, answer
 from tests.fea_reference.cantilever import (
     EI,

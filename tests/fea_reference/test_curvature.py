@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigvalsh, null_space
 
-from cprbm_scene import read
-from cprbm_scene.reading import scene_from
+from cprbm_scene import read, scene_from
 from fea_reference import Settings
 from fea_reference.contacts import contacts
 from fea_reference.curvature import smallest_curvature, softest

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from fea_reference import Settings, answer
 
 YOUNG, POISSON, WIDTH, T, R = 2e9, 0.3, 0.01, 0.01, 0.06

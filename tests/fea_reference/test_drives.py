@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from cprbm_scene import Ending
-from cprbm_scene.answer import Loss
+from cprbm_scene import Ending, Loss
 from fea_reference import Settings, answer
 from fea_reference.contacts import contacts
 from fea_reference.curvature import smallest_curvature

@@ -6,11 +6,10 @@ growth, r = 0.38 at 2.5 and 0.07 at 8.  A fall by steps of which every other fai
 step may be, takes five times as many.
 """
 
-from cprbm_scene.reading import scene_from
-from fea_reference import Settings, descent
+from cprbm_scene import scene_from
+from fea_reference import Settings, descent, prepared
 from fea_reference.assembly import assemble_ends
 from fea_reference.following import followed
-from fea_reference.solve import prepared
 from fea_reference.travel import Course, reach
 from tests.together import branches
 

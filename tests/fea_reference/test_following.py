@@ -10,14 +10,12 @@ import numpy as np
 import pytest
 
 import fea_reference
-from cprbm_scene.answer import Loss
-from cprbm_scene.reading import scene_from
-from fea_reference import Settings, following
+from cprbm_scene import Loss, scene_from
+from fea_reference import Settings, following, prepared
 from fea_reference.assembly import assemble_ends
 from fea_reference.branch import Place
 from fea_reference.curvature import Mode
 from fea_reference.following import followed
-from fea_reference.solve import prepared
 from fea_reference.travel import Course, reach
 from tests.fea_reference import faint_contact
 from tests.together import branches

@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cprbm_scene import Ending, read
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, read, scene_from
 from fea_reference import Settings, answer
 from tests.references import hinge as exact
 

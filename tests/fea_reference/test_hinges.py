@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from fea_reference import Settings, answer
 from fea_reference.model import build
 from fea_reference.state import State

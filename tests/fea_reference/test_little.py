@@ -7,8 +7,7 @@ that stand close: pushes were 1 to 80 % wrong in a third of these scenes, and ce
 
 import pytest
 
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from fea_reference import Settings, answer
 from tests.fea_reference.small_deflections import one_beam, two_beams
 

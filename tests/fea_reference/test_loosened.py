@@ -3,8 +3,7 @@
 The hump's penalty is loosened to look for its zone, with which the other contact presses at once.
 """
 
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from fea_reference import Settings, answer
 
 

@@ -6,8 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from comparisons import cases
-from cprbm_scene.answer import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from fea_reference import Settings, answer
 from fea_reference.march import March
 

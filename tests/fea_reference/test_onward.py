@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from comparisons import cases
-from fea_reference import Settings
+from fea_reference import Settings, prepared
 from fea_reference.contacts import contacts, touch, zones_of
 from fea_reference.model import build
-from fea_reference.solve import prepared
 from fea_reference.state import State
 from fea_reference.touch import Penalty
 from tests.fea_reference.on_an_edge import cantilever_over

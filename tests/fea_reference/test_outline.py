@@ -5,7 +5,7 @@ from decimal import Decimal, localcontext
 import numpy as np
 import pytest
 
-from cprbm_scene.statement import FunctionContact
+from cprbm_scene import FunctionContact
 from fea_reference.outline import Broken, HalfPlane, outline_of
 
 COEFFICIENTS = (0.013, -0.31, 0.83)

@@ -6,8 +6,7 @@ branch leads under either penalty, and it is on its branch all the same.
 
 import pytest
 
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from fea_reference import Settings, answer
 
 

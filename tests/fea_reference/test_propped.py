@@ -2,8 +2,7 @@
 
 import pytest
 
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from fea_reference import Settings, answer
 
 LENGTH, PLACE, STRUT = 0.107, 0.0981, 0.0211  # m

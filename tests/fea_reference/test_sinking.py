@@ -5,11 +5,10 @@ import pytest
 
 from comparisons import cases
 from cprbm_scene import Ending
-from fea_reference import Settings, answer
+from fea_reference import Settings, answer, prepared
 from fea_reference.advance import advance
 from fea_reference.contacts import touch
 from fea_reference.sinking import known_depths, sunk
-from fea_reference.solve import prepared
 from fea_reference.travel import Course, reach
 
 PRESSED = 0.5  # of the hinge's last moment, with which its beams touch

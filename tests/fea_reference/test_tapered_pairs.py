@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cprbm_scene import Answer, Ending, Scene
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Answer, Ending, Scene, scene_from
 from fea_reference import Settings, answer
 from fea_reference.contact import pairs, touch
 from fea_reference.edge import Edge

@@ -6,8 +6,7 @@ And one whose tip is moved by however little.
 import numpy as np
 import pytest
 
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from fea_reference import Settings, answer
 
 YOUNG, WIDTH, THICK, LENGTH = 7.13e9, 0.0087, 0.00113, 0.0731

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from fea_reference import Settings, answer
 from fea_reference.contacts import contacts, least_gap
 from fea_reference.model import build

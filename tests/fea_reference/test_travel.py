@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from cprbm_scene.answer import Ending, Loss
+from cprbm_scene import Ending, Loss
 from fea_reference import travel
 from fea_reference.following import Lost
 from fea_reference.march import StoppedError

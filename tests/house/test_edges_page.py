@@ -22,6 +22,9 @@ def test_every_test_that_the_page_names_is_there():
         path = ROOT / "tests" / file
         assert path.is_file(), file
         assert not test or f"def {test}(" in path.read_text(encoding="utf-8"), f"{file}::{test}"
+    rare = set(re.findall(r"`(scenes/rare/[\w-]+\.toml)`", page))
+    assert len(rare) > 10
+    assert [file for file in sorted(rare) if not (ROOT / "tests" / file).is_file()] == []
 
 
 def test_scenes_that_are_kept_for_the_pages_are_read():

@@ -17,7 +17,7 @@ FRAME = "import json, sys\n{program}\nprint(json.dumps(sorted({{name.split('.')[
  | {{name for name in sys.modules if name.startswith('scipy.')}})))"
 CANTILEVER = """
 import cprbm
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import cantilever_data, force
 assert cprbm.answer(scene_from(cantilever_data(force(0.0, -1.0), [0.1]))).completed
 """

@@ -17,7 +17,6 @@ conditions: the line goes through C there, and ends unturned, on the slide, with
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -40,48 +39,6 @@ class Pressed:
 
     gone: float
     force: float
-
-
-def scene(stations: list[float]) -> dict[str, Any]:
-    """The arc as a scene that steps the moment, N·m."""
-    corner = [CORNER.real, CORNER.imag]
-    return {
-        "name": "moment-beside-corner",
-        "materials": {"polypropylene": {"youngs_modulus": E, "poisson_ratio": 0.42}},
-        "bodies": {
-            "wall": {"motion": "fixed", "points": {"R": [0.0, 0.0]}},
-            "tip": {"motion": "slides", "along": [ALONG.real, ALONG.imag], "points": {"T": [END.real, END.imag]}},
-        },
-        "beams": {
-            "beam": {
-                "curve": {
-                    "kind": "arc",
-                    "center": [CENTER.real, CENTER.imag],
-                    "start": [0.0, 0.0],
-                    "end": [END.real, END.imag],
-                    "direction": "clockwise",
-                },
-                "thickness": THICKNESS,
-                "width": WIDTH,
-                "material": "polypropylene",
-                "start": {"joint": "weld", "point": "R"},
-                "end": {"joint": "weld", "point": "T"},
-            }
-        },
-        "loads": {"m": {"kind": "beam_moment", "beam": "beam", "at": AT}},
-        "contacts": {
-            "corner": {
-                "kind": "beam-line",
-                "beam": "beam",
-                "body": "wall",
-                "points": [[0.071743, 0.097083], corner, [0.101069, 0.127558]],
-                "side": "left",
-                "thick": False,
-            }
-        },
-        "stages": [{"name": "turn", "steps": "m", "stations": stations}],
-        "probes": [{"of": "T", "quantity": "displacement"}, {"of": "corner", "quantity": "force"}],
-    }
 
 
 def pressed(m: float) -> Pressed:

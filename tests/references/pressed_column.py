@@ -33,7 +33,6 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
-from cprbm_scene.answer import Array
 from tests.references.post_buckled import post_buckled
 
 BEFORE = 16.0 * 1.85407467730137**2 * 1.3  # P where the neck is narrow but open, for thin columns
@@ -81,7 +80,7 @@ def closed(thickness: float, force: float) -> Neck:
     return _neck(delta, M, force, Q, place)
 
 
-def curvatures(found: Neck, s: Array) -> Array:
+def curvatures(found: Neck, s: np.ndarray) -> np.ndarray:
     """κ at arc lengths ``s`` (k,) of the left half, which ascend."""
     state, at = np.array([0.0, 0.0, 0.0, found.moment, 0.0]), 0.0
     bent = []
@@ -92,35 +91,35 @@ def curvatures(found: Neck, s: Array) -> Array:
     return np.array(bent)[np.searchsorted(np.sort(np.append(s, found.place)), s)]
 
 
-def _solved(residual, guess: Array, thickness: float) -> Array:
+def _solved(residual, guess: np.ndarray, thickness: float) -> np.ndarray:
     found = root(residual, guess, args=(thickness,), method="hybr", options={"xtol": 1e-13})
     if not np.max(np.abs(residual(found.x, thickness))) < 1e-10:
         raise ValueError(f"no solution: {found.message}")
     return found.x
 
 
-def _part(force: float, begin: Array, length: float) -> Array:
+def _part(force: float, begin: np.ndarray, length: float) -> np.ndarray:
     """x, y, θ, κ and half of U after a ``length`` under a force along x."""
 
-    def slope(_: float, z: Array) -> list[float]:
+    def slope(_: float, z: np.ndarray) -> list[float]:
         return [np.cos(z[2]), np.sin(z[2]), z[3], -force * np.sin(z[2]), 0.5 * z[3] ** 2]
 
     return solve_ivp(slope, (0.0, length), begin, "DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
 
 
-def _half(M: float, P: float, Q: float, place: float) -> tuple[Array, Array]:
+def _half(M: float, P: float, Q: float, place: float) -> tuple[np.ndarray, np.ndarray]:
     touch = _part(P, np.array([0.0, 0.0, 0.0, M, 0.0]), place)
     return touch, _part(Q, touch, 0.5 - place)
 
 
-def _touching(M: float, P: float, Q: float, place: float, delta: float, thickness: float) -> Array:
+def _touching(M: float, P: float, Q: float, place: float, delta: float, thickness: float) -> np.ndarray:
     touch, middle = _half(M, P, Q, place)
     return np.array(
         [touch[2] - 0.5 * np.pi, touch[0] - 0.5 * (1.0 - delta - thickness), middle[2], middle[0] - 0.5 * (1.0 - delta)]
     )
 
 
-def _apart(z: Array, thickness: float) -> Array:
+def _apart(z: np.ndarray, thickness: float) -> np.ndarray:
     M, P, place, delta = z
     return _touching(M, P, P, place, delta, thickness)
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from cprbm_scene import scene_from
 from cprbm_scene.geometry import points_on
-from cprbm_scene.reading import scene_from
 from tests.relations.image import Data, Image, copied
 
 AWAY = 7.3

@@ -30,9 +30,8 @@ from comparisons.pairing import Solver
 from comparisons.scales import norm
 from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
-from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer
+from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer, scene_from
 from cprbm_scene.answer import Array, Flags
-from cprbm_scene.reading import scene_from
 from cprbm_scene.statement import STRESSES
 from tests.relations.image import Data, Image, plain
 from tests.relations.relations import RELATIONS, Relation

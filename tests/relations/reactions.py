@@ -26,9 +26,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from comparisons.geometry import length
-from cprbm_scene import Answer, Scene, StationAnswer
+from cprbm_scene import Answer, FreeEnd, PinnedEnd, RigidContact, Scene, StationAnswer, scene_from
 from cprbm_scene.answer import Array
-from cprbm_scene.reading import scene_from
 from cprbm_scene.statement import (
     BeamForce,
     BeamMoment,
@@ -36,10 +35,7 @@ from cprbm_scene.statement import (
     DistributedLoad,
     FixedBody,
     Force,
-    FreeEnd,
     Moment,
-    PinnedEnd,
-    RigidContact,
     RotationDrive,
     SlidingBody,
     TurningBody,

@@ -11,10 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from comparisons.geometry import length
-from cprbm_scene import Probe
+from cprbm_scene import FreeEnd, Polynomial, Probe, Spline, scene_from
 from cprbm_scene.answer import Array
-from cprbm_scene.reading import scene_from
-from cprbm_scene.statement import FreeEnd, Polynomial, Spline
 from tests.relations.frames import OTHER_WAY
 from tests.relations.image import Data, Image, copied
 

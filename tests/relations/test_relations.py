@@ -13,11 +13,10 @@ import pytest
 from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer, fea_answer
-from cprbm_scene import Scene
-from cprbm_scene.answer import Critical, Loss, frozen_array
+from cprbm_scene import Critical, Loss, Scene, scene_from
+from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.geometry import points_on
-from cprbm_scene.reading import scene_from
 from tests.relations.frames import MIRROR, QUARTER, Frame, turned_by
 from tests.relations.image import copied, plain
 from tests.relations.measured import TARGET, violations

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.random import Generator, Philox
 
-from cprbm_scene.mistakes import SceneError
-from cprbm_scene.reading import scene_from
+from cprbm_scene import SceneError, scene_from
 from tests.robustness.actions import ENERGY, Action, drawn_action, drawn_turn, led, stations_to
 from tests.robustness.chance import RedrawError, between, happens, rounded, weighted
 from tests.robustness.contacts import put_in_the_way

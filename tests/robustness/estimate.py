@@ -26,7 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cprbm_scene import Beam, FreeEnd, Scene
+from cprbm_scene import Beam, Drive, FreeEnd, Load, Scene
 from cprbm_scene.freedoms import unit
 from cprbm_scene.geometry import arc_length, points_on
 from cprbm_scene.statement import (
@@ -34,9 +34,7 @@ from cprbm_scene.statement import (
     BeamMoment,
     DisplacementDrive,
     DistributedLoad,
-    Drive,
     Force,
-    Load,
     Moment,
     RotationDrive,
     SlidingBody,

@@ -7,8 +7,7 @@ from copy import deepcopy
 
 import numpy as np
 
-from cprbm_scene import FreeEnd
-from cprbm_scene.reading import scene_from
+from cprbm_scene import FreeEnd, scene_from
 from tests.robustness.actions import ENERGY, Action, force_of, led
 from tests.robustness.chance import RedrawError, any_of, between, happens, rounded, sign
 from tests.robustness.draft import Data, Draft

@@ -10,8 +10,7 @@ from pathlib import Path
 from comparisons.documents import Plain
 from comparisons.pairing import Solvers
 from comparisons.writing import write
-from cprbm_scene import Scene, SceneError
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Scene, SceneError, scene_from
 from tests.robustness.apart import Crashed, End, Limits, OutOfTime, Returned, apart
 from tests.robustness.drawing import Drawn, drawn
 from tests.robustness.hosts import Hosts, hosts_of

@@ -17,13 +17,14 @@ from cprbm_scene import (
     FunctionContact,
     HalfPlaneContact,
     LineContact,
+    PinnedEnd,
     Profile,
     RigidContact,
     Scene,
     SelfContact,
 )
 from cprbm_scene.geometry import arc_length, points_on
-from cprbm_scene.statement import PinnedEnd, SlidingBody
+from cprbm_scene.statement import SlidingBody
 
 FAR_TURN = pi / 3.0  # rad; beyond this a rotation is large
 SLENDER, THICK = 1.0 / 100.0, 1.0 / 30.0  # mean thickness over length

@@ -20,16 +20,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from cprbm_scene import FreeEnd, Scene
-from cprbm_scene.statement import (
-    DisplacementDrive,
-    FixedBody,
-    PinnedEnd,
-    RotationDrive,
-    SlidingBody,
-    TurningBody,
-    WeldedEnd,
-)
+from cprbm_scene import FreeEnd, PinnedEnd, Scene, WeldedEnd
+from cprbm_scene.statement import DisplacementDrive, FixedBody, RotationDrive, SlidingBody, TurningBody
 from tests.robustness.estimate import Barrier, Estimate, State
 
 Array = NDArray[np.float64]

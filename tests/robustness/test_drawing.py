@@ -12,7 +12,7 @@ from numpy.random import Generator, Philox
 
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer
-from cprbm_scene.reading import read, scene_from
+from cprbm_scene import read, scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, THICKNESS, cantilever_data, force
 from tests.robustness import contacts, strata
 from tests.robustness.chance import RedrawError

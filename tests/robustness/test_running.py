@@ -16,8 +16,7 @@ from comparisons import cases
 from comparisons.audit import audit
 from comparisons.cli.main import run as command
 from comparisons.pairing import Solvers
-from cprbm_scene import Ending, SceneError, read
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, SceneError, read, scene_from
 from tests.comparisons.made_up import MadeUp
 from tests.robustness import auditing
 from tests.robustness.apart import Limits, OutOfTime, Returned

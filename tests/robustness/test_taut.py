@@ -5,7 +5,7 @@ from math import acos, asin, hypot, pi, sqrt
 import numpy as np
 import pytest
 
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.robustness.estimate import Barrier, Estimate, State
 from tests.robustness.taut import length, slack, tight
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cprbm_scene import Scene
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Scene, scene_from
 from tests.cprbm.scenes import LENGTH, THICKNESS, cantilever_data
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH
 from tests.fea_reference.cantilever import elastica
 

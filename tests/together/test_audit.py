@@ -19,10 +19,8 @@ from comparisons.audit import audit, audited
 from comparisons.audit.corners import corners_of
 from comparisons.audit.gaps import _crossings, _standing_out, _surface
 from comparisons.cases import opened
-from cprbm_scene import Ending
+from cprbm_scene import Ending, FunctionContact, LineContact, scene_from
 from cprbm_scene.answer import frozen_array
-from cprbm_scene.reading import scene_from
-from cprbm_scene.statement import FunctionContact, LineContact
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH, cantilever_data
 from tests.fea_reference.on_an_edge import T, cantilever_over, scene_of
 from tests.references import columns

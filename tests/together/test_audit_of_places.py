@@ -15,7 +15,7 @@ from comparisons.audit import audit
 from comparisons.audit.rest import rests_of
 from comparisons.audit.second import smallest_curvature
 from comparisons.audit.seen import seen_of
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 
 HEIGHT = 71.5e-3
 BACK = 0.910  # of the centre of the arc, left of its ends; the arch rises by 0.7 mm

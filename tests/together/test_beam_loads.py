@@ -15,8 +15,7 @@ from comparisons.choices import Choices
 from comparisons.measures import load_unit
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict import Word, compared
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, cantilever_data
 from tests.elastica_reference.scenes import case
 from tests.references.loaded import loaded

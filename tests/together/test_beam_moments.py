@@ -7,9 +7,8 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene import SceneError, StationAnswer
+from cprbm_scene import SceneError, StationAnswer, scene_from
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.reading import scene_from
 from tests.cprbm.scenes import LENGTH as SCENES_LENGTH
 from tests.cprbm.scenes import MODULUS as SCENES_MODULUS
 from tests.cprbm.scenes import WIDTH, cantilever_data

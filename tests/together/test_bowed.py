@@ -10,8 +10,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from tests.references.curved import bent
 from tests.together.bowed import CLAMP, MOMENT, PARABOLA, RIGIDITY, TIP, cantilever, force, on_a_beam, on_a_circle
 

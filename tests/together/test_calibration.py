@@ -23,7 +23,7 @@ from comparisons.pairing import Solvers, paired
 from comparisons.studies.calibration import Calibration, Trial, tallies, tried
 from comparisons.studies.calibration_told import told
 from comparisons.words import Word
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import HINGE
 from tests.together import truths
 

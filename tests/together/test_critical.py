@@ -11,9 +11,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene import Ending
-from cprbm_scene.answer import Loss
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, Loss, scene_from
 from tests.references import columns, deppo
 from tests.together import branches
 from tests.together.branches import CLAMPED_ARCH, FORCE, HELD, LENGTH, MOMENT, PINNED_ARCH, SNAP, STOPPED_AT, TOGGLE

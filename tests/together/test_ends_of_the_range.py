@@ -8,7 +8,7 @@ import pytest
 import cprbm
 import elastica_reference
 import fea_reference
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, WIDTH, cantilever_data, force
 from tests.fea_reference.cantilever import elastica
 from tests.references.wrapped import Wrapped

@@ -38,10 +38,9 @@ from comparisons.geometry import length, points
 from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer, paired
 from comparisons.verdict import compared
 from comparisons.words import Word
-from cprbm_scene import Answer, Ending, Probe, Scene, StationAnswer
-from cprbm_scene.answer import Array, frozen_array
+from cprbm_scene import Answer, Arc, BeamContact, CircleContact, Ending, Polynomial, Probe, Scene, StationAnswer
+from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.statement import Arc, BeamContact, CircleContact, Polynomial
 from tests.together.planted import remembered, stiffer, without_contact
 
 CHOICES = Choices(links=40, elements=20, kinematics="bending")
@@ -204,7 +203,7 @@ def test_a_contact_of_the_wrong_sign_in_the_finite_elements(case, monkeypatch):
     monkeypatch.setattr(fea_reference.contact, "side_of", _turned(fea_reference.contact.side_of))
     clearance = fea_reference.circle._clearance
 
-    def inside_out(*given: object) -> tuple[Array, Array, Array]:
+    def inside_out(*given: object) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         r, n, g = clearance(*given)
         return r, n, -g
 

@@ -13,11 +13,9 @@ import cprbm
 import elastica_reference
 import fea_reference
 from comparisons.spots import clear_of_spots
-from cprbm_scene import Answer, Ending, SceneError
-from cprbm_scene.answer import Array
+from cprbm_scene import Answer, Ending, SceneError, SelfContact, scene_from
 from cprbm_scene.geometry import arc_length
-from cprbm_scene.reading import scene_from
-from cprbm_scene.statement import STRESSES, SelfContact
+from cprbm_scene.statement import STRESSES
 from fea_reference import solid
 from tests.together.features import FEATURES, SOLVERS, Feature
 
@@ -81,7 +79,7 @@ def test_a_cell(feature: Feature, solver: str) -> None:
 
 
 def compared(
-    feature: Feature, name: str, solver: str, answer: Answer, reference: Answer, value: Array
+    feature: Feature, name: str, solver: str, answer: Answer, reference: Answer, value: np.ndarray
 ) -> NDArray[np.bool_]:
     """Which components count: of a stress in a solid those away from held ends and from where a contact presses."""
     of, quantity = name.split(".")

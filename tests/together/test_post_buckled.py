@@ -7,7 +7,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY
 from tests.elastica_reference.scenes import post_buckled as scene_data
 from tests.references.post_buckled import post_buckled

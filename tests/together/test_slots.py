@@ -12,8 +12,7 @@ from scipy.special import ellipe, ellipk
 import cprbm
 import elastica_reference
 import fea_reference
-from cprbm_scene import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from tests.cprbm.scenes import LENGTH, RIGIDITY, cantilever_data
 from tests.elastica_reference.scenes import post_buckled
 from tests.references.slotted import slotted

@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 import elastica_reference
-from cprbm_scene import Ending
+from cprbm_scene import Ending, scene_from
 from cprbm_scene.geometry import points_on
-from cprbm_scene.reading import scene_from
 from tests.together.bowed import RIGIDITY, cantilever, on_a_beam, on_a_circle
 from tests.together.test_bowed import LENGTH, LOADS, cprbm_answer, fea_answer, values
 from tests.together.test_bowed import exact as parabola

@@ -5,8 +5,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene.answer import Ending
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Ending, scene_from
 from tests.references.three_cantilevers import Stack, solve
 
 STACK = Stack(gap=0.05, reach=1.6, middle=1.1, lower=0.95, force=6.0)

@@ -15,8 +15,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene import Answer, Ending, Loss
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Answer, Ending, Loss, scene_from
 from tests.relations.image import Data
 
 LENGTH, THICKNESS, WIDTH, YOUNGS_MODULUS = 0.0973, 0.00117, 0.0083, 2.07e11

@@ -9,8 +9,7 @@ import pytest
 
 import cprbm
 import fea_reference
-from cprbm_scene import Scene
-from cprbm_scene.reading import scene_from
+from cprbm_scene import Scene, scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, MOMENT, RIGIDITY, THICKNESS, WIDTH, cantilever_data, force
 from tests.references.small import bar_extension
 from tests.references.tapered import Bent, Sizes, bent

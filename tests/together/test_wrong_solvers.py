@@ -29,7 +29,7 @@ from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer,
 from comparisons.verdict import Verdict, compared
 from comparisons.words import Word
 from cprbm_scene import Answer, Scene
-from cprbm_scene.answer import Array, frozen_array
+from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
 from tests.together.planted import COARSE, asked_of, remembered, stiffer, without_contact
 
@@ -111,7 +111,7 @@ def test_a_mean_thickness_is_caught(tapered):
 
 
 def test_a_stiffness_sampled_at_the_ends_of_elements_is_caught(tapered, monkeypatch):
-    def sampled(section: cprbm.section.Section, borders: Array) -> Array:
+    def sampled(section: cprbm.section.Section, borders: np.ndarray) -> np.ndarray:
         return np.diff(borders) / section.rigidity_at(borders[1:])
 
     monkeypatch.setattr(cprbm.section.Section, "flexibility", sampled)

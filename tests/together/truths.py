@@ -16,10 +16,9 @@ from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.geometry import length, points
 from comparisons.pairing import Solver
-from cprbm_scene import Answer, Certificate, Ending, Probe, Scene, Shape, StationAnswer
+from cprbm_scene import Answer, Certificate, Ending, Probe, Scene, Shape, StationAnswer, scene_from
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
-from cprbm_scene.reading import scene_from
 from tests.cprbm.scenes import HINGE
 from tests.references import hinge, three_cantilevers, two_cantilevers
 from tests.references.tapered import guided

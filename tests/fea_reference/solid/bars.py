@@ -1,6 +1,6 @@
 """Scenes of one bar that is held at its start and carries a rigid body at its end."""
 
-from cprbm_scene.reading import scene_from
+from cprbm_scene import scene_from
 
 YOUNG, WIDTH = 1.3e9, 0.007
 

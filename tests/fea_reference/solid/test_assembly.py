@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from cprbm_scene import SceneError
-from cprbm_scene.reading import scene_from
+from cprbm_scene import SceneError, scene_from
 from fea_reference import solid
 from tests.together.features import LENGTH, bowed
 

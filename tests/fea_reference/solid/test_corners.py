@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 import fea_reference
-from cprbm_scene.reading import scene_from
-from cprbm_scene.statement import LineContact
+from cprbm_scene import LineContact, scene_from
 from fea_reference import solid
 from fea_reference.solid.edges import broken
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar

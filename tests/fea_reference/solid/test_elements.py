@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from fea_reference.solid import Settings
 from fea_reference.solid.model import build
 from fea_reference.solid.pairs import pairs_of
-from fea_reference.solid.settings import Settings
 from fea_reference.solid.system import assemble
 from tests.fea_reference.solid.bars import bar, quarter
 

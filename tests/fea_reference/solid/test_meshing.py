@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 
-from fea_reference.solid import gmshed, meshing
+from fea_reference.solid import Settings, gmshed, meshing, prepared
 from fea_reference.solid.mesh import plain_rectangle
-from fea_reference.solid.settings import Settings
-from fea_reference.solid.solve import prepared
 from tests.fea_reference.solid.bars import bar, straight
 
 

@@ -1,0 +1,1 @@
+"""Ratchets: measured sizes of the product packages, and falling limits."""
