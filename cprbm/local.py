@@ -105,8 +105,8 @@ class LocalSystem:
         rows = np.concatenate((rows[keep], self.fixed))
         columns = np.concatenate((columns[keep], self.fixed))
         values = np.concatenate((values[keep], np.ones(len(self.fixed))))
-        # columns have a few entries each, and no two the same: several of them at once are no sooner done
-        return splu(csc_array(coo_array((values, (rows, columns)), shape=(n, n))), panel_size=1)
+        # SuperLU with panels of a single column reads uninitialised memory in a structurally singular matrix
+        return splu(csc_array(coo_array((values, (rows, columns)), shape=(n, n))))
 
     def change(self, solution: Array) -> Array:
         """The part of a solution that is a step of q = (θ, bodies)."""
