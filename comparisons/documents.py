@@ -14,10 +14,10 @@ from comparisons.claims import claim_met, claim_of, claim_of_critical, claimed_d
 from comparisons.criticals import CriticalRow, released
 from comparisons.measures import Row, arc_lengths, unit_of
 from comparisons.per_branch import critical_word
+from comparisons.reactions import WorkEnergyReaction
 from comparisons.third import Third, thirds_of
 from comparisons.tolerances.search import Tolerance
 from comparisons.verdict import Comparison
-from comparisons.work_energy import Reaction
 from cprbm_scene import Answer, Certificate, Critical, Probe, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES
@@ -327,7 +327,9 @@ def _critical_row(scene: Scene, row: CriticalRow) -> Plain:
     }
 
 
-def _reaction(found: Reaction) -> Plain:
+def _reaction(found: WorkEnergyReaction) -> Plain:
+    """The entry of ``work_energy`` for one station."""
+    without = found.work_energy is None
     return {
         "stage": found.stage,
         "station": found.station,
@@ -337,13 +339,14 @@ def _reaction(found: Reaction) -> Plain:
         "multiplier": found.multiplier,
         "work_energy": found.work_energy,
         "difference": found.difference,
-        "allowed": found.within,
-        "round_off": found.floor / found.scale if found.scale > 0.0 else None,
-        "truncation": found.truncation / found.scale if found.scale > 0.0 else None,
-        "energies": "of the stations" if found.dense else "beside the stations",
+        "allowed": None if without else found.allowed,
+        "round_off": None if without else found.share(found.round_off),
+        "truncation": None if without else found.share(found.truncation),
+        "energies": None,  # all energies are those at perturbed stations
         "fea": found.fea,
         "difference_fea": found.from_fea,
         "changes_nearby": list(found.changes),
+        "absence": None if found.absence is None else found.absence.name,
     }
 
 

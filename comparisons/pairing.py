@@ -12,9 +12,8 @@ branches are asked for: with another contact a branch ends elsewhere, and answer
 
 Where an exact answer is known (in ``bending`` only), it stands beside both at the stations that it covers.
 
-Where a drive's reaction is asked, and the scene's own stations are too far apart to tell it, the CPRBM runs at N once
-more with two stations close round each of them (:mod:`comparisons.nearby`): the reaction by the energies' difference,
-which takes no part in the verdict either.
+Where a drive's reaction is a probe, the CPRBM runs at N once more at two perturbed stations around every station of the
+drive (:mod:`comparisons.reactions`). The work–energy reaction follows from their energies. The verdict does not use it.
 """
 
 from __future__ import annotations
@@ -36,8 +35,8 @@ from pydantic import ValidationError
 
 from comparisons.choices import KINEMATICS, Choices, Kinematics, check
 from comparisons.listening import heard_from, listen
-from comparisons.nearby import nearby
 from comparisons.processes import AloneError, deaf, pool
+from comparisons.reactions import perturbed_scene
 from cprbm_scene import Answer, Mistake, RigidContact, Scene, SceneError, Spacing
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
@@ -204,7 +203,7 @@ class Runs:
         beside: the CPRBM in ``auto`` at N + N/7 links, if there is contact or a section has a kink; ``ratio`` is N
             over that number.
         fea_beside, fea_ratio: likewise the finite elements in the chosen theory at n + n/7, if there is contact.
-        nearby: the CPRBM at N links, answering :func:`comparisons.nearby.nearby`; nothing rests on it.
+        perturbed: the CPRBM at N links, answering :func:`comparisons.reactions.perturbed_scene`; nothing rests on it.
         exact: the exact answer in ``bending``, at the stations at which one is known; None if there is no such station.
         solid: the mechanism as a solid, if that was asked for, at n and 2n elements or on as many meshes as a tolerance
             took, each twice as fine as the one before; nothing rests on it.
@@ -219,7 +218,7 @@ class Runs:
     ratio: float = 1.0
     fea_beside: Answer | None = None
     fea_ratio: float = 1.0
-    nearby: Answer | None = None
+    perturbed: Answer | None = None
     exact: Answer | None = None
     solid: tuple[Answer, ...] | None = None
 
@@ -374,7 +373,7 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
     even = replace(choices, formulation="auto")
     extra = [] if even == choices else [(solvers.cprbm, scene, even)]
     beside = [(solvers.cprbm, scene, even.beside())] if may_be_uneven(scene) else []
-    driven = None if bare else nearby(scene)
+    driven = None if bare else perturbed_scene(scene)
     round_each = [] if driven is None else [(solvers.cprbm, driven, choices)]
     jobs = [(solvers.cprbm, scene, choices), (solvers.cprbm, scene, even.finer()), *extra, *beside, *round_each]
     first = len(jobs)
@@ -415,7 +414,7 @@ def begin(scene: Scene, choices: Choices, solvers: Solvers, crew: Crew, *, bare:
             ratio=ratio,
             fea_beside=answers[behind - 1] if scene.contacts else None,
             fea_ratio=fea_ratio,
-            nearby=answers[first - 1] if round_each else None,
+            perturbed=answers[first - 1] if round_each else None,
             exact=exact if exact is not None and exact.stations else None,
             solid=(answers[third], answers[third + 1]) if solvers.solid is not None else None,
         )

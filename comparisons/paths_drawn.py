@@ -16,9 +16,8 @@ from comparisons.branches import begins_at
 from comparisons.figures import BLUE, GREY, RED, Picture, along_axis, canvas, picture
 from comparisons.formats import number, scaled_unit
 from comparisons.measures import UNITS, load_unit
-from comparisons.nearby import ENERGY, reaction_of
+from comparisons.reactions import ENERGY, multiplier, reaction_probe
 from comparisons.verdict import Comparison
-from comparisons.work_energy import along
 from cprbm_scene import Answer, Critical, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.freedoms import unit
 from cprbm_scene.statement import DisplacementDrive, Force, Moment, RotationDrive
@@ -82,10 +81,10 @@ def _ordinates(scene: Scene, stage: Stage) -> Iterator[_Ordinate]:
         if probe.name in asked:
             yield _Ordinate(f"rotation of {stepped.body}", "rad", value(probe))
     elif isinstance(stepped, DisplacementDrive | RotationDrive):
-        probe = reaction_of(stepped)
+        probe = reaction_probe(stepped)
         if probe.name in asked:
             what = "reaction moment" if probe.quantity == "reaction_moment" else "reaction force"
-            yield _Ordinate(what, UNITS[probe.quantity], lambda station: along(scene, stage, station))
+            yield _Ordinate(what, UNITS[probe.quantity], lambda station: multiplier(scene, stage, station))
     if ENERGY.name in asked:
         yield _Ordinate("potential energy", "J", value(ENERGY))
 

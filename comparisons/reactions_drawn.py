@@ -1,4 +1,4 @@
-"""A drive's reaction against its displacement or rotation, in the manner of the paper's Fig. 15."""
+"""Figures of a drive's reaction against its displacement or rotation, in the manner of the paper's Fig. 15."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 from comparisons.figures import BLUE, GREY, RED, Picture, along_axis, canvas, picture
 from comparisons.formats import scaled_unit
 from comparisons.measures import LOAD_UNITS
+from comparisons.reaction_sheets import by_drive
+from comparisons.reactions import MESH_ALLOWANCE, WorkEnergyReaction
 from comparisons.verdict import Comparison
-from comparisons.work_energy import Reaction, by_drive
 from cprbm_scene import Scene
 
 if TYPE_CHECKING:
@@ -17,29 +18,30 @@ if TYPE_CHECKING:
 
 
 def of_comparison(compared: Comparison) -> tuple[Picture, ...]:
-    """A figure for each drive that is stepped to two values at least; one alone is told by the table."""
+    """A figure for every drive with two stations at least; the table suffices for a single station."""
     return tuple(
         _drawn(compared.scene, drive, reactions)
         for drive, reactions in by_drive(compared.reactions).items()
-        if len({each.station for each in reactions}) > 1
+        if len({reaction.station for reaction in reactions}) > 1
     )
 
 
-def _drawn(scene: Scene, drive: str, reactions: Sequence[Reaction]) -> Picture:
-    factor, unit = scaled_unit(reactions[0].unit, max(abs(each.multiplier) for each in reactions))
-    along = LOAD_UNITS[scene.drives[drive].kind]
-    step, step_unit = along_axis(along, max(abs(each.station) for each in reactions))
-    what = "moment" if along == "rad" else "force"
+def _drawn(scene: Scene, drive: str, reactions: Sequence[WorkEnergyReaction]) -> Picture:
+    """The figure of one drive: reactions above, relative differences below."""
+    factor, unit = scaled_unit(reactions[0].unit, max(abs(reaction.multiplier) for reaction in reactions))
+    load_unit = LOAD_UNITS[scene.drives[drive].kind]
+    step, step_unit = along_axis(load_unit, max(abs(reaction.station) for reaction in reactions))
+    what = "moment" if load_unit == "rad" else "force"
     with canvas(6.4, 6.0) as figure:
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
-        for place, branch in enumerate(dict.fromkeys((each.stage, each.branch) for each in reactions)):
-            mine = [each for each in reactions if (each.stage, each.branch) == branch]
+        for place, branch in enumerate(dict.fromkeys((reaction.stage, reaction.branch) for reaction in reactions)):
+            mine = [reaction for reaction in reactions if (reaction.stage, reaction.branch) == branch]
             _reactions(above, mine, step, factor, first=place == 0)
             _differences(below, mine, step, first=place == 0)
         above.set_ylabel(f"reaction {what}, {unit}")
         above.legend(loc="best")
-        within = 100.0 * max(each.within for each in reactions)
-        below.axhspan(-within, within, color="#eef2f7", zorder=0)
+        band = 100.0 * MESH_ALLOWANCE
+        below.axhspan(-band, band, color="#eef2f7", zorder=0)
         below.axhline(0.0, color=GREY, linewidth=0.6)
         below.set_ylabel("relative difference, %")
         below.set_xlabel(f"{drive}, {step_unit}")
@@ -47,20 +49,24 @@ def _drawn(scene: Scene, drive: str, reactions: Sequence[Reaction]) -> Picture:
         return picture(
             figure,
             f"reaction-{drive}",
-            f"Reaction at the drive {drive}. Below: relative differences from the CPRBM's multiplier; the band is "
-            f"{within:g} % wide to either side. Rings: within one station of a contact that opens or closes.",
+            f"Reaction at the drive {drive}. Below: relative differences from the CPRBM's multiplier. The band of "
+            f"{band:g} % to either side is the allowance for the motion of the mesh where contacts are closed. "
+            "Stations beside an event have no work–energy reaction.",
         )
 
 
-def _reactions(axes: Axes, mine: list[Reaction], step: float, factor: float, *, first: bool) -> None:
-    d = [each.station / step for each in mine]
-    known = [each for each in mine if each.work_energy is not None]
-    axes.plot(d, [each.fea / factor for each in mine], "x", color=RED, markersize=6, label="FEA" if first else None)
-    label = "CPRBM, multiplier" if first else None
-    axes.plot(d, [each.multiplier / factor for each in mine], "-", color=BLUE, linewidth=1.4, label=label)
+def _reactions(axes: Axes, mine: Sequence[WorkEnergyReaction], step: float, factor: float, *, first: bool) -> None:
+    """Draw the three reactions of one branch; only the first branch has labels."""
+    d = [reaction.station / step for reaction in mine]
+    own = [(at.station / step, at.work_energy / factor) for at in mine if at.work_energy is not None]
     axes.plot(
-        [each.station / step for each in known],
-        [(each.work_energy or 0.0) / factor for each in known],
+        d, [reaction.fea / factor for reaction in mine], "x", color=RED, markersize=6, label="FEA" if first else None
+    )
+    label = "CPRBM, multiplier" if first else None
+    axes.plot(d, [reaction.multiplier / factor for reaction in mine], "-", color=BLUE, linewidth=1.4, label=label)
+    axes.plot(
+        [station for station, _ in own],
+        [value for _, value in own],
         "o",
         color=BLUE,
         markersize=4.5,
@@ -69,16 +75,15 @@ def _reactions(axes: Axes, mine: list[Reaction], step: float, factor: float, *, 
     )
 
 
-def _differences(axes: Axes, mine: list[Reaction], step: float, *, first: bool) -> None:
-    fea = [(each.station / step, -100.0 * each.from_fea) for each in mine if each.from_fea is not None]
-    own = [(each.station / step, 100.0 * each.difference) for each in mine if each.difference is not None]
-    near = [
-        (each.station / step, 100.0 * each.difference) for each in mine if each.difference is not None and each.changes
-    ]
+def _differences(axes: Axes, mine: Sequence[WorkEnergyReaction], step: float, *, first: bool) -> None:
+    """Draw the differences from the CPRBM's multiplier of one branch, in per cent."""
+    fea = [(at.station / step, -100.0 * at.from_fea) for at in mine if at.from_fea is not None]
+    own = [(at.station / step, 100.0 * at.difference) for at in mine if at.difference is not None]
     for points, marker, colour, label in ((fea, "x", RED, "FEA"), (own, ".", BLUE, "work–energy")):
-        if points:
-            d, differences = zip(*points, strict=True)
-            axes.plot(d, differences, marker, color=colour, label=label if first else None)
-    if near:
-        d, differences = zip(*near, strict=True)
-        axes.plot(d, differences, "o", color=BLUE, markersize=9, markerfacecolor="none")
+        axes.plot(
+            [station for station, _ in points],
+            [value for _, value in points],
+            marker,
+            color=colour,
+            label=label if first else None,
+        )

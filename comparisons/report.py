@@ -99,7 +99,7 @@ def put_page(folder: Path, chapters: tuple[Chapter, ...]) -> None:
 
 def _archive(own: Path, compared: Comparison) -> None:
     runs = compared.runs
-    beside = (("cprbm paper", runs.paper), ("cprbm nearby", runs.nearby), ("exact", runs.exact))
+    beside = (("cprbm paper", runs.paper), ("cprbm perturbed", runs.perturbed), ("exact", runs.exact))
     answers = {**dict(runs.everything()), **{name: answer for name, answer in beside if answer is not None}}
     write(own / "answers.json", archive.text(answers))
     write(own / "comparison.json", documents.text({"cases": [documents.comparison(compared)]}))

@@ -16,6 +16,7 @@ from comparisons.formats import along, number, percent, scaled_unit, vector
 from comparisons.geometry import bentness
 from comparisons.measures import Row, Steps, load_unit, unit_of
 from comparisons.paper_sheets import of_paper
+from comparisons.reaction_sheets import of_reactions
 from comparisons.scales import norm
 from comparisons.sheet import Sheet
 from comparisons.stations import station_of
@@ -25,7 +26,6 @@ from comparisons.tolerances.extrapolation import told
 from comparisons.tolerances.search import Tolerance
 from comparisons.verdict import Comparison
 from comparisons.words import Word
-from comparisons.work_energy import Reaction, by_drive, sentence
 from cprbm_scene import Answer, Scene, StationAnswer
 
 MANY = 40
@@ -62,7 +62,7 @@ def by_subject(compared: Comparison) -> dict[Subject, tuple[Sheet, ...]]:
         ),
         Subject.VERDICT: (_verdicts(compared, rows), _true_errors(compared, rows)),
         Subject.CLAIMS: (claims(compared),),
-        Subject.REACTIONS: _reactions(compared),
+        Subject.REACTIONS: of_reactions(compared),
         Subject.STRESS: (_stresses(compared.scene, rows),),
         Subject.DIFFERENCE: (_steps(compared, rows), of_paper(compared), of_thirds(compared)),
         Subject.CERTIFICATES: (_certificates(compared),),
@@ -281,43 +281,6 @@ def claims(compared: Comparison) -> Sheet:
         "They stand beside our figures and have no part in the verdict. Of a force or a moment the difference is "
         "here a fraction of the value at its station; of a value that is claimed, the CPRBM's distance from it.",
     )
-
-
-def _reactions(compared: Comparison) -> tuple[Sheet, ...]:
-    """A sheet for each drive that a stage steps."""
-    found = []
-    for drive, reactions in by_drive(compared.reactions).items():
-        factor, unit = scaled_unit(reactions[0].unit, max(abs(each.multiplier) for each in reactions))
-        body = tuple(
-            (
-                f"{each.stage} {each.station:g}",
-                number(each.multiplier / factor, 5),
-                "–" if each.work_energy is None else number(each.work_energy / factor, 5),
-                percent(each.difference),
-                number(each.fea / factor, 5),
-                percent(each.from_fea),
-                ", ".join(("jumps", *each.changes) if each.jumped else each.changes),
-            )
-            for each in _few(compared.scene, reactions)
-        )
-        found.append(
-            Sheet(
-                f"Reaction at the drive {drive}, {unit}",
-                ("station", "multiplier", "work–energy", "from it", "FEA", "multiplier from it", "closes or opens"),
-                body,
-                sentence(reactions)
-                + ("" if len(body) == len(reactions) else f" {len(reactions) - len(body)} stations are left out here."),
-            )
-        )
-    return tuple(found)
-
-
-def _few(scene: Scene, reactions: Sequence[Reaction]) -> tuple[Reaction, ...]:
-    """All reactions, or of many those at the stations to show, next to a jump, or further apart than they may be."""
-    if len(reactions) <= MANY:
-        return tuple(reactions)
-    shown = shown_stations(scene, tuple((each.stage, each.station) for each in reactions))
-    return tuple(each for each in reactions if each.apart or each.jumped or (each.stage, each.station) in shown)
 
 
 def _stresses(scene: Scene, rows: tuple[Row, ...]) -> Sheet:

@@ -45,10 +45,10 @@ from comparisons.measures import Bounds, Row, rows_of
 from comparisons.pairing import Runs
 from comparisons.per_branch import BranchVerdict, branch_verdicts, critical_word, told
 from comparisons.reach import within_reach
+from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
 from comparisons.soundness import ABSENT_WHILE_OPEN, complaints, sound_part
 from comparisons.tolerances.search import Tolerance
 from comparisons.words import Word, worst_of
-from comparisons.work_energy import Reaction, reactions
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -97,7 +97,7 @@ class Comparison:
     rows: tuple[Row, ...]
     verdict: Verdict
     criticals: tuple[CriticalRow, ...] = ()
-    reactions: tuple[Reaction, ...] = ()
+    reactions: tuple[WorkEnergyReaction, ...] = ()
     tolerances: tuple[Tolerance, ...] = ()
     audits: Mapping[str, Audit] = frozendict()
 
@@ -162,11 +162,14 @@ def _up_to_there(verdict: Verdict, last: Row) -> Verdict:
     return replace(verdict, word=word, sentences=(said, *verdict.sentences), completed=False)
 
 
-def _reactions(scene: Scene, runs: Runs) -> tuple[Reaction, ...]:
-    """The drives' reactions by two ways: they need the answers at N and n alone, and no estimate of an error."""
+def _reactions(scene: Scene, runs: Runs) -> tuple[WorkEnergyReaction, ...]:
+    """The drives' reactions, also beside a failed finer run: the answers at N and n and the perturbed run suffice."""
+    perturbed = perturbed_scene(scene)
+    if perturbed is None or runs.perturbed is None:
+        return ()
     if complaints(scene, runs.cprbm[0]) or complaints(scene, runs.reference):
         return ()
-    return reactions(scene, runs.cprbm[0], runs.reference, runs.nearby)
+    return reactions(scene, runs.cprbm[0], runs.reference, sound_part(perturbed, runs.perturbed))
 
 
 def judged(scene: Scene, rows: tuple[Row, ...], criticals: tuple[CriticalRow, ...] = ()) -> Verdict:

@@ -15,8 +15,8 @@ from comparisons.bench.timing import LARGEST, Method
 from comparisons.choices import KINEMATICS, Choices, Kinematics
 from comparisons.measures import rows_of
 from comparisons.memory import Remembering
-from comparisons.nearby import nearby
 from comparisons.pairing import Crew, Runs, Solvers, known_exactly, paired, with_solid
+from comparisons.reactions import perturbed_scene
 from comparisons.soundness import complaints
 from comparisons.tolerances.levels import SceneLevels
 from comparisons.tolerances.search import Found, Tolerance, search
@@ -107,14 +107,14 @@ def _both_within(
     cprbm = _reached(scene, "cprbm", choices, ("bending",), tolerance, memory, fea.value(choices.kinematics))
     told = _told(cprbm, "cprbm", tolerance), _told(fea, "fea", tolerance)
     if cprbm.found.settled:
-        driven, n, pair = nearby(scene), cprbm.found.n, cprbm.pair("bending")
+        driven, n, pair = perturbed_scene(scene), cprbm.found.n, cprbm.pair("bending")
         return Runs(
             choices.kinematics,
             pair,
             _families(fea, choices.kinematics),
             beside=cprbm.levels.uneven("bending", n, pair, cprbm.found.estimate.extrapolated),
             ratio=cprbm.levels.ratio(n),
-            nearby=None if driven is None else _nearby(cprbm, driven),
+            perturbed=None if driven is None else _perturbed(cprbm, driven),
             exact=known_exactly(scene, choices, solvers, memory),
         ), told
     elements = fea.levels.choices(choices.kinematics, fea.found.n)
@@ -156,8 +156,8 @@ def _between(fea: _Reached, kinematics: Kinematics) -> Answer:
     return replace(fea, levels=replace(fea.levels, theories=(kinematics,))).value(kinematics)
 
 
-def _nearby(cprbm: _Reached, driven: Scene) -> Answer:
-    """The settled answer at the stations close round a drive's, its energies settled as the scene's are."""
+def _perturbed(cprbm: _Reached, driven: Scene) -> Answer:
+    """The settled answer at the perturbed stations, its energies settled as the energies of the scene."""
     return replace(cprbm, levels=replace(cprbm.levels, scene=driven, reference=None)).value("bending")
 
 

@@ -16,7 +16,7 @@ COARSE = Choices(elements=20, kinematics="bending")
 
 def remembered(runs: Runs) -> Solvers:
     """Solvers that hand out answers which are there already."""
-    cprbm = [*runs.cprbm, *(answer for answer in (runs.beside, runs.nearby) if answer is not None)]
+    cprbm = [*runs.cprbm, *(answer for answer in (runs.beside, runs.perturbed) if answer is not None)]
 
     def by_cprbm(scene: Scene, choices: Choices) -> Answer:
         asked = {(stage.name, value) for stage in scene.stages for value in stage.stations}
