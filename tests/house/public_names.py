@@ -79,6 +79,7 @@ DOCUMENTED = {
     "comparisons.cases": ("asked", "names", "opened"),
     "comparisons.verdict": ("Comparison", "Verdict"),
     "comparisons.measures": ("Bounds", "Row"),
+    "comparisons.reactions": ("Absence", "WorkEnergyReaction"),
     "comparisons.tidy": ("Number",),
     "comparisons.audit": ("audit",),
 }
