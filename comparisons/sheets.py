@@ -21,8 +21,8 @@ from comparisons.sheet import Sheet
 from comparisons.stations import station_of
 from comparisons.third import of_thirds
 from comparisons.third import sentence as beside_the_solid
-from comparisons.tolerances.extrapolation import told
 from comparisons.tolerances.search import Tolerance
+from comparisons.tolerances.settled import told
 from comparisons.verdict import Comparison
 from comparisons.words import Word
 from comparisons.work_energy import Reaction, by_drive, sentence
