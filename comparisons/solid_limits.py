@@ -1,9 +1,10 @@
-"""Limits of the solid's values on meshes that double, and their stated uncertainties (:mod:`comparisons.uncertainty`).
+"""Limits of the solid's values on meshes that double, and stated uncertainties (:mod:`comparisons.uncertainty`).
 
-Quadrilaterals of second order converge with the fourth power of their size away from corners.  At the corner of a face
-that is held the stress has no bound, and displacements converge with an order of about 1.5 (M. L. Williams, Stress
-singularities resulting from various boundary conditions in angular corners of plates in extension, J. Appl. Mech. 19
-(1952) 526).  Three meshes show the order.  Two meshes do not, and their uncertainty reaches the limit of order 1.
+Away from corners quadrilaterals of second order converge with the fourth power of the element's size.  At the corner of
+a face that is held the stress has no bound, and displacements converge with an order of about 1.5 (M. L. Williams,
+Stress singularities resulting from various boundary conditions in angular corners of plates in extension, J. Appl.
+Mech. 19 (1952) 526).  Three meshes show the order.  Two meshes do not, and their uncertainty reaches the limit of
+order 1.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from cprbm_scene.statement import STRESSES
 def solid_limit(
     scene: Scene, row: Row, answers: Sequence[Answer], beside: Sequence[StationAnswer] = ()
 ) -> tuple[Limit, Flags] | None:
-    """Limit (k,) of the solid at a row, and which components count; None if its two finest meshes lack such values.
+    """Limit (k,) of the solid at a row, and the components that count; None if the two finest meshes lack such values.
 
     Args:
         scene: the question.

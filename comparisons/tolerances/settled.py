@@ -1,11 +1,12 @@
 """Values settled on the grids N/2, N and 2N: the finest values or their limits, with stated uncertainties.
 
-:mod:`comparisons.uncertainty` gives both.  Where the error may be uneven in N, the value at N + N/7 takes part.
+:mod:`comparisons.uncertainty` gives limits and uncertainties.  Where the error may be uneven in N, the value at N + N/7
+takes part.
 
 Shapes, places of contact, events and certificates are the finest answer's.  Where a contact is open on one grid and
-closed on another, or the branches are different, values follow no common law: the finest value is kept.  Its
-uncertainty then follows from the grids of its own law.  The ends of a contact zone are kept as well if their limits
-would change places: the zone is then no longer than its ends are uncertain.
+closed on another, or the branches are different, values follow no common law: the finest value is kept.  The
+uncertainty then follows from the grids with the finest answer's contacts and branch.  The ends of a contact zone are
+kept as well if the limits would change places: the zone is then no longer than the ends are uncertain.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ class Settled:
     Attributes:
         answer: the finest with the settled values.
         coarse: the answer at N.
-        uncertainties: of the values, where N and 2N have them.
+        uncertainties: of the values at which N and 2N follow one law.
     """
 
     answer: Answer
@@ -68,7 +69,7 @@ def settled(scene: Scene, answers: Mapping[int, Answer], probes: Collection[str]
 
 
 def told(sizes: tuple[int, ...], probes: Collection[str]) -> str:
-    """The note which values are extrapolated from two ``sizes``, and where the others are from."""
+    """Note about the values that are extrapolated from two ``sizes``, and the grid of all other values."""
     coarse, fine = sizes
     which = ", ".join(sorted(probes))
     return (

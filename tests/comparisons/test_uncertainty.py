@@ -1,4 +1,4 @@
-"""Discretisation error, order and limit of made-up sequences whose limit and order are known.
+"""Discretisation error, order and limit of made-up sequences with a known limit and order.
 
 Expected numbers follow from Richardson's formulas, written in each test: with values v = L + C N^−q and a law of order
 p through N and 2N, the law's error at N is (v − V)/(1 − 2^−p).
@@ -37,7 +37,7 @@ def test_three_grids_of_a_pure_power_state_its_error_and_a_quarter(order, own, a
 
 
 def test_a_higher_order_than_the_assumed_order_is_stated_larger():
-    # with (v − V)/C = 15/16 the law of order 2 says 5/4 C at N and L = v_∞ − C/4; at 8/7 N it foretells
+    # with (v − V)/C = 15/16 the law of order 2 has the error 5/4 C at N and L = v_∞ − C/4; at 8/7 N the law has
     # −1/4 + 5/4 (7/8)², and the value is (7/8)⁴
     even, uneven = stated(THIRD, powers(4.0, THIRD, factor=THIRD[0] ** 4.0))
     beyond = (7 / 8) ** 4 + 1 / 4 - 5 / 4 * (7 / 8) ** 2
@@ -80,7 +80,7 @@ def test_where_the_error_changes_its_sign_the_stage_states_its_largest():
     assert found["twist"] == pytest.approx(S * 1.0 / 56**2, rel=1e-9)
 
 
-def test_a_constant_has_no_error_and_is_its_own_limit():
+def test_a_constant_has_no_error():
     assert stated(THIRD, [0.2, 0.2, 0.2]) == (0.0, 0.0)
     found = limit(DOUBLED, np.zeros(6))
     assert (found.value[0], found.uncertainty[0], found.order) == (0.0, 0.0, None)
@@ -123,7 +123,7 @@ def test_sizes_need_not_double(sizes):
 @pytest.mark.parametrize("order", [1.6, 2.0, 3.0, 4.0])
 def test_the_uncertainty_of_a_limit_is_made_for_the_first_order(order):
     # on grids that double, values C N^−q with a = 2^−q are beyond the law of order p, b = 2^−p, at N/2 by
-    # d = (b − a)(1 − a)/(ab) of their error at N, and the limit is off by (a − b)/(1 − b) of it: for q = 1 that is b/(1 − b) d
+    # d = (b − a)(1 − a)/(ab) of their error at N, and the limit is off by (a − b)/(1 − b) of it: b/(1 − b) d for q = 1
     found = limit((20, 40, 80), powers(order, (20, 40, 80), factor=40.0**order))
     a, b = 2.0**-order, 0.25
     d = abs(b - a) * (1 - a) / (a * b)
@@ -161,7 +161,7 @@ def test_a_term_of_higher_order_lies_within_the_uncertainty_and_does_not_drown_i
 
 
 def test_an_uneven_error_lies_within_the_uncertainty_nearly_always():
-    # the error's factor is another at each size, by up to a half, as where a contact falls between joints
+    # the factor of the error varies by up to a half from size to size, as with a contact between joints
     random = np.random.default_rng(1)
     n = np.array(DOUBLED, dtype=float)
     met = 0
@@ -190,7 +190,7 @@ def test_round_off_shows_no_order_and_leaves_what_it_leaves():
         ([1.0, 2.0, 2.0 + 1e-6], "the change falls faster than any order", 2.0),
     ],
 )
-def test_where_there_is_no_order_it_is_said_why(values, why, assumed):
+def test_the_reason_of_a_missing_order(values, why, assumed):
     assert observed((10, 20, 40), np.array(values)) == (None, why)
     assert limit((10, 20, 40), np.array(values), 4.0).assumed == assumed
 
@@ -237,7 +237,7 @@ def test_the_error_of_each_size_counts_the_limits_own():
         ((10, 20), [1.0, 2.0], 0.0),
     ],
 )
-def test_what_cannot_be_extrapolated_is_refused(sizes, values, order):
+def test_wrong_sizes_values_and_orders_are_refused(sizes, values, order):
     with pytest.raises(ValueError, match=r"sizes|values|order"):
         limit(sizes, np.array(values), order)
     with pytest.raises(ValueError, match=r"sizes|values|order"):

@@ -1,4 +1,4 @@
-"""What a solver's discretisation leaves uncertain, from an answer at twice the links or elements.
+"""Uncertainty of a solver's discretisation, from an answer at twice the links or elements.
 
 The largest uncertainty of a probe in a stage counts at every station (:mod:`comparisons.uncertainty`), over the probe's
 scale.
