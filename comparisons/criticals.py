@@ -37,7 +37,6 @@ import numpy as np
 
 from comparisons.branches import span_of, turns
 from comparisons.measures import Bounds, bounds_of, load_unit
-from comparisons.order import USUAL
 from comparisons.pairing import Runs
 from cprbm_scene import Answer, Critical, GoneOver, Scene, Stage
 from cprbm_scene.frozendict import frozendict
@@ -203,7 +202,7 @@ def _row(scene: Scene, runs: Runs, stage: Stage, place: int, here: Mapping[str, 
         row,
         difference=float(abs(values["cprbm"] - values[chosen])[0]),
         same_theory=float(abs(values["cprbm"] - values["fea bending"])[0]),
-        bounds=bounds_of(runs, values, USUAL, lambda d: float(np.linalg.norm(d)), allowance),
+        bounds=bounds_of(runs, values, lambda d: float(np.linalg.norm(d)), allowance),
     )
 
 

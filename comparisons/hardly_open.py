@@ -23,9 +23,9 @@ import numpy as np
 from comparisons.audit.gaps import spaces
 from comparisons.audit.rest import rests_of
 from comparisons.audit.seen import seen_of
-from comparisons.order import USUAL, uncertainty
 from comparisons.pairing import Runs
 from comparisons.stations import station_of
+from comparisons.uncertainty import error
 from cprbm_scene import Answer, Scene
 
 LESS = 0.1  # of u, by which a gap may seem to be less than nought
@@ -82,5 +82,7 @@ def _gap(scene: Scene, answer: Answer, where: Where, name: str) -> float:
 def _uncertain(gaps: Sequence[float], ratio: float) -> float:
     """u from g, G and, where there is one, w."""
     g, G, *beside = (np.array([gap]) for gap in gaps)
-    u = uncertainty(g, G, beside[0] if beside else None, ratio, USUAL, lambda gap: float(np.abs(gap).max()))
-    return max(u, np.finfo(float).tiny)
+    grids = zip((1.0, 1.0 / ratio, 2.0), (g, beside[0], G), strict=True) if beside else ((1.0, g), (2.0, G))
+    sizes, values = zip(*grids, strict=True)
+    found = error(sizes, values)
+    return max(float((found.even + found.uneven)[0]), float(np.finfo(float).tiny))

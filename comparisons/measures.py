@@ -9,41 +9,27 @@ v_f, V_f    the finite elements' value at n and at 2n elements (with a 16th of t
             chosen theory
 v_b, V_b    the same in the theory ``bending``, the CPRBM's own
 v_s         at n in the theory ``stretch``
-p           order of convergence that the error estimate assumes, 2; see :mod:`comparisons.order`
-S           safety factor of the error estimate, 1.25
 w           the CPRBM's value at N + N/7 links, where there is contact or a section has a kink
 w_f         the finite elements' at n + n/7 elements in the chosen theory, where there is contact
 d           v_c − v_f, the difference
-u           S · |v − V| · 2^p/(2^p − 1), a solver's own uncertainty at N (or n), and no less than F times the
-            probe's largest in the stage on the same branch; u_b no less than F times u_f
-F           share of that largest uncertainty that none falls below, S − 1
+u           stated uncertainty of a solver at N (or n) by :mod:`comparisons.uncertainty`, the largest over the
+            stations of the stage on the branch
 r           round-off allowance
 x           the exact value in ``bending``, where one is known
 q           what an exact value may itself be off by
 ==========  ===========================================================================================
 
-The error of v is C/N^p and that of V a quarter of it (p = 2), so v − V is three quarters of v's error: hence
-the factor 4/3 (Richardson; Roache, *Verification and Validation in Computational Science*, whose safety
-factor for a known order is 1.25).  Where finite elements converge faster, p = 2 only makes u larger.
+The grids are N, N + N/7 and 2N links, likewise elements.  In ``bending`` the finite elements have two grids.  Both
+theories are solved on the same meshes, and contact falls between the same nodes: the uneven part of u_f counts in u_b
+as well.  At a station alone this part keeps u_b from vanishing where v_b − V_b passes through zero.
 
-An error changes its sign somewhere along a stage, and where v − V passes through zero it says nothing of v's
-error: C is then small, and what the estimate leaves out (terms of higher order, contact that falls otherwise
-between joints) is all that is left.  S = 1 + F allows an estimate to be wrong by its share F.  By how much it is
-wrong does not pass through zero with it, and that share of the stage's largest is kept at every station.
-Of one station alone, or of several at which little but the load changes, the stage's largest may be small by the same
-accident.  The finite elements have two errors at every station: in both theories they are solved on the same meshes,
-contact falls between the same nodes, and C has no reason to vanish in both at one load.  The same share of u_f is
-therefore kept in u_b; u_f is no less than u_b anyway.
-
-Where a contact or a kink falls between joints can make the CPRBM's error uneven in N, and two N may meet by
-accident: what the even law through v and V does not foretell of w, times S, is added to u_c.  A force within a finite
-element bends it there otherwise than its cubic, which is off by F u³v³/(3 EI h³) and in its slope by
-F u²v²(v − u)/(2 EI h³), with u + v = h: nothing where the place falls on a node, the most half-way and at a quarter.
-With shear the slope jumps there besides.  What the law does not foretell of w_f, times S, is added to u_f likewise.
+A force within a finite element bends it there otherwise than its cubic, which is off by F u³v³/(3 EI h³) and in its
+slope by F u²v²(v − u)/(2 EI h³), with u + v = h: nothing where the place falls on a node, the most half-way and at a
+quarter.  With shear the slope jumps there besides.
 
 The formulation ``paper`` holds joints apart and not what lies between them, so that its error depends on where
-a contact falls between joints and no two N tell it. There u_c = |v_c − v_a| + S·4/3·|v_a − V_c|: its distance from the
-formulation whose error is even in N, and that one's own.
+a contact falls between joints and no two N tell it.  There u_c = |v_c − v_a| + u_a: its distance from the formulation
+whose error is even in N, and the uncertainty of this.
 
 The theory term is |v_b − v_f|, computed and never typed in.  Where both solvers are as good as they state,
 |v_c − v_f| ≤ |v_c − v_b| + |v_b − v_f| ≤ u_c + u_b + |v_b − v_f|: u_f is therefore never taken for less than u_b.
@@ -87,17 +73,17 @@ from comparisons.branches import MEASURED, Place, Spot, spots_of
 from comparisons.choices import KINEMATICS
 from comparisons.geometry import length
 from comparisons.hardly_open import hardly_open
-from comparisons.order import SAFETY, order_of, richardson, uncertainty
 from comparisons.pairing import Runs
 from comparisons.scales import denominator, family_size, natural_scale, norm, probe_scale
 from comparisons.shared import resultant, sharing
 from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
+from comparisons.uncertainty import Error, error, largest
 from cprbm_scene import Answer, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array
+from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import STRESSES, Quantity
 
-SHARE_OF_LARGEST = SAFETY - 1.0
 LEVERS = 10.0
 """What a mechanism makes of a gap in one of its joints at the most, in multiples of it."""
 
@@ -281,7 +267,7 @@ def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
     stages = {stage.name: stage for stage in scene.stages}
     one_place = sharing(scene, everyone.values())
     unsure = hardly_open(scene, runs)
-    return _none_small_by_accident(
+    return _with_largest(
         tuple(
             _row(
                 scene,
@@ -418,31 +404,34 @@ def _row(
         counts = clear_of_spots(scene, probe.of, row.arc_length, tuple(stations.values()))
         if not counts.any():
             return row
+    values = {name: found[counts] for name, found in values.items()}
+    v_c, v_f, v_b = values["cprbm"], values[chosen], values["fea bending"]
 
     def size(difference: Array) -> float:
-        return norm(probe.quantity, difference[counts])
+        return norm(probe.quantity, difference)
 
     row = replace(row, difference=size(v_c - v_f), same_theory=size(v_c - v_b))
     if spot.place not in MEASURED:
         return row
     open_everywhere = probe.quantity in OPEN_AT_ZERO and not any(found.any() for found in values.values())
-    allowance = 0.0 if open_everywhere else unsettled
-    bounds = bounds_of(runs, values, order_of(scene, probe), size, allowance)
+    where = stage.name, value, probe.name
+    known = {name: found[where].of(counts) for name, found in runs.settled.items() if where in found}
+    bounds = bounds_of(runs, values, size, 0.0 if open_everywhere else unsettled, known)
     ladder = [v_c, values.get("cprbm auto", v_c), *(values[f"fea {kinematics}"] for kinematics in runs.fea)]
     formulations = _formulations(runs, probe, stage.name, spot)
     true_errors = None
-    if exact is not None and row.exact is not None and row.exact.shape == v_f.shape:
+    if exact is not None and row.exact is not None and row.exact.shape == counts.shape:
         open_end = max(exact.certificate.residual, exact.certificate.residual_floor)
         true_errors = TrueErrors(
-            cprbm=size(v_c - row.exact),
-            bending=size(v_b - row.exact),
+            cprbm=size(v_c - row.exact[counts]),
+            bending=size(v_b - row.exact[counts]),
             allowance=max(open_end * _family_size(scene, probe, stage, value, compared), EXACT_TO * row.scale),
         )
     return replace(
         row,
         bounds=bounds,
-        steps=_steps(probe.quantity, [step[counts] for step in ladder]) if _whole_ladder(runs) else None,
-        contact_model=None if formulations is None else size(formulations[0] - formulations[1]),
+        steps=_steps(probe.quantity, ladder) if _whole_ladder(runs) else None,
+        contact_model=None if formulations is None else size((formulations[0] - formulations[1])[counts]),
         true_errors=true_errors,
     )
 
@@ -465,35 +454,48 @@ def _of_resultants(scene: Scene, runs: Runs, row: Row, stations: Mapping[str, St
     row = replace(row, difference=size(v_c - v_f), same_theory=size(v_c - v_b), together=(v_c, v_f))
     if row.place not in MEASURED:
         return row
-    return replace(row, bounds=bounds_of(runs, values, order_of(scene, probe), size, unsettled))
+    return replace(row, bounds=bounds_of(runs, values, size, unsettled))
 
 
 def bounds_of(
-    runs: Runs, values: Mapping[str, Array], order: int, size: Callable[[Array], float], allowance: float
+    runs: Runs,
+    values: Mapping[str, Array],
+    size: Callable[[Array], float],
+    allowance: float,
+    known: Mapping[str, Error] = frozendict(),
 ) -> Bounds:
-    """What may lie between the compared values of a number, from those of all runs.
+    """Bounds of a row from the values of all runs.
 
     Args:
-        runs: who answered.
+        runs: the runs.
         values: (k,) by the name of the run, as :meth:`comparisons.pairing.Runs.everything` names them.
-        order: p of the values.
-        size: the norm of a difference (k,).
+        size: norm of a difference (k,).
         allowance: r.
+        known: stated uncertainty of the values of settled runs, by their names.
     """
     chosen = f"fea {runs.kinematics}"
     v_c, v_f, v_b = values["cprbm"], values[chosen], values["fea bending"]
     even = values.get("cprbm auto", v_c)
-    own = size(v_c - even)
-    own += uncertainty(even, values["cprbm finer"], values.get("cprbm beside"), runs.ratio, order, size)
-    bending = SAFETY * richardson(order) * size(v_b - values["fea bending finer"])
-    fea = uncertainty(v_f, values[f"{chosen} finer"], values.get(f"{chosen} beside"), runs.fea_ratio, order, size)
+    of_cprbm = known.get("cprbm") or _error(even, values, "cprbm", runs.ratio)
+    of_fea = known.get(chosen) or _error(v_f, values, chosen, runs.fea_ratio)
+    of_bending = known.get("fea bending") or _error(v_b, values, "fea bending", runs.fea_ratio)
+    bending = size(of_bending.even) + max(size(of_bending.uneven), size(of_fea.uneven))
     return Bounds(
-        cprbm=own,
-        fea=max(fea, bending),
-        bending=fea if runs.kinematics == "bending" else max(bending, SHARE_OF_LARGEST * fea),
+        cprbm=size(v_c - even) + size(of_cprbm.even) + size(of_cprbm.uneven),
+        fea=max(size(of_fea.even) + size(of_fea.uneven), bending),
+        bending=bending,
         theory=size(v_b - v_f),
         round_off=allowance,
     )
+
+
+def _error(v: Array, values: Mapping[str, Array], name: str, ratio: float) -> Error:
+    """Stated uncertainty of the values v (k,) at N of the runs of a ``name``."""
+    grids = [(1.0, v), (2.0, values[f"{name} finer"])]
+    if f"{name} beside" in values:
+        grids.insert(1, (1.0 / ratio, values[f"{name} beside"]))
+    sizes, found = zip(*grids, strict=True)
+    return error(sizes, found)
 
 
 def _exact_station(runs: Runs, stage: str, spot: Spot) -> StationAnswer | None:
@@ -507,37 +509,30 @@ def _exact_station(runs: Runs, stage: str, spot: Spot) -> StationAnswer | None:
     return found if found.branch == spot.branch else None
 
 
-def _none_small_by_accident(rows: tuple[Row, ...]) -> tuple[Row, ...]:
-    """The rows with each uncertainty at least F times the largest of its probe in its stage, on its branch.
+def _with_largest(rows: tuple[Row, ...]) -> tuple[Row, ...]:
+    """The rows with one uncertainty per solver, probe, stage and branch: the largest over the compared stations.
 
-    What goes with the square root of the distance from an end, near which it is, says nothing of other stations.
-    A contact that is open in every run has no force, and no uncertainty of it.
+    Beside an end of a branch the uncertainty grows with the square root of the distance and counts at its station.
+    A contact that is open in every run has no force and no uncertainty.
     """
-    largest: dict[tuple[str, str, int | None], tuple[float, float, float]] = {}
-    for row in rows:
-        if row.bounds is not None and row.place is Place.COMPARED:
-            key = (row.probe.name, row.stage, row.branch)
-            cprbm, fea, bending = largest.get(key, (0.0, 0.0, 0.0))
-            largest[key] = (
-                max(cprbm, row.bounds.cprbm),
-                max(fea, row.bounds.fea),
-                max(bending, row.bounds.bending),
-            )
-    found = []
-    for row in rows:
-        if row.bounds is not None and row.bounds.total > 0.0:
-            all_of_it = largest.get((row.probe.name, row.stage, row.branch), (0.0, 0.0, 0.0))
-            cprbm, fea, bending = (SHARE_OF_LARGEST * size for size in all_of_it)
-            bounds = replace(
-                row.bounds,
-                cprbm=max(row.bounds.cprbm, cprbm),
-                fea=max(row.bounds.fea, fea),
-                bending=max(row.bounds.bending, bending),
-            )
-            found.append(replace(row, bounds=bounds))
-        else:
-            found.append(row)
-    return tuple(found)
+    compared = [row for row in rows if row.bounds is not None and row.place is Place.COMPARED]
+    stated = {
+        name: largest((_statement(row), getattr(row.bounds, name)) for row in compared)
+        for name in ("cprbm", "fea", "bending")
+    }
+
+    def widened(row: Row) -> Row:
+        if row.bounds is None or row.bounds.total == 0.0:
+            return row
+        own = {name: max(getattr(row.bounds, name), every.get(_statement(row), 0.0)) for name, every in stated.items()}
+        return replace(row, bounds=replace(row.bounds, **own))
+
+    return tuple(map(widened, rows))
+
+
+def _statement(row: Row) -> tuple[str, str, int | None]:
+    """Probe, stage and branch of a row, which have one uncertainty."""
+    return row.probe.name, row.stage, row.branch
 
 
 def _formulations(runs: Runs, probe: Probe, stage: str, spot: Spot) -> tuple[Array, Array] | None:

@@ -22,8 +22,8 @@ from comparisons.sheet import Sheet
 from comparisons.stations import station_of
 from comparisons.third import of_thirds
 from comparisons.third import sentence as beside_the_solid
-from comparisons.tolerances.extrapolation import told
 from comparisons.tolerances.search import Tolerance
+from comparisons.tolerances.settled import told
 from comparisons.verdict import Comparison
 from comparisons.words import Word
 from cprbm_scene import Answer, Scene, StationAnswer

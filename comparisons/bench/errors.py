@@ -11,7 +11,7 @@ U           the same of the reference's own uncertainty; zero where it is exact
 ==========  ==============================================================================================
 
 The reference is the exact answer where there is one, or else the limit by Richardson's extrapolation of the CPRBM in
-``auto``, from N = 160, 320 and 640, with the uncertainty of :mod:`comparisons.converging.limits`.  An error that is not
+``auto``, from N = 160, 320 and 640, with the uncertainty of :mod:`comparisons.uncertainty`.  An error that is not
 clearly larger than U says nothing.
 """
 
@@ -24,15 +24,14 @@ import numpy as np
 
 from comparisons.bench.question import MEASURES, Measure, measure_of
 from comparisons.choices import Choices
-from comparisons.converging.limits import limit
 from comparisons.pairing import Solvers
 from comparisons.scales import SMALLEST_EVENT, natural_scale
+from comparisons.uncertainty import limit
 from cprbm_scene import Scene, SceneError
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
 
 FINE = (160, 320, 640)
-ORDER = 2.0
 SMALL = 1e-3
 
 
@@ -65,7 +64,7 @@ def reference(scene: Scene, solvers: Solvers) -> Reference:
     for probe in scene.probes:
         found = [answer.stations[-1].values[probe.name] for answer in answers]
         if len({one.shape for one in found}) == 1 and found[0].size:
-            limited = limit(FINE, np.array(found), ORDER)
+            limited = limit(FINE, np.array(found))
             values[probe.name], uncertainty[probe.name] = limited.value, limited.uncertainty
     by = f"the CPRBM's limit (auto, N = {', '.join(map(str, FINE))})"
     return Reference(by, frozendict(values), frozendict(uncertainty))

@@ -233,7 +233,7 @@ def test_an_answer_that_ends_for_another_reason_is_not_whole(scene):
 def test_bounds_are_the_same_whether_of_a_row_or_by_hand(scene):
     runs = paired(scene, Choices(), Solvers(C, F))
     values = {name: np.array([each.critical[0].value]) for name, each in runs.everything()}
-    bounds = bounds_of(runs, values, 2, lambda d: float(np.linalg.norm(d)), 0.0)
+    bounds = bounds_of(runs, values, lambda d: float(np.linalg.norm(d)), 0.0)
     assert bounds.cprbm == pytest.approx(1.25 * 1e-4, rel=1e-6)
     assert bounds.bending == pytest.approx(1.25 * 1e-4 / 4.0, rel=1e-6)
     assert bounds.theory == pytest.approx(0.1 * 0.005, rel=1e-6)

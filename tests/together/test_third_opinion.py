@@ -5,7 +5,6 @@ import pytest
 
 from comparisons.choices import Choices
 from comparisons.documents import comparison
-from comparisons.extrapolated_solid import corner_order
 from comparisons.pairing import Solvers, paired, with_solid
 from comparisons.third import of_thirds, sentence, thirds_of
 from comparisons.verdict import compared
@@ -45,9 +44,3 @@ def test_three_columns_are_told(thick):
     document = comparison(thick)
     assert document["solvers"]["solid"]["ending"] == "COMPLETED"
     assert {row["probe"] for row in document["solid"]} == {"tip.displacement", "beam.bending_stress"}
-
-
-def test_the_order_is_that_of_a_corner_held_on_one_side():
-    # λ = 0.7112 where κ = 1.8, plane strain with ν = 0.3 (Williams 1952), which is ν = 3/7 in plane stress
-    assert corner_order(3 / 7) == pytest.approx(2 * 0.7112, abs=2e-4)
-    assert corner_order(0.0) == pytest.approx(2.0)
