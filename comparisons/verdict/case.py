@@ -1,0 +1,151 @@
+"""The verdict on a case: two answers, their rows and events, the audits, and the sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from comparisons.audit import Audit, audit
+from comparisons.pairing import Runs
+from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
+from comparisons.tolerances.search import Tolerance
+from comparisons.verdict import sentences as said
+from comparisons.verdict.completeness import complete_stations, ends_at_critical, problems
+from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows, station_events
+from comparisons.verdict.judge import BranchVerdict, Judged, branch_verdicts, judge_case, judge_row
+from comparisons.verdict.rows import Row, build_rows
+from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.words import Reason, Word
+from cprbm_scene import Answer, Scene
+from cprbm_scene.frozendict import frozendict
+
+Auditor = Callable[[Scene, Answer], Audit]
+"""Function that finds the faults of an answer to a scene."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """The verdict on a case.
+
+    Attributes:
+        word: of the case; reason: None where the case agrees.
+        sentences: the sentence on what decides first.
+        words, reasons: by row; a word is None where the row takes no part, a reason unless the word has one.
+        completed: whether both compared runs reached the last station, or agree on the critical point where they end.
+        branches: words by branch.
+    """
+
+    word: Word
+    sentences: tuple[str, ...]
+    words: tuple[Word | None, ...]
+    completed: bool
+    branches: tuple[BranchVerdict, ...] = ()
+    reason: Reason | None = None
+    reasons: tuple[Reason | None, ...] = ()
+
+    @property
+    def sentence(self) -> str:
+        """All sentences."""
+        return " ".join(self.sentences)
+
+    @property
+    def because(self) -> str:
+        """The first sentence: what decides."""
+        return next(iter(self.sentences), "")
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """A scene, all runs, rows, events, the verdict, reactions by two ways, searches for N, and audits by solver."""
+
+    scene: Scene
+    runs: Runs
+    rows: tuple[Row, ...]
+    verdict: Verdict
+    criticals: tuple[CriticalRow, ...] = ()
+    reactions: tuple[WorkEnergyReaction, ...] = ()
+    tolerances: tuple[Tolerance, ...] = ()
+    audits: Mapping[str, Audit] = frozendict()
+
+
+def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
+    """The comparison of all runs of a scene.
+
+    Args:
+        scene: the question.
+        runs: the answers.
+        look: the audit.
+    """
+    table = RunsTable(scene, runs)
+    criticals, closings = critical_rows(table), closing_rows(table)
+    rows = build_rows(table, station_events(table))
+    judged = [judge_row(table, row) for row in rows]
+    audits = {answer.solver: look(scene, answer) for answer in table.pair}
+    verdict = _verdict(table, rows, judged, criticals, closings, audits)
+    return Comparison(scene, runs, rows, verdict, criticals, _reactions(scene, runs), audits=audits)
+
+
+def _verdict(
+    table: RunsTable,
+    rows: Sequence[Row],
+    judged: Sequence[Judged],
+    criticals: Sequence[CriticalRow],
+    closings: Sequence[ClosingRow],
+    audits: Mapping[str, Audit],
+) -> Verdict:
+    """All findings with their sentences; the worst decides, and its sentence comes first."""
+    of_rows = judge_case(rows, judged)
+    findings: list[tuple[Word, Reason | None, str]] = [(Word.DIFFER, Reason.EVENTS, said.closing_sentence(row)) for row in closings]
+    findings += [(*row.judged, said.critical_sentence(row)) for row in criticals]
+    completed = _completed(table, criticals)
+    if table.problems and not completed:
+        reached = said.reached_sentence(rows, of_rows[0])
+        findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(table.problems, reached)))
+    for name, found in audits.items():
+        if found.complaints:
+            more = f" (and {len(found.complaints) - 1} more)" if len(found.complaints) > 1 else ""
+            sentence = f"The audit of {name}'s answer fails: {found.complaints[0]}{more}."
+            findings.append((Word.UNDECIDED, Reason.AUDIT, sentence))
+    if rows or completed:
+        findings.append((*of_rows, said.headline(table, rows, judged, of_rows)))
+    order = list(Word), list(Reason)
+    word, reason, _ = min(findings, key=lambda each: (_RANK[each[0]], 0 if each[1] is None else order[1].index(each[1])))
+    first = sorted(findings, key=lambda each: (each[0], each[1]) != (word, reason))
+    helpers = {name: each for name, each in table.problems.items() if name not in table.compared}
+    more = [said.ended_sentence(helpers, "")] if completed and helpers else []
+    more += [*said.passed_sentences(table, rows, judged), said.calibration_sentence(rows)]
+    if word is Word.AGREE:
+        more.append(said.wider_limits(table.scene))
+    return Verdict(
+        word,
+        tuple(filter(None, (*(sentence for *_, sentence in first), *more))),
+        tuple(found for found, _ in judged),
+        completed,
+        branch_verdicts(rows, judged),
+        reason,
+        tuple(why for _, why in judged),
+    )
+
+
+_RANK = {Word.DIFFER: 0, Word.UNDECIDED: 1, Word.AGREE: 2}
+
+
+def _completed(table: RunsTable, criticals: Sequence[CriticalRow]) -> bool:
+    """Whether both compared answers are complete, or end at critical points that agree."""
+    if not any(name in table.problems for name in table.compared):
+        return True
+    ended = all(ends_at_critical(answer) for answer in table.pair)
+    return ended and bool(criticals) and criticals[-1].word is Word.AGREE
+
+
+def _reactions(scene: Scene, runs: Runs) -> tuple[WorkEnergyReaction, ...]:
+    """Reactions of drives by two ways, where both compared answers are complete."""
+    perturbed = perturbed_scene(scene)
+    if perturbed is None or runs.perturbed is None:
+        return ()
+    if problems(scene, runs.cprbm[0]) or problems(scene, runs.reference):
+        return ()
+    whole = complete_stations(perturbed, runs.perturbed)
+    from dataclasses import replace
+
+    return reactions(scene, runs.cprbm[0], runs.reference, replace(runs.perturbed, stations=tuple(whole.values())))

@@ -1,0 +1,306 @@
+"""Rows of a comparison: a probe at a station, both values, their difference and its stated uncertainty.
+
+======  ==========================================================================================
+symbol  meaning
+======  ==========================================================================================
+v_c     value of the CPRBM, v_f of the finite elements in the chosen theory, v_b in ``bending``
+x       exact value in ``bending``, where the elastica reference has the station
+q       uncertainty of x: its certificate's residual, at least 1e-9 of the scale
+======  ==========================================================================================
+
+The stated uncertainties of a probe are the largest of its stage on one branch: an error changes its sign somewhere along a
+stage, and the change between two grids vanishes there by accident.  A stage is split by its critical points.
+
+The difference is the sum of its steps, each a component along v_c − v_f:
+
+    v_c − v_f = (v_c − v_a) + (v_a − v_b) + (v_b − v_s) + (v_s − v_f)
+
+with v_a of the CPRBM in the formulation ``auto`` and v_s of the finite elements in ``stretch``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from comparisons.choices import KINEMATICS
+from comparisons.pairing import Runs
+from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, direction, norm, unit_of
+from comparisons.stations import station_of
+from comparisons.verdict.bounds import Bounds, bounds_of
+from comparisons.verdict.events import Place, StationEvents
+from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.scales import denominator, probe_scales
+from comparisons.verdict.uncertainty import largest
+from cprbm_scene import Answer, Probe, Scene, Stage, StationAnswer
+from cprbm_scene.answer import Array, Flags
+from cprbm_scene.statement import STRESSES, Quantity
+
+ROUND_OFF = 1e-9
+"""Largest round-off of a value, and least uncertainty of an exact value, as shares of the probe's scale."""
+
+
+@dataclass(frozen=True, slots=True)
+class TrueErrors:
+    """Distances from the exact value in the probe's unit: of v_c, of v_b, and q."""
+
+    cprbm: float
+    bending: float
+    allowance: float
+
+
+@dataclass(frozen=True, slots=True)
+class Steps:
+    """Components of the difference along itself, in the probe's unit.
+
+    ``contact`` leads from the formulation ``paper`` to ``auto``, ``own`` from there to the finite elements in
+    ``bending``, ``stretch`` and ``shear`` to each further theory.
+    """
+
+    contact: float
+    own: float
+    stretch: float
+    shear: float
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One probe at one station; all sizes in ``unit``.
+
+    Attributes:
+        probe, stage, station: the question.
+        unit: SI unit.
+        cprbm, fea: values (k,), empty where a contact is open.
+        scale: of the probe in the stage; denominator: divisor of shown fractions.
+        events: events of the runs by the station.
+        difference, same_theory: |v_c − v_f|, |v_c − v_b|; NaN without a value.
+        bounds: stated uncertainties; None where a run that they need lacks the value.
+        missing: runs that do not reach the station; absent: runs whose contact is open and has no such value.
+        steps: the difference step by step; None where a theory is missing.
+        arc_length: places (k,) of a stress, m; largest: difference of the largest stresses.
+        contact_model: distance of the CPRBM's values in ``paper`` and ``auto``.
+        exact: x; true_errors: distances from x.
+    """
+
+    probe: Probe
+    stage: str
+    station: float
+    unit: str
+    cprbm: Array
+    fea: Array
+    scale: float
+    denominator: float
+    events: StationEvents = StationEvents(0, Place.COMPARED)
+    difference: float = math.nan
+    same_theory: float = math.nan
+    bounds: Bounds | None = None
+    missing: tuple[str, ...] = ()
+    absent: tuple[str, ...] = ()
+    steps: Steps | None = None
+    arc_length: Array | None = None
+    largest: float | None = None
+    contact_model: float | None = None
+    exact: Array | None = None
+    true_errors: TrueErrors | None = None
+
+    @property
+    def place(self) -> Place:
+        """Whether all runs have passed the same events."""
+        return self.events.place
+
+    @property
+    def branch(self) -> int | None:
+        """Number of critical points before the station; None where the runs have passed different numbers."""
+        return self.events.branch
+
+    @property
+    def where(self) -> tuple[str, float]:
+        """Stage and station."""
+        return self.stage, self.station
+
+    def fraction(self, value: float) -> float | None:
+        """``value`` over the denominator; None without a finite quotient."""
+        if not math.isfinite(value):
+            return None
+        if self.denominator > 0.0:
+            return value / self.denominator
+        return 0.0 if value == 0.0 else None
+
+
+def build_rows(table: RunsTable, events: Mapping[tuple[str, float], StationEvents]) -> tuple[Row, ...]:
+    """All rows of the stations that both compared runs reach, in the order of stations and probes."""
+    scene = table.scene
+    scales = probe_scales(scene, table.pair)
+    stages = {stage.name: stage for stage in scene.stages}
+    found = []
+    for where in table.reached:
+        stations = table.at(where)
+        missing = tuple(name for name in table.answers if name not in stations)
+        for probe in scene.probes:
+            row = bare_row(scene, table.pair, probe, stages[where[0]], where[1], scales[where[0], probe.name])
+            found.append(_measured(table, replace(row, events=events[where], missing=missing), stations))
+    return _with_largest_uncertainties(found)
+
+
+def bare_row(
+    scene: Scene, compared: tuple[Answer, Answer], probe: Probe, stage: Stage, value: float, scale: float
+) -> Row:
+    """The values of the two compared answers, without a difference.
+
+    Args:
+        scene: the question.
+        compared: answers of the CPRBM and of the finite elements.
+        probe: the probe.
+        stage: the stage.
+        value: the station.
+        scale: of the probe in the stage, :func:`comparisons.verdict.scales.probe_scales`.
+
+    Raises:
+        KeyError: an answer lacks the station or the probe.
+    """
+    v_c, v_f = (station_of(answer, stage.name, value).values[probe.name] for answer in compared)
+    return Row(
+        probe=probe,
+        stage=stage.name,
+        station=value,
+        unit=unit_of(scene, probe, stage),
+        cprbm=v_c,
+        fea=v_f,
+        scale=scale,
+        denominator=denominator(probe, norm(probe.quantity, v_f), scale),
+        arc_length=arc_lengths(scene, probe) if probe.quantity in STRESSES else None,
+    )
+
+
+def round_off(stations: Iterable[StationAnswer], scale: float) -> float:
+    """Round-off of a probe's values by the certificates of the runs, in the probe's unit."""
+    certificates = [station.certificate for station in stations]
+    return scale * min(ROUND_OFF, max((max(each.residual, each.residual_floor) for each in certificates), default=0.0))
+
+
+def _measured(table: RunsTable, row: Row, stations: Mapping[str, StationAnswer]) -> Row:
+    """The row with its difference and what the other runs say of it."""
+    runs, probe = table.runs, row.probe
+    values = {name: station.values[probe.name] for name, station in stations.items()}
+    exact = _exact_station(runs, row)
+    row = replace(
+        row,
+        exact=None if exact is None else exact.values[probe.name],
+        absent=tuple(name for name, value in values.items() if value.size == 0),
+    )
+    if row.fea.size == 0 or any(value.shape != row.fea.shape for value in values.values()):
+        return row
+    counts = counted(table.scene, row, tuple(stations.values()))
+    if not counts.any():
+        return row
+
+    def size(difference: Array) -> float:
+        return norm(probe.quantity, difference[counts])
+
+    v_b = values.get("fea bending")
+    row = replace(
+        row,
+        difference=size(row.cprbm - row.fea),
+        same_theory=size(row.cprbm - (row.fea if v_b is None else v_b)),
+        largest=abs(norm(probe.quantity, row.cprbm) - norm(probe.quantity, row.fea)) if probe.quantity in STRESSES else None,
+    )
+    if row.place is Place.BETWEEN:
+        return row
+    is_open = probe.quantity in OPEN_AT_ZERO and not any(value.any() for value in values.values())
+    floor = 0.0 if is_open else round_off(stations.values(), row.scale)
+    key = (row.stage, row.station, probe.name)
+    known = {name: each[key] for name, each in runs.settled.items() if key in each}
+    known = {name: each.of(counts) for name, each in known.items()}
+    masked = {name: value[counts] for name, value in values.items()}
+    return replace(
+        row,
+        bounds=bounds_of(runs, masked, lambda difference: norm(probe.quantity, difference), floor, known),
+        steps=_steps(runs, probe.quantity, masked),
+        contact_model=_contact_model(runs, row, counts),
+        true_errors=_true_errors(row, exact, v_b, size),
+    )
+
+
+def counted(scene: Scene, row: Row, stations: Sequence[StationAnswer]) -> Flags:
+    """Which components (k,) of a row count: of a stress those away from point forces."""
+    if row.arc_length is None:
+        return np.ones(row.fea.shape, dtype=bool)
+    return away_from_point_forces(scene, row.probe.of, row.arc_length, stations)
+
+
+def _true_errors(row: Row, exact: StationAnswer | None, v_b: Array | None, size: object) -> TrueErrors | None:
+    if exact is None or v_b is None or row.exact is None or row.exact.shape != row.fea.shape:
+        return None
+    assert callable(size)
+    residual = max(exact.certificate.residual, exact.certificate.residual_floor, ROUND_OFF)
+    return TrueErrors(size(row.cprbm - row.exact), size(v_b - row.exact), residual * row.scale)
+
+
+def _exact_station(runs: Runs, row: Row) -> StationAnswer | None:
+    """The exact answer's station on the row's branch."""
+    if runs.exact is None or row.branch is None:
+        return None
+    try:
+        found = station_of(runs.exact, row.stage, row.station)
+    except KeyError:
+        return None
+    return found if found.branch == row.branch else None
+
+
+def _steps(runs: Runs, quantity: Quantity, values: Mapping[str, Array]) -> Steps | None:
+    """Steps of the difference; None where it is zero or a theory between was left out."""
+    ladder = [f"fea {theory}" for theory in KINEMATICS[: KINEMATICS.index(runs.kinematics) + 1]]
+    names = ["cprbm", "cprbm auto" if "cprbm auto" in values else "cprbm", *ladder]
+    if not set(names) <= set(values):
+        return None
+    along = direction(quantity, values[names[0]] - values[names[-1]])
+    parts = [float(np.dot(values[one] - values[other], along)) for one, other in pairwise(names)]
+    return Steps(*parts, *(0.0,) * (4 - len(parts))) if along.any() else None
+
+
+def _contact_model(runs: Runs, row: Row, counts: Flags) -> float | None:
+    """Distance of the values in ``paper`` and in ``auto``; None where one is missing or on another branch."""
+    if runs.formulations is None:
+        return None
+    try:
+        pair = [station_of(answer, row.stage, row.station) for answer in runs.formulations]
+    except KeyError:
+        return None
+    paper, auto = (station.values[row.probe.name] for station in pair)
+    if paper.shape != auto.shape or any(station.branch != row.branch for station in pair):
+        return None
+    return norm(row.probe.quantity, (paper - auto)[counts])
+
+
+def _with_largest_uncertainties(rows: Sequence[Row]) -> tuple[Row, ...]:
+    """The rows with one uncertainty per solver, probe, stage and branch: the largest of the stations.
+
+    A contact that is open in all runs has no force and no uncertainty.
+    """
+    names = ("cprbm", "fea", "bending")
+    stated = {
+        name: largest(
+            ((row.probe.name, row.stage, row.branch), getattr(row.bounds, name) or 0.0)
+            for row in rows
+            if row.bounds is not None and not row.events.unsettled
+        )
+        for name in names
+    }
+
+    def widened(row: Row) -> Row:
+        if row.bounds is None or row.bounds.total == 0.0:
+            return row
+        key = row.probe.name, row.stage, row.branch
+        own = {
+            name: None if value is None else max(value, stated[name].get(key, 0.0))
+            for name in names
+            for value in (getattr(row.bounds, name),)
+        }
+        return replace(row, bounds=replace(row.bounds, **own))
+
+    return tuple(map(widened, rows))
