@@ -42,7 +42,7 @@ from comparisons.order import foretold, order_of, richardson, unforeseen
 from comparisons.scales import norm
 from comparisons.stations import station_of
 from cprbm_scene import Answer, Probe, Scene, StationAnswer
-from cprbm_scene.answer import Array, frozen_array
+from cprbm_scene.answer import Array, PointForces, frozen_array
 from cprbm_scene.frozendict import frozendict
 
 Sizes = tuple[int, int, int]
@@ -98,7 +98,7 @@ def uneven(
             share = 2.0 / (2.0**p - 1.0) if probe.name in probes else 2.0**-p
             d = unforeseen(own[0], own[1], own[2], ratio, p)
             values[probe.name] = frozen_array(foretold(own[3], own[4], ratio, p) + share * d * ratio**p)
-        stations.append(replace(at, values=frozendict(values), statics=None))
+        stations.append(replace(at, values=frozendict(values), beams={}, forces=PointForces(), statics=None))
     return replace(beside, stations=tuple(stations))
 
 
@@ -127,8 +127,10 @@ def _station(
             found = _kept(scene, probe, three[1], three[2], orders[fine.stage, probe.name])
         values[probe.name], beside[probe.name] = map(frozen_array, found)
     # limits are no state's, so that nothing says what acts
-    beside_it = replace(fine, values=frozendict(beside), branch=coarse.branch, statics=None)
-    return replace(fine, values=frozendict(values), statics=None), beside_it
+    beside_it = replace(
+        fine, values=frozendict(beside), branch=coarse.branch, beams={}, forces=PointForces(), statics=None
+    )
+    return replace(fine, values=frozendict(values), beams={}, forces=PointForces(), statics=None), beside_it
 
 
 def _orders(scene: Scene, answers: Three) -> Orders:

@@ -36,7 +36,7 @@ from comparisons.stations import station_of
 from comparisons.tolerances.extrapolation import told
 from comparisons.tolerances.search import Estimate, Stated, Tolerance
 from cprbm_scene import Answer, Scene
-from cprbm_scene.answer import frozen_array
+from cprbm_scene.answer import PointForces, frozen_array
 from cprbm_scene.frozendict import frozendict
 
 FIRST = (20, 1)
@@ -171,7 +171,13 @@ def settled(scene: Scene, answers: Sequence[Answer]) -> Answer:
         if found is not None and not crossed:
             values[row.stage, row.station][row.probe.name] = frozen_array(found[0])
     stations = [
-        replace(station, values=frozendict(values[station.stage, station.value]), statics=None)
+        replace(
+            station,
+            values=frozendict(values[station.stage, station.value]),
+            beams={},
+            forces=PointForces(),
+            statics=None,
+        )
         for station in answers[-1].stations
     ]
     sizes = tuple(int(str(answer.settings["elements"])) for answer in answers[-2:])
