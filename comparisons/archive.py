@@ -12,8 +12,12 @@ import numpy as np
 
 from comparisons.documents import Plain, plain
 from cprbm_scene import Answer, Certificate, Critical, Ending, Event, GoneOver, Loss, Shape, StationAnswer
-from cprbm_scene.answer import Area, Array, Inside, Statics, frozen_array
+from cprbm_scene.answer import Area, Array, BeamState, ContactState, Inside, PointForces, Statics, frozen_array
 from cprbm_scene.frozendict import frozendict
+
+Record = (
+    Statics | Inside | Area | BeamState | PointForces | ContactState | Critical | Event | Shape | Certificate
+)  # a record whose fields are plain data
 
 
 def text(answers: Mapping[str, Answer]) -> str:
@@ -44,6 +48,10 @@ def packed(answer: Answer) -> Plain:
                     "shapes": {name: _fields(shape) for name, shape in station.shapes.items()},
                     "touching": station.touching,
                     "certificate": _fields(station.certificate),
+                    "beams": {name: _fields(beam) for name, beam in station.beams.items()},
+                    "forces": _fields(station.forces),
+                    "contacts": {name: _fields(contact) for name, contact in station.contacts.items()},
+                    "bodies": station.bodies,
                     "statics": None if station.statics is None else _packed_statics(station.statics),
                 }
                 for station in answer.stations
@@ -61,7 +69,7 @@ def _packed_statics(statics: Statics) -> Plain:
     return {**_fields(statics), "inside": {name: _fields(inside) for name, inside in statics.inside.items()}}
 
 
-def _fields(record: Statics | Inside | Area | Critical | Event | Shape | Certificate) -> Plain:
+def _fields(record: Record) -> Plain:
     return {field.name: getattr(record, field.name) for field in fields(record)}
 
 
@@ -78,13 +86,18 @@ def unpacked(data: Plain) -> Answer:
         ending=Ending[data["ending"]],
         sentence=data["sentence"],
         stations=tuple(_unpacked_station(station) for station in data["stations"]),
-        events=tuple(Event(**event) for event in data["events"]),
+        events=tuple(_unpacked_event(event) for event in data["events"]),
         critical=tuple(_unpacked_critical(critical) for critical in data["critical"]),
         # archives of before have none
         gone_over=tuple(GoneOver(_unpacked_critical(one["end"]), one["turned"]) for one in data.get("gone_over", ())),
         seconds=data["seconds"],
         notes=tuple(data["notes"]),
     )
+
+
+def _unpacked_event(data: Plain) -> Event:
+    interval = data["interval"]
+    return Event(**{**data, "interval": None if interval is None else tuple(interval)})
 
 
 def _unpacked_critical(data: Plain) -> Critical:
@@ -112,7 +125,27 @@ def _unpacked_station(data: Plain) -> StationAnswer:
         touching=frozendict({name: _pairs(places) for name, places in data["touching"].items()}),
         certificate=Certificate(**certificate),
         branch=data["branch"],
+        beams=frozendict({name: BeamState(*map(_array, beam.values())) for name, beam in data["beams"].items()}),
+        forces=_unpacked_forces(data["forces"]),
+        contacts=frozendict(
+            {
+                name: ContactState(contact["active"], _pairs(contact["places"]), contact["indeterminate"])
+                for name, contact in data["contacts"].items()
+            }
+        ),
+        bodies=frozendict({name: _array(values) for name, values in data["bodies"].items()}),
         statics=None if data["statics"] is None else _unpacked_statics(data["statics"]),
+    )
+
+
+def _unpacked_forces(data: Plain) -> PointForces:
+    return PointForces(
+        tuple(data["source"]),
+        tuple(data["target"]),
+        _array(data["s"]),
+        _pairs(data["place"]),
+        _pairs(data["force"]),
+        _array(data["moment"]),
     )
 
 

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from cprbm import answer_sheet
 from cprbm.assembling import brought, formulated, freed, released
 from cprbm.certifying import certify
 from cprbm.closing import Closings, Stood
@@ -324,14 +325,19 @@ class March:
         # what is open on the march's mesh may be closed on this one
         self._note_closings(stage.name, stage.steps, point, value)
         self.remarks.look(mechanism, point, f"{stage.name} {value:.6g}")
+        places, forces = touching(mechanism, point), answer_sheet.point_forces(self.scene, mechanism, point)
         return StationAnswer(
             stage=stage.name,
             value=value,
             values=probed(self.scene, mechanism, point, self.closed_at),
             shapes=shapes(mechanism, point),
-            touching=touching(mechanism, point),
+            touching=places,
             certificate=replace(certificate, iterations=spent),
             branch=len(self.critical),
+            beams=answer_sheet.beam_states(mechanism, point),
+            forces=forces,
+            contacts=answer_sheet.contacts(self.scene, mechanism, forces, places),
+            bodies=answer_sheet.body_motions(self.scene, mechanism, point),
             statics=statics(self.scene, mechanism, point),
         )
 

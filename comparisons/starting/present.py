@@ -53,6 +53,7 @@ LIBRARIES = (
     Library("numpy", "numpy", "every number", ">=2.0"),
     Library("scipy", "scipy.linalg", "linear algebra", ">=1.13"),
     Library("scikit-fem", "skfem", "the finite elements", ">=12.0,<13"),
+    Library("shapely", "shapely", "outlines that cross", ">=2.1"),
     Library("pydantic", "pydantic", "reading scenes and settings", ">=2.9"),
     Library("click", "click", "the command line", ">=8.2"),
     Library("rich", "rich", "tables and progress", ">=13.7"),

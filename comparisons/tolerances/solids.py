@@ -37,7 +37,7 @@ from comparisons.tolerances.search import Estimate, Stated, Tolerance
 from comparisons.tolerances.settled import told
 from comparisons.uncertainty import OWN, STANDARD, largest
 from cprbm_scene import Answer, Scene
-from cprbm_scene.answer import frozen_array
+from cprbm_scene.answer import PointForces, frozen_array
 from cprbm_scene.frozendict import frozendict
 
 FIRST = (20, 1)
@@ -170,7 +170,13 @@ def settled(scene: Scene, answers: Sequence[Answer]) -> Answer:
             continue
         values[row.stage, row.station][row.probe.name] = frozen_array(found[0].value)
     stations = [
-        replace(station, values=frozendict(values[station.stage, station.value]), statics=None)
+        replace(
+            station,
+            values=frozendict(values[station.stage, station.value]),
+            beams={},
+            forces=PointForces(),
+            statics=None,
+        )
         for station in answers[-1].stations
     ]
     sizes = tuple(int(str(answer.settings["elements"])) for answer in answers[-2:])

@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-NEVER_OF_A_SOLVE = ("skfem", "matplotlib", "pyvista", "gmsh", "meshio", "casadi", "jinja2", "rich", "multiprocessing")
+NEVER_OF_A_SOLVE = (
+    *("skfem", "shapely", "matplotlib", "pyvista", "gmsh", "meshio", "casadi", "jinja2", "rich", "multiprocessing"),
+)
 ELSEWHERE = ("fea_reference", "elastica_reference", "comparisons")
 FRAME = "import json, sys\n{program}\nprint(json.dumps(sorted({{name.split('.')[0] for name in sys.modules}}\
  | {{name for name in sys.modules if name.startswith('scipy.')}})))"

@@ -11,7 +11,7 @@ import pytest
 from tests.packaging.made import FILES, FOLDERS, ROOMS, ROOT, copied, sources, wheel
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-CORE = {"numpy", "scipy", "scikit-fem", "pydantic", "click", "rich", "matplotlib", "jinja2"}
+CORE = {"numpy", "scipy", "scikit-fem", "shapely", "pydantic", "click", "rich", "matplotlib", "jinja2"}
 
 
 @pytest.fixture(scope="module")
