@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from comparisons.choices import Choices
     from comparisons.tidy import Number
-    from comparisons.verdict import Comparison
+    from comparisons.verdict.case import Comparison
     from cprbm_scene import Answer, Scene
 
 __all__ = ["compare", "records", "write_csv"]
@@ -44,9 +44,9 @@ def compare(scene: Scene, choices: Choices | None = None) -> Comparison:
     """
     from comparisons.choices import Choices
     from comparisons.pairing import paired, solvers_of
-    from comparisons.verdict import compared
+    from comparisons.verdict.case import compare
 
-    return compared(scene, paired(scene, choices or Choices(), solvers_of(None)))
+    return compare(scene, paired(scene, choices or Choices(), solvers_of(None)))
 
 
 def records(scene: Scene, answer: Answer) -> list[Number]:

@@ -10,14 +10,14 @@ from typing import Any
 import numpy as np
 
 from comparisons.audit import Audit
-from comparisons.claims import claim_met, claim_of, claim_of_critical, claimed_difference, critical_difference
-from comparisons.criticals import CriticalRow, released
-from comparisons.measures import Row, arc_lengths, unit_of
-from comparisons.per_branch import critical_word
+from comparisons.quantities import arc_lengths, unit_of
 from comparisons.reactions import WorkEnergyReaction
-from comparisons.third import Third, thirds_of
 from comparisons.tolerances.search import Tolerance
-from comparisons.verdict import Comparison
+from comparisons.verdict.case import Comparison
+from comparisons.verdict.claims import claim_met, claim_of, claim_of_critical, claimed_difference, critical_difference
+from comparisons.verdict.events import CriticalRow, released
+from comparisons.verdict.rows import Row
+from comparisons.verdict.third import Third, thirds_of
 from cprbm_scene import Answer, Certificate, Critical, Probe, Scene
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES
@@ -246,7 +246,7 @@ def _row(scene: Scene, row: Row) -> Plain:
             "cprbm": None if bounds is None else row.fraction(bounds.cprbm),
             "fea": None if bounds is None else row.fraction(bounds.fea),
             "theory": None if bounds is None else row.fraction(bounds.theory),
-            "fea_bending": None if bounds is None else row.fraction(bounds.bending),
+            "fea_bending": None if bounds is None or bounds.bending is None else row.fraction(bounds.bending),
             "round_off": None if bounds is None else row.fraction(bounds.round_off),
         },
         "claim": None if claim is None else claim.bound,
@@ -323,7 +323,7 @@ def _critical_row(scene: Scene, row: CriticalRow) -> Plain:
         "claim_difference": off,
         "allowed": row.allowed,
         "span": row.span,
-        "verdict": critical_word(row).value,
+        "verdict": row.word.value,
     }
 
 

@@ -23,9 +23,9 @@ import numpy as np
 from comparisons.formats import percent
 from comparisons.offset_exact import ordinates
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
-from comparisons.uncertainty import SAFETY
-from comparisons.verdict import Verdict
-from comparisons.words import Word
+from comparisons.verdict.case import Verdict
+from comparisons.verdict.uncertainty import SAFETY
+from comparisons.verdict.words import Word
 from cprbm_scene import OffsetClaim, OffsetQuestion
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict

@@ -37,7 +37,7 @@ from comparisons.choices import KINEMATICS, Choices, Kinematics, check
 from comparisons.listening import heard_from, listen
 from comparisons.processes import AloneError, deaf, pool
 from comparisons.reactions import perturbed_scene
-from comparisons.uncertainty import Error
+from comparisons.verdict.uncertainty import Error
 from cprbm_scene import Answer, Mistake, RigidContact, Scene, SceneError, Spacing
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from comparisons.formats import along, number, percent, scaled_unit
-from comparisons.measures import Row, load_unit
+from comparisons.quantities import load_unit
 from comparisons.sheet import Sheet
-from comparisons.verdict import Comparison
+from comparisons.verdict.case import Comparison
+from comparisons.verdict.rows import Row
 from cprbm_scene import Answer, Scene
 
 MANY_TIMES = 10.0

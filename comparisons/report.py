@@ -13,7 +13,7 @@ from comparisons import archive, documents, figures, offset_drawn, offset_pages,
 from comparisons.offset_verdict import OffsetComparison
 from comparisons.rendering import Embedded, embedded, rendered
 from comparisons.sheet import Sheet
-from comparisons.verdict import Comparison, Verdict
+from comparisons.verdict.case import Comparison, Verdict
 from comparisons.writing import write
 from cprbm_scene import Question
 

@@ -8,24 +8,24 @@ from enum import Enum
 
 from comparisons.audit import Audit
 from comparisons.branch_sheets import of_branches, of_criticals, of_ends
-from comparisons.branches import Place
-from comparisons.calibration import FAR, JUDGED, Held, every, held, tally
-from comparisons.claims import as_claimed, standings
 from comparisons.documents import worst
 from comparisons.formats import along, number, percent, scaled_unit, vector
 from comparisons.geometry import bentness
-from comparisons.measures import Row, Steps, load_unit, unit_of
 from comparisons.paper_sheets import of_paper
+from comparisons.quantities import load_unit, norm, unit_of
 from comparisons.reaction_sheets import of_reactions
-from comparisons.scales import norm
 from comparisons.sheet import Sheet
 from comparisons.stations import station_of
-from comparisons.third import of_thirds
-from comparisons.third import sentence as beside_the_solid
 from comparisons.tolerances.search import Tolerance
 from comparisons.tolerances.settled import told
-from comparisons.verdict import Comparison
-from comparisons.words import Word
+from comparisons.verdict.calibration import EXACT_FACTOR, SOLVERS, ErrorRatio, error_ratios, tally, true_errors
+from comparisons.verdict.case import Comparison
+from comparisons.verdict.claims import as_claimed, standings
+from comparisons.verdict.events import Place
+from comparisons.verdict.rows import Row, Steps
+from comparisons.verdict.third import of_thirds
+from comparisons.verdict.third import sentence as beside_the_solid
+from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Scene, StationAnswer
 
 MANY = 40
@@ -237,7 +237,7 @@ def _true_errors(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
     """True errors of both in ``bending``, each beside what is stated of it."""
     body = []
     for row in rows:
-        found = tuple(every(row))
+        found = tuple(true_errors(row))
         if found:
             cells = ((_of(row, each.true), _of(row, each.stated), number(each.ratio), each.word) for each in found)
             body.append((row.probe.name, *(cell for four in cells for cell in four)))
@@ -245,15 +245,15 @@ def _true_errors(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
         "True errors in bending, beside the exact answer",
         ("probe", *(f"{head} {name}" for name in ("CPRBM", "FEA") for head in ("error", "stated", "ratio", "says"))),
         tuple(body),
-        f"{_over_all(held(compared.rows))} A ratio is the true error over the stated one with round-off: above 1 it is "
-        f"beyond, above {FAR:g} far beyond, and then the row differs.",
+        f"{_over_all(error_ratios(compared.rows))} A ratio is the true error over the stated one with round-off: above 1 it is "
+        f"beyond, above {EXACT_FACTOR:g} far beyond, and then the row differs.",
     )
 
 
-def _over_all(found: tuple[Held, ...]) -> str:
+def _over_all(found: tuple[ErrorRatio, ...]) -> str:
     """How many of the rows of all stations have true errors within the stated ones, in a sentence."""
     said = []
-    for solver, name in zip(JUDGED, ("CPRBM", "FEA"), strict=True):
+    for solver, name in zip(SOLVERS, ("CPRBM", "FEA"), strict=True):
         mine = tally(found, solver)
         over = "" if mine.over is None else f", stated over true {number(mine.over)} in the median"
         said.append(f"{name} within the stated error in {mine.within} of {mine.rows} rows{over}")

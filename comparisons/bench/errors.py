@@ -11,7 +11,7 @@ U           the same of the reference's own uncertainty; zero where it is exact
 ==========  ==============================================================================================
 
 The reference is the exact answer where there is one, or else the limit by Richardson's extrapolation of the CPRBM in
-``auto``, from N = 160, 320 and 640, with the uncertainty of :mod:`comparisons.uncertainty`.  An error that is not
+``auto``, from N = 160, 320 and 640, with the uncertainty of :mod:`comparisons.verdict.uncertainty`.  An error that is not
 clearly larger than U says nothing.
 """
 
@@ -25,8 +25,8 @@ import numpy as np
 from comparisons.bench.question import MEASURES, Measure, measure_of
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers
-from comparisons.scales import SMALLEST_EVENT, natural_scale
-from comparisons.uncertainty import limit
+from comparisons.verdict.scales import NATURAL_SHARE, natural_value
+from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Scene, SceneError
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
@@ -94,7 +94,7 @@ def _worst(scene: Scene, known: Reference, apart: Mapping[str, float]) -> Mappin
     for probe in scene.probes:
         measure = measure_of(scene, probe)
         if measure is not None and probe.name in apart:
-            natural = natural_scale(scene, probe.quantity, scene.stages[-1], contact=probe.of)
-            scale = max(sizes[probe.name], SMALL * largest[probe.quantity], SMALLEST_EVENT * natural)
+            natural = natural_value(scene, probe.quantity, scene.stages[-1], contact=probe.of)
+            scale = max(sizes[probe.name], SMALL * largest[probe.quantity], NATURAL_SHARE * natural)
             found[measure] = max(found.get(measure, 0.0), apart[probe.name] / scale)
     return frozendict({measure: found[measure] for measure in MEASURES if measure in found})

@@ -19,7 +19,7 @@ Each part is its component along v_c − v_f, with its sign: the parts sum to th
 zero makes the difference smaller.  Of a stress they are taken where the difference is largest.  Where there is no
 difference at all, parts that cancel are told along v_f.
 
-The limits in N and n are those of :mod:`comparisons.uncertainty`.
+The limits in N and n are those of :mod:`comparisons.verdict.uncertainty`.
 What the penalty does is proportional to p once p is small: v_0 is extrapolated from p/4 and p/16, and v(p) beside
 that line says whether p is small as well.  Where it lies farther off than half of what the line says of p, no law is
 seen: v_0 is then the value at p/16, and what the line says of that a matter of uncertainty.  In every theory L_t is
@@ -29,24 +29,26 @@ On a circle the elements' length decides how deep a beam presses, whatever p: th
 
 Where ``auto`` was chosen, the distance of ``paper`` at N is told beside the parts and belongs to no sum.  Nor does what
 both solvers leave out of a stress alike, :mod:`comparisons.budgets.curved_beam`, nor L_f less the value of the solid
-(:mod:`comparisons.solid_limits`): what the beam theories miss together, by which the sum would go on.
+(:mod:`comparisons.verdict.solid_limits`): what the beam theories miss together, by which the sum would go on.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, replace
+from itertools import pairwise
 
 import numpy as np
 
 from comparisons.budgets.curved_beam import inner_edge_factor
 from comparisons.budgets.runs import DEEPER, ELEMENTS, LEVELS, TIGHTNESS, BudgetRuns
 from comparisons.geometry import bentness_on, length
-from comparisons.measures import Row, bare_row, components, direction, probe_scales
-from comparisons.scales import norm
-from comparisons.solid_limits import solid_limit
-from comparisons.spots import clear_of_spots
+from comparisons.quantities import direction, norm
 from comparisons.stations import station_of
-from comparisons.uncertainty import limit
+from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.rows import Row, bare_row
+from comparisons.verdict.scales import probe_scales
+from comparisons.verdict.solid_limits import solid_limit
+from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Answer, Probe, Scene, Stage
 from cprbm_scene.answer import Array, Flags
 
@@ -143,7 +145,7 @@ def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: f
     row = bare_row(scene, (runs.cprbm, runs.reference), probe, stage, value, scale)
     counts = np.ones(row.cprbm.shape, dtype=bool)
     if row.arc_length is not None:
-        counts = clear_of_spots(scene, probe.of, row.arc_length, stations)
+        counts = away_from_point_forces(scene, probe.of, row.arc_length, stations)
         if not counts.any():
             return None
 
@@ -164,7 +166,9 @@ def _budget(scene: Scene, runs: BudgetRuns, probe: Probe, stage: Stage, value: f
     d = v_c - v_f
     along = direction(probe.quantity, d if d.any() else v_f)
     ladder = [v_c, v_a, L_c.value, *(each.value for each in L), v_0, v_f]
-    contact, links, rest, *theory, elements, penalty = components(ladder, along)
+    contact, links, rest, *theory, elements, penalty = (
+        float(np.dot(one - other, along)) for one, other in pairwise(ladder)
+    )
     stretch, shear = theory + [0.0] * (2 - len(theory))
     paper = _in_paper(runs, row)
     K = _inner_edge(scene, row)

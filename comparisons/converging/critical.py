@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from comparisons.branches import span_of
 from comparisons.converging.families import Series
-from comparisons.criticals import mechanism
-from comparisons.measures import load_unit
-from comparisons.reach import ends_at_critical
-from comparisons.uncertainty import OWN, Limit, limit, orders
+from comparisons.quantities import load_unit
+from comparisons.stages import span_of
+from comparisons.verdict.completeness import ends_at_critical
+from comparisons.verdict.events import mechanism
+from comparisons.verdict.uncertainty import OWN, Limit, limit, orders
 from cprbm_scene import Answer, Critical, Scene, Stage
 
 

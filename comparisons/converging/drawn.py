@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from comparisons.converging.families import Convergence, Family
 from comparisons.figures import GREY, LOOKS, Picture, canvas, picture
-from comparisons.uncertainty import OWN
+from comparisons.verdict.uncertainty import OWN
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

@@ -19,7 +19,7 @@ from comparisons.reporting.stepping import Stepper, stepper
 from comparisons.sheet import Sheet
 from comparisons.sheets import Subject
 from comparisons.studies.told import Told as Study
-from comparisons.verdict import Comparison
+from comparisons.verdict.case import Comparison
 from cprbm_scene import Answer, Question
 
 

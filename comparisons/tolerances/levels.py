@@ -10,15 +10,15 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 
-from comparisons.branches import Place
 from comparisons.choices import Choices, Kinematics
-from comparisons.measures import Row, rows_of
 from comparisons.memory import Remembering
 from comparisons.pairing import Runs, Solver, may_be_uneven
-from comparisons.soundness import complaints
 from comparisons.tolerances.search import FIRST, Estimate, Stated
 from comparisons.tolerances.settled import Settled, settled
-from comparisons.uncertainty import STANDARD
+from comparisons.verdict.completeness import problems
+from comparisons.verdict.events import Place
+from comparisons.verdict.rows import Row, rows_of
+from comparisons.verdict.uncertainty import STANDARD
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -82,7 +82,7 @@ class SceneLevels:
         """The values settled on n/2, n and 2n, with these probes extrapolated."""
         answers = dict(zip(self._sizes(n), self._three(theory, n), strict=True))
         beside = self.beside_it(n)
-        if beside is not None and not complaints(self.scene, beside):
+        if beside is not None and not problems(self.scene, beside):
             answers[round(n / self.ratio(n))] = beside
         return settled(self.scene, answers, probes)
 
@@ -128,7 +128,7 @@ class SceneLevels:
             trouble
             for theory in self.theories
             for answer in self._three(theory, n)
-            for trouble in complaints(self.scene, answer)
+            for trouble in problems(self.scene, answer)
         ]
         if troubles:
             return Estimate((), troubles[0])
@@ -163,7 +163,7 @@ class SceneLevels:
 def stated(scene: Scene, runs: Runs, variant: str) -> Estimate:
     """What is stated of every row that has a value, of the first solver in ``runs``."""
     for _, answer in runs.everything():
-        found = complaints(scene, answer)
+        found = problems(scene, answer)
         if found:
             return Estimate((), found[0])
     rows = []
@@ -176,7 +176,7 @@ def stated(scene: Scene, runs: Runs, variant: str) -> Estimate:
 
 def _fraction(row: Row, runs: Runs) -> float | None:
     """f; None without a value or where a branch ends; infinite where there is one at one size and not at another."""
-    if row.place in (Place.NEAR, Place.BETWEEN):
+    if row.place is Place.BETWEEN:
         return None
     if row.bounds is not None:
         return row.fraction(row.bounds.cprbm)
@@ -187,8 +187,7 @@ def _fraction(row: Row, runs: Runs) -> float | None:
         for station in answer.stations
         if (station.stage, station.value) == (row.stage, row.station)
     ]
-    one_branch = row.place not in (Place.APART, Place.UNSETTLED)
-    return None if one_branch and len({value.shape for value in values}) == 1 else math.inf
+    return None if len({value.shape for value in values}) == 1 else math.inf
 
 
 def _joined(estimates: list[Estimate]) -> Estimate:

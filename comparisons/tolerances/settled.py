@@ -1,6 +1,6 @@
 """Values settled on the grids N/2, N and 2N: the finest values or their limits, with stated uncertainties.
 
-:mod:`comparisons.uncertainty` gives limits and uncertainties.  Where the error may be uneven in N, the value at N + N/7
+:mod:`comparisons.verdict.uncertainty` gives limits and uncertainties.  Where the error may be uneven in N, the value at N + N/7
 takes part.
 
 Shapes, places of contact, events and certificates are the finest answer's.  Where a contact is open on one grid and
@@ -18,7 +18,7 @@ import numpy as np
 
 from comparisons.pairing import Uncertainties
 from comparisons.stations import station_of
-from comparisons.uncertainty import Error, error, limit
+from comparisons.verdict.uncertainty import Error, error, limit
 from cprbm_scene import Answer, Probe, Scene, StationAnswer
 from cprbm_scene.answer import Array, frozen_array
 from cprbm_scene.frozendict import frozendict
@@ -59,7 +59,7 @@ def settled(scene: Scene, answers: Mapping[int, Answer], probes: Collection[str]
             if stated is not None:
                 uncertainties[station.stage, station.value, probe.name] = stated
         # a limit belongs to no state: no forces in it balance
-        stations.append(replace(station, values=frozendict(values), statics=None))
+        stations.append(replace(station, values=frozendict(values), beams={}, statics=None))
     answer = replace(fine, stations=tuple(stations), seconds=sum(each.seconds for each in answers.values()))
     if probes:
         sizes = (finest // 2, finest)

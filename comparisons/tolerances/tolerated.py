@@ -13,15 +13,15 @@ from typing import Literal
 
 from comparisons.bench.timing import LARGEST, Method
 from comparisons.choices import KINEMATICS, Choices, Kinematics
-from comparisons.measures import rows_of
 from comparisons.memory import Remembering
 from comparisons.pairing import Crew, Runs, Solvers, Uncertainties, known_exactly, paired, with_solid
 from comparisons.reactions import perturbed_scene
-from comparisons.soundness import complaints
 from comparisons.tolerances.levels import SceneLevels
 from comparisons.tolerances.search import Found, Tolerance, search
 from comparisons.tolerances.settled import Settled
 from comparisons.tolerances.solids import meshed, settled
+from comparisons.verdict.completeness import problems
+from comparisons.verdict.rows import rows_of
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
 
@@ -91,7 +91,7 @@ def paired_within(
     runs, reached = _both_within(scene, choices, tolerance, replace(solvers, solid=None), memory)
     if solvers.solid is None:
         return runs, reached
-    whole = not any(complaints(scene, answer) for _, answer in runs.everything())
+    whole = not any(problems(scene, answer) for _, answer in runs.everything())
     rows = rows_of(scene, runs) if whole else None
     third = meshed(scene, solvers.solid, choices, tolerance, memory, rows)
     return replace(runs, solid=third.answers), (*reached, third.reached)

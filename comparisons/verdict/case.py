@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from comparisons.audit import Audit, audit
 from comparisons.pairing import Runs
 from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
 from comparisons.tolerances.search import Tolerance
 from comparisons.verdict import sentences as said
-from comparisons.verdict.completeness import complete_stations, ends_at_critical, problems
+from comparisons.verdict.completeness import complete_part, ends_at_critical, problems
 from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows, station_events
 from comparisons.verdict.judge import BranchVerdict, Judged, branch_verdicts, judge_case, judge_row
 from comparisons.verdict.rows import Row, build_rows
@@ -18,6 +18,9 @@ from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
+
+Finding = tuple[Word, Reason | None, str]
+"""Word, reason and sentence."""
 
 Auditor = Callable[[Scene, Answer], Audit]
 """Function that finds the faults of an answer to a scene."""
@@ -76,7 +79,8 @@ def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
         runs: the answers.
         look: the audit.
     """
-    table = RunsTable(scene, runs)
+    exact = None if runs.exact is None else complete_part(scene, runs.exact)
+    table = RunsTable(scene, replace(runs, exact=exact))
     criticals, closings = critical_rows(table), closing_rows(table)
     rows = build_rows(table, station_events(table))
     judged = [judge_row(table, row) for row in rows]
@@ -95,30 +99,27 @@ def _verdict(
 ) -> Verdict:
     """All findings with their sentences; the worst decides, and its sentence comes first."""
     of_rows = judge_case(rows, judged)
-    findings: list[tuple[Word, Reason | None, str]] = [(Word.DIFFER, Reason.EVENTS, said.closing_sentence(row)) for row in closings]
+    findings: list[Finding] = [(Word.DIFFER, Reason.EVENTS, said.closing_sentence(row)) for row in closings]
     findings += [(*row.judged, said.critical_sentence(row)) for row in criticals]
     completed = _completed(table, criticals)
     if table.problems and not completed:
-        reached = said.reached_sentence(rows, of_rows[0])
-        findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(table.problems, reached)))
+        findings.append((Word.UNDECIDED, Reason.RUN_ENDED, said.ended_sentence(table.problems)))
     for name, found in audits.items():
         if found.complaints:
-            more = f" (and {len(found.complaints) - 1} more)" if len(found.complaints) > 1 else ""
-            sentence = f"The audit of {name}'s answer fails: {found.complaints[0]}{more}."
+            rest = f" (and {len(found.complaints) - 1} more)" if len(found.complaints) > 1 else ""
+            sentence = f"The audit of {name}'s answer fails: {found.complaints[0]}{rest}."
             findings.append((Word.UNDECIDED, Reason.AUDIT, sentence))
     if rows or completed:
         findings.append((*of_rows, said.headline(table, rows, judged, of_rows)))
-    order = list(Word), list(Reason)
-    word, reason, _ = min(findings, key=lambda each: (_RANK[each[0]], 0 if each[1] is None else order[1].index(each[1])))
-    first = sorted(findings, key=lambda each: (each[0], each[1]) != (word, reason))
-    helpers = {name: each for name, each in table.problems.items() if name not in table.compared}
-    more = [said.ended_sentence(helpers, "")] if completed and helpers else []
+    findings.sort(key=_rank)
+    word, reason, _ = findings[0]
+    more = [said.ended_sentence(table.problems)] if completed and table.problems else []
     more += [*said.passed_sentences(table, rows, judged), said.calibration_sentence(rows)]
     if word is Word.AGREE:
         more.append(said.wider_limits(table.scene))
     return Verdict(
         word,
-        tuple(filter(None, (*(sentence for *_, sentence in first), *more))),
+        tuple(filter(None, (*(sentence for *_, sentence in findings), *more))),
         tuple(found for found, _ in judged),
         completed,
         branch_verdicts(rows, judged),
@@ -127,7 +128,13 @@ def _verdict(
     )
 
 
-_RANK = {Word.DIFFER: 0, Word.UNDECIDED: 1, Word.AGREE: 2}
+def _rank(finding: Finding) -> tuple[int, int]:
+    """Place of a finding among all: DIFFER first, then UNDECIDED, and of these the reasons in their order."""
+    word, reason, _ = finding
+    return _WORDS.index(word), 0 if reason is None else list(Reason).index(reason)
+
+
+_WORDS = (Word.DIFFER, Word.UNDECIDED, Word.AGREE)
 
 
 def _completed(table: RunsTable, criticals: Sequence[CriticalRow]) -> bool:
@@ -145,7 +152,4 @@ def _reactions(scene: Scene, runs: Runs) -> tuple[WorkEnergyReaction, ...]:
         return ()
     if problems(scene, runs.cprbm[0]) or problems(scene, runs.reference):
         return ()
-    whole = complete_stations(perturbed, runs.perturbed)
-    from dataclasses import replace
-
-    return reactions(scene, runs.cprbm[0], runs.reference, replace(runs.perturbed, stations=tuple(whole.values())))
+    return reactions(scene, runs.cprbm[0], runs.reference, complete_part(perturbed, runs.perturbed))

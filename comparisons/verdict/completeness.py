@@ -7,6 +7,7 @@ number is finite and has the shape of its probe, and branches end at critical po
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -41,6 +42,11 @@ def complete_stations(scene: Scene, answer: Answer) -> Mapping[Where, StationAns
         if next(_station_problems(scene, station), None) is None:
             found[stage, value] = station
     return found
+
+
+def complete_part(scene: Scene, answer: Answer) -> Answer:
+    """The answer with its complete stations alone."""
+    return replace(answer, stations=tuple(complete_stations(scene, answer).values()))
 
 
 def ends_at_critical(answer: Answer) -> bool:

@@ -270,7 +270,8 @@ def _sequences(table: RunsTable, reached: Sequence[Where]) -> Mapping[str, Mappi
     }
     return {
         contact: {
-            name: tuple(key for key, _ in groupby(contact in each for each in active)) for name, active in by_run.items()
+            name: tuple(key for key, _ in groupby(contact in each for each in active))
+            for name, active in by_run.items()
         }
         for contact in table.scene.contacts
     }
@@ -280,7 +281,7 @@ def _contact_differences(
     here: Mapping[str, StationAnswer], sequences: Mapping[str, Mapping[str, tuple[bool, ...]]]
 ) -> tuple[set[str], set[str]]:
     """Contacts with different states in some runs: unsettled ones, and ones in which the solvers contradict."""
-    unsettled, contradictory = set(), set()
+    unsettled, contradictory = set[str](), set[str]()
     active = {name: active_contacts(station) for name, station in here.items()}
     for contact, by_run in sequences.items():
         states = {name: contact in each for name, each in active.items()}
@@ -340,9 +341,7 @@ def _with_passed_points(
                 yield found
 
 
-def _critical_row(
-    table: RunsTable, stage: Stage, place: int, here: Mapping[str, Critical | None]
-) -> CriticalRow:
+def _critical_row(table: RunsTable, stage: Stage, place: int, here: Mapping[str, Critical | None]) -> CriticalRow:
     first, second = table.compared
     span = span_of(table.scene, stage)
     mechanisms = {name: None if one is None else _mechanism(one) for name, one in here.items()}
@@ -361,7 +360,8 @@ def _critical_row(
     if len(present) < len(here):
         return row
     located = sum(
-        max(one.uncertainty for name, one in present.items() if solver_of(name) == solver) for solver in ("cprbm", "fea")
+        max(one.uncertainty for name, one in present.items() if solver_of(name) == solver)
+        for solver in ("cprbm", "fea")
     )
     difference, same_theory, bounds = _on_load_axis(table, {name: one.value for name, one in present.items()}, located)
     return replace(row, difference=difference, same_theory=same_theory, bounds=bounds)
@@ -391,9 +391,7 @@ def closing_rows(table: RunsTable) -> tuple[ClosingRow, ...]:
     return tuple(found)
 
 
-def _on_load_axis(
-    table: RunsTable, loads: Mapping[str, float], round_off: float
-) -> tuple[float, float, Bounds | None]:
+def _on_load_axis(table: RunsTable, loads: Mapping[str, float], round_off: float) -> tuple[float, float, Bounds | None]:
     """|λ_c − λ_f|, |λ_c − λ_b| and the stated uncertainties of an event's loads."""
     first, second = table.compared
     values = {name: np.array([load]) for name, load in loads.items()}

@@ -38,6 +38,7 @@ from cprbm_scene import Scene
 from cprbm_scene.statement import Quantity
 
 Judged = tuple[Word | None, Reason | None]
+"""Word and reason; no word where a row takes no part."""
 
 SHARED: frozenset[Quantity] = frozenset({"force", "centre", "ends", "reaction", "reaction_moment"})
 """Quantities of a contact or a joint that depend on how a clamp and a contact share a force."""
@@ -89,14 +90,14 @@ def judge_row(table: RunsTable, row: Row) -> Judged:
     return Word.UNDECIDED, Reason.THEORY if theory else Reason.COARSE
 
 
-def judge_case(rows: Sequence[Row], judged: Sequence[Judged]) -> Judged:
+def judge_case(rows: Sequence[Row], judged: Sequence[Judged]) -> tuple[Word, Reason | None]:
     """Word and reason of all rows together."""
     for word in (Word.DIFFER, Word.UNDECIDED):
         reasons = Counter(reason for row, (found, reason) in zip(rows, judged, strict=True) if found is word)
         if word is Word.UNDECIDED:
             reasons = Counter({reason: reasons[reason] for reason in reasons if _decides(rows, judged, reason)})
         if reasons:
-            return word, min(reasons, key=lambda reason: (list(Reason).index(reason), -reasons[reason]))
+            return word, next(reason for reason in Reason if reasons[reason])
     if not any(word is Word.AGREE for word, _ in judged):
         return Word.UNDECIDED, next((reason for _, reason in judged if reason is not None), Reason.RUN_ENDED)
     return Word.AGREE, None
@@ -160,9 +161,7 @@ def _same_resultant(table: RunsTable, row: Row) -> bool:
     if shared is None:
         return False
     beam, others = shared
-    sums = {
-        name: resultant(station, {row.probe.of, *others}, beam) for name, station in table.at(row.where).items()
-    }
+    sums = {name: resultant(station, {row.probe.of, *others}, beam) for name, station in table.at(row.where).items()}
     bounds = bounds_of(table.runs, sums, lambda difference: float(np.linalg.norm(difference)), 0.0)
     v_c, v_f = (sums[name] for name in table.compared)
     if bounds is None:

@@ -94,7 +94,8 @@ def sharing_sources(scene: Scene, stations: Iterable[StationAnswer], source: str
 def resultant(station: StationAnswer, sources: Iterable[str], beam: str) -> Array:
     """Sum of the forces of some ``sources`` on a beam, (2,), N."""
     forces = station.forces
-    return np.sum([forces.force[forces.chosen(source, beam)].sum(axis=0) for source in sources], axis=0)
+    mine = np.any([forces.chosen(source, beam) for source in sources], axis=0)
+    return np.asarray(forces.force[mine].sum(axis=0))
 
 
 def _neighbours(scene: Scene, station: StationAnswer, source: str, beam: str) -> Iterable[str]:
@@ -116,7 +117,7 @@ def _significant(station: StationAnswer, source: str, beam: str) -> Array:
     """Arc lengths (k,) at which a source presses a beam."""
     mine = station.forces.chosen(source, beam)
     size = np.hypot(*station.forces.force[mine].T)
-    return station.forces.s[mine][size > SIGNIFICANT * size.max(initial=0.0)]
+    return np.asarray(station.forces.s[mine][size > SIGNIFICANT * size.max(initial=0.0)])
 
 
 def _element(station: StationAnswer, beam: str) -> float:

@@ -32,7 +32,7 @@ from comparisons.pairing import Runs
 from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, direction, norm, unit_of
 from comparisons.stations import station_of
 from comparisons.verdict.bounds import Bounds, bounds_of
-from comparisons.verdict.events import Place, StationEvents
+from comparisons.verdict.events import Place, StationEvents, station_events
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.scales import denominator, probe_scales
@@ -132,6 +132,12 @@ class Row:
         return 0.0 if value == 0.0 else None
 
 
+def rows_of(scene: Scene, runs: Runs) -> tuple[Row, ...]:
+    """All rows of the stations that both compared answers reach."""
+    table = RunsTable(scene, runs)
+    return build_rows(table, station_events(table))
+
+
 def build_rows(table: RunsTable, events: Mapping[tuple[str, float], StationEvents]) -> tuple[Row, ...]:
     """All rows of the stations that both compared runs reach, in the order of stations and probes."""
     scene = table.scene
@@ -207,7 +213,9 @@ def _measured(table: RunsTable, row: Row, stations: Mapping[str, StationAnswer])
         row,
         difference=size(row.cprbm - row.fea),
         same_theory=size(row.cprbm - (row.fea if v_b is None else v_b)),
-        largest=abs(norm(probe.quantity, row.cprbm) - norm(probe.quantity, row.fea)) if probe.quantity in STRESSES else None,
+        largest=abs(norm(probe.quantity, row.cprbm) - norm(probe.quantity, row.fea))
+        if probe.quantity in STRESSES
+        else None,
     )
     if row.place is Place.BETWEEN:
         return row
@@ -296,11 +304,8 @@ def _with_largest_uncertainties(rows: Sequence[Row]) -> tuple[Row, ...]:
         if row.bounds is None or row.bounds.total == 0.0:
             return row
         key = row.probe.name, row.stage, row.branch
-        own = {
-            name: None if value is None else max(value, stated[name].get(key, 0.0))
-            for name in names
-            for value in (getattr(row.bounds, name),)
-        }
-        return replace(row, bounds=replace(row.bounds, **own))
+        own = {name: max(getattr(row.bounds, name) or 0.0, each.get(key, 0.0)) for name, each in stated.items()}
+        bending = None if row.bounds.bending is None else own["bending"]
+        return replace(row, bounds=replace(row.bounds, cprbm=own["cprbm"], fea=own["fea"], bending=bending))
 
     return tuple(map(widened, rows))

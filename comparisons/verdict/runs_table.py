@@ -57,9 +57,7 @@ class RunsTable:
     @cached_property
     def following(self) -> Mapping[str, Answer]:
         """Runs that follow the path to its last station, or to a critical point where it ends."""
-        return {
-            name: answer for name, answer in self.answers.items() if answer.completed or ends_at_critical(answer)
-        }
+        return {name: answer for name, answer in self.answers.items() if answer.completed or ends_at_critical(answer)}
 
 
 def solver_of(name: str) -> str:

@@ -121,7 +121,7 @@ def family_values(
 def natural_value(scene: Scene, quantity: Quantity, stage: Stage, *, contact: str) -> float:
     """Value of a quantity where the stiffest beam is bent by a radian along the longest, in the quantity's unit."""
     lever = _lever(scene)
-    stiffness = max(_bending_stiffness(scene, beam).max() for beam in scene.beams.values()) / lever
+    stiffness = float(max(_bending_stiffness(scene, beam).max() for beam in scene.beams.values())) / lever
     by_kind = {
         "displacement": lever,
         "rotation": 1.0,
@@ -135,12 +135,12 @@ def natural_value(scene: Scene, quantity: Quantity, stage: Stage, *, contact: st
         case "closing_load":
             return by_kind.get(scene.stepped(stage).kind, stiffness)
         case "bending_stress" | "combined_stress":
-            stiffest = max(_modulus(scene, beam) * beam.thickest for beam in scene.beams.values())
+            stiffest: float = max(_modulus(scene, beam) * beam.thickest for beam in scene.beams.values())
             return stiffest / (2.0 * lever)
         case "centre" | "ends":
             return length(scene.beams[scene.contacts[contact].beams[0]].curve)
         case _:
-            return float(by_kind.get(quantity, stiffness))
+            return by_kind.get(quantity, stiffness)
 
 
 def denominator(probe: Probe, reference: float, scale: float) -> float:

@@ -13,7 +13,7 @@ from comparisons.verdict.judge import Judged
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.words import Reason, Word
-from cprbm_scene import Critical, Scene
+from cprbm_scene import Scene
 
 NAMES = {"cprbm": "the CPRBM", "fea": "the finite elements"}
 _OPTIONS = {"cprbm": ("-n", "links"), "fea": ("--elements", "elements")}
@@ -76,14 +76,14 @@ def wider_limits(scene: Scene) -> str:
     return f"The scene allows stated uncertainties of {percent(scene.verdict_limit)} of the scale; {limits}."
 
 
-def ended_sentence(problems: Mapping[str, tuple[str, ...]], reached: str) -> str:
+def ended_sentence(problems: Mapping[str, tuple[str, ...]]) -> str:
     """The runs that are not complete, and their problems; each problem once."""
     by_problem: dict[str, list[str]] = {}
     for name, found in problems.items():
         more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
         by_problem.setdefault(f"{found[0]}{more}", []).append(name)
     parts = "; ".join(f"{', '.join(names)}: {problem}" for problem, names in by_problem.items())
-    return f"Runs without a complete answer: {parts}. {reached}"
+    return f"Runs without a complete answer: {parts}."
 
 
 def critical_sentence(row: CriticalRow) -> str:
@@ -108,7 +108,9 @@ def critical_sentence(row: CriticalRow) -> str:
 
 def closing_sentence(row: ClosingRow) -> str:
     """Loads at which a contact closes in both solvers."""
-    loads = " and ".join(f"{load(value, row.unit)} in {name}" for value, name in zip((row.cprbm, row.fea), NAMES.values(), strict=True))
+    loads = " and ".join(
+        f"{load(value, row.unit)} in {name}" for value, name in zip((row.cprbm, row.fea), NAMES.values(), strict=True)
+    )
     stated, allowed = distance(row.stated, row.unit), distance(row.allowed, row.unit)
     return f"{row.contact} closes in {row.stage} at {loads}, against a stated {stated}, {allowed} allowed: DIFFER."
 
@@ -157,18 +159,22 @@ def _explained(table: RunsTable, row: Row, reason: Reason | None) -> str:
                 f"{number(worst.ratio)} times the stated {_of_scale(worst.stated, row)}."
             )
         case Reason.EVENTS:
-            cause = f"{contacts} presses in one solver and is open in the other" if contacts else (
-                "one solver alone has passed a critical point"
+            cause = (
+                f"{contacts} presses in one solver and is open in the other"
+                if contacts
+                else ("one solver alone has passed a critical point")
             )
             return f"{cause}, and {_measured(row)}. `solve --solver cprbm,fea -v` shows each event."
         case Reason.RUN_ENDED:
             names = ", ".join(row.missing) or "the finite elements in bending"
             return f"{_measured(row)}, and no answer of {names} there tells the uncertainty."
         case Reason.BRANCH:
-            return f"the runs are on different branches or mirror images there. An imperfection would choose one."
+            return "the runs are on different branches or mirror images there. An imperfection would choose one."
         case Reason.EVENT:
             cause = f"{contacts} presses in some of the runs only" if contacts else "some runs have no such value"
-            return f"{cause}: the station lies between their loads of one event. Ask for a station beside it, or refine."
+            return (
+                f"{cause}: the station lies between their loads of one event. Ask for a station beside it, or refine."
+            )
         case Reason.THEORY:
             assert row.bounds is not None
             return (
@@ -205,7 +211,8 @@ def _coarse(table: RunsTable, row: Row) -> str:
 def _others(rows: Sequence[Row], judged: Sequence[Judged]) -> str:
     """Undecided rows of a case that agrees, by probe and reason."""
     found = Counter(
-        (row.probe.name, reason.value) for row, (word, reason) in zip(rows, judged, strict=True)
+        (row.probe.name, reason.value)
+        for row, (word, reason) in zip(rows, judged, strict=True)
         if word is Word.UNDECIDED and reason is not None
     )
     if not found:

@@ -7,13 +7,16 @@ import numpy as np
 import pytest
 
 from comparisons import archive, cases, documents, sheets
-from comparisons.branches import Place, begins_at, branches_of, margin_of, span_of, spots_of
+from comparisons.GONE_branches import branches_of, margin_of, spots_of
+from comparisons.stages import begins_at, span_of
+from comparisons.verdict.events import Place
 from comparisons.choices import Choices
-from comparisons.measures import bounds_of, rows_of
+from comparisons.verdict.bounds import bounds_of
+from comparisons.verdict.rows import build_rows
 from comparisons.pairing import Solvers, paired
-from comparisons.soundness import complaints
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.completeness import problems
+from comparisons.verdict.case import compare
+from comparisons.verdict.words import Word
 from cprbm_scene import Stage
 from tests.comparisons.jumping import BACK, FORWARD, Jumping
 from tests.comparisons.made_up import MadeUp

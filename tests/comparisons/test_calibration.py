@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 
 from comparisons import documents, sheets
-from comparisons.calibration import FAR, held, tally
+from comparisons.verdict.calibration import EXACT_FACTOR, error_ratios, tally
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers, paired, solvers_of
 from comparisons.studies import calibration as study
 from comparisons.studies.calibration_told import told
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.case import compare
+from comparisons.verdict.words import Word
 from cprbm_scene import Ending
 from tests.comparisons.made_up import MadeUp, with_value
 

@@ -4,8 +4,8 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.claims import claim_of
-from comparisons.measures import rows_of
+from comparisons.verdict.claims import claim_of
+from comparisons.verdict.rows import build_rows
 from comparisons.pairing import paired
 from cprbm_scene import SceneError
 

@@ -10,11 +10,13 @@ from comparisons.choices import Choices
 from comparisons.converging import told
 from comparisons.converging.critical import critical_families
 from comparisons.converging.families import converged
-from comparisons.criticals import SHARE, TURN, critical_rows
+from comparisons.GONE_criticals import SHARE, TURN
+from comparisons.verdict.events import critical_rows
 from comparisons.pairing import ALONE, Runs, Solvers, paired
-from comparisons.per_branch import critical_sentence, critical_word
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.GONE_per_branch import critical_word
+from comparisons.verdict.sentences import critical_sentence
+from comparisons.verdict.case import compare
+from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Claim, Critical, Ending, Loss, Stage
 from cprbm_scene.frozendict import frozendict
 from tests.comparisons.jumping import FORWARD, Jumping

@@ -7,13 +7,14 @@ from math import degrees, radians
 import pytest
 
 from comparisons import archive, cases, documents, sheets
-from comparisons.branches import Place
+from comparisons.verdict.events import Place
 from comparisons.choices import Choices
-from comparisons.criticals import critical_rows
+from comparisons.verdict.events import critical_rows
 from comparisons.pairing import Solvers, paired
-from comparisons.per_branch import critical_sentence, critical_word
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.GONE_per_branch import critical_word
+from comparisons.verdict.sentences import critical_sentence
+from comparisons.verdict.case import compare
+from comparisons.verdict.words import Word
 from cprbm_scene import Loss
 from tests.comparisons.jumping import FORWARD, Jumping
 

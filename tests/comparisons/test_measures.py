@@ -8,13 +8,14 @@ import pytest
 
 from comparisons.choices import Choices
 from comparisons.geometry import points
-from comparisons.measures import round_offs, rows_of
+from comparisons.verdict.rows import build_rows, round_off
 from comparisons.pairing import Runs, Solvers, paired
-from comparisons.scales import SMALLEST_SHARE, probe_scale
-from comparisons.spots import clear_of_spots
+from comparisons.GONE_scales import probe_scale
+from comparisons.verdict.scales import FAMILY_SHARE
+from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.stations import station_of
-from comparisons.verdict import judged
-from comparisons.words import Word
+from comparisons.GONE_verdict import judged
+from comparisons.verdict.words import Word
 from cprbm_scene import Probe, Stage, scene_from
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict

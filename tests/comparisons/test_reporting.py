@@ -18,8 +18,8 @@ from comparisons.pairing import Runs, Solvers, cprbm_answer, fea_answer
 from comparisons.reporting import gathering, outlines
 from comparisons.reporting.inlined import inlined
 from comparisons.reporting.stepping import stepper
-from comparisons.verdict import Comparison, Verdict
-from comparisons.words import Word
+from comparisons.verdict.case import Comparison, Verdict
+from comparisons.verdict.words import Word
 from cprbm_scene import Mistake, SceneError
 from tests.comparisons.killed import QUESTION
 from tests.comparisons.made_up import MadeUp

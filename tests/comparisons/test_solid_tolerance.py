@@ -9,9 +9,9 @@ import pytest
 
 from comparisons.choices import Choices
 from comparisons.cli.main import run
-from comparisons.measures import rows_of
+from comparisons.verdict.rows import build_rows
 from comparisons.pairing import ALONE, Runs, Solvers, solid_answer
-from comparisons.solid_limits import solid_limit
+from comparisons.verdict.solid_limits import solid_limit
 from comparisons.tolerances.solids import LARGEST
 from comparisons.tolerances.tolerated import paired_within, solved
 from cprbm_scene import Ending

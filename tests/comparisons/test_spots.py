@@ -10,7 +10,7 @@ import pytest
 
 from comparisons.choices import Choices
 from comparisons.geometry import nearest, nearest_of_two_laps
-from comparisons.spots import clear_of_spots, ends_of_zones
+from comparisons.verdict.point_forces import away_from_point_forces, zone_ends
 from cprbm_scene import Scene, Shape, StationAnswer
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict

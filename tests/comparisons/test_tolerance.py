@@ -15,13 +15,13 @@ from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.cli.options import tolerance
 from comparisons.cli.solve_ import command
-from comparisons.measures import rows_of
+from comparisons.verdict.rows import build_rows
 from comparisons.pairing import ALONE, Runs, Solvers, solvers_of
 from comparisons.tolerances.search import FIRST, Estimate, Stated, search
 from comparisons.tolerances.settled import settled
 from comparisons.tolerances.tolerated import paired_within, solved
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.case import compare
+from comparisons.verdict.words import Word
 from cprbm_scene import Ending, Mistake, Probe, SceneError
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from comparisons.uncertainty import error, largest, limit, observed, orders
+from comparisons.verdict.uncertainty import error, largest, limit, observed, orders
 
 S = 1.25
 THIRD = (56, 64, 112)  # N, 8/7 N and 2N

@@ -9,10 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from comparisons.choices import Choices
-from comparisons.measures import Bounds, Row
+from comparisons.verdict.bounds import Bounds
+from comparisons.verdict.rows import Row
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict import compared, judged
-from comparisons.words import Word
+from comparisons.GONE_verdict import judged
+from comparisons.verdict.case import compare
+from comparisons.verdict.words import Word
 from cprbm_scene import Ending, Probe, Stage
 from cprbm_scene.answer import frozen_array
 from tests.comparisons.made_up import MadeUp, with_value

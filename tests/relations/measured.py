@@ -25,10 +25,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.measures import arc_lengths, probe_scales, round_offs
+from comparisons.quantities import arc_lengths
+from comparisons.verdict.rows import round_off
+from comparisons.verdict.scales import probe_scales
 from comparisons.pairing import Solver
-from comparisons.scales import norm
-from comparisons.spots import clear_of_spots
+from comparisons.quantities import norm
+from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.stations import station_of
 from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer, scene_from
 from cprbm_scene.answer import Array, Flags

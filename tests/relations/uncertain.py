@@ -1,6 +1,6 @@
 """Uncertainty of a solver's discretisation, from an answer at twice the links or elements.
 
-The largest uncertainty of a probe in a stage counts at every station (:mod:`comparisons.uncertainty`), over the probe's
+The largest uncertainty of a probe in a stage counts at every station (:mod:`comparisons.verdict.uncertainty`), over the probe's
 scale.
 """
 
@@ -13,12 +13,13 @@ from functools import cached_property
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.measures import arc_lengths, probe_scales
+from comparisons.quantities import arc_lengths
+from comparisons.verdict.scales import probe_scales
 from comparisons.pairing import Solver
-from comparisons.scales import norm
-from comparisons.spots import clear_of_spots
+from comparisons.quantities import norm
+from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.stations import station_of
-from comparisons.uncertainty import error, largest
+from comparisons.verdict.uncertainty import error, largest
 from cprbm_scene import Answer, Probe, Scene, StationAnswer
 from cprbm_scene.answer import Array
 from cprbm_scene.statement import STRESSES, Quantity

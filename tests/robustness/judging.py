@@ -30,16 +30,18 @@ import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
-from comparisons.calibration import FAR, every
+from comparisons.verdict.calibration import EXACT_FACTOR, true_errors
 from comparisons.choices import Choices
 from comparisons.formats import number
-from comparisons.measures import Bounds, Row
+from comparisons.verdict.bounds import Bounds
+from comparisons.verdict.rows import Row
 from comparisons.pairing import Runs, Solvers, paired
-from comparisons.reach import ends_at_critical, first_stations, up_to
-from comparisons.scales import norm
+from comparisons.GONE_reach import first_stations, up_to
+from comparisons.verdict.completeness import ends_at_critical
+from comparisons.quantities import norm
 from comparisons.stations import station_of
-from comparisons.verdict import Comparison, compared
-from comparisons.words import Word
+from comparisons.verdict.case import Comparison, compare
+from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Scene, SceneError
 from tests.robustness.auditing import Auditing
 from tests.robustness.outcomes import Outcome, Way

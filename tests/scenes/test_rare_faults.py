@@ -6,8 +6,8 @@ import pytest
 
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer, paired, solvers_of
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.case import compare
+from comparisons.verdict.words import Word
 from cprbm_scene import Scene
 from tests.scenes.rare_scenes import ASKED, scene
 from tests.together.planted import asked_of, stiffer, without_contact

@@ -12,9 +12,10 @@ import cprbm
 import elastica_reference
 import fea_reference
 from comparisons.choices import Choices
-from comparisons.measures import load_unit
+from comparisons.quantities import load_unit
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict import Word, compared
+from comparisons.verdict.case import compare
+from comparisons.verdict.words import Word
 from cprbm_scene import Ending, scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, cantilever_data
 from tests.elastica_reference.scenes import case

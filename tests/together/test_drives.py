@@ -7,11 +7,11 @@ import pytest
 
 from comparisons import figures
 from comparisons.choices import Choices
-from comparisons.measures import load_unit
+from comparisons.quantities import load_unit
 from comparisons.pairing import Solvers, cprbm_answer, paired
-from comparisons.scales import natural_scale
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.scales import natural_value
+from comparisons.verdict.case import compare
+from comparisons.verdict.words import Word
 from tests.cprbm.driven import driven_hinge
 from tests.together.driven import GAP, gripper_like, punched, snapping
 

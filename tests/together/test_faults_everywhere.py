@@ -36,8 +36,8 @@ from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.geometry import length, points
 from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer, paired
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.case import compare
+from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Arc, BeamContact, CircleContact, Ending, Polynomial, Probe, Scene, StationAnswer
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict

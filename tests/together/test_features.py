@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 import cprbm
 import elastica_reference
 import fea_reference
-from comparisons.spots import clear_of_spots
+from comparisons.verdict.point_forces import away_from_point_forces
 from cprbm_scene import Answer, Ending, SceneError, SelfContact, scene_from
 from cprbm_scene.geometry import arc_length
 from cprbm_scene.statement import STRESSES

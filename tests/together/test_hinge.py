@@ -6,10 +6,10 @@ The bounds are those that the project set itself before there was a second solve
 import numpy as np
 import pytest
 
-from comparisons.measures import rows_of
+from comparisons.verdict.rows import build_rows
 from comparisons.stations import station_of
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.case import compare
+from comparisons.verdict.words import Word
 
 
 @pytest.fixture(scope="module")

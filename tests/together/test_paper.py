@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from comparisons.choices import Choices
-from comparisons.measures import rows_of
+from comparisons.verdict.rows import build_rows
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict import compared
-from comparisons.words import Word
+from comparisons.verdict.case import compare
+from comparisons.verdict.words import Word
 from tests.cprbm.scenes import hinge
 from tests.references import hinge as exact
 

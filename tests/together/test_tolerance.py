@@ -14,11 +14,13 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.measures import arc_lengths
+from comparisons.quantities import arc_lengths
 from comparisons.memory import Remembering
 from comparisons.pairing import Solvers
-from comparisons.scales import denominator, norm, probe_scale
-from comparisons.spots import clear_of_spots
+from comparisons.GONE_scales import probe_scale
+from comparisons.quantities import norm
+from comparisons.verdict.scales import denominator
+from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.stations import station_of
 from comparisons.tolerances.levels import SceneLevels
 from comparisons.tolerances.tolerated import solved

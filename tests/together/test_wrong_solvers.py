@@ -26,8 +26,8 @@ import cprbm.section
 from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer, paired
-from comparisons.verdict import Verdict, compared
-from comparisons.words import Word
+from comparisons.verdict.case import Verdict, compare
+from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict

@@ -1,7 +1,7 @@
 """The third opinion: what both beam theories miss together, each held against the mechanism as a solid.
 
 The solid's value x is extrapolated from its meshes, and u is its stated uncertainty, the largest over the probe's
-stations in the stage (:mod:`comparisons.solid_limits`).  The distances of the beam theories from x are their errors, as
+stations in the stage (:mod:`comparisons.verdict.solid_limits`).  The distances of the beam theories from x are their errors, as
 far as u and their own uncertainties allow.  Nothing of
 the verdict rests on them: a beam theory that is as far from the solid as it must be is not wrong.
 """
@@ -11,13 +11,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from comparisons.formats import percent, scaled_unit, vector
-from comparisons.measures import Row
-from comparisons.scales import norm
+from comparisons.quantities import norm
 from comparisons.sheet import Sheet
-from comparisons.solid_limits import solid_limit
 from comparisons.stations import station_of
-from comparisons.uncertainty import largest
-from comparisons.verdict import Comparison
+from comparisons.verdict.case import Comparison
+from comparisons.verdict.rows import Row
+from comparisons.verdict.solid_limits import solid_limit
+from comparisons.verdict.uncertainty import largest
 from cprbm_scene.answer import Array, Flags
 
 

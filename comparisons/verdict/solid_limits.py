@@ -1,4 +1,4 @@
-"""Limits of the solid's values on meshes that double, and stated uncertainties (:mod:`comparisons.uncertainty`).
+"""Limits of the solid's values on meshes that double, and stated uncertainties (:mod:`comparisons.verdict.uncertainty`).
 
 Away from corners quadrilaterals of second order converge with the fourth power of the element's size.  At the corner of
 a face that is held the stress has no bound, and displacements converge with an order of about 1.5 (M. L. Williams,
@@ -13,10 +13,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from comparisons.measures import Row
-from comparisons.spots import clear_of_spots
 from comparisons.stations import station_of
-from comparisons.uncertainty import GRIDS, OWN, Limit, limit
+from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.rows import Row
+from comparisons.verdict.uncertainty import GRIDS, OWN, Limit, limit
 from cprbm_scene import Answer, Scene, StationAnswer
 from cprbm_scene.answer import Flags
 from cprbm_scene.statement import STRESSES
@@ -41,6 +41,6 @@ def solid_limit(
     first = max((place + 1 for place, same in enumerate(alike) if not same), default=0)
     counts = np.ones(row.fea.shape, dtype=bool)
     if row.probe.quantity in STRESSES and row.arc_length is not None:
-        counts = clear_of_spots(scene, row.probe.of, row.arc_length, (*stations[-2:], *beside))
+        counts = away_from_point_forces(scene, row.probe.of, row.arc_length, (*stations[-2:], *beside))
     sizes = [2.0**place for place in range(len(values))]
     return limit(sizes[first:], values[first:], OWN["solid"]), counts
