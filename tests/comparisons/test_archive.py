@@ -43,4 +43,4 @@ def test_a_verdict_needs_no_second_solve(hinge, right):
         (there_and_back(runs.cprbm[0]), there_and_back(runs.cprbm[1])),
         {theory: tuple(there_and_back(one) for one in fea) for theory, fea in runs.fea.items()},
     )
-    assert compared(hinge, back).verdict == compared(hinge, runs).verdict
+    assert compare(hinge, back).verdict == compare(hinge, runs).verdict

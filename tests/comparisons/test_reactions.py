@@ -31,8 +31,8 @@ from cprbm_scene.answer import frozen_array
 from cprbm_scene.freedoms import unit
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import DisplacementDrive
-from tests.comparisons.jumping import Jumping
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.jumping import Jumping
+from tests.verdict.made_up import MadeUp
 from tests.together.driven import GAP, gripper_like, punched, snapping
 
 K, STOP = 70.0, 900.0  # N/m
@@ -86,7 +86,7 @@ def driven(*stages, **shown):
 
 
 def comparison_of(scene, cprbm=None):
-    return compared(scene, paired(scene, Choices(), Solvers(cprbm or Spring(), Spring("fea", share=1.01))))
+    return compare(scene, paired(scene, Choices(), Solvers(cprbm or Spring(), Spring("fea", share=1.01))))
 
 
 def of_one_solver(scene, solver, choices=COARSE):
@@ -121,7 +121,7 @@ def test_without_a_reaction_probe_of_a_moved_drive_there_is_no_perturbed_scene(h
     fewer = push.model_copy(update={"probes": tuple(probe for probe in push.probes if probe.name != "M.reaction")})
     for scene in (hinge, driven(("pull", (0.5,))), driven(("push", (0.0,))), fewer):
         assert perturbed_scene(scene) is None
-    comparison = compared(hinge, paired(hinge, Choices(), right))
+    comparison = compare(hinge, paired(hinge, Choices(), right))
     assert comparison.reactions == ()
     assert documents.comparison(comparison)["work_energy"] == []
     assert reactions_drawn.of_comparison(comparison) == ()
@@ -289,7 +289,7 @@ def jumping(**planted):
     )
     scene = scene.model_copy(update={"stages": stages, "claims": ()})
     solvers = Solvers(Jumping("cprbm", **planted), Jumping("fea", **planted))
-    return compared(scene, paired(scene, Choices(), solvers))
+    return compare(scene, paired(scene, Choices(), solvers))
 
 
 def test_no_difference_is_taken_across_a_jump():
@@ -346,7 +346,7 @@ def test_an_energy_that_is_no_number_leaves_no_value():
     first = runs.perturbed.stations[0]
     spoilt = replace(first, values={**first.values, "scene.potential_energy": frozen_array([np.nan])})
     perturbed = replace(runs.perturbed, stations=(spoilt, *runs.perturbed.stations[1:]))
-    found = compared(comparison.scene, replace(runs, perturbed=perturbed)).reactions
+    found = compare(comparison.scene, replace(runs, perturbed=perturbed)).reactions
     assert [at.absence for at in found] == [Absence.NOT_REACHED, None]
 
 
@@ -373,7 +373,7 @@ def test_json_table_and_figure_show_it():
 
 def test_the_verdict_does_not_use_it():
     comparison = comparison_of(driven(("push", (0.002, 0.004))))
-    without = compared(comparison.scene, replace(comparison.runs, perturbed=None))
+    without = compare(comparison.scene, replace(comparison.runs, perturbed=None))
     assert without.verdict == comparison.verdict
     assert without.reactions == ()
 

@@ -22,7 +22,7 @@ from comparisons.verdict.case import Comparison, Verdict
 from comparisons.verdict.words import Word
 from cprbm_scene import Mistake, SceneError
 from tests.comparisons.killed import QUESTION
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.made_up import MadeUp
 
 SHORT = ("--without", "times", "--without", "convergence")
 VOID = {"wbr", "meta", "link", "br", "input", "img"}

@@ -15,7 +15,7 @@ from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.cli.options import tolerance
 from comparisons.cli.solve_ import command
-from comparisons.verdict.rows import build_rows
+from comparisons.verdict.rows import rows_of
 from comparisons.pairing import ALONE, Runs, Solvers, solvers_of
 from comparisons.tolerances.search import FIRST, Estimate, Stated, search
 from comparisons.tolerances.settled import settled
@@ -25,7 +25,7 @@ from comparisons.verdict.words import Word
 from cprbm_scene import Ending, Mistake, Probe, SceneError
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.frozendict import frozendict
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.made_up import MadeUp
 
 
 @dataclass
@@ -143,7 +143,7 @@ class Noting:
 def test_a_comparison_solves_nothing_twice_and_states_no_more_than_was_asked(hinge, tolerance):
     solvers = Solvers(Noting(MadeUp("cprbm", 2e-3), []), Noting(MadeUp("fea", -5e-4), []))
     runs, found = paired_within(hinge, Choices(), tolerance, solvers, ALONE, lambda text: None)
-    comparison = compared(hinge, runs)
+    comparison = compare(hinge, runs)
     assert comparison.verdict.word is Word.AGREE, comparison.verdict.sentence
     assert all(each.met for each in found)
     for asked in (solvers.cprbm.asked, solvers.fea.asked):
@@ -159,7 +159,7 @@ def test_what_falls_with_the_square_of_n_is_extrapolated_to_its_limit(hinge, rig
     answer, found = solved(hinge, "cprbm", Choices(), 1e-3, right, lambda text: None)
     assert found.extrapolated == (20, 40)
     assert found.solved == (10, 20, 23, 40)
-    assert found.n == answer.settings["n"] == 40
+    assert found.n == answer.settings["links"] == 40
     assert answer.settings["extrapolated_from"] == [20, 40]
     assert "B.displacement" in found.probes
     assert "N = 20, 40" in answer.notes[-1]
@@ -203,7 +203,7 @@ def test_what_is_settled_beside_kinks_errs_by_no_more_than_it_states():
     """Reference: the exact answer of `tapered`, whose sections' kinks no mesh meets: at 80 links a moment was off by
     2.6 times what two successive changes, small by accident, had stated."""
     runs, _ = paired_within(cases.opened("tapered"), Choices(), 0.01, solvers_of(None), ALONE, lambda text: None)
-    verdict = compared(cases.opened("tapered"), runs).verdict
+    verdict = compare(cases.opened("tapered"), runs).verdict
     assert verdict.word is Word.AGREE, verdict.sentence
     assert "are within the stated ones" in verdict.sentence
 
@@ -311,4 +311,4 @@ def test_a_drives_reaction_by_the_energies_comes_with_an_extrapolated_answer(rig
     scene = scene.model_copy(update={"stages": (stage,), "claims": ()})
     runs, (cprbm, _) = paired_within(scene, Choices(), 1e-3, right, ALONE, lambda text: None)
     assert cprbm.extrapolated
-    assert len(compared(scene, runs).reactions) == 3
+    assert len(compare(scene, runs).reactions) == 3

@@ -79,7 +79,7 @@ def _stated(found: Solved, probe: Probe, station: StationAnswer) -> float:
     if v.shape != V.shape:
         return 0.0
     if probe.quantity in STRESSES:
-        counts = clear_of_spots(found.scene, probe.of, arc_lengths(found.scene, probe), (station, finer))
+        counts = away_from_point_forces(found.scene, probe.of, arc_lengths(found.scene, probe), (station, finer))
         v, V = v[counts], V[counts]
     return _size(probe.quantity, v, V)
 

@@ -188,7 +188,7 @@ def weighed(data, q):
 
 def test_the_verdict_on_a_circle_is_agree():
     scene = scene_from(weighed(on_a_circle(8.0), 40.0))
-    found = compared(scene, paired(scene, Choices(kinematics="bending"), Solvers()))
+    found = compare(scene, paired(scene, Choices(kinematics="bending"), Solvers()))
     assert found.verdict.word is Word.AGREE, found.verdict.sentence
     assert [load_unit(scene, stage) for stage in scene.stages] == ["N/m", "N", "N"]
 

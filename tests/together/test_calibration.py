@@ -18,7 +18,7 @@ import pytest
 from comparisons import documents
 from comparisons.verdict.calibration import Tally
 from comparisons.choices import Choices
-from comparisons.verdict.rows import build_rows
+from comparisons.verdict.rows import rows_of
 from comparisons.pairing import Solvers, paired
 from comparisons.studies.calibration import Calibration, Trial, tallies, tried
 from comparisons.studies.calibration_told import told

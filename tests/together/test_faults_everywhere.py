@@ -105,7 +105,7 @@ def word(case: str, solver: str, wrong: Answer) -> Word:
         stations = zip(own.stations, base.stations, wrong.stations, strict=True)
         return replace(wrong, stations=tuple(_as_wrong(*three) for three in stations))
 
-    return compared(thinned(case), paired(thinned(case), CHOICES, replace(true, **{solver: answer}))).verdict.word
+    return compare(thinned(case), paired(thinned(case), CHOICES, replace(true, **{solver: answer}))).verdict.word
 
 
 def _as_wrong(own: StationAnswer, base: StationAnswer, wrong: StationAnswer) -> StationAnswer:
@@ -142,7 +142,7 @@ def altered(answer: Answer, change: Callable[[StationAnswer], StationAnswer]) ->
 @pytest.mark.parametrize("case", SCENES)
 def test_the_right_ones_agree(case):
     scene = thinned(case)
-    verdict = compared(scene, right(case)).verdict
+    verdict = compare(scene, right(case)).verdict
     assert verdict.word is Word.AGREE, verdict.sentence
 
 

@@ -87,7 +87,7 @@ def compared(
         return np.ones(value.shape, dtype=bool)
     scene = scene_from(feature.data)
     s = np.linspace(0.0, arc_length(scene.beams[of].curve), value.size)
-    return clear_of_spots(scene, of, s, (answer.stations[-1], reference.stations[-1]))
+    return away_from_point_forces(scene, of, s, (answer.stations[-1], reference.stations[-1]))
 
 
 def table() -> str:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from comparisons.choices import Choices
-from comparisons.verdict.rows import build_rows
+from comparisons.verdict.rows import rows_of
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict.case import compare
 from comparisons.verdict.words import Word
@@ -20,7 +20,7 @@ from tests.references import hinge as exact
 def test_the_verdict_at_even_and_odd_numbers_of_links(links, word):
     scene = hinge(stages=[{"name": "load", "steps": "M", "stations": [0.2, 0.67]}])
     runs = paired(scene, Choices(links=links, elements=30, formulation="paper", kinematics="bending"), Solvers())
-    assert compared(scene, runs).verdict.word is word
+    assert compare(scene, runs).verdict.word is word
     # reference: tests.references.hinge
     truth = exact.solve(exact.PAPER, 0.67)
     true = {"B.displacement": truth.displacement_B, "contact.force": [truth.contact_force]}

@@ -15,7 +15,7 @@ from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
 def thick():
     """A cantilever nine times as long as thick under a small force, by all three."""
     scene = bar(straight(0.31), 0.034, stations=(0.011,), probes=(("tip", "displacement"), ("beam", "bending_stress")))
-    return compared(scene, paired(scene, Choices(links=8, elements=16), with_solid(Solvers())))
+    return compare(scene, paired(scene, Choices(links=8, elements=16), with_solid(Solvers())))
 
 
 def test_what_bending_alone_misses_is_timoshenkos_shear(thick):

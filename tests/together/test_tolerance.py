@@ -17,7 +17,7 @@ from comparisons.choices import Choices
 from comparisons.quantities import arc_lengths
 from comparisons.memory import Remembering
 from comparisons.pairing import Solvers
-from comparisons.GONE_scales import probe_scale
+from comparisons.verdict.scales import probe_scales
 from comparisons.quantities import norm
 from comparisons.verdict.scales import denominator
 from comparisons.verdict.point_forces import away_from_point_forces
@@ -83,6 +83,7 @@ QUESTIONS: dict[str, tuple[Scene, Callable]] = {
 def errors(scene: Scene, answer: Answer, truth: Callable) -> list[float]:
     """True errors as fractions of what the tables divide by, of every row that has a value."""
     found = []
+    scales = probe_scales(scene, (answer,))
     for stage in scene.stages:
         for value in stage.stations:
             station = station_of(answer, stage.name, value)
@@ -94,9 +95,9 @@ def errors(scene: Scene, answer: Answer, truth: Callable) -> list[float]:
                     continue
                 error = station.values[probe.name] - true
                 if arc is not None:
-                    error = error[clear_of_spots(scene, probe.of, arc, (station,))]
-                scale = probe_scale(scene, probe, stage, (answer,))
-                found.append(norm(probe.quantity, error) / denominator(probe, true, scale))
+                    error = error[away_from_point_forces(scene, probe.of, arc, (station,))]
+                scale = scales[stage.name, probe.name]
+                found.append(norm(probe.quantity, error) / denominator(probe, norm(probe.quantity, true), scale))
     return found
 
 

@@ -14,7 +14,7 @@ from tests.references.wrapped import Wrapped
 @pytest.mark.parametrize("links", [20, 41, 1280])
 def test_wrapped_agrees(links):
     scene = cases.opened("wrapped")
-    comparison = compared(scene, paired(scene, Choices(links=links), Solvers()))
+    comparison = compare(scene, paired(scene, Choices(links=links), Solvers()))
     assert comparison.verdict.word is Word.AGREE, comparison.verdict.sentence
 
 

@@ -1,7 +1,7 @@
 """A solver by hand whose branches end: a driven crank that jumps forwards at one angle and back at another.
 
 Before the jump the moment is M = sin α + C/N², and the energy its integral; what is on another branch is a constant
-less.  Numbers follow :class:`tests.comparisons.made_up.MadeUp`'s law of an error C/N² and a step per theory.
+less.  Numbers follow :class:`tests.verdict.made_up.MadeUp`'s law of an error C/N² and a step per theory.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ import numpy as np
 from comparisons.choices import Choices
 from comparisons.geometry import length
 from cprbm_scene import Answer, Critical, Ending, GoneOver, Loss, PinnedEnd, Scene, Shape, StationAnswer
-from cprbm_scene.answer import frozen_array
+from cprbm_scene.answer import ContactState, frozen_array
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import TurningBody
-from tests.comparisons.made_up import THEORY, MadeUp
+from tests.verdict.made_up import THEORY, MadeUp
 
 FORWARD, BACK = radians(70.4), radians(25.3)
 """Where the branch ends forwards, and where the one after it ends on the way back."""
@@ -28,11 +28,16 @@ FALL = 0.3
 
 @dataclass(frozen=True)
 class Jumping:
-    """An answer function: ``error`` and ``critical_error`` are C/N² at N = 40 of all values and of the critical ones,
-    the first relative and the second in rad; ``late`` is a fault of the second in every run; ``loss`` and ``what``
-    the mechanism; ``jumps`` whether there are any; ``stops`` whether the answer ends at the first; ``over`` is how far
-    the state beside is turned where it is gone on over instead, rad, and ``lands`` a share by which what it gives from
-    there on is off."""
+    """Answer function of a solver.
+
+    Attributes:
+        solver: name; error: C/N² at N = 40 of all values, relative; critical_error: of the critical angles, rad.
+        late: shift of the critical angles in every run, rad; loss, what: mechanism of the critical points.
+        jumps: whether there are critical points; stops: whether the answer ends at the first.
+        over: rotation of the state behind a critical point that the answer passes, rad; 0 if it jumps there.
+        lands: relative change of all values behind a passed critical point.
+        side: -1 for the mirror image behind a critical point, else 1.
+    """
 
     solver: str
     error: float = 1e-3
@@ -44,6 +49,7 @@ class Jumping:
     stops: bool = False
     over: float = 0.0
     lands: float = 0.0
+    side: float = 1.0
     stiffness: float = 1.0
 
     def __call__(self, scene: Scene, choices: Choices) -> Answer:
@@ -61,7 +67,7 @@ class Jumping:
             at = self._passed(last, station.value, shift, away=len([*critical, *gone]) % 2 == 1)
             if at is not None:
                 end = Critical(station.stage, at, 1e-6, self.loss, self.what, 1e-7, -0.1, 1.0, 1.0 - FALL)
-                if self.over:
+                if self.over and not self.stops:
                     gone.append(GoneOver(end, self.over))
                 else:
                     critical.append(replace(end, after=None) if self.stops else end)
@@ -86,9 +92,10 @@ class Jumping:
         moment = factor * (sin(alpha) - 0.6 * away * sin(2.0 * alpha))
         energy = factor * (1.0 - cos(alpha) - FALL * away * (1.0 - cos(2.0 * alpha)))
         values = dict(station.values)
+        image = self.side < 0.0 and branch > 0
         for probe in scene.probes:
             if probe.quantity == "reaction_moment":
-                values[probe.name] = frozen_array([moment])
+                values[probe.name] = frozen_array([-moment if image else moment])
             elif probe.quantity == "potential_energy":
                 values[probe.name] = frozen_array([energy])
             elif probe.quantity == "moment":
@@ -98,7 +105,7 @@ class Jumping:
             elif probe.quantity == "bending_stress":
                 s = np.linspace(0.0, 1.0, probe.points)
                 values[probe.name] = frozen_array(1e8 * factor * (1.0 + alpha - away) * np.cos(2.0 * s))
-        shapes = _shapes(scene, alpha, away)
+        shapes = _shapes(scene, alpha, (away + image) % 2)
         middle = next(iter(shapes.values()))
         touching = {name: frozen_array([[middle.x[9], middle.y[9]]]) for name in scene.contacts}
         return replace(
@@ -107,6 +114,7 @@ class Jumping:
             branch=branch,
             shapes=frozendict(shapes),
             touching=frozendict(touching),
+            contacts=frozendict({name: ContactState(True, places) for name, places in touching.items()}),
         )
 
 
