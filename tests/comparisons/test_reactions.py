@@ -31,9 +31,9 @@ from cprbm_scene.answer import frozen_array
 from cprbm_scene.freedoms import unit
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import DisplacementDrive
+from tests.together.driven import GAP, gripper_like, punched, snapping
 from tests.verdict.jumping import Jumping
 from tests.verdict.made_up import MadeUp
-from tests.together.driven import GAP, gripper_like, punched, snapping
 
 K, STOP = 70.0, 900.0  # N/m
 STOP_AT = 0.006  # m

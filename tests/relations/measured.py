@@ -25,12 +25,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.quantities import arc_lengths
-from comparisons.verdict.scales import probe_scales
 from comparisons.pairing import Solver
-from comparisons.quantities import norm
-from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.quantities import arc_lengths, norm
 from comparisons.stations import station_of
+from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.scales import probe_scales
 from cprbm_scene import Answer, Probe, Scene, SceneError, StationAnswer, scene_from
 from cprbm_scene.answer import Array, Flags
 from cprbm_scene.statement import STRESSES

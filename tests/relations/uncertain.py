@@ -13,12 +13,11 @@ from functools import cached_property
 import numpy as np
 
 from comparisons.choices import Choices
-from comparisons.quantities import arc_lengths
-from comparisons.verdict.scales import probe_scales
 from comparisons.pairing import Solver
-from comparisons.quantities import norm
-from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.quantities import arc_lengths, norm
 from comparisons.stations import station_of
+from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.scales import probe_scales
 from comparisons.verdict.uncertainty import error, largest
 from cprbm_scene import Answer, Probe, Scene, StationAnswer
 from cprbm_scene.answer import Array

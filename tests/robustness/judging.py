@@ -30,19 +30,19 @@ import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
-from comparisons.verdict.calibration import EXACT_FACTOR, true_errors
 from comparisons.choices import Choices
 from comparisons.formats import number
-from comparisons.verdict.bounds import Bounds
-from comparisons.verdict.rows import Row
 from comparisons.pairing import Runs, Solvers, paired
+from comparisons.quantities import norm
+from comparisons.stations import station_of
+from comparisons.verdict.bounds import Bounds
+from comparisons.verdict.calibration import EXACT_FACTOR, true_errors
+from comparisons.verdict.case import Comparison, compare
 from comparisons.verdict.completeness import ends_at_critical, problems
 from comparisons.verdict.judge import SHARED
 from comparisons.verdict.point_forces import sharing_sources
+from comparisons.verdict.rows import Row
 from comparisons.verdict.runs_table import RunsTable
-from comparisons.quantities import norm
-from comparisons.stations import station_of
-from comparisons.verdict.case import Comparison, compare
 from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Scene, SceneError
 from tests.robustness.auditing import Auditing
@@ -297,8 +297,7 @@ def _depends_on_the_mesh(table: RunsTable, row: Row) -> bool:
 
 
 def _from_refinement(row: Row, finer: Runs) -> Iterator[tuple[str, float, float]]:
-    """By solver the distance of a row's value from the finest of the finer runs, and what it may be.
-    """
+    """By solver the distance of a row's value from the finest of the finer runs, and what it may be."""
     if row.bounds is None:
         return
     for solver, mine, answer, own in (

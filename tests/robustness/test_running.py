@@ -17,7 +17,6 @@ from comparisons.audit import audit
 from comparisons.cli.main import run as command
 from comparisons.pairing import Solvers
 from cprbm_scene import Ending, SceneError, read, scene_from
-from tests.verdict.made_up import MadeUp
 from tests.robustness import auditing
 from tests.robustness.apart import Limits, OutOfTime, Returned
 from tests.robustness.command import exit_code
@@ -30,6 +29,7 @@ from tests.robustness.running import FAILURES, Crew, Plan, Stress, run
 from tests.robustness.shrinking import Patience, shrunk, steps
 from tests.robustness.told import document, sentence, sheets_of, told_of
 from tests.robustness.toml import toml_of
+from tests.verdict.made_up import MadeUp
 
 ROOT = Path(__file__).parents[2]
 PLAN = Plan(0, limits=Limits(seconds=1.0, waiting=120.0))

@@ -12,8 +12,8 @@ import cprbm
 import elastica_reference
 import fea_reference
 from comparisons.choices import Choices
-from comparisons.quantities import load_unit
 from comparisons.pairing import Solvers, paired
+from comparisons.quantities import load_unit
 from comparisons.verdict.case import compare
 from comparisons.verdict.words import Word
 from cprbm_scene import Ending, scene_from

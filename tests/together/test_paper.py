@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from comparisons.choices import Choices
-from comparisons.verdict.rows import rows_of
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict.case import compare
+from comparisons.verdict.rows import rows_of
 from comparisons.verdict.words import Word
 from tests.cprbm.scenes import hinge
 from tests.references import hinge as exact

@@ -14,16 +14,14 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.quantities import arc_lengths
 from comparisons.memory import Remembering
 from comparisons.pairing import Solvers
-from comparisons.verdict.scales import probe_scales
-from comparisons.quantities import norm
-from comparisons.verdict.scales import denominator
-from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.quantities import arc_lengths, norm
 from comparisons.stations import station_of
 from comparisons.tolerances.levels import SceneLevels
 from comparisons.tolerances.tolerated import solved
+from comparisons.verdict.point_forces import away_from_point_forces
+from comparisons.verdict.scales import denominator, probe_scales
 from cprbm_scene import Answer, Scene
 from tests.references import hinge as exact
 from tests.together.test_tapered import FORCE, LENGTH, scene_of

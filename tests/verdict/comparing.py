@@ -86,6 +86,4 @@ def opened(station: StationAnswer) -> StationAnswer:
     nothing = {"contact.force": [0.0], "contact.centre": [], "contact.closing_load": []}
     values = {name: frozen_array(nothing.get(name, value)) for name, value in station.values.items()}
     contacts = frozendict({"contact": ContactState(False, frozen_array(np.zeros((0, 2))))})
-    return replace(
-        station, values=frozendict(values), touching=frozendict(), contacts=contacts, forces=PointForces()
-    )
+    return replace(station, values=frozendict(values), touching=frozendict(), contacts=contacts, forces=PointForces())

@@ -112,9 +112,7 @@ class MadeUp:
             frozendict(dict.fromkeys(scene.contacts, places) if closed else {}),
             CERTIFICATE,
             forces=_pressing(scene, 0.5 * total + shift, 20.0 * push) if closed else PointForces(),
-            contacts=frozendict(
-                {name: ContactState(closed, places if closed else nowhere) for name in scene.contacts}
-            ),
+            contacts=frozendict({name: ContactState(closed, places if closed else nowhere) for name in scene.contacts}),
         )
 
 

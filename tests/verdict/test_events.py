@@ -257,7 +257,12 @@ def test_an_ending_without_its_critical_point_is_no_critical_point(crank):
     [
         (PASSES, replace(F, **STOPS), "UNDECIDED BRANCH", {"cprbm"}),
         (replace(C, **STOPS), replace(PASSES, solver="fea"), "UNDECIDED BRANCH", {"fea"}),
-        (only(replace(C, **STOPS), PASSES, lambda c: c.links == 40), replace(F, **STOPS), "UNDECIDED BRANCH", {"cprbm"}),
+        (
+            only(replace(C, **STOPS), PASSES, lambda c: c.links == 40),
+            replace(F, **STOPS),
+            "UNDECIDED BRANCH",
+            {"cprbm"},
+        ),
         (replace(PASSES, late=radians(0.4)), replace(F, **STOPS), "DIFFER EVENTS", set()),
         (replace(PASSES, **BIFURCATES), replace(F, **STOPS), "DIFFER EVENTS", set()),
         (replace(C, jumps=False), replace(F, **STOPS), "DIFFER EVENTS", set()),

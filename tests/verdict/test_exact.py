@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from comparisons import documents, sheets
-from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers, solvers_of
 from comparisons.studies import calibration as study
@@ -59,9 +58,9 @@ def short(scene, choices):
 )
 def test_stations_with_an_exact_value_count(hinge, exact, known):
     found = beside(hinge, exact)
-    assert [row.exact is not None for row in found.rows if row.probe.name == ENERGY] == [True] * known + [
-        False
-    ] * (10 - known)
+    assert [row.exact is not None for row in found.rows if row.probe.name == ENERGY] == [True] * known + [False] * (
+        10 - known
+    )
     assert word_of(found) == "AGREE"
 
 

@@ -102,7 +102,9 @@ def test_an_audit_that_fails_is_undecided_and_hides_no_difference(hinge):
     assert (word_of(agreeing), word_of(differing)) == ("UNDECIDED AUDIT", "DIFFER VALUES")
     assert agreeing.verdict.completed
     for found in (agreeing, differing):
-        assert found.verdict.sentence.count("fea's answer fails: at load 0.67 beam1 is not in balance (and 1 more)") == 1
+        assert (
+            found.verdict.sentence.count("fea's answer fails: at load 0.67 beam1 is not in balance (and 1 more)") == 1
+        )
         assert set(found.audits) == {"cprbm", "fea"}
 
 
