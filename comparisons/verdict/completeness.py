@@ -65,6 +65,8 @@ def problems(scene: Scene, answer: Answer) -> tuple[str, ...]:
         try:
             station = station_of(answer, stage, value)
         except KeyError:
+            if not answer.completed:
+                break
             found.append(f"it has no station {stage} {value:g}")
             continue
         found.extend(f"at {stage} {value:g} {problem}" for problem in _station_problems(scene, station))

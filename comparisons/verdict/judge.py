@@ -21,7 +21,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -29,11 +28,11 @@ from comparisons.quantities import OPEN_AT_ZERO
 from comparisons.verdict.bounds import bounds_of
 from comparisons.verdict.calibration import true_errors
 from comparisons.verdict.completeness import ABSENT_WHILE_OPEN
-from comparisons.verdict.events import PASSED, SIDE, Place
 from comparisons.verdict.point_forces import resultant, sharing_sources
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs_table import RunsTable
-from comparisons.verdict.words import Reason, Word, worst_of
+from comparisons.verdict.station_events import MIRRORED, PASSED, Place
+from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Scene
 from cprbm_scene.statement import Quantity
 
@@ -45,25 +44,6 @@ SHARED: frozenset[Quantity] = frozenset({"force", "centre", "ends", "reaction", 
 
 RESOLVABLE = frozenset({Reason.COARSE, Reason.EVENT})
 """Reasons that a finer mesh or another station removes."""
-
-
-@dataclass(frozen=True, slots=True)
-class BranchVerdict:
-    """Word of the rows of one branch in a stage.
-
-    Attributes:
-        stage: name; number: of critical points before; first, last: stations; stations: their number.
-        near: stations between events, which take no part.
-        word: None without a row that takes part.
-    """
-
-    stage: str
-    number: int
-    first: float
-    last: float
-    stations: int
-    near: int
-    word: Word | None
 
 
 def judge_row(table: RunsTable, row: Row) -> Judged:
@@ -86,7 +66,7 @@ def judge_row(table: RunsTable, row: Row) -> Judged:
         return Word.UNDECIDED, Reason.NOT_UNIQUE
     if row.events.unsettled:
         return Word.UNDECIDED, _event_reason(row)
-    theory = max(bounds.own, bounds.same_theory) <= limit
+    theory = bounds.theory > limit or max(bounds.own, bounds.same_theory) <= limit
     return Word.UNDECIDED, Reason.THEORY if theory else Reason.COARSE
 
 
@@ -101,22 +81,6 @@ def judge_case(rows: Sequence[Row], judged: Sequence[Judged]) -> tuple[Word, Rea
     if not any(word is Word.AGREE for word, _ in judged):
         return Word.UNDECIDED, next((reason for _, reason in judged if reason is not None), Reason.RUN_ENDED)
     return Word.AGREE, None
-
-
-def branch_verdicts(rows: Sequence[Row], judged: Sequence[Judged]) -> tuple[BranchVerdict, ...]:
-    """Word of every branch, in the order of the path."""
-    found: dict[tuple[str, int], list[tuple[Row, Word | None]]] = {}
-    for row, (word, _) in zip(rows, judged, strict=True):
-        if row.branch is not None:
-            found.setdefault((row.stage, row.branch), []).append((row, word))
-    verdicts = []
-    for (stage, number), mine in found.items():
-        places = {row.station: row.place for row, _ in mine}
-        stations = list(places)
-        near = sum(place is Place.BETWEEN for place in places.values())
-        word = worst_of(word for _, word in mine)
-        verdicts.append(BranchVerdict(stage, number, stations[0], stations[-1], len(stations), near, word))
-    return tuple(verdicts)
 
 
 def _without_value(scene: Scene, row: Row) -> Judged:
@@ -145,7 +109,7 @@ def _contradiction(table: RunsTable, row: Row) -> Judged:
 
 
 def _event_reason(row: Row) -> Reason:
-    return Reason.BRANCH if row.events.unsettled & {PASSED, SIDE} else Reason.EVENT
+    return Reason.BRANCH if row.events.unsettled & {PASSED, MIRRORED} else Reason.EVENT
 
 
 def _shares(table: RunsTable, row: Row) -> tuple[str, frozenset[str]] | None:

@@ -24,7 +24,7 @@ import fea_reference
 from comparisons import documents
 from comparisons.choices import Choices
 from comparisons.verdict.events import mechanism
-from comparisons.verdict.case import Comparison
+from comparisons.case import Comparison
 from cprbm_scene import Answer, Critical, Scene, SceneError
 from tests.baseline.runs import Run, Theory, open_scene
 from tests.baseline.scales import natural_scales

@@ -8,7 +8,7 @@ import pytest
 from comparisons import archive, documents
 from comparisons.choices import Choices
 from comparisons.pairing import Runs, paired
-from comparisons.verdict.case import compare
+from comparisons.case import compare
 
 
 def there_and_back(answer):

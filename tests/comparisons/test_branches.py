@@ -15,7 +15,7 @@ from comparisons.verdict.bounds import bounds_of
 from comparisons.verdict.rows import build_rows
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict.completeness import problems
-from comparisons.verdict.case import compare
+from comparisons.case import compare
 from comparisons.verdict.words import Word
 from cprbm_scene import Stage
 from tests.comparisons.jumping import BACK, FORWARD, Jumping

@@ -16,7 +16,7 @@ from comparisons.cli.main import run
 from comparisons.pairing import Solvers, paired, solvers_of
 from comparisons.studies import calibration as study
 from comparisons.studies.calibration_told import told
-from comparisons.verdict.case import compare
+from comparisons.case import compare
 from comparisons.verdict.words import Word
 from cprbm_scene import Ending
 from tests.comparisons.made_up import MadeUp, with_value

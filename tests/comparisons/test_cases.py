@@ -4,7 +4,7 @@ import pytest
 
 from comparisons import cases
 from comparisons.choices import Choices
-from comparisons.verdict.claims import claim_of
+from comparisons.claims import claim_of
 from comparisons.verdict.rows import build_rows
 from comparisons.pairing import paired
 from cprbm_scene import SceneError

@@ -7,10 +7,10 @@ import pytest
 
 from comparisons import documents, sheets
 from comparisons.choices import Choices
-from comparisons.verdict.claims import claim_difference, claim_met, claim_of, standings
+from comparisons.claims import claim_difference, claim_met, claim_of, standings
 from comparisons.verdict.rows import Row
 from comparisons.pairing import paired
-from comparisons.verdict.case import compare
+from comparisons.case import compare
 from cprbm_scene import Claim, Probe
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.checks import mistakes_in

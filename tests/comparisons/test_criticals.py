@@ -14,8 +14,8 @@ from comparisons.GONE_criticals import SHARE, TURN
 from comparisons.verdict.events import critical_rows
 from comparisons.pairing import ALONE, Runs, Solvers, paired
 from comparisons.GONE_per_branch import critical_word
-from comparisons.verdict.sentences import critical_sentence
-from comparisons.verdict.case import compare
+from comparisons.sentences import critical_sentence
+from comparisons.case import compare
 from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Claim, Critical, Ending, Loss, Stage
 from cprbm_scene.frozendict import frozendict

@@ -8,7 +8,7 @@ import pytest
 from comparisons import documents
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict.case import compare
+from comparisons.case import compare
 from cprbm_scene import Certificate
 from tests.comparisons.made_up import CERTIFICATE, MadeUp
 

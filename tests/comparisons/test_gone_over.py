@@ -12,8 +12,8 @@ from comparisons.choices import Choices
 from comparisons.verdict.events import critical_rows
 from comparisons.pairing import Solvers, paired
 from comparisons.GONE_per_branch import critical_word
-from comparisons.verdict.sentences import critical_sentence
-from comparisons.verdict.case import compare
+from comparisons.sentences import critical_sentence
+from comparisons.case import compare
 from comparisons.verdict.words import Word
 from cprbm_scene import Loss
 from tests.comparisons.jumping import FORWARD, Jumping

@@ -10,7 +10,7 @@ from comparisons.bodies_drawn import draw_stops, places_at
 from comparisons.choices import Choices
 from comparisons.framing import frame
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict.case import compare
+from comparisons.case import compare
 from cprbm_scene import Stage
 from tests.comparisons.jumping import Jumping
 

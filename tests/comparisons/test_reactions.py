@@ -25,7 +25,7 @@ from comparisons.reactions import (
     perturbed_scene,
     reactions,
 )
-from comparisons.verdict.case import compare
+from comparisons.case import compare
 from cprbm_scene import Ending, Stage
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.freedoms import unit

@@ -18,7 +18,7 @@ from comparisons.pairing import Runs, Solvers, cprbm_answer, fea_answer
 from comparisons.reporting import gathering, outlines
 from comparisons.reporting.inlined import inlined
 from comparisons.reporting.stepping import stepper
-from comparisons.verdict.case import Comparison, Verdict
+from comparisons.case import Comparison, Verdict
 from comparisons.verdict.words import Word
 from cprbm_scene import Mistake, SceneError
 from tests.comparisons.killed import QUESTION

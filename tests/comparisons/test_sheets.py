@@ -10,7 +10,7 @@ from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.paper_sheets import of_paper
 from comparisons.sheet import Sheet, without_empty
-from comparisons.verdict.case import compare
+from comparisons.case import compare
 from cprbm_scene import Ending
 from tests.comparisons.made_up import MadeUp
 

@@ -11,7 +11,7 @@ from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.verdict.rows import build_rows
 from comparisons.pairing import ALONE, Runs, Solvers, solid_answer
-from comparisons.verdict.solid_limits import solid_limit
+from comparisons.solid_limits import solid_limit
 from comparisons.tolerances.solids import LARGEST
 from comparisons.tolerances.tolerated import paired_within, solved
 from cprbm_scene import Ending

@@ -20,7 +20,7 @@ from comparisons.pairing import ALONE, Runs, Solvers, solvers_of
 from comparisons.tolerances.search import FIRST, Estimate, Stated, search
 from comparisons.tolerances.settled import settled
 from comparisons.tolerances.tolerated import paired_within, solved
-from comparisons.verdict.case import compare
+from comparisons.case import compare
 from comparisons.verdict.words import Word
 from cprbm_scene import Ending, Mistake, Probe, SceneError
 from cprbm_scene.answer import frozen_array

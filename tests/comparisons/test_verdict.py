@@ -13,7 +13,7 @@ from comparisons.verdict.bounds import Bounds
 from comparisons.verdict.rows import Row
 from comparisons.pairing import Solvers, paired
 from comparisons.GONE_verdict import judged
-from comparisons.verdict.case import compare
+from comparisons.case import compare
 from comparisons.verdict.words import Word
 from cprbm_scene import Ending, Probe, Stage
 from cprbm_scene.answer import frozen_array

@@ -40,7 +40,7 @@ from comparisons.GONE_reach import first_stations, up_to
 from comparisons.verdict.completeness import ends_at_critical
 from comparisons.quantities import norm
 from comparisons.stations import station_of
-from comparisons.verdict.case import Comparison, compare
+from comparisons.case import Comparison, compare
 from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Scene, SceneError
 from tests.robustness.auditing import Auditing

@@ -14,7 +14,7 @@ import fea_reference
 from comparisons.choices import Choices
 from comparisons.quantities import load_unit
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict.case import compare
+from comparisons.case import compare
 from comparisons.verdict.words import Word
 from cprbm_scene import Ending, scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, cantilever_data

@@ -10,7 +10,7 @@ from comparisons.choices import Choices
 from comparisons.quantities import load_unit
 from comparisons.pairing import Solvers, cprbm_answer, paired
 from comparisons.verdict.scales import natural_value
-from comparisons.verdict.case import compare
+from comparisons.case import compare
 from comparisons.verdict.words import Word
 from tests.cprbm.driven import driven_hinge
 from tests.together.driven import GAP, gripper_like, punched, snapping

@@ -8,7 +8,7 @@ import pytest
 
 from comparisons.verdict.rows import build_rows
 from comparisons.stations import station_of
-from comparisons.verdict.case import compare
+from comparisons.case import compare
 from comparisons.verdict.words import Word
 
 

@@ -10,7 +10,7 @@ import pytest
 from comparisons.choices import Choices
 from comparisons.verdict.rows import build_rows
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict.case import compare
+from comparisons.case import compare
 from comparisons.verdict.words import Word
 from tests.cprbm.scenes import hinge
 from tests.references import hinge as exact

@@ -6,8 +6,8 @@ import pytest
 from comparisons.choices import Choices
 from comparisons.documents import comparison
 from comparisons.pairing import Solvers, paired, with_solid
-from comparisons.verdict.third import of_thirds, sentence, thirds_of
-from comparisons.verdict.case import compare
+from comparisons.third import of_thirds, sentence, thirds_of
+from comparisons.case import compare
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
 
 

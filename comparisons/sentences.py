@@ -8,10 +8,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from comparisons.formats import number, percent
 from comparisons.verdict.calibration import SOLVERS, error_ratios, tally, true_errors
-from comparisons.verdict.events import PASSED, SIDE, ClosingRow, CriticalRow, mechanism, passed_by
+from comparisons.verdict.events import ClosingRow, CriticalRow, mechanism
 from comparisons.verdict.judge import Judged
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.station_events import MIRRORED, PASSED, passed_by
 from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Scene
 
@@ -126,7 +127,7 @@ def passed_sentences(table: RunsTable, rows: Sequence[Row], judged: Sequence[Jud
     for name, answer in zip(NAMES.values(), table.pair, strict=True):
         earlier = [one for one in answer.gone_over if one.end.stage in stages[: stages.index(stage.name)]]
         mine = [one for one in answer.gone_over if one.end.stage == stage.name]
-        for one in (*earlier, *mine[: passed_by(table.scene, stage, answer)[index]])[-1:]:
+        for one in (*earlier, *mine[: passed_by(table.scene, stage, answer, index)])[-1:]:
             yield (
                 f"Before that {name} passed a critical point ({mechanism(one.end)}) at {one.end.stage} "
                 f"{number(one.end.value, 5)} and went on along a state turned by {number(one.turned, 3)} rad."
@@ -148,7 +149,7 @@ def distance(value: float, unit: str) -> str:
 
 def _explained(table: RunsTable, row: Row, reason: Reason | None) -> str:
     """Why the row does not agree, and the next command."""
-    contacts = " and ".join(sorted((row.events.unsettled | row.events.contradictory) - {PASSED, SIDE}))
+    contacts = " and ".join(sorted((row.events.unsettled | row.events.contradictory) - {PASSED, MIRRORED}))
     match reason:
         case Reason.VALUES:
             return f"{_measured(row)} ({_parts(row)}). A third opinion: `--solver cprbm,fea,solid`."

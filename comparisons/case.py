@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from comparisons import sentences as said
 from comparisons.audit import Audit, audit
+from comparisons.branch_words import BranchVerdict, branch_verdicts
 from comparisons.pairing import Runs
 from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
 from comparisons.tolerances.search import Tolerance
-from comparisons.verdict import sentences as said
 from comparisons.verdict.completeness import complete_part, ends_at_critical, problems
-from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows, station_events
-from comparisons.verdict.judge import BranchVerdict, Judged, branch_verdicts, judge_case, judge_row
+from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows
+from comparisons.verdict.judge import Judged, judge_case, judge_row
 from comparisons.verdict.rows import Row, build_rows
 from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.station_events import station_events
 from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
@@ -112,6 +114,7 @@ def _verdict(
     if rows or completed:
         findings.append((*of_rows, said.headline(table, rows, judged, of_rows)))
     findings.sort(key=_rank)
+    words = tuple(found for found, _ in judged)
     word, reason, _ = findings[0]
     more = [said.ended_sentence(table.problems)] if completed and table.problems else []
     more += [*said.passed_sentences(table, rows, judged), said.calibration_sentence(rows)]
@@ -120,9 +123,9 @@ def _verdict(
     return Verdict(
         word,
         tuple(filter(None, (*(sentence for *_, sentence in findings), *more))),
-        tuple(found for found, _ in judged),
+        words,
         completed,
-        branch_verdicts(rows, judged),
+        branch_verdicts(rows, words),
         reason,
         tuple(why for _, why in judged),
     )
