@@ -167,8 +167,8 @@ def _explained(table: RunsTable, row: Row, reason: Reason | None) -> str:
             )
             return f"{cause}, and {_measured(row)}. `solve --solver cprbm,fea -v` shows each event."
         case Reason.RUN_ENDED:
-            names = ", ".join(row.missing) or "the finite elements in bending"
-            return f"{_measured(row)}, and no answer of {names} there tells the uncertainty."
+            names = ", ".join(row.missing)
+            return f"{_measured(row)}, and the uncertainty is not known there: no answer of {names}."
         case Reason.BRANCH:
             return "the runs are on different branches or mirror images there. An imperfection would choose one."
         case Reason.EVENT:

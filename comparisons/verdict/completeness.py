@@ -26,6 +26,17 @@ Where = tuple[str, float]
 _ROUND_OFF = 1e-9  # of a stage's span, by which a critical point may lie beyond its neighbouring stations
 
 
+_NUMBERS = (
+    "residual",
+    "residual_floor",
+    "violation",
+    "penetration",
+    "complementarity",
+    "force_balance",
+    "moment_balance",
+)
+
+
 def stations_of(scene: Scene) -> tuple[Where, ...]:
     """All stations of a scene in order."""
     return tuple((stage.name, value) for stage in scene.stages for value in stage.stations)
@@ -78,10 +89,9 @@ def problems(scene: Scene, answer: Answer) -> tuple[str, ...]:
 def _station_problems(scene: Scene, station: StationAnswer) -> Iterator[str]:
     certificate = station.certificate
     yield from (f"its certificate does not hold: {failure}" for failure in certificate.failures)
-    numbers = [
-        getattr(certificate, name) for name in type(certificate).__slots__ if name not in ("failures", "iterations")
-    ]
-    if not np.isfinite(numbers).all():
+    numbers = [getattr(certificate, name) for name in _NUMBERS]
+    # without a feasible direction the smallest curvature is infinite
+    if not np.isfinite(numbers).all() or np.isnan(certificate.smallest_curvature):
         yield "its certificate holds a number that is not finite"
     for beam in scene.beams:
         shape = station.shapes.get(beam)
