@@ -141,12 +141,13 @@ def compared(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
 
 
 def _as_audited(verdict: Verdict, audits: Mapping[str, Audit]) -> Verdict:
-    """The verdict where an answer's audit finds something: two answers may agree on what is no equilibrium."""
+    """The verdict where an audit fails, since two answers may agree on no equilibrium, or where shapes cross."""
     said = []
     for name, found in audits.items():
         if found.complaints:
             more = f" (and {len(found.complaints) - 1} more)" if len(found.complaints) > 1 else ""
             said.append(f"The audit of {name}'s answer fails: {found.complaints[0]}{more}.")
+    said += next((found.remarks for found in audits.values() if found.remarks), ())
     if not said:
         return verdict
     word = Word.UNDECIDED if verdict.word is Word.AGREE else verdict.word
