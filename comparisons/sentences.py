@@ -1,4 +1,4 @@
-"""Sentences of a verdict: what happened, where, whose uncertainty, and the next command."""
+"""Sentences of a verdict: the finding, its place, the solver with the uncertainty, and the next command."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _OPTIONS = {"cprbm": ("-n", "links"), "fea": ("--elements", "elements")}
 
 
 def headline(table: RunsTable, rows: Sequence[Row], judged: Sequence[Judged], decided: Judged) -> str:
-    """The sentence on all rows together: the row that decides, or the closest row that agrees."""
+    """Sentence on all rows: the deciding row, or the closest agreeing row."""
     word, reason = decided
     counted = Counter(found for found, _ in judged if found is not None)
     total = sum(counted.values())
@@ -117,7 +117,7 @@ def closing_sentence(row: ClosingRow) -> str:
 
 
 def passed_sentences(table: RunsTable, rows: Sequence[Row], judged: Sequence[Judged]) -> Iterator[str]:
-    """Critical points that compared runs passed before the first row that differs."""
+    """Passed critical points of both compared runs before the first differing row."""
     differing = [row for row, (word, _) in zip(rows, judged, strict=True) if word is Word.DIFFER]
     if not differing:
         return
@@ -190,7 +190,7 @@ def _explained(table: RunsTable, row: Row, reason: Reason | None) -> str:
 
 
 def _coarse(table: RunsTable, row: Row) -> str:
-    """Whose uncertainty is too large, and the size that would do."""
+    """The solver with too large an uncertainty, and a sufficient size."""
     assert row.bounds is not None
     limit = table.scene.limit(row.probe)
     needed = {}
@@ -223,7 +223,7 @@ def _others(rows: Sequence[Row], judged: Sequence[Judged]) -> str:
 
 
 def _measured(row: Row) -> str:
-    """The difference that comes closest to its stated uncertainty, and both as shares of the scale."""
+    """The difference closest to its stated uncertainty, and both as shares of the scale."""
     if row.bounds is None:
         return f"the values differ by {_of_scale(row.difference, row)} of the scale"
     bounds = row.bounds

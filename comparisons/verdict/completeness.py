@@ -23,7 +23,7 @@ ABSENT_WHILE_OPEN = frozenset({"centre", "ends", "closing_load"})
 Where = tuple[str, float]
 """Stage and station."""
 
-_ROUND_OFF = 1e-9  # of a stage's span, by which a critical point may lie beyond its neighbouring stations
+_ROUND_OFF = 1e-9  # of a stage's span: round-off of a critical load beside a station
 
 
 _NUMBERS = (
@@ -61,7 +61,7 @@ def complete_part(scene: Scene, answer: Answer) -> Answer:
 
 
 def ends_at_critical(answer: Answer) -> bool:
-    """Whether an answer ends at a critical point that it names."""
+    """Whether an answer ends at a critical point and names the point."""
     last = answer.stations[-1].branch if answer.stations else 0
     return answer.ending is Ending.BRANCH_ENDS and len(answer.critical) == last + 1
 
@@ -119,7 +119,7 @@ def _shapes(probe: Probe) -> tuple[tuple[int, ...], ...]:
 
 
 def _branch_problems(scene: Scene, answer: Answer) -> Iterator[str]:
-    """Critical points that are not finite, and branches that end at no critical point."""
+    """Critical points without finite loads, and branches without a critical point at the end."""
     for one in answer.critical:
         if not np.isfinite((one.value, one.uncertainty, one.energy)).all():
             yield f"its critical value in {one.stage} is not finite"

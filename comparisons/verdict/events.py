@@ -16,9 +16,9 @@ A critical point
 * is undecided if runs of one solver disagree, or max(U − θ, U_b) > T, or U > max(T, W);
 * agrees otherwise.
 
-The first critical point of a stage is compared with the first of the other runs, the second with the second.  In a stage
-that asks for no critical point a run may pass it and go on along another branch: a passed critical point stands in for
-a missing one, and the row is undecided.
+The first critical point of a stage is compared with the first of the other runs, the second with the second.  In a
+stage without ``beyond`` a run may pass a critical point and go on along another branch.  A passed critical point stands
+in for a missing critical point, and the row is undecided.
 """
 
 from __future__ import annotations

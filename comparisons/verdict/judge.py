@@ -1,20 +1,19 @@
-"""The word of a row, of a branch and of a case, with the reason.
+"""Word and reason of a row, and of all rows of a case.
 
-A row differs if |v_c − v_f| or |v_c − v_b| exceeds its stated uncertainty (:mod:`comparisons.verdict.bounds`), or if a true
-error beside the exact value exceeds twice the stated one.  It is undecided if a stated uncertainty exceeds the scene's
-limit: such an uncertainty would excuse a wrong answer.  It agrees otherwise.
+A row differs if |v_c − v_f| or |v_c − v_b| exceeds its stated uncertainty (:mod:`comparisons.verdict.bounds`), or if a
+true error beside the exact value exceeds twice the stated error.  A row is undecided if a stated uncertainty exceeds
+the scene's limit: such an uncertainty would excuse a wrong answer.  All other rows agree.
 
-A contradiction is no evidence against a solver, and the row is undecided, where
+A contradiction is no evidence against a solver, and the row is undecided, in four cases:
 
-* a contact presses in some runs only, and closes or opens in all runs of the stage (EVENT): the station lies between the
-  runs' loads of one event;
-* the contact's force is shared with a clamp or another contact (NOT_UNIQUE): the sum of the shared forces is compared in its place;
-* runs are on mirror images of one branch, or one of them has passed a critical point near by (BRANCH);
-* the finite elements have no value in ``bending``, and the step of theory is not known (RUN_ENDED).
+* A contact presses in some runs only, and closes or opens in all runs of the stage (EVENT): the station lies between
+  the runs' loads of one event.
+* A clamp or another contact shares the contact's force, and the sums of the shared forces agree (NOT_UNIQUE).
+* Runs are on mirror images of one branch, or a run has passed a critical point near by (BRANCH).
+* The finite elements have no value in ``bending``, and the step of theory is not known (RUN_ENDED).
 
-A case differs if a row, a critical point or a closing does.  It is undecided if a compared run ended early, an audit fails,
-a contact is undeclared, a critical point is undecided, or rows are.  Rows that are not unique take no case down, and neither do
-rows that are not resolved (COARSE, EVENT) of a probe that agrees at most of its stations: the sentence counts them.
+Rows with the reason NOT_UNIQUE take no case down.  Rows with the reasons COARSE and EVENT take no case down whose probe
+agrees at most of its stations: the sentence of the verdict counts such rows.
 """
 
 from __future__ import annotations

@@ -8,8 +8,8 @@ x       exact value in ``bending``, where the elastica reference has the station
 q       uncertainty of x: its certificate's residual, at least 1e-9 of the scale
 ======  ==========================================================================================
 
-The stated uncertainties of a probe are the largest of its stage on one branch: an error changes its sign somewhere along a
-stage, and the change between two grids vanishes there by accident.  A stage is split by its critical points.
+A probe has one stated uncertainty per solver, stage and branch: the largest of the stations.  An error changes its sign
+along a stage, and the change between two grids vanishes there by accident.  Critical points split a stage.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from comparisons.verdict.bounds import Bounds, bounds_of
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.scales import denominator, probe_scales
-from comparisons.verdict.station_events import Place, StationEvents, station_events
+from comparisons.verdict.station_events import NO_EVENTS, Place, StationEvents, station_events
 from comparisons.verdict.uncertainty import largest
 from cprbm_scene import Answer, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array, Flags
@@ -48,7 +48,7 @@ class TrueErrors:
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One probe at one station; all sizes in ``unit``.
+    """Probe at a station; all sizes in ``unit``.
 
     Attributes:
         probe, stage, station: the question.
@@ -57,10 +57,10 @@ class Row:
         scale: of the probe in the stage; denominator: divisor of shown fractions.
         events: events of the runs by the station.
         difference, same_theory: |v_c − v_f|, |v_c − v_b|; NaN without a value.
-        bounds: stated uncertainties; None where a run that they need lacks the value.
-        missing: runs that do not reach the station; absent: runs whose contact is open and has no such value.
+        bounds: stated uncertainties; None without the value of a needed run.
+        missing: runs without the station; absent: runs without a value, since a contact is open.
         arc_length: places (k,) of a stress, m.
-        counts: components (k,) that count: of a stress those away from point forces; None without a difference.
+        counts: components (k,) in the difference: of a stress all away from point forces; None without a difference.
         exact: x; true_errors: distances from x.
     """
 
@@ -72,7 +72,7 @@ class Row:
     fea: Array
     scale: float
     denominator: float
-    events: StationEvents = StationEvents(0, Place.COMPARED)
+    events: StationEvents = NO_EVENTS
     difference: float = math.nan
     same_theory: float = math.nan
     bounds: Bounds | None = None
@@ -159,7 +159,7 @@ def bare_row(
 
 
 def _measured(table: RunsTable, row: Row, stations: Mapping[str, StationAnswer]) -> Row:
-    """The row with its difference and what the other runs say of it."""
+    """The row with its difference, stated uncertainties and true errors."""
     runs, probe = table.runs, row.probe
     values = {name: station.values[probe.name] for name, station in stations.items()}
     exact = _exact_station(runs, row)

@@ -13,9 +13,9 @@ n       natural value: the value where the stiffest beam is bent by a radian alo
 
     scale = max(v, V/4, f/1000, n/10⁴)
 
-A probe may vanish by symmetry, and its largest norm is then round-off: f/1000 stands in for v.  A probe may hardly change
-in a stage that prepares the next stage (a drive that closes a gap): V/4 stands in for v.  A beam that turns by 10⁻⁴ rad is straight,
-and a part that bears so little bears nothing: n/10⁴ stands in for v.
+A probe may vanish by symmetry, and its largest norm is then round-off: f/1000 stands in for v.  A probe may hardly
+change in a preparatory stage, such as a drive that closes a gap: V/4 stands in for v.  With a turn of 10⁻⁴ rad a beam
+counts as straight, and a part without load as unloaded: n/10⁴ stands in for v.
 
 ==============================  ======================================================  ==========
 quantity                        family                                                  n

@@ -1,15 +1,16 @@
 """Events of all runs by a station: answers are compared where all runs have passed the same events.
 
-A run has a state at a station: the number of critical points that end its branches, the number of critical points that
-it has passed, and its active contacts.  Where a part of the state differs between runs,
+The state of a run at a station has these parts: the number of its branch, the number of passed critical points, and
+each contact, active or not.  A part may differ between the runs:
 
-* and each run goes through the same sequence of states in the stage, the station lies between the runs' loads of one
-  event: between events for critical points, and *unsettled* for a contact;
-* and runs of one solver disagree, the part is *unsettled*;
-* else the part is *contradictory*.
+* If each run goes through the same sequence of states in the stage, the station lies between the runs' loads of one
+  event.  A contact is then *unsettled*.
+* If runs of one solver disagree, the part is *unsettled* as well.
+* In all other cases the part is *contradictory*.
 
-A station lies between events also within T of a critical point (:func:`comparisons.stages.event_tolerance`): beside a fold
-the difference grows with the square root of the distance.  Runs on mirror images behind a bifurcation are unsettled.
+A station within T of a critical point (:func:`comparisons.stages.event_tolerance`) also lies between events: beside a
+fold the difference grows with the square root of the distance.  Runs on mirror images behind a bifurcation are
+unsettled.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from itertools import groupby
+from itertools import groupby, pairwise
 
 import numpy as np
 
@@ -65,6 +66,9 @@ class StationEvents:
     contradictory: frozenset[str] = frozenset()
 
 
+NO_EVENTS = StationEvents(0, Place.COMPARED)
+
+
 def station_events(table: RunsTable) -> dict[Where, StationEvents]:
     """Events of all runs by every station that both compared runs reach."""
     found: dict[Where, StationEvents] = {}
@@ -87,10 +91,10 @@ def station_events(table: RunsTable) -> dict[Where, StationEvents]:
 
 
 def passed_by(scene: Scene, stage: Stage, answer: Answer, station: int) -> int:
-    """Number of critical points that an answer has passed in a stage by its ``station`` of that number."""
+    """Number of passed critical points in a stage by the station with the number ``station``."""
     values = (begins_at(scene, stage), *stage.stations[: station + 1])
     mine = [one.end.value for one in answer.gone_over if one.end.stage == stage.name]
-    steps = [sorted(pair) for pair in zip(values[:-1], values[1:], strict=True)]
+    steps = [sorted(pair) for pair in pairwise(values)]
     return sum(least < value <= most for value in mine for least, most in steps)
 
 
@@ -130,7 +134,7 @@ def _events(
 def _states(
     scene: Scene, stage: Stage, answer: Answer, stations: Mapping[Where, StationAnswer]
 ) -> dict[Where, dict[str, int]]:
-    """States of a run at the stations of a stage that it reaches."""
+    """States of a run at its stations of a stage."""
     found = {}
     for index, value in enumerate(stage.stations):
         if (stage.name, value) in stations:
