@@ -152,9 +152,8 @@ def _completed(table: RunsTable, criticals: Sequence[CriticalRow]) -> bool:
 
 def _reactions(scene: Scene, runs: Runs) -> tuple[WorkEnergyReaction, ...]:
     """Reactions of drives by two ways, where both compared answers are complete."""
-    perturbed = perturbed_scene(scene)
-    if perturbed is None or runs.perturbed is None:
-        return ()
     if problems(scene, runs.cprbm[0]) or problems(scene, runs.reference):
         return ()
-    return reactions(scene, runs.cprbm[0], runs.reference, complete_part(perturbed, runs.perturbed))
+    asked, found = perturbed_scene(scene), runs.perturbed
+    perturbed = None if asked is None or found is None else complete_part(asked, found)
+    return reactions(scene, runs.cprbm[0], runs.reference, perturbed)

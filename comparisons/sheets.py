@@ -250,8 +250,8 @@ def _true_errors(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
         "True errors in bending, beside the exact answer",
         ("probe", *(f"{head} {name}" for name in ("CPRBM", "FEA") for head in ("error", "stated", "ratio", "says"))),
         tuple(body),
-        f"{_over_all(error_ratios(compared.rows))} A ratio is the true error over the stated one with round-off: above 1 "
-        f"it is beyond, above {EXACT_FACTOR:g} far beyond, and then the row differs.",
+        f"{_over_all(error_ratios(compared.rows))} A ratio is the true error over the stated one with round-off: above "
+        f"1 it is beyond, above {EXACT_FACTOR:g} far beyond, and then the row differs.",
     )
 
 
