@@ -254,7 +254,7 @@ def _row(compared: Comparison, row: Row) -> Plain:
         "uncertainty": {
             "cprbm": None if bounds is None else row.fraction(bounds.cprbm),
             "fea": None if bounds is None else row.fraction(bounds.fea),
-            "theory": None if bounds is None else row.fraction(bounds.theory),
+            "theory": None if bounds is None or bounds.bending is None else row.fraction(bounds.theory),
             "fea_bending": None if bounds is None or bounds.bending is None else row.fraction(bounds.bending),
             "round_off": None if bounds is None else row.fraction(bounds.round_off),
         },

@@ -175,7 +175,7 @@ def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
                 *(("–" if row.exact is None else vector(row.exact, factor),) if known else ()),
                 _of(row, row.difference),
                 *(
-                    (_of(row, row.bounds.cprbm), _of(row, row.bounds.fea), _of(row, row.bounds.theory))
+                    (_of(row, row.bounds.cprbm), _of(row, row.bounds.fea), _in_bending(row, row.bounds.theory))
                     if row.bounds
                     else ("–", "–", "–")
                 ),
@@ -217,8 +217,8 @@ def _verdicts(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
                 row.probe.name,
                 _of(row, row.difference),
                 _of(row, row.bounds.total) if row.bounds else "–",
-                _of(row, row.same_theory),
-                _of(row, row.bounds.same_theory) if row.bounds else "–",
+                _in_bending(row, row.same_theory),
+                _in_bending(row, row.bounds.same_theory) if row.bounds else "–",
                 _of(row, row.bounds.round_off) if row.bounds else "–",
                 _judgement(row, *judged[row.where, row.probe.name]),
             )
@@ -229,6 +229,11 @@ def _verdicts(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
         tuple(body),
         "Both differences must stay within what may be; within bending the FEA shares the CPRBM's theory.",
     )
+
+
+def _in_bending(row: Row, value: float) -> str:
+    """A fraction that needs the finite elements in ``bending``; a dash where that run lacks the value."""
+    return "–" if row.bounds is None or row.bounds.bending is None else _of(row, value)
 
 
 def _judgement(row: Row, word: Word | None, reason: Reason | None) -> str:
