@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from comparisons.case import Comparison
 from comparisons.formats import number, scaled_unit
 from comparisons.quantities import load_unit
+from comparisons.sentences import distance, load
 from comparisons.sheet import Sheet
-from comparisons.verdict.case import Comparison
-from comparisons.verdict.events import Place, mechanism, released
-from comparisons.verdict.sentences import distance, load
+from comparisons.verdict.events import mechanism, released
+from comparisons.verdict.station_events import Place
 from cprbm_scene import Answer, Critical, Scene
 
 

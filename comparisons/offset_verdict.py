@@ -20,10 +20,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from comparisons.case import Verdict
 from comparisons.formats import percent
 from comparisons.offset_exact import ordinates
 from comparisons.pairing import OffsetConstruction, Offsets, cprbm_offset_points
-from comparisons.verdict.case import Verdict
 from comparisons.verdict.uncertainty import SAFETY
 from comparisons.verdict.words import Word
 from cprbm_scene import OffsetClaim, OffsetQuestion

@@ -95,14 +95,6 @@ def spaces(seen: Seen, name: str) -> Iterator[Space]:
         yield _off_rigid(seen, name, contact)
 
 
-def strangers(seen: Seen) -> Iterator[str]:
-    """Beams that cross though no contact names them, and did not at rest: the scene lets them."""
-    for (one, first), (other, second) in combinations(seen.beams.items(), 2):
-        if not _named(seen, one, other) and not _crossed_at_rest(seen, one, other):
-            for at, _ in _crossings(seen, first, second):
-                yield f"{one} and {other}, which no contact names, cross at {_told(at)}"
-
-
 def _of_areas(seen: Seen, name: str, contact: BeamContact | Rigid) -> Iterator[str]:
     """Of edges: how deep they overlap, and forces that are off them, or pull, or rub."""
     yield from edges.pushes(seen, name)
@@ -464,11 +456,6 @@ def _named(seen: Seen, one: str, other: str) -> str:
         if isinstance(contact, BeamContact) and set(contact.between) == {one, other}:
             return name
     return ""
-
-
-def _crossed_at_rest(seen: Seen, one: str, other: str) -> bool:
-    lines = [seen.rests[name].places(seen.beams[name].fine) for name in (one, other)]
-    return bool(_intersections(*lines)[0].size)
 
 
 def _crossings(seen: Seen, first: AnyBeam, second: AnyBeam) -> Iterator[tuple[complex, float]]:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 from comparisons.audit.asked import probed
 from comparisons.audit.balance import at_nodes, cuts, sums, unbalance
+from comparisons.audit.crossings import crossing_sentence, crossings
 from comparisons.audit.edges import turned_inside_out
-from comparisons.audit.gaps import contacts, strangers
+from comparisons.audit.gaps import contacts
 from comparisons.audit.joints import held
 from comparisons.audit.path import balance
 from comparisons.audit.rest import rests_of
@@ -25,7 +26,7 @@ class Audit:
 
     Attributes:
         complaints: a sentence for everything that does not hold; empty if all does.
-        remarks: what the scene allows and a reader should know.
+        remarks: a sentence for every pair of shapes that pass through each other without a contact.
         stations: how many were audited.
         unbalance: largest moment at a cut which the shape does not bear, N·m, where nothing acts near the cut.
         scaled: the same over the largest moment.
@@ -50,12 +51,10 @@ def audit(scene: Scene, answer: Answer) -> Audit:
     """Look at every station of an answer."""
     stations = list(seen_of(scene, answer, rests_of(scene)))
     complaints: list[str] = []
-    remarks: list[str] = []
     worst, scaled = 0.0, 0.0
     for seen in stations:
         where = f"at {seen.station.stage} {seen.station.value:g}"
         complaints += [f"{where} {what}" for what in _at_station(seen)]
-        remarks += [f"{where} {what}" for what in strangers(seen)]
         found = unbalance(seen)
         worst, scaled = max(worst, found[0]), max(scaled, found[1])
     curvatures = []
@@ -65,9 +64,8 @@ def audit(scene: Scene, answer: Answer) -> Audit:
         if curvature is not None:
             curvatures.append(curvature)
     complaints += balance(answer, stations)
-    return Audit(
-        tuple(complaints), tuple(remarks), len(stations), worst, scaled, min(curvatures) if curvatures else None
-    )
+    remarks = tuple(crossing_sentence(scene, crossing) for crossing in crossings(scene, answer))
+    return Audit(tuple(complaints), remarks, len(stations), worst, scaled, min(curvatures, default=None))
 
 
 def _at_station(seen: Seen) -> Iterator[str]:

@@ -11,7 +11,8 @@ U           the same of the reference's own uncertainty; zero where it is exact
 ==========  ==============================================================================================
 
 The reference is the exact answer where there is one, or else the limit by Richardson's extrapolation of the CPRBM in
-``auto``, from N = 160, 320 and 640, with the uncertainty of :mod:`comparisons.verdict.uncertainty`.  An error that is not
+``auto``, from N = 160, 320 and 640, with the uncertainty of
+:mod:`comparisons.verdict.uncertainty`.  An error that is not
 clearly larger than U says nothing.
 """
 

@@ -29,7 +29,7 @@ On a circle the elements' length decides how deep a beam presses, whatever p: th
 
 Where ``auto`` was chosen, the distance of ``paper`` at N is told beside the parts and belongs to no sum.  Nor does what
 both solvers leave out of a stress alike, :mod:`comparisons.budgets.curved_beam`, nor L_f less the value of the solid
-(:mod:`comparisons.verdict.solid_limits`): what the beam theories miss together, by which the sum would go on.
+(:mod:`comparisons.solid_limits`): what the beam theories miss together, by which the sum would go on.
 """
 
 from __future__ import annotations
@@ -43,11 +43,11 @@ from comparisons.budgets.curved_beam import inner_edge_factor
 from comparisons.budgets.runs import DEEPER, ELEMENTS, LEVELS, TIGHTNESS, BudgetRuns
 from comparisons.geometry import bentness_on, length
 from comparisons.quantities import direction, norm
+from comparisons.solid_limits import solid_limit
 from comparisons.stations import station_of
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.rows import Row, bare_row
 from comparisons.verdict.scales import probe_scales
-from comparisons.verdict.solid_limits import solid_limit
 from comparisons.verdict.uncertainty import limit
 from cprbm_scene import Answer, Probe, Scene, Stage
 from cprbm_scene.answer import Array, Flags

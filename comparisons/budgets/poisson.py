@@ -27,9 +27,9 @@ from scipy.optimize import brentq
 
 from comparisons.budgets.parts import Budget
 from comparisons.budgets.runs import BudgetRuns
+from comparisons.claims import claim_difference, claim_of
 from comparisons.quantities import norm
 from comparisons.stations import station_of
-from comparisons.verdict.claims import claim_difference, claim_of
 from comparisons.verdict.rows import Row
 from comparisons.verdict.scales import denominator
 from cprbm_scene import Answer, Claim, Scene

@@ -6,10 +6,10 @@ from comparisons.budgets.accounts import Account
 from comparisons.budgets.parts import Budget
 from comparisons.budgets.poisson import ClaimedRatio, last_budgets
 from comparisons.choices import Count
+from comparisons.claims import claim_difference
 from comparisons.documents import Plain, plain
 from comparisons.formats import number, percent
 from comparisons.sheet import Sheet
-from comparisons.verdict.claims import claim_difference
 
 _HEADERS = {
     "contact": "contact",

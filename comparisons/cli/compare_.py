@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
+from comparisons.case import compare
 from comparisons.choices import Kinematics
 from comparisons.cli.completing import offered
 from comparisons.cli.options import folder, numerical, one_of_both, opinions, output
-from comparisons.verdict.case import compare
 
 if TYPE_CHECKING:
+    from comparisons.case import Comparison
     from comparisons.documents import Plain
     from comparisons.offset_verdict import OffsetComparison
     from comparisons.tolerances.search import Tolerance
-    from comparisons.verdict.case import Comparison
 
 
 @click.command("compare")

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from comparisons.converging.critical import CriticalFamily
 from comparisons.documents import Plain, plain
 from comparisons.formats import number
+from comparisons.sentences import distance, load
 from comparisons.sheet import Sheet
-from comparisons.verdict.sentences import distance, load
 
 _NAMES = {"cprbm": "CPRBM", "fea": "FEA"}
 

@@ -31,7 +31,7 @@ from comparisons.quantities import COMPONENTS, OPEN_AT_ZERO, arc_lengths, norm, 
 from comparisons.stations import station_of
 from comparisons.verdict.completeness import problems
 from comparisons.verdict.point_forces import away_from_point_forces
-from comparisons.verdict.rows import round_off
+from comparisons.verdict.rows import ROUND_OFF
 from comparisons.verdict.scales import probe_scales
 from comparisons.verdict.uncertainty import OWN, STANDARD, Limit, limit, observed, orders
 from cprbm_scene import Answer, Probe, Scene, Stage
@@ -234,9 +234,7 @@ def _families(scene: Scene, series: Sequence[Series], exact: Answer | None) -> t
             stage,
             value,
             places,
-            round_off(
-                (station_of(answer, stage.name, value) for answer in one.whole.values()), scales[stage.name, probe.name]
-            ),
+            ROUND_OFF * scales[stage.name, probe.name],
             scales[stage.name, probe.name],
             exact,
         )

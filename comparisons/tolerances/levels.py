@@ -16,8 +16,8 @@ from comparisons.pairing import Runs, Solver, may_be_uneven
 from comparisons.tolerances.search import FIRST, Estimate, Stated
 from comparisons.tolerances.settled import Settled, settled
 from comparisons.verdict.completeness import problems
-from comparisons.verdict.events import Place
 from comparisons.verdict.rows import Row, rows_of
+from comparisons.verdict.station_events import Place
 from comparisons.verdict.uncertainty import STANDARD
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict

@@ -1,6 +1,7 @@
 """Values settled on the grids N/2, N and 2N: the finest values or their limits, with stated uncertainties.
 
-:mod:`comparisons.verdict.uncertainty` gives limits and uncertainties.  Where the error may be uneven in N, the value at N + N/7
+:mod:`comparisons.verdict.uncertainty` gives limits and uncertainties.  Where the error may be uneven in N,
+the value at N + N/7
 takes part.
 
 Shapes, places of contact, events and certificates are the finest answer's.  Where a contact is open on one grid and

@@ -4,7 +4,7 @@
 symbol   meaning
 =======  =====================================================================================================
 τ        the tolerance, a fraction
-f        stated uncertainty of a row: U of :mod:`comparisons.verdict.solid_limits` over the denominator of its differences
+f        stated uncertainty of a row: U of :mod:`comparisons.solid_limits` over the denominator of its differences
 =======  =====================================================================================================
 
 Two meshes state f of order 2, three and more of the order that they show.  The answer is extrapolated from the finest
@@ -29,12 +29,12 @@ from comparisons.choices import Choices
 from comparisons.memory import Remembering
 from comparisons.pairing import Runs, Solver
 from comparisons.quantities import norm
+from comparisons.solid_limits import solid_limit
 from comparisons.stations import station_of
 from comparisons.tolerances.search import Estimate, Stated, Tolerance
 from comparisons.tolerances.settled import told
 from comparisons.verdict.completeness import problems
 from comparisons.verdict.rows import Row, rows_of
-from comparisons.verdict.solid_limits import solid_limit
 from comparisons.verdict.uncertainty import OWN, STANDARD, largest
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import PointForces, frozen_array

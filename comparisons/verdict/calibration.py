@@ -9,9 +9,9 @@ q       uncertainty of the exact value (:mod:`comparisons.verdict.rows`)
 F       2, the factor beyond which a row differs
 ======  ==========================================================================================
 
-e ≤ u shall hold in at least 95 % of the rows, and the median of u/e shall be at most 10.  A solver states one u per probe,
-stage and branch, and the largest e of these rows has to answer for it: u/e counts once per statement.  A row with e ≤ q
-says nothing of either.
+e ≤ u shall hold in at least 95 % of the rows, and the median of u/e shall be at most 10.  A solver states one u per
+probe, stage and branch.  This u covers the largest e of its rows, and therefore counts once, with that e.  A row with
+e ≤ q tells nothing about u.
 """
 
 from __future__ import annotations

@@ -23,7 +23,18 @@ ABSENT_WHILE_OPEN = frozenset({"centre", "ends", "closing_load"})
 Where = tuple[str, float]
 """Stage and station."""
 
-_ROUND_OFF = 1e-9  # of a stage's span, by which a critical point may lie beyond its neighbouring stations
+_ROUND_OFF = 1e-9  # of a stage's span: round-off of a critical load beside a station
+
+
+_NUMBERS = (
+    "residual",
+    "residual_floor",
+    "violation",
+    "penetration",
+    "complementarity",
+    "force_balance",
+    "moment_balance",
+)
 
 
 def stations_of(scene: Scene) -> tuple[Where, ...]:
@@ -50,7 +61,7 @@ def complete_part(scene: Scene, answer: Answer) -> Answer:
 
 
 def ends_at_critical(answer: Answer) -> bool:
-    """Whether an answer ends at a critical point that it names."""
+    """Whether an answer ends at a critical point and names the point."""
     last = answer.stations[-1].branch if answer.stations else 0
     return answer.ending is Ending.BRANCH_ENDS and len(answer.critical) == last + 1
 
@@ -65,6 +76,8 @@ def problems(scene: Scene, answer: Answer) -> tuple[str, ...]:
         try:
             station = station_of(answer, stage, value)
         except KeyError:
+            if not answer.completed:
+                break
             found.append(f"it has no station {stage} {value:g}")
             continue
         found.extend(f"at {stage} {value:g} {problem}" for problem in _station_problems(scene, station))
@@ -76,10 +89,9 @@ def problems(scene: Scene, answer: Answer) -> tuple[str, ...]:
 def _station_problems(scene: Scene, station: StationAnswer) -> Iterator[str]:
     certificate = station.certificate
     yield from (f"its certificate does not hold: {failure}" for failure in certificate.failures)
-    numbers = [
-        getattr(certificate, name) for name in type(certificate).__slots__ if name not in ("failures", "iterations")
-    ]
-    if not np.isfinite(numbers).all():
+    numbers = [getattr(certificate, name) for name in _NUMBERS]
+    # without a feasible direction the smallest curvature is infinite
+    if not np.isfinite(numbers).all() or np.isnan(certificate.smallest_curvature):
         yield "its certificate holds a number that is not finite"
     for beam in scene.beams:
         shape = station.shapes.get(beam)
@@ -107,7 +119,7 @@ def _shapes(probe: Probe) -> tuple[tuple[int, ...], ...]:
 
 
 def _branch_problems(scene: Scene, answer: Answer) -> Iterator[str]:
-    """Critical points that are not finite, and branches that end at no critical point."""
+    """Critical points without finite loads, and branches without a critical point at the end."""
     for one in answer.critical:
         if not np.isfinite((one.value, one.uncertainty, one.energy)).all():
             yield f"its critical value in {one.stage} is not finite"

@@ -1,6 +1,4 @@
-"""Events on the load axis: contacts that close and open, critical points, and the stations between.
-
-Answers are compared where all runs have passed the same events.  The events themselves are compared on the load axis.
+"""Events on the load axis: critical points and closings of contacts in both solvers.
 
 ======  ==========================================================================================
 symbol  meaning
@@ -18,69 +16,26 @@ A critical point
 * is undecided if runs of one solver disagree, or max(U − θ, U_b) > T, or U > max(T, W);
 * agrees otherwise.
 
-The first critical point of a stage is compared with the first of the other runs, the second with the second.  In a stage
-that asks for no critical point a run may pass it and go on along another branch: a passed critical point stands in for
-a missing one, and the row is undecided.
-
-A station lies between events if runs have passed different numbers of critical points by then, or within T of one.
+The first critical point of a stage is compared with the first of the other runs, the second with the second.  In a
+stage without ``beyond`` a run may pass a critical point and go on along another branch.  A passed critical point stands
+in for a missing critical point, and the row is undecided.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from enum import Enum
-from itertools import accumulate, groupby
 
 import numpy as np
 
-from comparisons.geometry import points
 from comparisons.quantities import load_unit
-from comparisons.stages import begins_at, event_tolerance, span_of
+from comparisons.stages import event_tolerance, span_of
 from comparisons.verdict.bounds import Bounds, bounds_of
-from comparisons.verdict.completeness import Where
-from comparisons.verdict.point_forces import active_contacts
 from comparisons.verdict.runs_table import RunsTable, solver_of
 from comparisons.verdict.words import Reason, Word
-from cprbm_scene import Answer, Beam, Critical, Loss, Scene, Stage, StationAnswer
-from cprbm_scene.answer import Shape
+from cprbm_scene import Critical, Stage
 from cprbm_scene.frozendict import frozendict
-
-
-class Place(Enum):
-    """Whether all runs have passed the same events at a station."""
-
-    COMPARED = "compared"
-    BETWEEN = "between events"
-
-
-@dataclass(frozen=True, slots=True)
-class StationEvents:
-    """Events of all runs by a station.
-
-    Attributes:
-        branch: number of critical points before; None between events.
-        place: whether rows are compared here.
-        unsettled: contacts that press in some runs only, and close or open in all runs of the stage, or press in some
-            runs of one solver only; ``passed`` where one of the compared runs has passed a critical point near here.
-        contradictory: contacts that press in one solver, and in no run of the other; ``passed`` likewise.
-    """
-
-    branch: int | None
-    place: Place
-    unsettled: frozenset[str] = frozenset()
-    contradictory: frozenset[str] = frozenset()
-
-
-PASSED = "passed"
-"""Stands for a passed critical point among the names of contacts."""
-
-SIDE = "mirror image"
-"""Stands for runs on mirror images of one branch among the names of contacts."""
-
-OTHER_SIDE = 0.05
-"""Least distance of two runs' beams behind a bifurcation, of the largest distance from rest, on mirror images."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +71,7 @@ class CriticalRow:
         """Word and reason of the critical point."""
         if not self.steady:
             return Word.UNDECIDED, Reason.BRANCH
-        if self.cprbm is None or self.fea is None or _mechanism(self.cprbm) != _mechanism(self.fea):
+        if self.cprbm is None or self.fea is None or mechanism(self.cprbm) != mechanism(self.fea):
             return Word.DIFFER, Reason.EVENTS
         if self.bounds is None:
             return Word.UNDECIDED, Reason.RUN_ENDED
@@ -181,120 +136,8 @@ CONTINUES = 1e-3
 """Least fall of the energy in a jump, a share of the energy: a path that continues on another branch loses none."""
 
 
-def station_events(table: RunsTable) -> dict[Where, StationEvents]:
-    """Events of all runs by every station that both compared runs reach."""
-    found: dict[Where, StationEvents] = {}
-    for stage in table.scene.stages:
-        reached = [where for where in table.reached if where[0] == stage.name]
-        tolerance = event_tolerance(table.scene, stage)
-        near = [one.value for answer in table.pair for one in answer.critical if one.stage == stage.name]
-        passed = {name: passed_by(table.scene, stage, answer) for name, answer in table.answers.items()}
-        ends = [one.end.value for answer in table.pair for one in answer.gone_over if one.end.stage == stage.name]
-        sequences = _sequences(table, reached)
-        earlier = {stage.name for stage in table.scene.stages[: table.scene.stages.index(stage)]}
-        before = [sum(one.end.stage in earlier for one in answer.gone_over) for answer in table.pair]
-        for where in reached:
-            here = table.at(where)
-            index = stage.stations.index(where[1])
-            counts = {name: passed[name][index] for name in here}
-            branches = {station.branch for station in here.values()}
-            matched = len({passed[name][-1] for name in here}) == 1
-            unsettled, contradictory = _contact_differences(here, sequences)
-            beside = any(abs(where[1] - value) <= tolerance for value in ends)
-            if beside or (not matched and len(set(counts.values())) > 1):
-                alone = beside or _disagree_within_a_solver(counts)
-                unsettled, contradictory = (
-                    (unsettled | {PASSED}, contradictory) if alone else (unsettled, contradictory | {PASSED})
-                )
-            met = (
-                _met_bifurcation(answer, here[name].branch, count + counts[name])
-                for name, answer, count in zip(table.compared, table.pair, before, strict=True)
-            )
-            if any(met) and _on_mirror_images(table, here):
-                unsettled.add(SIDE)
-            between = len(branches) > 1 or any(abs(where[1] - value) <= tolerance for value in near)
-            between = between or (matched and len(set(counts.values())) > 1)
-            found[where] = StationEvents(
-                None if len(branches) > 1 else min(branches),
-                Place.BETWEEN if between else Place.COMPARED,
-                frozenset(unsettled),
-                frozenset(contradictory),
-            )
-    return found
-
-
-def _met_bifurcation(answer: Answer, branch: int, passed: int) -> bool:
-    """Whether one of the first critical points, or of the first passed ones, is a bifurcation."""
-    points = (*answer.critical[:branch], *(one.end for one in answer.gone_over[:passed]))
-    return any(one.loss is Loss.BIFURCATION for one in points)
-
-
-def _on_mirror_images(table: RunsTable, here: Mapping[str, StationAnswer]) -> bool:
-    """Whether beams of some runs lie far from those of the compared CPRBM run."""
-    first = here[table.compared[0]].shapes
-    rest = max(_distance(first[name], None, beam) for name, beam in table.scene.beams.items())
-    apart = max(
-        _distance(first[name], station.shapes[name], beam)
-        for station in here.values()
-        for name, beam in table.scene.beams.items()
-    )
-    return apart > OTHER_SIDE * rest
-
-
-def _distance(one: Shape, other: Shape | None, beam: Beam) -> float:
-    """Largest distance, m, of nine places of a beam in two shapes, or from rest."""
-    s = np.linspace(0.0, one.s[-1], 9)
-    mine = np.stack([np.interp(s, one.s, one.x), np.interp(s, one.s, one.y)], axis=1)
-    if other is None:
-        theirs = points(beam.curve, s)
-    else:
-        theirs = np.stack([np.interp(s, other.s, other.x), np.interp(s, other.s, other.y)], axis=1)
-    return float(np.max(np.hypot(*(mine - theirs).T)))
-
-
-def passed_by(scene: Scene, stage: Stage, answer: Answer) -> tuple[int, ...]:
-    """Numbers of critical points that an answer has passed in a stage by each of the stage's stations."""
-    found, before = [], begins_at(scene, stage)
-    for value in stage.stations:
-        least, most = sorted((before, value))
-        found.append(sum(one.end.stage == stage.name and least < one.end.value <= most for one in answer.gone_over))
-        before = value
-    return tuple(accumulate(found))
-
-
-def _sequences(table: RunsTable, reached: Sequence[Where]) -> Mapping[str, Mapping[str, tuple[bool, ...]]]:
-    """By contact and run the sequence of open and closed over a stage, repetitions left out."""
-    by_run = {
-        name: [active_contacts(stations[where]) for where in reached if where in stations]
-        for name, stations in table.stations.items()
-    }
-    return {
-        contact: {
-            name: tuple(key for key, _ in groupby(contact in each for each in active))
-            for name, active in by_run.items()
-        }
-        for contact in table.scene.contacts
-    }
-
-
-def _contact_differences(
-    here: Mapping[str, StationAnswer], sequences: Mapping[str, Mapping[str, tuple[bool, ...]]]
-) -> tuple[set[str], set[str]]:
-    """Contacts with different states in some runs: unsettled ones, and ones in which the solvers contradict."""
-    unsettled, contradictory = set[str](), set[str]()
-    active = {name: active_contacts(station) for name, station in here.items()}
-    for contact, by_run in sequences.items():
-        states = {name: contact in each for name, each in active.items()}
-        if len(set(states.values())) == 1:
-            continue
-        same_sequence = len({by_run[name] for name in states}) == 1
-        settled = not same_sequence and not _disagree_within_a_solver(states)
-        (contradictory if settled else unsettled).add(contact)
-    return unsettled, contradictory
-
-
-def _disagree_within_a_solver(states: Mapping[str, object]) -> bool:
-    """Whether runs of one solver have different states."""
+def disagree_within_a_solver(states: Mapping[str, object]) -> bool:
+    """Whether runs of one solver have different states, by the names of the runs."""
     return any(
         len({state for name, state in states.items() if solver_of(name) == solver}) > 1 for solver in ("cprbm", "fea")
     )
@@ -311,40 +154,35 @@ def critical_rows(table: RunsTable) -> tuple[CriticalRow, ...]:
         for place in range(max(len(own[name]) for name in table.compared)):
             here = {name: each[place] if len(each) > place else None for name, each in own.items()}
             row = _critical_row(table, stage, place, here)
-            if row.word is not Word.AGREE and row.same_theory != row.same_theory:
-                row = next(_with_passed_points(table, stage, row, here), row)
-            found.append(row)
+            found.append(row if row.word is Word.AGREE else _with_passed_points(table, stage, row, here))
     return tuple(found)
 
 
 def _with_passed_points(
     table: RunsTable, stage: Stage, row: CriticalRow, here: Mapping[str, Critical | None]
-) -> Iterator[CriticalRow]:
-    """The row in which passed critical points stand in for missing ones, if the solvers then do not differ."""
-    for known in (row.cprbm, row.fea):
-        if known is None:
-            continue
+) -> CriticalRow:
+    """The row in which passed critical points stand in for missing ones, unless the solvers then differ."""
+    for known in filter(None, (row.cprbm, row.fea)):
         points, turned = dict(here), {}
-        for name in here:
+        for name, own in here.items():
             alike = [
                 one
                 for one in table.answers[name].gone_over
-                if (one.end.stage, _mechanism(one.end)) == (known.stage, _mechanism(known))
+                if one.end.stage == stage.name and mechanism(one.end) == mechanism(known)
             ]
-            own = here[name]
-            if alike and (own is None or _mechanism(own) != _mechanism(known)):
+            if alike and (own is None or mechanism(own) != mechanism(known)):
                 nearest = min(alike, key=lambda one: abs(one.end.value - known.value))
                 points[name], turned[name] = nearest.end, nearest.turned
-        if turned:
-            found = replace(_critical_row(table, stage, row.place, points), turned=frozendict(turned))
-            if found.steady and found.word is not Word.DIFFER:
-                yield found
+        found = replace(_critical_row(table, stage, row.place, points), turned=frozendict(turned))
+        if turned and found.steady and found.word is not Word.DIFFER:
+            return found
+    return row
 
 
 def _critical_row(table: RunsTable, stage: Stage, place: int, here: Mapping[str, Critical | None]) -> CriticalRow:
     first, second = table.compared
     span = span_of(table.scene, stage)
-    mechanisms = {name: None if one is None else _mechanism(one) for name, one in here.items()}
+    mechanisms = {name: None if one is None else mechanism(one) for name, one in here.items()}
     row = CriticalRow(
         stage=stage.name,
         place=place,
@@ -354,7 +192,7 @@ def _critical_row(table: RunsTable, stage: Stage, place: int, here: Mapping[str,
         span=span,
         allowed=event_tolerance(table.scene, stage),
         largest=table.scene.verdict_limit * span,
-        steady=not _disagree_within_a_solver(mechanisms),
+        steady=not disagree_within_a_solver(mechanisms),
     )
     present = {name: one for name, one in here.items() if one is not None}
     if len(present) < len(here):
@@ -401,7 +239,3 @@ def _on_load_axis(table: RunsTable, loads: Mapping[str, float], round_off: float
         abs(loads[first] - loads.get("fea bending", loads[second])),
         bounds,
     )
-
-
-def _mechanism(critical: Critical) -> tuple[str, str]:
-    return critical.loss.name, critical.what

@@ -1,27 +1,25 @@
-"""The word of a row, of a branch and of a case, with the reason.
+"""Word and reason of a row, and of all rows of a case.
 
-A row differs if |v_c − v_f| or |v_c − v_b| exceeds its stated uncertainty (:mod:`comparisons.verdict.bounds`), or if a true
-error beside the exact value exceeds twice the stated one.  It is undecided if a stated uncertainty exceeds the scene's
-limit: such an uncertainty would excuse a wrong answer.  It agrees otherwise.
+A row differs if |v_c − v_f| or |v_c − v_b| exceeds its stated uncertainty (:mod:`comparisons.verdict.bounds`), or if a
+true error beside the exact value exceeds twice the stated error.  A row is undecided if a stated uncertainty exceeds
+the scene's limit: such an uncertainty would excuse a wrong answer.  All other rows agree.
 
-A contradiction is no evidence against a solver, and the row is undecided, where
+A contradiction is no evidence against a solver, and the row is undecided, in four cases:
 
-* a contact presses in some runs only, and closes or opens in all runs of the stage (EVENT): the station lies between the
-  runs' loads of one event;
-* the contact's force is shared with a clamp or another contact (NOT_UNIQUE): the sum of the shared forces is compared in its place;
-* runs are on mirror images of one branch, or one of them has passed a critical point near by (BRANCH);
-* the finite elements have no value in ``bending``, and the step of theory is not known (RUN_ENDED).
+* A contact presses in some runs only, and closes or opens in all runs of the stage (EVENT): the station lies between
+  the runs' loads of one event.
+* A clamp or another contact shares the contact's force, and the sums of the shared forces agree (NOT_UNIQUE).
+* Runs are on mirror images of one branch, or a run has passed a critical point near by (BRANCH).
+* The finite elements have no value in ``bending``, and the step of theory is not known (RUN_ENDED).
 
-A case differs if a row, a critical point or a closing does.  It is undecided if a compared run ended early, an audit fails,
-a contact is undeclared, a critical point is undecided, or rows are.  Rows that are not unique take no case down, and neither do
-rows that are not resolved (COARSE, EVENT) of a probe that agrees at most of its stations: the sentence counts them.
+Rows with the reason NOT_UNIQUE take no case down.  Rows with the reasons COARSE and EVENT take no case down whose probe
+agrees at most of its stations: the sentence of the verdict counts such rows.
 """
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -29,11 +27,11 @@ from comparisons.quantities import OPEN_AT_ZERO
 from comparisons.verdict.bounds import bounds_of
 from comparisons.verdict.calibration import true_errors
 from comparisons.verdict.completeness import ABSENT_WHILE_OPEN
-from comparisons.verdict.events import PASSED, SIDE, Place
 from comparisons.verdict.point_forces import resultant, sharing_sources
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs_table import RunsTable
-from comparisons.verdict.words import Reason, Word, worst_of
+from comparisons.verdict.station_events import MIRRORED, PASSED, Place
+from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Scene
 from cprbm_scene.statement import Quantity
 
@@ -45,25 +43,6 @@ SHARED: frozenset[Quantity] = frozenset({"force", "centre", "ends", "reaction", 
 
 RESOLVABLE = frozenset({Reason.COARSE, Reason.EVENT})
 """Reasons that a finer mesh or another station removes."""
-
-
-@dataclass(frozen=True, slots=True)
-class BranchVerdict:
-    """Word of the rows of one branch in a stage.
-
-    Attributes:
-        stage: name; number: of critical points before; first, last: stations; stations: their number.
-        near: stations between events, which take no part.
-        word: None without a row that takes part.
-    """
-
-    stage: str
-    number: int
-    first: float
-    last: float
-    stations: int
-    near: int
-    word: Word | None
 
 
 def judge_row(table: RunsTable, row: Row) -> Judged:
@@ -86,7 +65,7 @@ def judge_row(table: RunsTable, row: Row) -> Judged:
         return Word.UNDECIDED, Reason.NOT_UNIQUE
     if row.events.unsettled:
         return Word.UNDECIDED, _event_reason(row)
-    theory = max(bounds.own, bounds.same_theory) <= limit
+    theory = bounds.theory > limit or max(bounds.own, bounds.same_theory) <= limit
     return Word.UNDECIDED, Reason.THEORY if theory else Reason.COARSE
 
 
@@ -101,22 +80,6 @@ def judge_case(rows: Sequence[Row], judged: Sequence[Judged]) -> tuple[Word, Rea
     if not any(word is Word.AGREE for word, _ in judged):
         return Word.UNDECIDED, next((reason for _, reason in judged if reason is not None), Reason.RUN_ENDED)
     return Word.AGREE, None
-
-
-def branch_verdicts(rows: Sequence[Row], judged: Sequence[Judged]) -> tuple[BranchVerdict, ...]:
-    """Word of every branch, in the order of the path."""
-    found: dict[tuple[str, int], list[tuple[Row, Word | None]]] = {}
-    for row, (word, _) in zip(rows, judged, strict=True):
-        if row.branch is not None:
-            found.setdefault((row.stage, row.branch), []).append((row, word))
-    verdicts = []
-    for (stage, number), mine in found.items():
-        places = {row.station: row.place for row, _ in mine}
-        stations = list(places)
-        near = sum(place is Place.BETWEEN for place in places.values())
-        word = worst_of(word for _, word in mine)
-        verdicts.append(BranchVerdict(stage, number, stations[0], stations[-1], len(stations), near, word))
-    return tuple(verdicts)
 
 
 def _without_value(scene: Scene, row: Row) -> Judged:
@@ -145,7 +108,7 @@ def _contradiction(table: RunsTable, row: Row) -> Judged:
 
 
 def _event_reason(row: Row) -> Reason:
-    return Reason.BRANCH if row.events.unsettled & {PASSED, SIDE} else Reason.EVENT
+    return Reason.BRANCH if row.events.unsettled & {PASSED, MIRRORED} else Reason.EVENT
 
 
 def _shares(table: RunsTable, row: Row) -> tuple[str, frozenset[str]] | None:

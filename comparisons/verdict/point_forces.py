@@ -1,11 +1,11 @@
-"""Point forces along a beam: active contacts, stress away from them, and forces that no mesh can tell apart.
+"""Point forces along a beam: active contacts, places away from point forces, and shared forces.
 
-Beside a held end, a moment, and the ends of a zone of contact, a discretisation spreads a point force over its own
-length: a link or an element.  By Saint-Venant's principle the real stress is disturbed over about a thickness.  A stress is compared
-outside the longer of both lengths; inside a zone of contact the pressure is smooth and the stress is compared.
+Beside a held end, a moment, and the ends of a contact zone, a discretisation spreads a point force over a link or an
+element.  By Saint-Venant's principle a point force disturbs the real stress over about a thickness.  The comparison
+leaves out stresses within the longer of both lengths.  Inside a contact zone the pressure and the stress are smooth.
 
-A clamp and a contact within an element of it share one force: their sum has the order of the mesh, their shares have
-not.  Two contacts at one place of a beam share one force as well, and mechanics determines the sum alone.
+A clamp and a contact within an element of the clamp share one force: the sum converges with the order of the mesh, and
+the shares do not.  Two contacts at one place of a beam share one force as well: mechanics determines the sum alone.
 """
 
 from __future__ import annotations

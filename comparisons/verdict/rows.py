@@ -8,41 +8,33 @@ x       exact value in ``bending``, where the elastica reference has the station
 q       uncertainty of x: its certificate's residual, at least 1e-9 of the scale
 ======  ==========================================================================================
 
-The stated uncertainties of a probe are the largest of its stage on one branch: an error changes its sign somewhere along a
-stage, and the change between two grids vanishes there by accident.  A stage is split by its critical points.
-
-The difference is the sum of its steps, each a component along v_c − v_f:
-
-    v_c − v_f = (v_c − v_a) + (v_a − v_b) + (v_b − v_s) + (v_s − v_f)
-
-with v_a of the CPRBM in the formulation ``auto`` and v_s of the finite elements in ``stretch``.
+A probe has one stated uncertainty per solver, stage and branch: the largest of the stations.  An error changes its sign
+along a stage, and the change between two grids vanishes there by accident.  Critical points split a stage.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
-from comparisons.choices import KINEMATICS
 from comparisons.pairing import Runs
-from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, direction, norm, unit_of
+from comparisons.quantities import OPEN_AT_ZERO, arc_lengths, norm, unit_of
 from comparisons.stations import station_of
 from comparisons.verdict.bounds import Bounds, bounds_of
-from comparisons.verdict.events import Place, StationEvents, station_events
 from comparisons.verdict.point_forces import away_from_point_forces
 from comparisons.verdict.runs_table import RunsTable
 from comparisons.verdict.scales import denominator, probe_scales
+from comparisons.verdict.station_events import NO_EVENTS, Place, StationEvents, station_events
 from comparisons.verdict.uncertainty import largest
 from cprbm_scene import Answer, Probe, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array, Flags
-from cprbm_scene.statement import STRESSES, Quantity
+from cprbm_scene.statement import STRESSES
 
 ROUND_OFF = 1e-9
-"""Largest round-off of a value, and least uncertainty of an exact value, as shares of the probe's scale."""
+"""Round-off of a value, and least uncertainty of an exact value, as shares of the probe's scale."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,22 +47,8 @@ class TrueErrors:
 
 
 @dataclass(frozen=True, slots=True)
-class Steps:
-    """Components of the difference along itself, in the probe's unit.
-
-    ``contact`` leads from the formulation ``paper`` to ``auto``, ``own`` from there to the finite elements in
-    ``bending``, ``stretch`` and ``shear`` to each further theory.
-    """
-
-    contact: float
-    own: float
-    stretch: float
-    shear: float
-
-
-@dataclass(frozen=True, slots=True)
 class Row:
-    """One probe at one station; all sizes in ``unit``.
+    """Probe at a station; all sizes in ``unit``.
 
     Attributes:
         probe, stage, station: the question.
@@ -79,11 +57,10 @@ class Row:
         scale: of the probe in the stage; denominator: divisor of shown fractions.
         events: events of the runs by the station.
         difference, same_theory: |v_c − v_f|, |v_c − v_b|; NaN without a value.
-        bounds: stated uncertainties; None where a run that they need lacks the value.
-        missing: runs that do not reach the station; absent: runs whose contact is open and has no such value.
-        steps: the difference step by step; None where a theory is missing.
-        arc_length: places (k,) of a stress, m; largest: difference of the largest stresses.
-        contact_model: distance of the CPRBM's values in ``paper`` and ``auto``.
+        bounds: stated uncertainties; None without the value of a needed run.
+        missing: runs without the station; absent: runs without a value, since a contact is open.
+        arc_length: places (k,) of a stress, m.
+        counts: components (k,) in the difference: of a stress all away from point forces; None without a difference.
         exact: x; true_errors: distances from x.
     """
 
@@ -95,16 +72,14 @@ class Row:
     fea: Array
     scale: float
     denominator: float
-    events: StationEvents = StationEvents(0, Place.COMPARED)
+    events: StationEvents = NO_EVENTS
     difference: float = math.nan
     same_theory: float = math.nan
     bounds: Bounds | None = None
     missing: tuple[str, ...] = ()
     absent: tuple[str, ...] = ()
-    steps: Steps | None = None
     arc_length: Array | None = None
-    largest: float | None = None
-    contact_model: float | None = None
+    counts: Flags | None = None
     exact: Array | None = None
     true_errors: TrueErrors | None = None
 
@@ -183,14 +158,8 @@ def bare_row(
     )
 
 
-def round_off(stations: Iterable[StationAnswer], scale: float) -> float:
-    """Round-off of a probe's values by the certificates of the runs, in the probe's unit."""
-    certificates = [station.certificate for station in stations]
-    return scale * min(ROUND_OFF, max((max(each.residual, each.residual_floor) for each in certificates), default=0.0))
-
-
 def _measured(table: RunsTable, row: Row, stations: Mapping[str, StationAnswer]) -> Row:
-    """The row with its difference and what the other runs say of it."""
+    """The row with its difference, stated uncertainties and true errors."""
     runs, probe = table.runs, row.probe
     values = {name: station.values[probe.name] for name, station in stations.items()}
     exact = _exact_station(runs, row)
@@ -201,7 +170,9 @@ def _measured(table: RunsTable, row: Row, stations: Mapping[str, StationAnswer])
     )
     if row.fea.size == 0 or any(value.shape != row.fea.shape for value in values.values()):
         return row
-    counts = counted(table.scene, row, tuple(stations.values()))
+    counts = np.ones(row.fea.shape, dtype=bool)
+    if row.arc_length is not None:
+        counts = away_from_point_forces(table.scene, probe.of, row.arc_length, tuple(stations.values()))
     if not counts.any():
         return row
 
@@ -211,16 +182,14 @@ def _measured(table: RunsTable, row: Row, stations: Mapping[str, StationAnswer])
     v_b = values.get("fea bending")
     row = replace(
         row,
+        counts=counts,
         difference=size(row.cprbm - row.fea),
         same_theory=size(row.cprbm - (row.fea if v_b is None else v_b)),
-        largest=abs(norm(probe.quantity, row.cprbm) - norm(probe.quantity, row.fea))
-        if probe.quantity in STRESSES
-        else None,
     )
     if row.place is Place.BETWEEN:
         return row
     is_open = probe.quantity in OPEN_AT_ZERO and not any(value.any() for value in values.values())
-    floor = 0.0 if is_open else round_off(stations.values(), row.scale)
+    floor = 0.0 if is_open else ROUND_OFF * row.scale
     key = (row.stage, row.station, probe.name)
     known = {name: each[key] for name, each in runs.settled.items() if key in each}
     known = {name: each.of(counts) for name, each in known.items()}
@@ -228,17 +197,8 @@ def _measured(table: RunsTable, row: Row, stations: Mapping[str, StationAnswer])
     return replace(
         row,
         bounds=bounds_of(runs, masked, lambda difference: norm(probe.quantity, difference), floor, known),
-        steps=_steps(runs, probe.quantity, masked),
-        contact_model=_contact_model(runs, row, counts),
         true_errors=_true_errors(row, exact, v_b, size),
     )
-
-
-def counted(scene: Scene, row: Row, stations: Sequence[StationAnswer]) -> Flags:
-    """Which components (k,) of a row count: of a stress those away from point forces."""
-    if row.arc_length is None:
-        return np.ones(row.fea.shape, dtype=bool)
-    return away_from_point_forces(scene, row.probe.of, row.arc_length, stations)
 
 
 def _true_errors(row: Row, exact: StationAnswer | None, v_b: Array | None, size: object) -> TrueErrors | None:
@@ -258,31 +218,6 @@ def _exact_station(runs: Runs, row: Row) -> StationAnswer | None:
     except KeyError:
         return None
     return found if found.branch == row.branch else None
-
-
-def _steps(runs: Runs, quantity: Quantity, values: Mapping[str, Array]) -> Steps | None:
-    """Steps of the difference; None where it is zero or a theory between was left out."""
-    ladder = [f"fea {theory}" for theory in KINEMATICS[: KINEMATICS.index(runs.kinematics) + 1]]
-    names = ["cprbm", "cprbm auto" if "cprbm auto" in values else "cprbm", *ladder]
-    if not set(names) <= set(values):
-        return None
-    along = direction(quantity, values[names[0]] - values[names[-1]])
-    parts = [float(np.dot(values[one] - values[other], along)) for one, other in pairwise(names)]
-    return Steps(*parts, *(0.0,) * (4 - len(parts))) if along.any() else None
-
-
-def _contact_model(runs: Runs, row: Row, counts: Flags) -> float | None:
-    """Distance of the values in ``paper`` and in ``auto``; None where one is missing or on another branch."""
-    if runs.formulations is None:
-        return None
-    try:
-        pair = [station_of(answer, row.stage, row.station) for answer in runs.formulations]
-    except KeyError:
-        return None
-    paper, auto = (station.values[row.probe.name] for station in pair)
-    if paper.shape != auto.shape or any(station.branch != row.branch for station in pair):
-        return None
-    return norm(row.probe.quantity, (paper - auto)[counts])
 
 
 def _with_largest_uncertainties(rows: Sequence[Row]) -> tuple[Row, ...]:

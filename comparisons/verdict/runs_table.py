@@ -51,12 +51,12 @@ class RunsTable:
         return tuple(where for where in stations_of(self.scene) if where in first and where in second)
 
     def at(self, where: Where) -> dict[str, StationAnswer]:
-        """Stations of the runs that reach it, by name."""
+        """Stations of all runs with this station, by name of the run."""
         return {name: stations[where] for name, stations in self.stations.items() if where in stations}
 
     @cached_property
     def following(self) -> Mapping[str, Answer]:
-        """Runs that follow the path to its last station, or to a critical point where it ends."""
+        """Runs up to the last station, or up to the critical point at the end of the path."""
         return {name: answer for name, answer in self.answers.items() if answer.completed or ends_at_critical(answer)}
 
 

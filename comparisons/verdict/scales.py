@@ -11,11 +11,11 @@ f       family: the largest value of all probes of one kind in the stage, in the
 n       natural value: the value where the stiffest beam is bent by a radian along ℓ
 ======  ==========================================================================================
 
-    scale = max(v, V/4, f/1000, n/10⁷)
+    scale = max(v, V/4, f/1000, n/10⁴)
 
-A probe may vanish by symmetry, and its largest norm is then round-off: f/1000 stands in for v.  A probe may hardly change
-in a stage that prepares the next stage (a drive that closes a gap): V/4 stands in for v.  A stage in which hardly
-anything happens has n·10⁻⁴ as its family.
+A probe may vanish by symmetry, and its largest norm is then round-off: f/1000 stands in for v.  A probe may hardly
+change in a preparatory stage, such as a drive that closes a gap: V/4 stands in for v.  With a turn of 10⁻⁴ rad a beam
+counts as straight, and a part without load as unloaded: n/10⁴ stands in for v.
 
 ==============================  ======================================================  ==========
 quantity                        family                                                  n
@@ -28,7 +28,7 @@ force, reaction                 forces of probes and of the load; moments over �
 reaction_moment, moment         moments of probes, of the load and of a driven beam;    S
                                 forces times ℓ
 bending and combined stress     stresses of probes                                      E·t/(2ℓ)
-potential_energy                energies                                                S
+potential_energy                energies                                                S/10⁴
 closing_load                    the stepped load or drive                               as stepped
 centre, ends                    length of the contact's first beam, which is the scale
 ==============================  ======================================================  ==========
@@ -57,13 +57,19 @@ STAGE_SHARE = 0.25
 """Least scale of a probe in a stage, a share of its largest value in all stages."""
 
 NATURAL_SHARE = 1e-4
-"""Least largest value of a family, a share of its natural value: a beam that turns by 10⁻⁴ rad is straight."""
+"""Least scale of a probe, a share of its natural value."""
 
 VANISHING = 1e-2
 """A reference below this share of its probe's scale counts as a reference that may vanish."""
 
 _PLACES = 9
 _OWN_NORM = frozenset({"displacement", "rotation", "potential_energy", "closing_load"})
+_FAMILIES = {
+    "reaction": "force",
+    "reaction_moment": "moment",
+    "bending_stress": "stress",
+    "combined_stress": "stress",
+}
 _PLACES_OF_CONTACT = frozenset({"centre", "ends"})
 
 
@@ -78,9 +84,13 @@ def probe_scales(scene: Scene, answers: Sequence[Answer]) -> dict[tuple[str, str
             if probe.quantity == "reaction_moment":
                 own = max(own, families["balance"])
             natural = natural_value(scene, probe.quantity, stage, contact=probe.of)
-            family = max(_family(scene, probe, stage, families), NATURAL_SHARE * natural)
-            whole = probe.quantity in _PLACES_OF_CONTACT
-            found[stage.name, probe.name] = family if whole else max(own, FAMILY_SHARE * family)
+            if probe.quantity in _PLACES_OF_CONTACT:
+                scale = natural
+            else:
+                scale = max(
+                    own, FAMILY_SHARE * families[_FAMILIES.get(probe.quantity, probe.quantity)], NATURAL_SHARE * natural
+                )
+            found[stage.name, probe.name] = scale
     return found
 
 
@@ -126,6 +136,7 @@ def natural_value(scene: Scene, quantity: Quantity, stage: Stage, *, contact: st
         "displacement": lever,
         "rotation": 1.0,
         "angle": 1.0,
+        "potential_energy": NATURAL_SHARE * stiffness,
         "force": stiffness / lever,
         "reaction": stiffness / lever,
         "beam_force": stiffness / lever,
@@ -146,18 +157,6 @@ def natural_value(scene: Scene, quantity: Quantity, stage: Stage, *, contact: st
 def denominator(probe: Probe, reference: float, scale: float) -> float:
     """Divisor of a row's shown fractions: the ``reference`` norm, or the scale where the reference may vanish."""
     return reference if probe.quantity in _OWN_NORM and reference >= VANISHING * scale else scale
-
-
-def _family(scene: Scene, probe: Probe, stage: Stage, families: Mapping[str, float]) -> float:
-    name = {
-        "reaction": "force",
-        "reaction_moment": "moment",
-        "bending_stress": "stress",
-        "combined_stress": "stress",
-    }.get(probe.quantity, probe.quantity)
-    if name in _PLACES_OF_CONTACT:
-        return natural_value(scene, probe.quantity, stage, contact=probe.of)
-    return families[name]
 
 
 def _largest(scene: Scene, stage: Stage, answers: Sequence[Answer]) -> dict[str, float]:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from comparisons import archive, documents
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Runs, paired
-from comparisons.verdict.case import compare
 
 
 def there_and_back(answer):

@@ -6,10 +6,10 @@ from dataclasses import replace
 import pytest
 
 from comparisons import documents, sheets
+from comparisons.case import compare
 from comparisons.choices import Choices
+from comparisons.claims import claim_difference, claim_met, claim_of, standings
 from comparisons.pairing import paired
-from comparisons.verdict.case import compare
-from comparisons.verdict.claims import claim_difference, claim_met, claim_of, standings
 from comparisons.verdict.rows import Row
 from cprbm_scene import Claim, Probe
 from cprbm_scene.answer import frozen_array

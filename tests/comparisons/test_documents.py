@@ -6,9 +6,9 @@ import math
 import pytest
 
 from comparisons import documents
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict.case import compare
 from cprbm_scene import Certificate
 from tests.verdict.made_up import CERTIFICATE, MadeUp
 

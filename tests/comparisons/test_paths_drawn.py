@@ -7,10 +7,10 @@ import pytest
 
 from comparisons import cases, figures, paths_drawn, reactions_drawn
 from comparisons.bodies_drawn import draw_stops, places_at
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.framing import frame
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict.case import compare
 from cprbm_scene import Stage
 from tests.verdict.jumping import Jumping
 

@@ -13,6 +13,7 @@ import pytest
 
 from comparisons import cases, documents, reactions_drawn, sheets
 from comparisons import reactions as module
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.reaction_sheets import summary
@@ -25,7 +26,6 @@ from comparisons.reactions import (
     perturbed_scene,
     reactions,
 )
-from comparisons.verdict.case import compare
 from cprbm_scene import Ending, Stage
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.freedoms import unit

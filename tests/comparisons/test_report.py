@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 from comparisons import cases, figures, report
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict.case import compare
 from comparisons.writing import write
 from tests.verdict.made_up import MadeUp
 

@@ -11,6 +11,7 @@ import pytest
 
 from comparisons import cases
 from comparisons.bench import brief
+from comparisons.case import Comparison, Verdict
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.figures import canvas, picture
@@ -18,7 +19,6 @@ from comparisons.pairing import Runs, Solvers, cprbm_answer, fea_answer
 from comparisons.reporting import gathering, outlines
 from comparisons.reporting.inlined import inlined
 from comparisons.reporting.stepping import stepper
-from comparisons.verdict.case import Comparison, Verdict
 from comparisons.verdict.words import Word
 from cprbm_scene import Mistake, SceneError
 from tests.comparisons.killed import QUESTION

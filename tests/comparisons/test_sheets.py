@@ -6,11 +6,11 @@ from dataclasses import replace
 import pytest
 
 from comparisons import cases, sheets, tables
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.paper_sheets import of_paper
 from comparisons.sheet import Sheet, without_empty
-from comparisons.verdict.case import compare
 from cprbm_scene import Ending
 from tests.verdict.made_up import MadeUp
 

@@ -10,10 +10,10 @@ import pytest
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.pairing import ALONE, Runs, Solvers, solid_answer
+from comparisons.solid_limits import solid_limit
 from comparisons.tolerances.solids import LARGEST
 from comparisons.tolerances.tolerated import paired_within, solved
 from comparisons.verdict.rows import rows_of
-from comparisons.verdict.solid_limits import solid_limit
 from cprbm_scene import Ending
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
 from tests.verdict.made_up import MadeUp

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from comparisons import cases
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.cli.main import run
 from comparisons.cli.options import tolerance
@@ -19,7 +20,6 @@ from comparisons.pairing import ALONE, Runs, Solvers, solvers_of
 from comparisons.tolerances.search import FIRST, Estimate, Stated, search
 from comparisons.tolerances.settled import settled
 from comparisons.tolerances.tolerated import paired_within, solved
-from comparisons.verdict.case import compare
 from comparisons.verdict.rows import rows_of
 from comparisons.verdict.words import Word
 from cprbm_scene import Ending, Mistake, Probe, SceneError

@@ -1,7 +1,7 @@
 """Uncertainty of a solver's discretisation, from an answer at twice the links or elements.
 
-The largest uncertainty of a probe in a stage counts at every station (:mod:`comparisons.verdict.uncertainty`), over the probe's
-scale.
+The largest uncertainty of a probe in a stage counts at every station (:mod:`comparisons.verdict.uncertainty`), over
+the probe's scale.
 """
 
 from __future__ import annotations

@@ -20,7 +20,8 @@ An answer is *wrong* if it is certified and
 * a value is further from the finest that was found than F times what is stated of it; or
 * it is further from the exact answer, where one is known, than F times what is stated of it,
 
-with the F of :mod:`comparisons.verdict.calibration`: a stated uncertainty is to hold in 95 % of the rows and not in all.
+with the F of :mod:`comparisons.verdict.calibration`: a stated uncertainty is to hold in 95 % of the rows and not in
+all.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
+from comparisons.case import Comparison, compare
 from comparisons.choices import Choices
 from comparisons.formats import number
 from comparisons.pairing import Runs, Solvers, paired
@@ -37,7 +39,6 @@ from comparisons.quantities import norm
 from comparisons.stations import station_of
 from comparisons.verdict.bounds import Bounds
 from comparisons.verdict.calibration import EXACT_FACTOR, true_errors
-from comparisons.verdict.case import Comparison, compare
 from comparisons.verdict.completeness import ends_at_critical, problems
 from comparisons.verdict.judge import SHARED
 from comparisons.verdict.point_forces import sharing_sources
@@ -282,8 +283,8 @@ def _beside(scene: Scene, coarser: _Finding, finding: _Finding) -> _Finding:
             if off > worst * allowed:
                 worst = off / allowed
                 said = (
-                    f"{solver}: {row.probe.name} at {row.stage} {row.station:g} is {number(EXACT_FACTOR * worst)} times as far "
-                    f"from its value at a finer size as is stated of it."
+                    f"{solver}: {row.probe.name} at {row.stage} {row.station:g} is {number(EXACT_FACTOR * worst)} "
+                    f"times as far from its value at a finer size as is stated of it."
                 )
     return finding if not said else replace(finding, way=Way.WRONG, sentence=said, ending="")
 

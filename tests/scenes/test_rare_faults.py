@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import cprbm_answer, paired, solvers_of
-from comparisons.verdict.case import compare
 from comparisons.verdict.words import Word
 from cprbm_scene import Scene
 from tests.scenes.rare_scenes import ASKED, scene

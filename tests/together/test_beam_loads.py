@@ -11,10 +11,10 @@ import pytest
 import cprbm
 import elastica_reference
 import fea_reference
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.quantities import load_unit
-from comparisons.verdict.case import compare
 from comparisons.verdict.words import Word
 from cprbm_scene import Ending, scene_from
 from tests.cprbm.scenes import LENGTH, MODULUS, RIGIDITY, THICKNESS, cantilever_data

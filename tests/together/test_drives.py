@@ -6,10 +6,10 @@ from math import hypot
 import pytest
 
 from comparisons import figures
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, cprbm_answer, paired
 from comparisons.quantities import load_unit
-from comparisons.verdict.case import compare
 from comparisons.verdict.scales import natural_value
 from comparisons.verdict.words import Word
 from tests.cprbm.driven import driven_hinge

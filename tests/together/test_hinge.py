@@ -6,8 +6,8 @@ The bounds are those that the project set itself before there was a second solve
 import numpy as np
 import pytest
 
+from comparisons.case import compare
 from comparisons.stations import station_of
-from comparisons.verdict.case import compare
 from comparisons.verdict.rows import rows_of
 from comparisons.verdict.words import Word
 

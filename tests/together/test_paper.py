@@ -7,9 +7,9 @@ At an even number of links the hinge's contact falls between two joints, at an o
 import numpy as np
 import pytest
 
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict.case import compare
 from comparisons.verdict.rows import rows_of
 from comparisons.verdict.words import Word
 from tests.cprbm.scenes import hinge

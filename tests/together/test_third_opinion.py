@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.documents import comparison
 from comparisons.pairing import Solvers, paired, with_solid
-from comparisons.verdict.case import compare
-from comparisons.verdict.third import of_thirds, sentence, thirds_of
+from comparisons.third import of_thirds, sentence, thirds_of
 from tests.fea_reference.solid.bars import WIDTH, YOUNG, bar, straight
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from comparisons import cases
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict.case import compare
 from comparisons.verdict.words import Word
 from tests.references.wrapped import Wrapped
 

@@ -24,9 +24,9 @@ import pytest
 import cprbm.nearest
 import cprbm.section
 from comparisons import cases
+from comparisons.case import Verdict, compare
 from comparisons.choices import Choices
 from comparisons.pairing import Runs, Solver, Solvers, cprbm_answer, fea_answer, paired
-from comparisons.verdict.case import Verdict, compare
 from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Scene
 from cprbm_scene.answer import frozen_array

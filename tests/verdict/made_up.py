@@ -117,7 +117,7 @@ class MadeUp:
 
 
 def _pressing(scene: Scene, s: float, force: float) -> PointForces:
-    """Forces of all contacts on their beams at the arc length ``s``, in opposite directions on the two beams of a contact."""
+    """Forces of all contacts at the arc length ``s``, opposite on the two beams of a contact."""
     pairs = [(name, beam) for name, contact in scene.contacts.items() for beam in contact.beams]
     signs = [1.0 if beam == scene.contacts[name].beams[0] else -1.0 for name, beam in pairs]
     return PointForces(

@@ -12,8 +12,9 @@ import pytest
 from comparisons.choices import Choices
 from comparisons.pairing import Runs, Solvers, paired
 from comparisons.stages import begins_at, event_tolerance, span_of
-from comparisons.verdict.events import Place, critical_rows
+from comparisons.verdict.events import critical_rows
 from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.station_events import Place
 from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Critical, Ending, Loss, Stage
 from cprbm_scene.frozendict import frozendict

@@ -12,7 +12,8 @@ import pytest
 
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
-from comparisons.verdict.rows import ROUND_OFF, rows_of
+from comparisons.steps import contact_model, steps_of
+from comparisons.verdict.rows import rows_of
 from cprbm_scene import Probe, Stage
 from tests.verdict.comparing import altered, compared, counted, ending, in_bending, only, row_of, said_of, word_of
 from tests.verdict.made_up import CLOSES, MadeUp, with_value
@@ -103,15 +104,18 @@ def test_steps_are_planted_and_add_up(hinge, formulation, step):
     """f is 1.002 in ``auto``, 1.003 in ``paper``, 1 and 1.005 in the finite elements: steps along v_c − v_f < 0."""
     found = compared(hinge, replace(C, paper=1e-3), MadeUp("fea", 0.0), Choices(formulation=formulation))
     rotation, row = 0.9 * 0.067, row_of(found, ROTATION, 0.067)
-    assert row.contact_model == pytest.approx(1e-3 * rotation, rel=1e-9)
-    assert row.steps.contact == pytest.approx(step * rotation, rel=1e-9)
-    assert row.steps.own == pytest.approx(-2e-3 * rotation, rel=1e-9)
-    assert row.steps.stretch == pytest.approx(2e-3 * rotation, rel=1e-9)
-    assert row.steps.shear == pytest.approx(3e-3 * rotation, rel=1e-9)
-    for row in found.rows:
-        if row.steps is not None:
-            total = row.steps.contact + row.steps.own + row.steps.stretch + row.steps.shear
-            assert total == pytest.approx(row.difference, rel=1e-9)
+    assert contact_model(found.runs, row) == pytest.approx(1e-3 * rotation, rel=1e-9)
+    expected = [part * rotation for part in (step, -2e-3, 2e-3, 3e-3)]
+    assert parts_of(steps_of(found.runs, row)) == pytest.approx(expected, rel=1e-9)
+    steps = [(row, steps_of(found.runs, row)) for row in found.rows]
+    assert sum(each is not None for _, each in steps) > 100
+    for row, each in steps:
+        if each is not None:
+            assert sum(parts_of(each)) == pytest.approx(row.difference, rel=1e-9)
+
+
+def parts_of(steps):
+    return [steps.contact, steps.own, steps.stretch, steps.shear]
 
 
 @pytest.mark.parametrize(("kinematics", "theories"), [("bending", 1), ("stretch", 2), ("shear", 3)])
@@ -168,25 +172,21 @@ def test_without_bending_a_row_agrees_if_the_values_do(hinge):
     assert (word_of(found), row_of(found, ROTATION).bounds.bending) == ("AGREE", None)
 
 
-def test_round_off_is_the_certificates_and_at_most_a_billionth_of_the_scale(hinge):
-    def floored(floor):
-        return lambda station: replace(station, certificate=replace(station.certificate, residual_floor=floor))
-
-    for floor, share in ((1e-14, 1e-13), (2e-11, 2e-11), (1e-3, ROUND_OFF)):  # the made-up residual is 1e-13
-        row = row_of(compared(hinge, altered(C, floored(floor)), F), ROTATION)
-        assert row.bounds.round_off == pytest.approx(share * row.scale, rel=1e-9)
+def test_round_off_is_a_billionth_of_the_scale(hinge):
+    row = row_of(compared(hinge, C, F), ROTATION)
+    assert row.bounds.round_off == pytest.approx(1e-9 * row.scale, rel=1e-9)
 
 
-@pytest.mark.parametrize(("off", "word"), [(1e-14, "AGREE"), (1e-9, "DIFFER VALUES")])
+@pytest.mark.parametrize(("off", "word"), [(1e-9, "AGREE"), (1e-8, "DIFFER VALUES")])
 def test_more_than_round_off_is_a_difference(last, off, word):
-    """Values that no grid changes: nothing but round-off is stated."""
+    """Values of 3.6 N that no grid changes: nothing but 3.6e-9 N of round-off is stated."""
     pair = [altered(solver, with_value("C.reaction", [2.01 + own, 3.0])) for solver, own in ((C, off), (F, 0.0))]
     assert said_of(compared(last, *pair), "C.reaction") == word
 
 
 def test_round_off_at_zero_load_is_no_difference(hinge):
     still = hinge.model_copy(update={"stages": (Stage(name="load", steps="M", stations=(0.0,)),), "claims": ()})
-    trembling = only(altered(C, with_value(ROTATION, [3e-16])), C, lambda choices: choices.links != 40)
+    trembling = altered(C, with_value(ROTATION, [3e-16]))
     assert set(counted(compared(still, trembling, F))) == {"AGREE"}
     wrong = altered(C, with_value(ROTATION, [1e-9]))
     assert said_of(compared(still, wrong, F), ROTATION, 0.0) == "DIFFER VALUES"
@@ -200,7 +200,6 @@ def test_a_stress_differs_by_the_place_that_is_worst(last):
 
     row = row_of(compared(last, altered(C, spoilt), F, Choices(kinematics="bending")), "beam1.bending_stress")
     assert row.difference == pytest.approx(5e6, rel=0.02)
-    assert row.largest < 1e5
 
 
 def test_shown_fractions_are_of_the_value_of_a_displacement_and_of_the_scale_of_a_force(hinge):

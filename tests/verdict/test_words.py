@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from comparisons import cases
 from comparisons.audit import audit
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.verdict.bounds import Bounds
-from comparisons.verdict.case import compare
 from comparisons.verdict.judge import judge_case, judge_row
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs_table import RunsTable
@@ -204,8 +204,8 @@ def test_a_word_follows_from_the_two_inequalities(difference, same_theory, c, f,
     if difference > total or same_theory > tight:
         expected = (Word.UNDECIDED, Reason.RUN_ENDED) if b is None else (Word.DIFFER, Reason.VALUES)
     elif max(total, tight) > LIMIT:
-        own = max(c + f + r, tight) <= LIMIT
-        expected = (Word.UNDECIDED, Reason.THEORY if own else Reason.COARSE)
+        by_theory = theory > LIMIT or max(c + f + r, tight) <= LIMIT
+        expected = (Word.UNDECIDED, Reason.THEORY if by_theory else Reason.COARSE)
     else:
         expected = (Word.AGREE, None)
     assert (word, reason) == expected

@@ -1,4 +1,4 @@
-"""Sentences of a verdict: what happened, where, whose uncertainty, and the next command."""
+"""Sentences of a verdict: the finding, its place, the solver with the uncertainty, and the next command."""
 
 from __future__ import annotations
 
@@ -8,10 +8,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from comparisons.formats import number, percent
 from comparisons.verdict.calibration import SOLVERS, error_ratios, tally, true_errors
-from comparisons.verdict.events import PASSED, SIDE, ClosingRow, CriticalRow, mechanism, passed_by
+from comparisons.verdict.events import ClosingRow, CriticalRow, mechanism
 from comparisons.verdict.judge import Judged
 from comparisons.verdict.rows import Row
 from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.station_events import MIRRORED, PASSED, passed_by
 from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Scene
 
@@ -20,7 +21,7 @@ _OPTIONS = {"cprbm": ("-n", "links"), "fea": ("--elements", "elements")}
 
 
 def headline(table: RunsTable, rows: Sequence[Row], judged: Sequence[Judged], decided: Judged) -> str:
-    """The sentence on all rows together: the row that decides, or the closest row that agrees."""
+    """Sentence on all rows: the deciding row, or the closest agreeing row."""
     word, reason = decided
     counted = Counter(found for found, _ in judged if found is not None)
     total = sum(counted.values())
@@ -116,7 +117,7 @@ def closing_sentence(row: ClosingRow) -> str:
 
 
 def passed_sentences(table: RunsTable, rows: Sequence[Row], judged: Sequence[Judged]) -> Iterator[str]:
-    """Critical points that compared runs passed before the first row that differs."""
+    """Passed critical points of both compared runs before the first differing row."""
     differing = [row for row, (word, _) in zip(rows, judged, strict=True) if word is Word.DIFFER]
     if not differing:
         return
@@ -126,7 +127,7 @@ def passed_sentences(table: RunsTable, rows: Sequence[Row], judged: Sequence[Jud
     for name, answer in zip(NAMES.values(), table.pair, strict=True):
         earlier = [one for one in answer.gone_over if one.end.stage in stages[: stages.index(stage.name)]]
         mine = [one for one in answer.gone_over if one.end.stage == stage.name]
-        for one in (*earlier, *mine[: passed_by(table.scene, stage, answer)[index]])[-1:]:
+        for one in (*earlier, *mine[: passed_by(table.scene, stage, answer, index)])[-1:]:
             yield (
                 f"Before that {name} passed a critical point ({mechanism(one.end)}) at {one.end.stage} "
                 f"{number(one.end.value, 5)} and went on along a state turned by {number(one.turned, 3)} rad."
@@ -148,7 +149,7 @@ def distance(value: float, unit: str) -> str:
 
 def _explained(table: RunsTable, row: Row, reason: Reason | None) -> str:
     """Why the row does not agree, and the next command."""
-    contacts = " and ".join(sorted((row.events.unsettled | row.events.contradictory) - {PASSED, SIDE}))
+    contacts = " and ".join(sorted((row.events.unsettled | row.events.contradictory) - {PASSED, MIRRORED}))
     match reason:
         case Reason.VALUES:
             return f"{_measured(row)} ({_parts(row)}). A third opinion: `--solver cprbm,fea,solid`."
@@ -166,8 +167,8 @@ def _explained(table: RunsTable, row: Row, reason: Reason | None) -> str:
             )
             return f"{cause}, and {_measured(row)}. `solve --solver cprbm,fea -v` shows each event."
         case Reason.RUN_ENDED:
-            names = ", ".join(row.missing) or "the finite elements in bending"
-            return f"{_measured(row)}, and no answer of {names} there tells the uncertainty."
+            names = ", ".join(row.missing)
+            return f"{_measured(row)}, and the uncertainty is not known there: no answer of {names}."
         case Reason.BRANCH:
             return "the runs are on different branches or mirror images there. An imperfection would choose one."
         case Reason.EVENT:
@@ -189,7 +190,7 @@ def _explained(table: RunsTable, row: Row, reason: Reason | None) -> str:
 
 
 def _coarse(table: RunsTable, row: Row) -> str:
-    """Whose uncertainty is too large, and the size that would do."""
+    """The solver with too large an uncertainty, and a sufficient size."""
     assert row.bounds is not None
     limit = table.scene.limit(row.probe)
     needed = {}
@@ -222,7 +223,7 @@ def _others(rows: Sequence[Row], judged: Sequence[Judged]) -> str:
 
 
 def _measured(row: Row) -> str:
-    """The difference that comes closest to its stated uncertainty, and both as shares of the scale."""
+    """The difference closest to its stated uncertainty, and both as shares of the scale."""
     if row.bounds is None:
         return f"the values differ by {_of_scale(row.difference, row)} of the scale"
     bounds = row.bounds

@@ -1,4 +1,4 @@
-"""Limits of the solid's values on meshes that double, and stated uncertainties (:mod:`comparisons.verdict.uncertainty`).
+"""Limits of the solid's values on meshes that double, with the uncertainty of :mod:`comparisons.verdict.uncertainty`.
 
 Away from corners quadrilaterals of second order converge with the fourth power of the element's size.  At the corner of
 a face that is held the stress has no bound, and displacements converge with an order of about 1.5 (M. L. Williams,

@@ -1,7 +1,7 @@
 """The third opinion: what both beam theories miss together, each held against the mechanism as a solid.
 
 The solid's value x is extrapolated from its meshes, and u is its stated uncertainty, the largest over the probe's
-stations in the stage (:mod:`comparisons.verdict.solid_limits`).  The distances of the beam theories from x are their errors, as
+stations in the stage (:mod:`comparisons.solid_limits`).  The distances of the beam theories from x are their errors, as
 far as u and their own uncertainties allow.  Nothing of
 the verdict rests on them: a beam theory that is as far from the solid as it must be is not wrong.
 """
@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from comparisons.case import Comparison
 from comparisons.formats import percent, scaled_unit, vector
 from comparisons.quantities import norm
 from comparisons.sheet import Sheet
+from comparisons.solid_limits import solid_limit
 from comparisons.stations import station_of
-from comparisons.verdict.case import Comparison
 from comparisons.verdict.rows import Row
-from comparisons.verdict.solid_limits import solid_limit
 from comparisons.verdict.uncertainty import largest
 from cprbm_scene.answer import Array, Flags
 
@@ -44,7 +44,7 @@ def thirds_of(compared: Comparison) -> tuple[Third, ...]:
         return ()
     found = []
     for row in compared.rows:
-        if row.bounds is None:
+        if row.bounds is None or row.bounds.bending is None:
             continue
         bending, chosen = (
             station_of(answer, row.stage, row.station) for answer in (runs.fea["bending"][0], runs.reference)

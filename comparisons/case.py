@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from comparisons import sentences as said
 from comparisons.audit import Audit, audit
+from comparisons.branch_words import BranchVerdict, branch_verdicts
 from comparisons.pairing import Runs
 from comparisons.reactions import WorkEnergyReaction, perturbed_scene, reactions
 from comparisons.tolerances.search import Tolerance
-from comparisons.verdict import sentences as said
 from comparisons.verdict.completeness import complete_part, ends_at_critical, problems
-from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows, station_events
-from comparisons.verdict.judge import BranchVerdict, Judged, branch_verdicts, judge_case, judge_row
+from comparisons.verdict.events import ClosingRow, CriticalRow, closing_rows, critical_rows
+from comparisons.verdict.judge import Judged, judge_case, judge_row
 from comparisons.verdict.rows import Row, build_rows
 from comparisons.verdict.runs_table import RunsTable
+from comparisons.verdict.station_events import station_events
 from comparisons.verdict.words import Reason, Word
 from cprbm_scene import Answer, Scene
 from cprbm_scene.frozendict import frozendict
@@ -109,9 +111,12 @@ def _verdict(
             rest = f" (and {len(found.complaints) - 1} more)" if len(found.complaints) > 1 else ""
             sentence = f"The audit of {name}'s answer fails: {found.complaints[0]}{rest}."
             findings.append((Word.UNDECIDED, Reason.AUDIT, sentence))
+    crossing = next((found.remarks for found in audits.values() if found.remarks), ())
+    findings += [(Word.UNDECIDED, Reason.UNDECLARED_CONTACT, sentence) for sentence in crossing]
     if rows or completed:
         findings.append((*of_rows, said.headline(table, rows, judged, of_rows)))
     findings.sort(key=_rank)
+    words = tuple(found for found, _ in judged)
     word, reason, _ = findings[0]
     more = [said.ended_sentence(table.problems)] if completed and table.problems else []
     more += [*said.passed_sentences(table, rows, judged), said.calibration_sentence(rows)]
@@ -120,9 +125,9 @@ def _verdict(
     return Verdict(
         word,
         tuple(filter(None, (*(sentence for *_, sentence in findings), *more))),
-        tuple(found for found, _ in judged),
+        words,
         completed,
-        branch_verdicts(rows, judged),
+        branch_verdicts(rows, words),
         reason,
         tuple(why for _, why in judged),
     )
@@ -147,9 +152,8 @@ def _completed(table: RunsTable, criticals: Sequence[CriticalRow]) -> bool:
 
 def _reactions(scene: Scene, runs: Runs) -> tuple[WorkEnergyReaction, ...]:
     """Reactions of drives by two ways, where both compared answers are complete."""
-    perturbed = perturbed_scene(scene)
-    if perturbed is None or runs.perturbed is None:
-        return ()
     if problems(scene, runs.cprbm[0]) or problems(scene, runs.reference):
         return ()
-    return reactions(scene, runs.cprbm[0], runs.reference, complete_part(perturbed, runs.perturbed))
+    asked, found = perturbed_scene(scene), runs.perturbed
+    perturbed = None if asked is None or found is None else complete_part(asked, found)
+    return reactions(scene, runs.cprbm[0], runs.reference, perturbed)
