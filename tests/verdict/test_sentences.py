@@ -27,7 +27,7 @@ def away(hinge):
 
 @pytest.mark.parametrize(
     ("cprbm", "fea", "options"),
-    [(COARSE[0], F, {"-n"}), (C, COARSE[1], {"--elements"}), (*COARSE, {"-n", "--elements"})],
+    [(COARSE[0], F, {"-n"}), (MadeUp("cprbm", 1e-3), COARSE[1], {"--elements"}), (*COARSE, {"-n", "--elements"})],
 )
 def test_the_size_of_the_hint_makes_the_limit(away, cprbm, fea, options):
     """Errors of second order: the command of the sentence agrees, and half of its sizes does not."""
