@@ -86,7 +86,7 @@ def compare(scene: Scene, runs: Runs, look: Auditor = audit) -> Comparison:
     criticals, closings = critical_rows(table), closing_rows(table)
     rows = build_rows(table, station_events(table))
     judged = [judge_row(table, row) for row in rows]
-    audits = {answer.solver: look(scene, answer) for answer in table.pair}
+    audits = {answer.solver: look(scene, complete_part(scene, answer)) for answer in table.pair}
     verdict = _verdict(table, rows, judged, criticals, closings, audits)
     return Comparison(scene, runs, rows, verdict, criticals, _reactions(scene, runs), audits=audits)
 

@@ -82,7 +82,7 @@ def ended_sentence(problems: Mapping[str, tuple[str, ...]]) -> str:
     by_problem: dict[str, list[str]] = {}
     for name, found in problems.items():
         more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
-        by_problem.setdefault(f"{found[0]}{more}", []).append(name)
+        by_problem.setdefault(f"{found[0].rstrip('.')}{more}", []).append(name)
     parts = "; ".join(f"{', '.join(names)}: {problem}" for problem, names in by_problem.items())
     return f"Runs without a complete answer: {parts}."
 

@@ -8,10 +8,10 @@ import pytest
 import comparisons
 from comparisons.audit.crossings import crossing_sentence, crossings
 from comparisons.choices import Choices
-from comparisons.words import Word
+from comparisons.verdict.words import Word
 from cprbm_scene import Answer, Ending, Shape, StationAnswer, read, scene_from
 from cprbm_scene.answer import Statics
-from tests.comparisons.made_up import CERTIFICATE
+from tests.verdict.made_up import CERTIFICATE
 
 SCENE = Path(__file__).parents[1] / "scenes" / "undeclared-contact.toml"
 T = 1e-3
