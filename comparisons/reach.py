@@ -52,7 +52,7 @@ def up_to(scene: Scene, runs: Runs, count: int) -> tuple[Scene, Runs]:
 
     return first_stations(scene, count), replace(
         runs,
-        cprbm=(cut(runs.cprbm[0]), cut(runs.cprbm[1])),
+        cprbm=tuple(map(cut, runs.cprbm)),
         fea=frozendict({theory: tuple(map(cut, answers)) for theory, answers in runs.fea.items()}),
         auto=maybe(runs.auto),
         beside=maybe(runs.beside),

@@ -108,6 +108,7 @@ def _both_within(
     told = _told(cprbm, "cprbm", tolerance), _told(fea, "fea", tolerance)
     if cprbm.found.settled:
         driven, n, pair = perturbed_scene(scene), cprbm.found.n, cprbm.pair("bending")
+        exact, exact_absence = known_exactly(scene, choices, solvers, memory)
         return Runs(
             choices.kinematics,
             pair,
@@ -115,7 +116,8 @@ def _both_within(
             beside=cprbm.levels.uneven("bending", n, pair, cprbm.found.estimate.extrapolated),
             ratio=cprbm.levels.ratio(n),
             perturbed=None if driven is None else _perturbed(cprbm, driven),
-            exact=known_exactly(scene, choices, solvers, memory),
+            exact=exact,
+            exact_absence=exact_absence,
         ), told
     elements = fea.levels.choices(choices.kinematics, fea.found.n)
     runs = paired(scene, replace(elements, links=cprbm.found.n, formulation=choices.formulation), solvers, memory)
