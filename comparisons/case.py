@@ -156,5 +156,7 @@ def _reactions(scene: Scene, runs: Runs) -> tuple[WorkEnergyReaction, ...]:
     if problems(scene, runs.cprbm[0]) or problems(scene, runs.reference):
         return ()
     asked, found = perturbed_scene(scene), runs.perturbed
+    if asked is not None and found is None:
+        return ()
     perturbed = None if asked is None or found is None else complete_part(asked, found)
     return reactions(scene, runs.cprbm[0], runs.reference, perturbed)
