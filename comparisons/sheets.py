@@ -162,6 +162,7 @@ def _within_one_theory(compared: Comparison, row: Row, steps: Steps) -> str:
 def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
     runs = compared.runs
     known = any(row.exact is not None for row in rows)
+    last = not rows or rows[-1] is compared.rows[-1]
     body = []
     for row in rows:
         size = max(norm(row.probe.quantity, row.cprbm), norm(row.probe.quantity, row.fea))
@@ -201,7 +202,7 @@ def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
         tuple(body),
         f"FEA: theory {runs.kinematics}. Fractions of the FEA's value, or of the probe's largest value where "
         "that may vanish; uncertainties from further discretisations of each solver."
-        + (f" No exact values: {runs.exact_absence}" if runs.exact_absence else ""),
+        + (f" No exact values: {runs.exact_absence}" if runs.exact_absence and last else ""),
     )
 
 
