@@ -118,7 +118,8 @@ def _verdict(
     findings.sort(key=_rank)
     words = tuple(found for found, _ in judged)
     word, reason, _ = findings[0]
-    more = [said.ended_sentence(table.problems)] if completed and table.problems else []
+    others = {name: each for name, each in table.problems.items() if not ends_at_critical(table.answers[name])}
+    more = [said.ended_sentence(others)] if completed and others else []
     more += [*said.passed_sentences(table, rows, judged), said.calibration_sentence(rows)]
     if word is Word.AGREE:
         more.append(said.wider_limits(table.scene))
@@ -155,5 +156,7 @@ def _reactions(scene: Scene, runs: Runs) -> tuple[WorkEnergyReaction, ...]:
     if problems(scene, runs.cprbm[0]) or problems(scene, runs.reference):
         return ()
     asked, found = perturbed_scene(scene), runs.perturbed
+    if asked is not None and found is None:
+        return ()
     perturbed = None if asked is None or found is None else complete_part(asked, found)
     return reactions(scene, runs.cprbm[0], runs.reference, perturbed)

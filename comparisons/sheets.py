@@ -200,7 +200,8 @@ def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
         ),
         tuple(body),
         f"FEA: theory {runs.kinematics}. Fractions of the FEA's value, or of the probe's largest value where "
-        "that may vanish; uncertainties from further discretisations of each solver.",
+        "that may vanish; uncertainties from further discretisations of each solver."
+        + (f" No exact values: {runs.exact_absence}" if runs.exact_absence else ""),
     )
 
 

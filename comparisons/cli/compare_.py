@@ -12,7 +12,7 @@ import click
 from comparisons.case import compare
 from comparisons.choices import Kinematics
 from comparisons.cli.completing import offered
-from comparisons.cli.options import folder, numerical, one_of_both, opinions, output
+from comparisons.cli.options import exactness, folder, numerical, one_of_both, opinions, output
 
 if TYPE_CHECKING:
     from comparisons.case import Comparison
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 @click.option("--solver", "asking_solid", callback=opinions, default="cprbm,fea", show_default=True, metavar="SOLVERS",
               help="Who answers: 'cprbm,fea', or 'cprbm,fea,solid' for a third opinion.")  # fmt: skip
 @numerical
+@exactness
 @output
 @folder("Folder of the report; 'report' for 'compare all', else none unless given.")
 @click.pass_obj
@@ -40,6 +41,7 @@ def command(
     penetration: float,
     across: int,
     tol: float | None,
+    exact: bool | None,  # noqa: FBT001 - click hands it over by name
     json_file: Path | None,
     quiet: bool,  # noqa: FBT001 - click hands it over by name
     out: Path | None,
@@ -56,7 +58,7 @@ def command(
     from cprbm_scene import OffsetQuestion, Scene
 
     one_of_both(tol)
-    taking_part = with_solid(solvers_of(planted)) if asking_solid else solvers_of(planted)
+    taking_part = with_solid(solvers_of(planted, exact=exact)) if asking_solid else solvers_of(planted, exact=exact)
     scenes = questions(asked)
     choices = Choices(links, formulation, elements, kinematics, penetration, across)
     for scene in scenes:

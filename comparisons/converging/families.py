@@ -26,7 +26,7 @@ from typing import Literal
 import numpy as np
 
 from comparisons.choices import Choices, Kinematics
-from comparisons.pairing import Crew, Job, Solvers
+from comparisons.pairing import Crew, Job, Solvers, exact_or_why
 from comparisons.quantities import COMPONENTS, OPEN_AT_ZERO, arc_lengths, norm, unit_of
 from comparisons.stations import station_of
 from comparisons.verdict.completeness import problems
@@ -158,13 +158,14 @@ class Convergence:
     """A scene at all sizes.
 
     ``families`` stand in the order of stages, stations and probes, and for each the CPRBM's, the finite elements' in
-    ``bending`` and those in the chosen theory.
+    ``bending`` and those in the chosen theory.  ``exact_absence`` says why the exact reference covers no station.
     """
 
     scene: Scene
     sizes: tuple[int, ...]
     series: tuple[Series, ...]
     families: tuple[Family, ...]
+    exact_absence: str = ""
 
     @property
     def completed(self) -> bool:
@@ -205,12 +206,12 @@ def converged(
             jobs["fea", theory, n] = (solvers.fea, scene, at(choices, n).within(theory))
     known = [] if solvers.exact is None else [(solvers.exact, scene, choices)]
     found = crew.answers([*jobs.values(), *known])
-    exact = found.pop() if known else None
+    exact, exact_absence = exact_or_why(found.pop() if known else None)
     answers: dict[tuple[Method, str], dict[int, Answer]] = {}
     for (method, variant, n), answer in zip(jobs, found, strict=True):
         answers.setdefault((method, variant), {})[n] = answer
     series = [Series(*which, own, _complaints(scene, own)) for which, own in answers.items()]
-    return Convergence(scene, tuple(sizes), tuple(series), _families(scene, series, exact))
+    return Convergence(scene, tuple(sizes), tuple(series), _families(scene, series, exact), exact_absence)
 
 
 def _complaints(scene: Scene, answers: Mapping[int, Answer]) -> dict[int, str]:

@@ -107,6 +107,7 @@ def _both_within(
     if cprbm.found.settled:
         driven, n, pair = perturbed_scene(scene), cprbm.found.n, cprbm.settled("bending")
         families, uncertainties = _families(fea, choices.kinematics)
+        exact, exact_absence = known_exactly(scene, choices, solvers, memory)
         return Runs(
             choices.kinematics,
             (pair.answer, pair.coarse),
@@ -114,7 +115,8 @@ def _both_within(
             beside=cprbm.levels.beside_it(n),
             ratio=cprbm.levels.ratio(n),
             perturbed=None if driven is None else _perturbed(cprbm, driven),
-            exact=known_exactly(scene, choices, solvers, memory),
+            exact=exact,
+            exact_absence=exact_absence,
             settled=frozendict({"cprbm": pair.uncertainties, **uncertainties}),
         ), told
     elements = fea.levels.choices(choices.kinematics, fea.found.n)

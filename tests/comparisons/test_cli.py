@@ -47,6 +47,16 @@ def test_compare_ends_with_0_if_all_agree(right, capsys):
     assert captured.err == ""
 
 
+@pytest.mark.parametrize(("option", "there"), [([], True), (["--exact"], True), (["--no-exact"], False)])
+@pytest.mark.parametrize("command", ["compare", "converge"])
+def test_the_exact_reference_is_asked_by_a_rule_or_by_an_option(command, option, there, capsys):
+    sizes = ["-n", "8", "--elements", "8"] if command == "compare" else ["--sizes", "4,8,16"]
+    run([command, "tapered", *sizes, *option, "--json", "-"])
+    found = json.loads(capsys.readouterr().out)
+    rows = found["cases"][0]["rows"] if command == "compare" else found["families"]
+    assert any(row["exact"] is not None for row in rows) is there
+
+
 def test_compare_ends_with_1_if_any_differs(right, capsys):
     assert run(["compare", "hinge"], Solvers(MadeUp("cprbm", 2e-3, stiffness=1.02), right.fea)) == 1
     assert "hinge: DIFFER" in capsys.readouterr().out
