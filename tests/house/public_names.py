@@ -81,8 +81,9 @@ DOCUMENTED = {
     # docs/api/comparisons.md: settings, built-in cases, the verdict and the rows, an answer as numbers, the audit
     "comparisons.choices": ("Choices",),
     "comparisons.cases": ("asked", "names", "opened"),
-    "comparisons.verdict": ("Comparison", "Verdict"),
-    "comparisons.measures": ("Bounds", "Row"),
+    "comparisons.case": ("Comparison", "Verdict"),
+    "comparisons.verdict.bounds": ("Bounds",),
+    "comparisons.verdict.rows": ("Row",),
     "comparisons.reactions": ("Absence", "WorkEnergyReaction"),
     "comparisons.tidy": ("Number",),
     "comparisons.audit": ("audit",),
