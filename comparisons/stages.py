@@ -15,19 +15,19 @@ SPAN_TOLERANCE = 0.01
 
 
 def begins_at(scene: Scene, stage: Stage) -> float:
-    """Value of the load or drive at the begin of a stage: the last value of the stage before that steps it, or 0."""
+    """Value of the load or drive at the begin of a stage: the last value of an earlier stage with the same load or drive, or 0."""
     before = scene.stages[: scene.stages.index(stage)]
     return next((earlier.stations[-1] for earlier in reversed(before) if earlier.steps == stage.steps), 0.0)
 
 
 def span_of(scene: Scene, stage: Stage) -> float:
-    """Largest less least value that a stage goes through, in the unit of its load or drive."""
+    """Largest less least value of the load or drive in a stage, in the unit of the load or drive."""
     visited = (begins_at(scene, stage), *stage.stations)
     return max(visited) - min(visited)
 
 
 def event_tolerance(scene: Scene, stage: Stage) -> float:
-    """Distance of two events on the load axis that still counts as one event, in the axis' unit."""
+    """Largest distance of two loads of one event on the load axis, in the unit of the axis."""
     if stage.critical_limit:
         return stage.critical_limit
     turns = isinstance(scene.stepped(stage), RotationDrive)

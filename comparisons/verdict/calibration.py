@@ -10,7 +10,7 @@ F       2, the factor beyond which a row differs
 ======  ==========================================================================================
 
 e ≤ u shall hold in at least 95 % of the rows, and the median of u/e shall be at most 10.  A solver states one u per
-probe, stage and branch.  This u covers the largest e of its rows, and therefore counts once, with that e.  A row with
+probe, stage and branch.  This u covers the largest e of its rows, and u/e counts once, with the largest e.  A row with
 e ≤ q tells nothing about u.
 """
 
@@ -97,7 +97,7 @@ def true_errors(row: Row) -> Iterator[ErrorRatio]:
 
 
 def error_ratios(rows: Iterable[Row]) -> tuple[ErrorRatio, ...]:
-    """Error ratios with a true error above q; of a closing load, which later stations repeat, one per stage."""
+    """Error ratios with a true error above q; of a closing load one ratio per stage, since later stations repeat the load."""
     found: list[ErrorRatio] = []
     closings: set[tuple[str, str]] = set()
     for row in rows:

@@ -161,7 +161,7 @@ def critical_rows(table: RunsTable) -> tuple[CriticalRow, ...]:
 def _with_passed_points(
     table: RunsTable, stage: Stage, row: CriticalRow, here: Mapping[str, Critical | None]
 ) -> CriticalRow:
-    """The row in which passed critical points stand in for missing ones, unless the solvers then differ."""
+    """The row with passed critical points in place of missing critical points, unless the solvers then differ."""
     for known in filter(None, (row.cprbm, row.fea)):
         points, turned = dict(here), {}
         for name, own in here.items():

@@ -5,7 +5,7 @@ element.  By Saint-Venant's principle a point force disturbs the real stress ove
 leaves out stresses within the longer of both lengths.  Inside a contact zone the pressure and the stress are smooth.
 
 A clamp and a contact within an element of the clamp share one force: the sum converges with the order of the mesh, and
-the shares do not.  Two contacts at one place of a beam share one force as well: mechanics determines the sum alone.
+the shares do not.  Two contacts at one place of a beam also share a force: mechanics determines the sum alone.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def zone_ends(places: Sequence[Array], gap: float) -> list[float]:
 
 
 def sharing_sources(scene: Scene, stations: Iterable[StationAnswer], source: str) -> tuple[str, frozenset[str]] | None:
-    """The beam and the other contacts and joints that press it within an element of ``source``; None without any.
+    """The beam, and all other contacts and joints on the beam within an element of ``source``; None without any.
 
     Args:
         scene: the question.

@@ -175,7 +175,7 @@ def _stations(stage: Stage, answers: Sequence[Answer]) -> list[StationAnswer]:
 
 
 def _stepped(scene: Scene, stage: Stage) -> dict[str, float]:
-    """Largest value of the stepped load or drive, by its kind, and the moment that resists a drive; 0 elsewhere."""
+    """Largest value of the stepped load or drive by kind, and the resistance of a drive; 0 for all other kinds."""
     found = dict.fromkeys(("displacement", "rotation", "force", "moment", "resistance"), 0.0)
     load, most = scene.stepped(stage), max(abs(station) for station in stage.stations)
     if isinstance(load, DistributedLoad):
