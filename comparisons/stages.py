@@ -15,7 +15,7 @@ SPAN_TOLERANCE = 0.01
 
 
 def begins_at(scene: Scene, stage: Stage) -> float:
-    """Value of the load or drive at the begin of a stage: the last value of an earlier stage with the same load or drive, or 0."""
+    """Value of the load or drive at the begin of a stage: the last value in the stages before, or 0."""
     before = scene.stages[: scene.stages.index(stage)]
     return next((earlier.stations[-1] for earlier in reversed(before) if earlier.steps == stage.steps), 0.0)
 

@@ -97,7 +97,7 @@ def true_errors(row: Row) -> Iterator[ErrorRatio]:
 
 
 def error_ratios(rows: Iterable[Row]) -> tuple[ErrorRatio, ...]:
-    """Error ratios with a true error above q; of a closing load one ratio per stage, since later stations repeat the load."""
+    """Error ratios with a true error above q; of a closing load, repeated at later stations, one ratio per stage."""
     found: list[ErrorRatio] = []
     closings: set[tuple[str, str]] = set()
     for row in rows:

@@ -12,8 +12,8 @@ A contradiction is no evidence against a solver, and the row is undecided, in fo
 * Runs are on mirror images of one branch, or a run has passed a critical point near by (BRANCH).
 * The finite elements have no value in ``bending``, and the step of theory is not known (RUN_ENDED).
 
-Rows with the reason NOT_UNIQUE take no case down.  Rows with the reasons COARSE and EVENT take no case down if the probe
-agrees at most of its stations.  The sentence of the verdict counts such rows.
+Rows with the reason NOT_UNIQUE take no case down.  Rows with the reasons COARSE and EVENT take no case down if the
+probe agrees at most of its stations.  The sentence of the verdict counts such rows.
 """
 
 from __future__ import annotations
