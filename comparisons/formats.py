@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
+from comparisons.quantities import COMPONENTS
 from cprbm_scene.answer import Array
+from cprbm_scene.statement import STRESSES, Quantity
 
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"))
 
@@ -23,9 +26,9 @@ def number(value: float | None, digits: int = 3) -> str:
     return f"{value:.{digits - 1}e}"
 
 
-def percent(fraction: float | None) -> str:
-    """A fraction in per cent to three significant digits."""
-    return "–" if fraction is None or not math.isfinite(fraction) else f"{number(100.0 * fraction)} %"
+def percent(fraction: float | None, digits: int = 3) -> str:
+    """A fraction in per cent to ``digits`` significant digits."""
+    return "–" if fraction is None or not math.isfinite(fraction) else f"{number(100.0 * fraction, digits)} %"
 
 
 def scaled_unit(unit: str, size: float) -> tuple[float, str]:
@@ -41,14 +44,34 @@ def scaled_unit(unit: str, size: float) -> tuple[float, str]:
     return 1.0, unit
 
 
-def vector(values: Array, factor: float) -> str:
+def component_names(quantity: Quantity) -> tuple[str, ...]:
+    """Names of the components of a quantity in a table."""
+    return ("max",) if quantity in STRESSES else COMPONENTS.get(quantity, ("",))
+
+
+def components(quantity: Quantity, values: Array, factor: float, floor: float) -> Iterator[tuple[str, str]]:
+    """Name and text of every component of ``values`` (k,) over ``factor``; of a stress the largest magnitude.
+
+    Values below ``floor``, in the unit of ``values``, are round-off and print as 0.
+    """
+    if quantity in STRESSES and values.size:
+        values = np.array([np.max(np.abs(values))])
+    for name, value in zip(component_names(quantity), values.tolist(), strict=False):
+        yield name, _component(value, factor, floor)
+
+
+def vector(values: Array, factor: float, floor: float = 0.0) -> str:
     """Values over ``factor`` to five significant digits; of many (a stress) the largest magnitude."""
     if values.size == 0:
         return "open"
     if values.size > 3:
-        return f"max {number(float(np.max(np.abs(values))) / factor, 5)}"
-    texts = [number(float(value) / factor, 5) for value in values]
+        return f"max {_component(float(np.max(np.abs(values))), factor, floor)}"
+    texts = [_component(float(value), factor, floor) for value in values]
     return texts[0] if len(texts) == 1 else f"({', '.join(texts)})"
+
+
+def _component(value: float, factor: float, floor: float) -> str:
+    return number(0.0 if abs(value) < floor else value / factor, 5)
 
 
 def along(value: float, unit: str) -> str:

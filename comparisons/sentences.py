@@ -165,7 +165,7 @@ def _explained(table: RunsTable, row: Row, reason: Reason | None) -> str:
                 if contacts
                 else ("one solver alone has passed a critical point")
             )
-            return f"{cause}, and {_measured(row)}. `solve --solver cprbm,fea -v` shows each event."
+            return f"{cause}, and {_measured(row)}. `solve --solver fea -v` lists the events of one."
         case Reason.RUN_ENDED:
             names = ", ".join(row.missing)
             return f"{_measured(row)}, and the uncertainty is not known there: no answer of {names}."

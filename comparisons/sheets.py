@@ -11,23 +11,24 @@ from comparisons.branch_sheets import of_branches, of_criticals, of_ends
 from comparisons.case import Comparison
 from comparisons.claims import as_claimed, standings
 from comparisons.documents import worst
-from comparisons.formats import along, number, percent, scaled_unit, vector
+from comparisons.formats import along, component_names, components, number, percent, scaled_unit, vector
 from comparisons.geometry import bentness
 from comparisons.paper_sheets import of_paper
 from comparisons.quantities import load_unit, norm, unit_of
 from comparisons.reaction_sheets import of_reactions
 from comparisons.sheet import Sheet
-from comparisons.stations import station_of
 from comparisons.steps import Steps, contact_model, largest_difference, steps_of
 from comparisons.third import of_thirds
 from comparisons.third import sentence as beside_the_solid
 from comparisons.tolerances.search import Tolerance
 from comparisons.tolerances.settled import told
 from comparisons.verdict.calibration import EXACT_FACTOR, SOLVERS, ErrorRatio, error_ratios, tally, true_errors
-from comparisons.verdict.rows import Row
+from comparisons.verdict.rows import ROUND_OFF, Row
+from comparisons.verdict.scales import probe_scales
 from comparisons.verdict.station_events import Place
 from comparisons.verdict.words import Reason, Word
-from cprbm_scene import Answer, Scene, StationAnswer
+from cprbm_scene import Answer, Scene, Stage
+from cprbm_scene.answer import Array
 
 MANY = 40
 """Most stations of a drive that a table has a line for."""
@@ -74,8 +75,7 @@ def by_subject(compared: Comparison) -> dict[Subject, tuple[Sheet, ...]]:
 
 def of_answer(scene: Scene, answer: Answer, tolerances: tuple[Tolerance, ...] = ()) -> tuple[Sheet, ...]:
     """All tables of one solver's answer, and how its N was found."""
-    stations = shown_stations(scene, tuple((station.stage, station.value) for station in answer.stations))
-    answered = (_answered(scene, answer, station_of(answer, *station)) for station in stations)
+    answered = (_answered(scene, answer, stage) for stage in scene.stages)
     found = (of_tolerances(tolerances), *answered, of_ends(scene, answer), _events(answer))
     return tuple(sheet for sheet in found if sheet.rows)
 
@@ -136,9 +136,9 @@ def explanation(compared: Comparison) -> tuple[str, ...]:
         if steps is None:
             continue
         sentences.append(
-            f"{row.probe.name} at {row.station:g}: our difference of {_of(row, row.difference)} is the "
-            f"finite elements' own step of theory, {_of(row, steps.stretch)} from bending to stretch and "
-            f"{_of(row, steps.shear)} from stretch to shear, and {_within_one_theory(compared, row, steps)}; "
+            f"{row.probe.name} at {row.station:g}: our difference of {share(row, row.difference)} is the "
+            f"finite elements' own step of theory, {share(row, steps.stretch)} from bending to stretch and "
+            f"{share(row, steps.shear)} from stretch to shear, and {_within_one_theory(compared, row, steps)}; "
             f"the source's figure of {percent(claim.bound)} is not ours to approach."
         )
     return tuple(filter(None, (*sentences, beside_the_solid(compared))))
@@ -146,17 +146,17 @@ def explanation(compared: Comparison) -> tuple[str, ...]:
 
 def _within_one_theory(compared: Comparison, row: Row, steps: Steps) -> str:
     """What is left of a difference without the theories' steps, and what the contact's formulation has in it."""
-    own, stated = _of(row, steps.own), _of(row, row.bounds.same_theory if row.bounds else math.nan)
+    own, stated = share(row, steps.own), share(row, row.bounds.same_theory if row.bounds else math.nan)
     if compared.runs.auto is not None:
         return (
-            f"{own} between the two methods within one theory and {_of(row, steps.contact)} in the contact model, "
+            f"{own} between the two methods within one theory and {share(row, steps.contact)} in the contact model, "
             f"from paper to auto, for which together the runs state {stated}"
         )
     said = f"{own} between the two methods within one theory, for which the two discretisations state {stated}"
     model = contact_model(compared.runs, row)
     if model is None:
         return said
-    return f"{said}; the contact model of paper would put the CPRBM {_of(row, model)} away"
+    return f"{said}; the contact model of paper would put the CPRBM {share(row, model)} away"
 
 
 def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
@@ -165,18 +165,17 @@ def _values(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
     last = not rows or rows[-1] is compared.rows[-1]
     body = []
     for row in rows:
-        size = max(norm(row.probe.quantity, row.cprbm), norm(row.probe.quantity, row.fea))
-        factor, unit = scaled_unit(row.unit, size)
+        factor, unit = value_unit(row)
         body.append(
             (
                 row.probe.name,
                 unit,
-                vector(row.cprbm, factor),
-                vector(row.fea, factor),
-                *(("–" if row.exact is None else vector(row.exact, factor),) if known else ()),
-                _of(row, row.difference),
+                _vector(row, row.cprbm, factor),
+                _vector(row, row.fea, factor),
+                *(("–" if row.exact is None else _vector(row, row.exact, factor),) if known else ()),
+                share(row, row.difference),
                 *(
-                    (_of(row, row.bounds.cprbm), _of(row, row.bounds.fea), _in_bending(row, row.bounds.theory))
+                    (share(row, row.bounds.cprbm), share(row, row.bounds.fea), _in_bending(row, row.bounds.theory))
                     if row.bounds
                     else ("–", "–", "–")
                 ),
@@ -217,11 +216,11 @@ def _verdicts(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
         body.append(
             (
                 row.probe.name,
-                _of(row, row.difference),
-                _of(row, row.bounds.total) if row.bounds else "–",
+                share(row, row.difference),
+                share(row, row.bounds.total) if row.bounds else "–",
                 _in_bending(row, row.same_theory),
                 _in_bending(row, row.bounds.same_theory) if row.bounds else "–",
-                _of(row, row.bounds.round_off) if row.bounds else "–",
+                share(row, row.bounds.round_off) if row.bounds else "–",
                 _judgement(row, *judged[row.where, row.probe.name]),
             )
         )
@@ -235,7 +234,7 @@ def _verdicts(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
 
 def _in_bending(row: Row, value: float) -> str:
     """A fraction that needs the finite elements in ``bending``; a dash where that run lacks the value."""
-    return "–" if row.bounds is None or row.bounds.bending is None else _of(row, value)
+    return "–" if row.bounds is None or row.bounds.bending is None else share(row, value)
 
 
 def _judgement(row: Row, word: Word | None, reason: Reason | None) -> str:
@@ -251,7 +250,7 @@ def _true_errors(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
     for row in rows:
         found = tuple(true_errors(row))
         if found:
-            cells = ((_of(row, each.true), _of(row, each.stated), number(each.ratio), each.word) for each in found)
+            cells = ((share(row, each.true), share(row, each.stated), number(each.ratio), each.word) for each in found)
             body.append((row.probe.name, *(cell for four in cells for cell in four)))
     return Sheet(
         "True errors in bending, beside the exact answer",
@@ -306,10 +305,10 @@ def _stresses(scene: Scene, rows: tuple[Row, ...]) -> Sheet:
             (
                 row.probe.name,
                 unit,
-                vector(row.cprbm, factor),
-                vector(row.fea, factor),
-                _of(row, largest_difference(row)),
-                _of(row, row.difference),
+                _vector(row, row.cprbm, factor),
+                _vector(row, row.fea, factor),
+                share(row, largest_difference(row)),
+                share(row, row.difference),
                 percent(bentness(beam) / 3.0),
             )
         )
@@ -336,11 +335,11 @@ def _steps(compared: Comparison, rows: tuple[Row, ...]) -> Sheet:
         body.append(
             (
                 row.probe.name,
-                _of(row, row.difference),
-                *((_of(row, contact),) if shown else ()),
-                _of(row, steps.own),
-                _of(row, steps.stretch),
-                _of(row, steps.shear),
+                share(row, row.difference),
+                *((share(row, contact),) if shown else ()),
+                share(row, steps.own),
+                share(row, steps.stretch),
+                share(row, steps.shear),
             )
         )
     note = "Components along the difference; each line adds up."
@@ -425,18 +424,27 @@ def _audited(found: Audit | None) -> str:
     return "holds" if not found.complaints else f"{len(found.complaints)} complaints"
 
 
-def _answered(scene: Scene, answer: Answer, station: StationAnswer) -> Sheet:
-    stage = next(stage for stage in scene.stages if stage.name == station.stage)
-    body = []
+def _answered(scene: Scene, answer: Answer, stage: Stage) -> Sheet:
+    """All stations of a stage, with a column for every component."""
+    stations = [station for station in answer.stations if station.stage == stage.name]
+    scales = probe_scales(scene, (answer,))
+    columns: dict[str, list[str]] = {}
     for probe in scene.probes:
-        found = station.values[probe.name]
-        factor, unit = scaled_unit(unit_of(scene, probe, stage), norm(probe.quantity, found))
-        body.append((probe.name, unit, vector(found, factor)))
+        found = [station.values[probe.name] for station in stations]
+        largest = max((norm(probe.quantity, values) for values in found), default=0.0)
+        factor, unit = scaled_unit(unit_of(scene, probe, stage), largest)
+        floor = ROUND_OFF * scales[stage.name, probe.name]
+        texts = [dict(components(probe.quantity, values, factor, floor)) for values in found]
+        for name in component_names(probe.quantity):
+            columns[f"{f'{probe.name} {name}'.rstrip()}, {unit}"] = [each.get(name, "open") for each in texts]
+    load = load_unit(scene, stage)
     return Sheet(
-        f"{scene.title or scene.name}: {stage.name} {along(station.value, load_unit(scene, stage))}",
-        ("probe", "unit", answer.solver),
-        tuple(body),
-        f"{answer.ending.name}: {answer.sentence or answer.ending.value}" if station is answer.stations[-1] else "",
+        f"{scene.title or scene.name}: {stage.name}, {answer.solver}",
+        (f"{stage.steps}, {load}", *columns),
+        tuple(zip((along(station.value, load) for station in stations), *columns.values(), strict=True)),
+        f"{answer.ending.name}: {answer.sentence or answer.ending.value}"
+        if stations and stations[-1] is answer.stations[-1]
+        else "",
     )
 
 
@@ -448,5 +456,16 @@ def _events(answer: Answer) -> Sheet:
     )
 
 
-def _of(row: Row, value: float) -> str:
-    return percent(row.fraction(value))
+def value_unit(row: Row) -> tuple[float, str]:
+    """Factor and unit in which both values of a row print."""
+    size = max(norm(row.probe.quantity, row.cprbm), norm(row.probe.quantity, row.fea))
+    return scaled_unit(row.unit, 0.0 if size < ROUND_OFF * row.scale else size)
+
+
+def share(row: Row, value: float, digits: int = 3) -> str:
+    """A difference or uncertainty, in the row's unit, as a share of the row's denominator; round-off prints as 0."""
+    return percent(row.fraction(0.0 if abs(value) < ROUND_OFF * row.scale else value), digits)
+
+
+def _vector(row: Row, values: Array, factor: float) -> str:
+    return vector(values, factor, ROUND_OFF * row.scale)

@@ -8,7 +8,7 @@ from typing import Literal
 
 from rich import box
 from rich.cells import cell_len
-from rich.console import Console
+from rich.console import Console, RenderableType
 from rich.table import Table
 from rich.text import Text
 
@@ -45,11 +45,29 @@ def drawn(sheet: Sheet, *, width: int) -> str:
         parts = [dict(enumerate(whole))]
     else:
         parts = _parted([_least(column) for column in texts], whole, width, led=_led(sheet))
+    return "".join(
+        _printed(_table(sheet, widths, first=place == 0, last=place == len(parts) - 1), width)
+        for place, widths in enumerate(parts)
+    )
+
+
+def fitted(sheet: Sheet, *, width: int) -> list[str]:
+    """Lines of a sheet without title and note, at most ``width`` columns wide: names fold, numbers do not."""
+    table = Table(box=box.SIMPLE_HEAD, show_edge=False, pad_edge=False, padding=(0, 1, 0, 0))
+    for place, header in enumerate(sheet.headers):
+        justify: Literal["left", "right"] = "left" if place == 0 or header == "word" else "right"
+        table.add_column(header, justify=justify, overflow="fold", no_wrap=place > 0)
+    for row in sheet.rows:
+        table.add_row(*(Text(cell, style=_COLOURS.get(cell, "")) for cell in row))
+    return [line.rstrip() for line in _printed(table, width).splitlines()]
+
+
+def _printed(table: RenderableType, width: int) -> str:
+    """Text of a table with terminal colours."""
     page = io.StringIO()
     # without a height a terminal that says it is "dumb" would have 80 columns whatever the width
     console = Console(file=page, width=width, height=25, force_terminal=True, color_system="standard")
-    for place, widths in enumerate(parts):
-        console.print(_table(sheet, widths, first=place == 0, last=place == len(parts) - 1))
+    console.print(table)
     return page.getvalue()
 
 

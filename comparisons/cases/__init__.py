@@ -73,6 +73,12 @@ def asked(case: str) -> Question:
     return _found(case, read_question)
 
 
+def argument(question: Question) -> str:
+    """Name of a built-in case, or path of the file of a question, as the command line takes it."""
+    file = Path(question.file)
+    return file.stem if file.parent == Path(str(files(__name__))) else str(file)
+
+
 def _found(case: str, reader: Callable[[str | Path], T]) -> T:
     if case in names():
         with as_file(files(__name__) / f"{case}.toml") as path:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from logging import NOTSET
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -13,12 +14,17 @@ from comparisons.case import compare
 from comparisons.choices import Kinematics
 from comparisons.cli.completing import offered
 from comparisons.cli.options import exactness, folder, numerical, one_of_both, opinions, output
+from comparisons.listening import heard_from
 
 if TYPE_CHECKING:
     from comparisons.case import Comparison
+    from comparisons.choices import Choices
+    from comparisons.cli.showing import Steps
     from comparisons.documents import Plain
     from comparisons.offset_verdict import OffsetComparison
+    from comparisons.pairing import Crew, Runs, Solvers
     from comparisons.tolerances.search import Tolerance
+    from cprbm_scene import Question
 
 
 @click.command("compare")
@@ -47,15 +53,14 @@ def command(
     out: Path | None,
 ) -> int:
     """Answer scenes with both solvers and say whether they agree."""
-    from comparisons import offset_pages, report, sheets
+    from comparisons import report
+    from comparisons.brief import WIDTH, summary
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
     from comparisons.cli.asking import questions
-    from comparisons.offset_verdict import OffsetComparison, compared_offset
-    from comparisons.pairing import Runs, begin, crew_of, solvers_of, with_solid, workers_for
+    from comparisons.pairing import crew_of, solvers_of, with_solid, workers_for
     from comparisons.resuming import resumed
-    from comparisons.tolerances.tolerated import paired_within
-    from cprbm_scene import OffsetQuestion, Scene
+    from cprbm_scene import OffsetQuestion
 
     one_of_both(tol)
     taking_part = with_solid(solvers_of(planted, exact=exact)) if asking_solid else solvers_of(planted, exact=exact)
@@ -68,61 +73,89 @@ def command(
         out = Path("report")
     showing.room_for(json_file, out)
     printing = str(json_file) != "-"
+    show = _shown(quiet=quiet) if printing else None
     finished: list[Comparison | OffsetComparison] = []
     chapters: tuple[report.Chapter, ...] = ()
     names = tuple(scene.name for scene in scenes)
     with resumed(out, taking_part, names) as whole, crew_of(workers_for(planted)) as crew:
-        solvers = whole.solvers
-
-        def begun(place: int) -> Callable[[], Runs] | None:
-            scene = scenes[place] if tol is None and place < len(scenes) else None
-            return begin(scene, choices, solvers, crew) if isinstance(scene, Scene) else None
-
-        following = begun(0)
         # a line that says which N is being solved stands in the bar's place
-        steps = showing.progress(scenes, shown=not quiet and tol is None)
-        for place, scene in enumerate(steps):
-            comparison: Comparison | OffsetComparison
-            # the next case is solved while this one is judged and drawn
-            pending, following = following, begun(place + 1)
-            if isinstance(scene, OffsetQuestion):
-                comparison = compared_offset(scene, solvers.offset)
-            else:
-                found: tuple[Tolerance, ...] = ()
-                if pending is not None:
-                    runs = pending()
-                else:
-                    assert tol is not None
-                    with showing.current(shown=not quiet) as say:
-                        runs, found = paired_within(scene, choices, tol, solvers, crew, say)
-                comparison = replace(compare(scene, runs), tolerances=found)
+        steps = showing.progress(scenes, shown=not quiet and tol is None, noun="case")
+        for comparison in _compared(steps, choices, tol, whole.solvers, crew, shown=not quiet):
             finished.append(comparison)
             if out is not None:
                 chapters = (*chapters, report.added(out, comparison))
-            whole.tells(scene.name)
-            if whole.caught_up(names[: place + 1]):
+            whole.tells(names[len(finished) - 1])
+            if whole.caught_up(names[: len(finished)]):
                 if out is not None:
                     report.put_page(out, chapters)
                 if json_file is not None and printing:
                     showing.json(json_file, {"cases": [_document(one) for one in finished]})
             steps.clear()
-            if printing:
-                if not quiet:
-                    if isinstance(comparison, OffsetComparison):
-                        showing.tables(offset_pages.sheets_of(comparison))
-                    else:
-                        showing.tables(sheets.of_comparison(comparison))
-                        for sentence in sheets.explanation(comparison):
-                            click.echo(sentence + "\n")
-                verdict = comparison.verdict
-                click.echo(f"{scene.name}: {verdict.word.value}. {verdict.sentence}")
-                for tolerance in _beyond(comparison):
-                    click.echo(f"{scene.name}: {tolerance.sentence}")
-    if json_file is not None and str(json_file) == "-":
+            if show is not None:
+                show(comparison, scenes[len(finished) - 1])
+    if json_file is not None and not printing:
         showing.json(json_file, {"cases": [_document(one) for one in finished]})
-    if out is not None and printing and not quiet:
-        click.echo(f"report: {out / 'index.html'}")
+    if printing and not quiet:
+        if len(finished) > 1:
+            showing.tables([summary(finished)], WIDTH)
+        if out is not None:
+            click.echo(f"report: {out / 'index.html'}")
     return exit_code(finished)
+
+
+def _compared(
+    steps: Steps[Question], choices: Choices, tol: float | None, solvers: Solvers, crew: Crew, *, shown: bool
+) -> Iterator[Comparison | OffsetComparison]:
+    """The comparisons of all questions; the next one is solved while the caller draws and prints one."""
+    from comparisons.cli import showing
+    from comparisons.offset_verdict import compared_offset
+    from comparisons.pairing import begin
+    from comparisons.tolerances.tolerated import paired_within
+    from cprbm_scene import OffsetQuestion, Scene
+
+    def begun(place: int) -> Callable[[], Runs] | None:
+        scene = steps.items[place] if tol is None and place < len(steps.items) else None
+        return begin(scene, choices, solvers, crew) if isinstance(scene, Scene) else None
+
+    following = begun(0)
+    for place, scene in enumerate(steps):
+        pending, following = following, begun(place + 1)
+        if isinstance(scene, OffsetQuestion):
+            yield compared_offset(scene, solvers.offset)
+        elif pending is not None:
+            yield compare(scene, pending())
+        else:
+            assert tol is not None
+            with showing.current(shown=shown) as say:
+                runs, found = paired_within(scene, choices, tol, solvers, crew, say)
+            yield replace(compare(scene, runs), tolerances=found)
+
+
+def _shown(*, quiet: bool) -> Callable[[Comparison | OffsetComparison, Question], None]:
+    """Function that prints a case: briefly, with ``-v`` by all tables, with ``-q`` by the verdict alone."""
+    from comparisons import cases, offset_pages, sheets
+    from comparisons.brief import brief, headline
+    from comparisons.cli import showing
+    from comparisons.offset_verdict import OffsetComparison
+
+    full = heard_from() != NOTSET
+
+    def show(comparison: Comparison | OffsetComparison, question: Question) -> None:
+        if not quiet and not full:
+            click.echo(brief(comparison, cases.argument(question)) + "\n")
+            return
+        if not quiet and isinstance(comparison, OffsetComparison):
+            showing.tables(offset_pages.sheets_of(comparison))
+        elif not quiet and not isinstance(comparison, OffsetComparison):
+            showing.tables(sheets.of_comparison(comparison))
+            for sentence in sheets.explanation(comparison):
+                click.echo(sentence + "\n")
+        verdict = comparison.verdict
+        click.echo(headline(question.name, verdict, verdict.sentence))
+        for tolerance in _beyond(comparison):
+            click.echo(f"{question.name}: {tolerance.sentence}")
+
+    return show
 
 
 def exit_code(finished: Sequence[Comparison | OffsetComparison]) -> int:

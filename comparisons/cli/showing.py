@@ -23,13 +23,13 @@ _PLAIN_WIDTH = 140
 """Columns where there is no terminal to ask."""
 
 
-def tables(sheets: Iterable[Sheet]) -> None:
-    """Print tables; colours only reach a terminal."""
+def tables(sheets: Iterable[Sheet], most: int = 10_000) -> None:
+    """Print tables, at most ``most`` columns wide; colours only reach a terminal."""
     from comparisons.tables import drawn
 
     width = shutil.get_terminal_size().columns if sys.stdout.isatty() else _PLAIN_WIDTH
     for sheet in sheets:
-        click.echo(drawn(sheet, width=width))
+        click.echo(drawn(sheet, width=min(width, most)))
 
 
 def json(file: Path, data: Plain) -> None:
@@ -65,13 +65,13 @@ class Steps(Generic[T]):
     do so in several rounds, each from the beginning: a round takes ``share`` of what was left of the item.
     """
 
-    def __init__(self, items: Sequence[T], within: tuple[str, ...], share: float, *, shown: bool) -> None:
-        self.items, self.within, self.share, self.shown = items, within, share, shown
+    def __init__(self, items: Sequence[T], within: tuple[str, ...], share: float, noun: str, *, shown: bool) -> None:
+        self.items, self.within, self.share, self.noun, self.shown = items, within, share, noun, shown
         self._bar: Bar | None = None
 
     def __iter__(self) -> Iterator[T]:
         """The items; the bar is there until the last one is done with."""
-        with _bar(len(self.items), shown=self.shown) as bar:
+        with _bar(len(self.items), self.noun, shown=self.shown) as bar:
             if bar is None:
                 yield from self.items
                 return
@@ -113,9 +113,14 @@ class Rounds:
         return self.begun + 1.0 - self.left * (1.0 - self.share * done / whole)
 
 
-def progress(items: Sequence[T], *, shown: bool, within: tuple[str, ...] = (RUNS,), share: float = 1.0) -> Steps[T]:
-    """Some items as :class:`Steps`, of a comparison's runs, in one round, unless told otherwise."""
-    return Steps(items, within, share, shown=shown)
+def progress(
+    items: Sequence[T], *, shown: bool, within: tuple[str, ...] = (RUNS,), share: float = 1.0, noun: str = ""
+) -> Steps[T]:
+    """Some items as :class:`Steps`, of a comparison's runs, in one round, unless told otherwise.
+
+    With a ``noun`` the bar says the number of the item: "case 3 of 11".
+    """
+    return Steps(items, within, share, noun, shown=shown)
 
 
 @contextmanager
@@ -145,7 +150,7 @@ class Bar:
 
 
 @contextmanager
-def _bar(whole: int, *, shown: bool) -> Iterator[Bar | None]:
+def _bar(whole: int, noun: str = "", *, shown: bool) -> Iterator[Bar | None]:
     """A bar of a ``whole``, with the time that remains; None where none is shown.
 
     None is where standard error is no terminal, where sentences are asked for in its place, and where none is wanted.
@@ -156,25 +161,10 @@ def _bar(whole: int, *, shown: bool) -> Iterator[Bar | None]:
         return
     from rich.console import Console
     from rich.control import Control
-    from rich.progress import (
-        BarColumn,
-        Progress,
-        TaskProgressColumn,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
     from rich.segment import ControlType
 
-    columns = (
-        TextColumn("solving"),
-        BarColumn(),
-        TaskProgressColumn(),
-        TextColumn("since"),
-        TimeElapsedColumn(),
-        TextColumn("still"),
-        TimeRemainingColumn(),
-    )
+    columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn())
     terminal = Console(stderr=True)
     # what goes to standard output stays there: redirected, it would go where the bar is
     with Progress(
@@ -189,7 +179,12 @@ def _bar(whole: int, *, shown: bool) -> Iterator[Bar | None]:
         task = progress.add_task("solving", total=whole)
 
         def move(done: float) -> None:
-            progress.update(task, completed=done, refresh=True)
+            progress.update(task, completed=done)
+            item = f"{noun} {min(int(done) + 1, whole)} of {whole}" if noun else "solving"
+            left = progress.tasks[task].time_remaining
+            progress.update(
+                task, description=item if left is None else f"{item}, about {left:.0f} s left", refresh=True
+            )
 
         def clear() -> None:
             terminal.control(Control(ControlType.CARRIAGE_RETURN, (ControlType.ERASE_IN_LINE, 2)))

@@ -43,7 +43,6 @@ def test_compare_ends_with_0_if_all_agree(right, capsys):
     assert run(["compare", "hinge"], right) == 0
     captured = capsys.readouterr()
     assert "hinge: AGREE" in captured.out
-    assert "t/(3R)" in captured.out
     assert captured.err == ""
 
 
@@ -101,7 +100,7 @@ def test_json_on_standard_output_is_alone_there(right, capsys, command):
 
 def test_json_in_a_file_comes_with_the_tables(right, capsys, tmp_path):
     file = tmp_path / "new" / "numbers.json"
-    assert run(["compare", "hinge", "--json", str(file)], right) == 0
+    assert run(["compare", "hinge", "--json", str(file), "-v"], right) == 0
     assert json.loads(file.read_text("utf-8"))["cases"][0]["verdict"] == "AGREE"
     assert "Certificates" in capsys.readouterr().out
 
@@ -134,7 +133,7 @@ def test_options_reach_the_solvers(right, capsys):
 
 
 def test_kinematics_reach_the_table(right, capsys):
-    assert run(["compare", "hinge", "--kinematics", "bending"], right) == 0
+    assert run(["compare", "hinge", "--kinematics", "bending", "-v"], right) == 0
     assert "theory bending" in capsys.readouterr().out
 
 
@@ -302,7 +301,7 @@ def test_a_place_for_json_is_seen_to_before_anything_is_solved(capsys, tmp_path,
 
 def test_runs_with_one_trouble_are_named_in_one_sentence(right, capsys):
     run(["compare", "hinge", "--quiet"], Solvers(ended(right.cprbm), right.fea))
-    assert "cprbm, cprbm finer, cprbm beside gave no whole answer: it ended early" in capsys.readouterr().out
+    assert "cprbm, cprbm finer, cprbm beside: it ended early" in capsys.readouterr().out
 
 
 def test_an_interruption_leaves_what_is_finished(right, capsys, tmp_path):
@@ -467,7 +466,7 @@ def test_an_assembly_that_a_stop_forbids_is_found_while_solving_and_ends_with_2(
 
 def test_critical_values_are_printed_and_in_the_json(tmp_path, capsys):
     solvers = Solvers(Jumping("cprbm"), Jumping("fea"))
-    assert run(["compare", "prestressed"], solvers) == 0
+    assert run(["compare", "prestressed", "-v"], solvers) == 0
     said = capsys.readouterr().out
     assert said.count("Critical values: where a branch ends") == 1
     assert "1.2288 rad (70.41°)" in said

@@ -124,7 +124,7 @@ def test_the_json_says_what_is_documented(compared):
 
 
 def test_compare_shows_tables_and_writes_a_report(small, tmp_path, capsys):
-    assert run(["compare", small, "--out", str(tmp_path / "report")]) == 0
+    assert run(["compare", small, "-v", "--out", str(tmp_path / "report")]) == 0
     printed = capsys.readouterr().out
     assert "offset: AGREE" in printed
     assert "not met" in printed  # sine-elements at N = 6

@@ -53,10 +53,18 @@ def test_on_a_terminal_a_bar_goes_to_the_end_with_the_time_that_remains_and_the_
     # the hinge has ten stations
     assert {10 * k for k in range(11)} <= set(parts)
     assert parts == sorted(parts)
-    assert re.search(r"still.*\d:\d\d:\d\d", seen)
+    assert re.search(r"solving, about \d+ s left", seen)
     assert "B.displacement" in out
     assert "B.displacement" not in seen
     assert "solving" not in out
+
+
+def test_on_a_terminal_a_comparison_says_the_number_of_the_case():
+    code, out, seen = _on_a_terminal("compare", "offset", "tapered", "-n", "10", "--elements", "10", "--no-exact")
+    assert code == 0
+    assert "case 1 of 2" in seen
+    assert re.search(r"case 2 of 2, about \d+ s left", seen)
+    assert "Summary" in out
 
 
 def test_quiet_shows_none_on_a_terminal_either():
