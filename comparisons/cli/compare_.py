@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
-from comparisons.case import compare
 from comparisons.choices import Kinematics
 from comparisons.cli.completing import offered
 from comparisons.cli.options import exactness, folder, numerical, one_of_both, opinions, output
@@ -48,6 +47,7 @@ def command(
 ) -> int:
     """Answer scenes with both solvers and say whether they agree."""
     from comparisons import offset_pages, report, sheets
+    from comparisons.case import compare
     from comparisons.choices import Choices, check
     from comparisons.cli import showing
     from comparisons.cli.asking import questions
