@@ -302,7 +302,7 @@ def test_a_place_for_json_is_seen_to_before_anything_is_solved(capsys, tmp_path,
 
 def test_runs_with_one_trouble_are_named_in_one_sentence(right, capsys):
     run(["compare", "hinge", "--quiet"], Solvers(ended(right.cprbm), right.fea))
-    assert "cprbm, cprbm finer, cprbm beside gave no whole answer: it ended early" in capsys.readouterr().out
+    assert "cprbm, cprbm finer, cprbm beside: it ended early" in capsys.readouterr().out
 
 
 def test_an_interruption_leaves_what_is_finished(right, capsys, tmp_path):
