@@ -37,6 +37,7 @@ from comparisons.choices import KINEMATICS, Choices, Kinematics, check
 from comparisons.listening import heard_from, listen
 from comparisons.processes import AloneError, deaf, pool
 from comparisons.reactions import perturbed_scene
+from comparisons.verdict.uncertainty import Error
 from cprbm_scene import Answer, Mistake, RigidContact, Scene, SceneError, Spacing
 from cprbm_scene.answer import Array
 from cprbm_scene.frozendict import frozendict
@@ -47,6 +48,9 @@ _SAYS = logging.getLogger(__name__)
 Solver = Callable[[Scene, Choices], Answer]
 Prepared = Callable[[], Answer]
 Job = tuple[Solver, Scene, Choices]
+
+Uncertainties = Mapping[tuple[str, float, str], Error]
+"""Stated uncertainties by stage, station and probe."""
 
 COLLECTED = (50_000, 20, 100)
 """Of a worker's collector of cycles: objects, and collections, after which it looks at the young and the older."""
@@ -207,6 +211,8 @@ class Runs:
         exact: the exact answer in ``bending``, at the stations at which one is known; None if there is no such station.
         solid: the mechanism as a solid, if that was asked for, at n and 2n elements or on as many meshes as a tolerance
             took, each twice as fine as the one before; nothing rests on it.
+        settled: by the name of a run whose values are extrapolated, or whose uncertainty is known from more grids than
+            these: the stated uncertainty by stage, station and probe.
     """
 
     kinematics: Kinematics
@@ -221,6 +227,7 @@ class Runs:
     perturbed: Answer | None = None
     exact: Answer | None = None
     solid: tuple[Answer, ...] | None = None
+    settled: Mapping[str, Uncertainties] = frozendict()
 
     @property
     def reference(self) -> Answer:

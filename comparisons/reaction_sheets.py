@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 
+from comparisons.case import Comparison
 from comparisons.formats import number, percent, scaled_unit
 from comparisons.reactions import MESH_ALLOWANCE, PERTURBATION, Absence, WorkEnergyReaction
 from comparisons.sheet import Sheet
-from comparisons.verdict import Comparison
 
 _HEADERS = ("station", "multiplier", "work–energy", "from it", "FEA", "multiplier from it", "no value because")
 

@@ -1,8 +1,8 @@
-"""Names: each used once across the scene, and none that nothing bears."""
+"""Names: unique across the scene, and references to existing names."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from cprbm_scene.mistakes import Mistake, unknown_name
 from cprbm_scene.statement import BeamContact, BodyLoad, FreeEnd, Moment, RigidContact, RotationDrive, Scene
@@ -16,7 +16,7 @@ def point_names(scene: Scene) -> list[str]:
 
 
 def repeated_names(scene: Scene) -> Iterator[Mistake]:
-    """Names of points, bodies, beams, contacts, stops, pins, loads and drives that are used twice or reserved."""
+    """Repeated or reserved names of points, bodies, beams, contacts, stops, pins, loads and drives."""
     bearers = [
         *((f"bodies.{name}", name) for name in scene.bodies),
         *((f"bodies.{name}.points.{point}", point) for name, body in scene.bodies.items() for point in body.points),
@@ -38,42 +38,45 @@ def repeated_names(scene: Scene) -> Iterator[Mistake]:
 
 
 def unknown_names(scene: Scene) -> Iterator[Mistake]:
-    """References to materials, points, bodies, beams, loads and drives that do not exist."""
-    points = point_names(scene)
-    for name, beam in scene.beams.items():
-        if beam.material not in scene.materials:
-            yield unknown_name(f"beams.{name}.material", beam.material, "material", scene.materials)
+    """References to missing materials, points, bodies, beams, contacts, loads and drives, and pairs of one name."""
+    for key, name, what, known in _references(scene):
+        if name not in known:
+            yield unknown_name(key, name, what, known)
+    for i, pair in enumerate(scene.may_cross):
+        if pair[0] == pair[1]:
+            yield Mistake(f"may_cross[{i}]", f"{pair[0]!r} twice", "two different names")
+
+
+def _references(scene: Scene) -> Iterator[tuple[str, str, str, Collection[str]]]:
+    """Every reference by name: the key, the name, the kind of record, and the existing names."""
+    points, beams = point_names(scene), scene.beams
+    for name, beam in beams.items():
+        yield f"beams.{name}.material", beam.material, "material", scene.materials
         for side, end in (("start", beam.start), ("end", beam.end)):
-            if not isinstance(end, FreeEnd) and end.point not in points:
-                yield unknown_name(f"beams.{name}.{side}.point", end.point, "point", points)
-    acting = [(f"loads.{name}", load) for name, load in scene.loads.items() if isinstance(load, BodyLoad)]
-    driving = [(f"drives.{name}", drive) for name, drive in scene.drives.items()]
-    for key, each in (*acting, *driving):
+            if not isinstance(end, FreeEnd):
+                yield f"beams.{name}.{side}.point", end.point, "point", points
+    loads = ((f"loads.{name}", load) for name, load in scene.loads.items() if isinstance(load, BodyLoad))
+    for key, each in (*loads, *((f"drives.{name}", drive) for name, drive in scene.drives.items())):
         if isinstance(each, Moment | RotationDrive):
-            if each.body not in scene.bodies:
-                yield unknown_name(f"{key}.body", each.body, "body", scene.bodies)
-        elif each.point not in points:
-            yield unknown_name(f"{key}.point", each.point, "point", points)
+            yield f"{key}.body", each.body, "body", scene.bodies
+        else:
+            yield f"{key}.point", each.point, "point", points
     for name, contact in scene.contacts.items():
-        paired = isinstance(contact, BeamContact)
         for i, beam_name in enumerate(contact.beams):
-            if beam_name not in scene.beams:
-                key = f"between[{i}]" if paired else "beam"
-                yield unknown_name(f"contacts.{name}.{key}", beam_name, "beam", scene.beams)
-        if isinstance(contact, RigidContact) and contact.body not in scene.bodies:
-            yield unknown_name(f"contacts.{name}.body", contact.body, "body", scene.bodies)
+            key = f"between[{i}]" if isinstance(contact, BeamContact) else "beam"
+            yield f"contacts.{name}.{key}", beam_name, "beam", beams
+        if isinstance(contact, RigidContact):
+            yield f"contacts.{name}.body", contact.body, "body", scene.bodies
     for name, stop in scene.stops.items():
-        if stop.beam not in scene.beams:
-            yield unknown_name(f"stops.{name}.beam", stop.beam, "beam", scene.beams)
-        if stop.towards not in points:
-            yield unknown_name(f"stops.{name}.towards", stop.towards, "point", points)
+        yield f"stops.{name}.beam", stop.beam, "beam", beams
+        yield f"stops.{name}.towards", stop.towards, "point", points
     for name, pin in scene.pins.items():
-        for i, point in enumerate(pin.points):
-            if point not in points:
-                yield unknown_name(f"pins.{name}.points[{i}]", point, "point", points)
+        yield from ((f"pins.{name}.points[{i}]", point, "point", points) for i, point in enumerate(pin.points))
     for beam_name in scene.assembly.moments if scene.assembly is not None else ():
-        if beam_name not in scene.beams:
-            yield unknown_name(f"assembly.moments.{beam_name}", beam_name, "beam", scene.beams)
+        yield f"assembly.moments.{beam_name}", beam_name, "beam", beams
+    crossing = [*beams, *(name for name, contact in scene.contacts.items() if isinstance(contact, RigidContact))]
+    for i, pair in enumerate(scene.may_cross):
+        for j, name in enumerate(pair):
+            yield f"may_cross[{i}][{j}]", name, "beam or contact with a rigid edge", crossing
     for i, stage in enumerate(scene.stages):
-        if stage.steps not in scene.loads and stage.steps not in scene.drives:
-            yield unknown_name(f"stages[{i}].steps", stage.steps, "load or drive", (*scene.loads, *scene.drives))
+        yield f"stages[{i}].steps", stage.steps, "load or drive", (*scene.loads, *scene.drives)

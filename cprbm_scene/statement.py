@@ -626,7 +626,8 @@ class Scene(Record):
     """One problem statement: what is there, what happens to it, and what is asked.
 
     Names of points, bodies, beams, contacts, stops, pins, loads and drives are unique across the scene.
-    ``verdict_limit`` is the largest total uncertainty (a fraction of a probe's scale)
+    ``may_cross`` lists pairs that may pass through each other without a contact: two beams, or a beam and a contact
+    with a rigid edge.  ``verdict_limit`` is the largest total uncertainty (a fraction of a probe's scale)
     with which the scene still wants to hear AGREE; a probe may have its own.  ``units`` are those of a file; of a scene
     that was read they are SI (:mod:`cprbm_scene.units`).
     """
@@ -644,6 +645,7 @@ class Scene(Record):
     stops: Named[Stop] = Field(default_factory=frozendict)
     pins: Named[BodyPin] = Field(default_factory=frozendict)
     assembly: Assembly | None = None
+    may_cross: tuple[tuple[Name, Name], ...] = ()
     stages: Annotated[tuple[Stage, ...], Field(min_length=1)]
     probes: Annotated[tuple[Probe, ...], Field(min_length=1)]
     claims: tuple[Claim, ...] = ()

@@ -22,7 +22,6 @@ from functools import cache
 
 import numpy as np
 import shapely
-from shapely.geometry.base import BaseGeometry
 
 from comparisons.audit.state import Complex, StationState, unit
 from comparisons.geometry import length, points
@@ -50,6 +49,9 @@ ALIGNED, LINE_ALIGNED = 0.98, 0.8
 FAR, TINY = 1e3, 1e-300
 """Place of a lap that does not exist, over the longest beam, and a length below all lengths, m."""
 
+BEHIND = 0.2
+"""Length of both sides behind an open edge, over the longest beam."""
+
 GRAPH = 2001
 """Places of a rigid edge that is a function's graph."""
 
@@ -58,9 +60,6 @@ BESIDE = 3.0
 
 SMALL = 1e-6
 """Share of a contact's largest force below which places and directions of a force are not judged."""
-
-BEHIND = 0.1
-"""Depth of a rigid edge behind its line, over the longest beam."""
 
 
 def contacts(state: StationState) -> Iterator[str]:
@@ -148,28 +147,31 @@ def _to_rigid(state: StationState, contact: RigidContact, x: Complex) -> tuple[A
         n = unit(contact.normal)
         return ((x - complex(*contact.point)) * np.conj(n)).real, np.full(len(x), turn * n)
     if isinstance(contact, CircleContact):
-        away = np.asarray(x - complex(*contact.center))
-        return np.abs(away) - contact.radius, turn * away / np.abs(away)
-    edge, solid = _solid(contact, BEHIND * state.longest)
-    foot = shapely.line_interpolate_point(edge, _along(edge, x))
-    away = np.asarray(x - shapely.get_coordinates(foot) @ (1.0, 1j))
-    sign = np.where(shapely.contains_properly(solid, shapely.points(x.real, x.imag)), -1.0, 1.0)
-    return sign * np.abs(away), turn * sign * away / np.maximum(np.abs(away), TINY)
+        from_centre = x - complex(*contact.center)
+        return np.abs(from_centre) - contact.radius, turn * from_centre / np.abs(from_centre)
+    edge = _edge(contact, BEHIND * state.longest)
+    at, beside = _along(edge, x), 1e-9 * edge.length
+    feet = (shapely.line_interpolate_point(edge, at + shift) for shift in (-beside, 0.0, beside))
+    before, foot, after = (shapely.get_coordinates(places) @ (1.0, 1j) for places in feet)
+    behind = ((np.conj(after - before) * (x - foot)).imag < 0.0) & (at > 0.0) & (at < edge.length)
+    sign = np.where(behind, -1.0, 1.0)
+    return sign * np.abs(x - foot), turn * sign * (x - foot) / np.maximum(np.abs(x - foot), TINY)
 
 
 @cache
-def _solid(contact: LineContact | FunctionContact, depth: float) -> tuple[shapely.LineString, BaseGeometry]:
-    """The edge of a rigid contact at rest, and the rigid region behind the edge."""
+def _edge(contact: LineContact | FunctionContact, depth: float) -> shapely.LineString:
+    """A rigid edge at rest with the free side on the left, and both sides that go straight back from an open edge."""
     if isinstance(contact, LineContact):
         line, left = np.array(contact.points) @ (1.0, 1j), contact.side == "left"
     else:
         line = points(contact.curve, np.linspace(0.0, length(contact.curve), GRAPH)) @ (1.0, 1j)
         left = ((contact.side == "above") == (contact.axis == "x")) == (contact.range[1] > contact.range[0])
-    edge = _curve(line)
-    if not edge.is_closed:
-        return edge, edge.buffer(-depth if left else depth, single_sided=True, join_style="mitre")
-    ring = shapely.Polygon(edge)
-    return edge, ring if ring.exterior.is_ccw != left else ring.buffer(depth).difference(ring)
+    line = line if left else line[::-1]
+    ends = line[0] - line[1], line[-1] - line[-2]
+    sides = line[0] + 1j * depth * ends[0] / abs(ends[0]), line[-1] - 1j * depth * ends[1] / abs(ends[1])
+    if line[0] == line[-1]:
+        sides = line[-2], line[1]
+    return _curve(np.concatenate((sides[:1], line, sides[1:])))
 
 
 def _along(curve: shapely.LineString, x: Complex) -> Array:

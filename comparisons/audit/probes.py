@@ -54,8 +54,11 @@ def _expected(state: StationState, probe: Probe) -> tuple[Array, Array | float] 
             return _components(state.moved(of)), SAME * state.longest
         case "rotation":
             return np.array([state.rotation(of)]), SAME
-        case "force" if not isinstance(scene.contacts[of], SelfContact):
-            total = abs(_of_source(state.on[scene.contacts[of].beams[0]], {of})["force"].sum())
+        case "force":
+            forces = np.sort(_of_source(state.on[scene.contacts[of].beams[0]], {of}), order="s")
+            if isinstance(scene.contacts[of], SelfContact):
+                forces = forces[: len(forces) // 2]  # both laps bear the same forces
+            total = abs(forces["force"].sum())
             return np.array([total]), SAME * total + force
         case "moment":
             value = abs(_moment(state, of))

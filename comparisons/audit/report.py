@@ -9,6 +9,7 @@ import numpy as np
 
 from comparisons.audit.balance import cut_errors, cuts, sums
 from comparisons.audit.contacts import contacts
+from comparisons.audit.crossings import crossing_sentence, crossings
 from comparisons.audit.joints import joints
 from comparisons.audit.path import path
 from comparisons.audit.probes import probes
@@ -24,7 +25,6 @@ class Audit:
     Attributes:
         complaints: one sentence for every law of statics or geometry that the answer breaks; empty for a right answer.
         crossings: one sentence for every undeclared crossing of beams and edges.
-        remarks: sentences that a reader should know and that are no faults.
         stations: number of audited stations; 0 of an answer that states no internal forces.
         unbalance: largest difference of a stated moment from the moment of all that acts beyond, N·m, between the ends
             of a beam; near a contact force the lever within an element counts.
@@ -33,7 +33,6 @@ class Audit:
 
     complaints: tuple[str, ...]
     crossings: tuple[str, ...]
-    remarks: tuple[str, ...]
     stations: int
     unbalance: float
     scaled: float
@@ -52,7 +51,8 @@ def audit(scene: Scene, answer: Answer) -> Audit:
         errors = [float(cut_errors(state, name)[1][0][1:-1].max()) for name in state.beams]
         worst, scaled = max(worst, *errors), max(scaled, max(errors) / state.largest[1])
     complaints += path(answer, states)
-    return Audit(tuple(complaints), (), (), len(states), worst, scaled)
+    crossing = tuple(crossing_sentence(scene, pair) for pair in crossings(scene, answer))
+    return Audit(tuple(complaints), crossing, len(states), worst, scaled)
 
 
 def _at_station(state: StationState) -> Iterator[str]:

@@ -51,8 +51,8 @@ def section_law(state: StationState) -> Iterator[str]:
                 beam.size(s),
             )
             reach = np.maximum(HELD * beam.beam.thickest / h, 2.0)
-            judged = (nearby(state, name, s, reach)[0] == 0.0) & (np.minimum(s, beam.length - s) > reach * h)
-            change = np.abs(np.diff(made))
+            judged = (sum(nearby(state, name, s, reach)) == 0.0) & (np.minimum(s, beam.length - s) > reach * h)
+            change = 0.5 * np.abs(np.diff(made))
             allowed = SHARE * np.abs(made).max() + np.maximum(np.append(change, 0.0), np.append(0.0, change))
             yield from _worst(f"{name} shears by", s, gamma, made, np.where(judged, allowed, np.inf))
 

@@ -229,7 +229,10 @@ class StationState:
         held, turned = (record.end, beam.turned[-1]) if at_end else (record.start, beam.turned[0])
         ahead = turned - self.rotation(self.scene.body_of(getattr(held, "point", "")))
         full = np.round(ahead / (2.0 * np.pi)) * 2.0 * np.pi
-        return float(np.interp(load["s"][0], beam.state.s, beam.turned) - full)
+        # within an element the moment turns the section further than both ends
+        i, s = np.searchsorted(beam.state.s[1:-1], load["s"][0], side="right"), load["s"][0]
+        h, (EI, _, _) = s - beam.state.s[i], beam.stiffness(load["s"])
+        return float(beam.turned[i] + h * (beam.state.M[i] - 0.5 * h * beam.state.Q[i]) / EI[0] - full)
 
     def beyond(self, name: str, s: Array) -> tuple[Complex, Array]:
         """Force F and moment M of all that acts beyond cuts at arc lengths (k,) of a beam, (k,) each."""

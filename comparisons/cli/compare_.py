@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING, Literal
 
 import click
 
+from comparisons.case import compare
 from comparisons.choices import Kinematics
 from comparisons.cli.completing import offered
 from comparisons.cli.options import folder, numerical, one_of_both, opinions, output
 
 if TYPE_CHECKING:
+    from comparisons.case import Comparison
     from comparisons.documents import Plain
     from comparisons.offset_verdict import OffsetComparison
     from comparisons.tolerances.search import Tolerance
-    from comparisons.verdict import Comparison
 
 
 @click.command("compare")
@@ -52,7 +53,6 @@ def command(
     from comparisons.pairing import Runs, begin, crew_of, solvers_of, with_solid, workers_for
     from comparisons.resuming import resumed
     from comparisons.tolerances.tolerated import paired_within
-    from comparisons.verdict import compared
     from cprbm_scene import OffsetQuestion, Scene
 
     one_of_both(tol)
@@ -93,7 +93,7 @@ def command(
                     assert tol is not None
                     with showing.current(shown=not quiet) as say:
                         runs, found = paired_within(scene, choices, tol, solvers, crew, say)
-                comparison = replace(compared(scene, runs), tolerances=found)
+                comparison = replace(compare(scene, runs), tolerances=found)
             finished.append(comparison)
             if out is not None:
                 chapters = (*chapters, report.added(out, comparison))
@@ -128,7 +128,7 @@ def exit_code(finished: Sequence[Comparison | OffsetComparison]) -> int:
 
     An uncertainty that is not within the tolerance asked is as undecided as a verdict can be.
     """
-    from comparisons.words import Word
+    from comparisons.verdict.words import Word
 
     verdicts = [comparison.verdict for comparison in finished]
     if any(verdict.word is Word.DIFFER or not verdict.completed for verdict in verdicts):

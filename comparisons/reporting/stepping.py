@@ -14,15 +14,14 @@ from typing import Literal
 
 import numpy as np
 
+from comparisons.case import Comparison
 from comparisons.cells import signed
 from comparisons.figures import along_axis
 from comparisons.formats import number, percent, scaled_unit, vector
 from comparisons.geometry import length, points
-from comparisons.measures import load_unit, unit_of
+from comparisons.quantities import load_unit, norm, unit_of
 from comparisons.reporting.outlines import Frame, arrows, band, circle, dots, frame, line, turned
-from comparisons.scales import norm
 from comparisons.stations import station_of
-from comparisons.verdict import Comparison
 from comparisons.viewing.moved import Motion
 from cprbm_scene import Beam, CircleContact, Scene, Stage, StationAnswer
 from cprbm_scene.answer import Array

@@ -18,7 +18,7 @@ from comparisons.cli.main import run
 from comparisons.pairing import Solvers
 from cprbm_scene import Ending, Mistake, SceneError
 from cprbm_scene.frozendict import frozendict
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.made_up import MadeUp
 
 MACHINE = {"cpu": "made up", "cores": 3, "system": "none", "python": "0", "numpy": "1", "scipy": "2", "scikit-fem": "3"}
 FORMULATIONS = {"auto": "auto", "fea": None}

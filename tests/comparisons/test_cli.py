@@ -17,8 +17,8 @@ from comparisons import cases
 from comparisons.cli.main import run
 from comparisons.pairing import Solvers
 from cprbm_scene import Ending
-from tests.comparisons.jumping import FORWARD, Jumping
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.jumping import FORWARD, Jumping
+from tests.verdict.made_up import MadeUp
 
 HINGE = Path(cases.__file__).parent / "hinge.toml"
 ROOT = Path(__file__).parents[2]

@@ -9,7 +9,7 @@ from comparisons import cases
 from comparisons.choices import Choices
 from comparisons.pairing import ALONE, Solvers, begin, cprbm_answer, crew_of, fea_answer, paired
 from cprbm_scene import Mistake, SceneError
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.made_up import MadeUp
 
 
 def test_every_run_is_asked_for_once(hinge, right):

@@ -13,6 +13,7 @@ import pytest
 
 from comparisons import cases, documents, reactions_drawn, sheets
 from comparisons import reactions as module
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.reaction_sheets import summary
@@ -25,15 +26,14 @@ from comparisons.reactions import (
     perturbed_scene,
     reactions,
 )
-from comparisons.verdict import compared
 from cprbm_scene import Ending, Stage
 from cprbm_scene.answer import frozen_array
 from cprbm_scene.freedoms import unit
 from cprbm_scene.frozendict import frozendict
 from cprbm_scene.statement import DisplacementDrive
-from tests.comparisons.jumping import Jumping
-from tests.comparisons.made_up import MadeUp
 from tests.together.driven import GAP, gripper_like, punched, snapping
+from tests.verdict.jumping import Jumping
+from tests.verdict.made_up import MadeUp
 
 K, STOP = 70.0, 900.0  # N/m
 STOP_AT = 0.006  # m
@@ -86,7 +86,7 @@ def driven(*stages, **shown):
 
 
 def comparison_of(scene, cprbm=None):
-    return compared(scene, paired(scene, Choices(), Solvers(cprbm or Spring(), Spring("fea", share=1.01))))
+    return compare(scene, paired(scene, Choices(), Solvers(cprbm or Spring(), Spring("fea", share=1.01))))
 
 
 def of_one_solver(scene, solver, choices=COARSE):
@@ -121,7 +121,7 @@ def test_without_a_reaction_probe_of_a_moved_drive_there_is_no_perturbed_scene(h
     fewer = push.model_copy(update={"probes": tuple(probe for probe in push.probes if probe.name != "M.reaction")})
     for scene in (hinge, driven(("pull", (0.5,))), driven(("push", (0.0,))), fewer):
         assert perturbed_scene(scene) is None
-    comparison = compared(hinge, paired(hinge, Choices(), right))
+    comparison = compare(hinge, paired(hinge, Choices(), right))
     assert comparison.reactions == ()
     assert documents.comparison(comparison)["work_energy"] == []
     assert reactions_drawn.of_comparison(comparison) == ()
@@ -289,7 +289,7 @@ def jumping(**planted):
     )
     scene = scene.model_copy(update={"stages": stages, "claims": ()})
     solvers = Solvers(Jumping("cprbm", **planted), Jumping("fea", **planted))
-    return compared(scene, paired(scene, Choices(), solvers))
+    return compare(scene, paired(scene, Choices(), solvers))
 
 
 def test_no_difference_is_taken_across_a_jump():
@@ -346,7 +346,7 @@ def test_an_energy_that_is_no_number_leaves_no_value():
     first = runs.perturbed.stations[0]
     spoilt = replace(first, values={**first.values, "scene.potential_energy": frozen_array([np.nan])})
     perturbed = replace(runs.perturbed, stations=(spoilt, *runs.perturbed.stations[1:]))
-    found = compared(comparison.scene, replace(runs, perturbed=perturbed)).reactions
+    found = compare(comparison.scene, replace(runs, perturbed=perturbed)).reactions
     assert [at.absence for at in found] == [Absence.NOT_REACHED, None]
 
 
@@ -373,7 +373,7 @@ def test_json_table_and_figure_show_it():
 
 def test_the_verdict_does_not_use_it():
     comparison = comparison_of(driven(("push", (0.002, 0.004))))
-    without = compared(comparison.scene, replace(comparison.runs, perturbed=None))
+    without = compare(comparison.scene, replace(comparison.runs, perturbed=None))
     assert without.verdict == comparison.verdict
     assert without.reactions == ()
 

@@ -6,20 +6,20 @@ from dataclasses import replace
 import pytest
 
 from comparisons import cases, sheets, tables
+from comparisons.case import compare
 from comparisons.choices import Choices
 from comparisons.pairing import Solvers, paired
 from comparisons.paper_sheets import of_paper
 from comparisons.sheet import Sheet, without_empty
-from comparisons.verdict import compared
 from cprbm_scene import Ending
-from tests.comparisons.made_up import MadeUp
+from tests.verdict.made_up import MadeUp
 
 
 @pytest.fixture(scope="module")
 def comparison():
     """Two solvers that differ by a few parts in ten million."""
     scene = cases.opened("hinge")
-    return compared(scene, paired(scene, Choices(), Solvers(MadeUp("cprbm", 2e-7), MadeUp("fea", -5e-8))))
+    return compare(scene, paired(scene, Choices(), Solvers(MadeUp("cprbm", 2e-7), MadeUp("fea", -5e-8))))
 
 
 def cell(sheet, row, header):
@@ -55,7 +55,7 @@ def test_there_is_one_explanation_per_claim(comparison):
 @pytest.mark.parametrize(("formulation", "said"), [("auto", "would put the CPRBM"), ("paper", "in the contact model")])
 def test_the_contact_model_has_a_column_and_a_word(formulation, said):
     scene, solvers = cases.opened("hinge"), Solvers(MadeUp("cprbm", 2e-3, paper=1e-3), MadeUp("fea", 0.0))
-    found = compared(scene, paired(scene, Choices(formulation=formulation), solvers))
+    found = compare(scene, paired(scene, Choices(formulation=formulation), solvers))
     sheet = next(sheet for sheet in sheets.of_comparison(found) if "contact model" in sheet.headers)
     row = next(row for row in found.rows if row.probe.name == "BD.rotation" and row.station == 0.67)
     assert row.contact_model is not None
@@ -78,7 +78,7 @@ def test_by_how_much_paper_is_off_at_most_and_at_last_and_why():
         notes=("the chord is held",),
     )
     for paper, last in ((runs.paper, 0.67), (early, 0.268)):
-        found = compared(scene, replace(runs, paper=paper))
+        found = compare(scene, replace(runs, paper=paper))
         sheet = next(
             sheet for sheet in sheets.of_comparison(found) if sheet.title == "The formulation paper beside auto"
         )
@@ -107,7 +107,7 @@ def test_without_a_whole_answer_in_paper_the_column_is_left_out_and_the_verdict_
         comparison.runs.cprbm[0], ending=Ending.LEFT_BOUNDARY, stations=comparison.runs.cprbm[0].stations[:3]
     )
     for paper in (early, None):
-        found = compared(comparison.scene, replace(comparison.runs, paper=paper))
+        found = compare(comparison.scene, replace(comparison.runs, paper=paper))
         assert found.verdict == comparison.verdict
         steps = next(sheet for sheet in sheets.of_comparison(found) if sheet.title.startswith("What the difference"))
         assert "contact model" not in steps.headers
